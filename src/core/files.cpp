@@ -1,0 +1,129 @@
+#include "item3d/core/files.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "item3d/core/error.h"
+
+namespace item3d {
+namespace fs = std::filesystem;
+namespace {
+
+fs::path temporary_beside(const fs::path& path) {
+    fs::path name = path.stem();
+    name += ".tmp" + std::to_string(::getpid());
+    name += path.extension();
+    return path.parent_path() / name;
+}
+
+[[noreturn]] void throw_write_error(const fs::path& path, int error) {
+    const std::string reason = std::strerror(error);
+    if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
+        throw ResourceError(path.string() + ": cannot be written: " + reason +
+                            "; free some space or choose another folder");
+    }
+    throw InputError(path.string(), "cannot be written: " + reason,
+                     "choose a folder that you may write to");
+}
+
+void write_and_sync(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    const int file = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
+    if (file < 0) throw_write_error(path, errno);
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t wrote = ::write(file, bytes.data() + done, bytes.size() - done);
+        if (wrote < 0 && errno == EINTR) continue;
+        if (wrote < 0) {
+            const int error = errno;
+            ::close(file);
+            throw_write_error(path, error);
+        }
+        done += static_cast<std::size_t>(wrote);
+    }
+    const bool synced = ::fsync(file) == 0 || errno == EINVAL;
+    const int error = errno;
+    if (::close(file) != 0) throw_write_error(path, errno);
+    if (!synced) throw_write_error(path, error);
+}
+
+}  // namespace
+
+Bytes read_bytes(const fs::path& path) {
+    std::error_code code;
+    const auto status = fs::status(path, code);
+    if (!fs::exists(status)) {
+        throw InputError(path.string(), "no such file", "check the path");
+    }
+    if (fs::is_directory(status)) {
+        throw InputError(path.string(), "is a folder, a file was expected", "name a file in it");
+    }
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    if (!file) throw InputError(path.string(), "cannot be opened", "check its permissions");
+    const std::streamoff size = file.tellg();
+    if (size < 0) throw InputError(path.string(), "is not a regular file");
+    Bytes bytes(static_cast<std::size_t>(size));
+    file.seekg(0);
+    file.read(reinterpret_cast<char*>(bytes.data()), size);
+    if (!file) throw InputError(path.string(), "could not be read to its end");
+    return bytes;
+}
+
+std::string read_text(const fs::path& path) {
+    const Bytes bytes = read_bytes(path);
+    return std::string(bytes.begin(), bytes.end());
+}
+
+void write_atomically(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    write_atomically(path, [&](const fs::path& temporary) { write_and_sync(temporary, bytes); });
+}
+
+void write_atomically(const fs::path& path, std::string_view text) {
+    write_atomically(path, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+    const fs::path temporary = temporary_beside(path);
+    try {
+        write(temporary);
+        std::error_code code;
+        fs::rename(temporary, path, code);
+        if (code) throw_write_error(path, code.value());
+    } catch (...) {
+        std::error_code ignored;
+        fs::remove(temporary, ignored);
+        throw;
+    }
+}
+
+void make_output_folder(const fs::path& folder) {
+    std::error_code code;
+    fs::create_directories(folder, code);
+    if (!fs::is_directory(folder)) {
+        throw InputError(folder.string(),
+                         "cannot be made a folder: " +
+                             (code ? code.message() : std::string("a file of that name is there")),
+                         "choose another -o");
+    }
+    const fs::path probe = folder / (".write-test-" + std::to_string(::getpid()));
+    write_and_sync(probe, {});
+    fs::remove(probe, code);
+}
+
+fs::path assets_folder() {
+    if (const char* set = std::getenv("ITEM3D_ASSETS"); set && *set) return set;
+    std::error_code code;
+    const fs::path program = fs::read_symlink("/proc/self/exe", code);
+    for (const char* relative : {"../assets", "../share/item3d"}) {
+        const fs::path candidate = program.parent_path() / relative;
+        if (fs::is_directory(candidate)) return candidate.lexically_normal();
+    }
+    throw InputError(program.string(), "its assets folder was not found beside it",
+                     "set ITEM3D_ASSETS to the folder that holds the prior");
+}
+
+}  // namespace item3d

@@ -1,0 +1,38 @@
+// Whole-file reads and atomic writes: a file that is there is whole.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace item3d {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Reads a whole file. Throws InputError when it is missing, not a file, or unreadable.
+Bytes read_bytes(const std::filesystem::path& path);
+std::string read_text(const std::filesystem::path& path);
+
+/// Writes to a temporary name beside `path`, flushes, and renames. Throws ResourceError (full disk)
+/// or InputError (unwritable folder); the old file, if any, is then untouched.
+void write_atomically(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+void write_atomically(const std::filesystem::path& path, std::string_view text);
+
+/// As above for writers that want a path of their own: calls write(temporary_path), then renames.
+/// The temporary name keeps the extension of `path`.
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path&)>& write);
+
+/// Creates a folder (and its parents) and proves that files can be written there.
+/// Throws InputError that says why not.
+void make_output_folder(const std::filesystem::path& folder);
+
+/// The folder of shipped data (prior, demo model): $ITEM3D_ASSETS, else ../assets or
+/// ../share/item3d beside the running program. Throws InputError when none exists.
+std::filesystem::path assets_folder();
+
+}  // namespace item3d

@@ -1,0 +1,10 @@
+// Marks functions that run on the CPU and, when the file is compiled by nvcc, on CUDA devices too.
+#pragma once
+
+#if defined(__CUDACC__)
+#define ITEM3D_HOST_DEVICE __host__ __device__
+#define ITEM3D_LAMBDA __host__ __device__
+#else
+#define ITEM3D_HOST_DEVICE
+#define ITEM3D_LAMBDA
+#endif

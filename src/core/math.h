@@ -1,0 +1,21 @@
+// Vectors for code that must run on the CPU and on CUDA devices: GLM's types under short names.
+#pragma once
+
+#include <glm/glm.hpp>
+
+namespace item3d {
+
+using Vec2 = glm::vec2;
+using Vec3 = glm::vec3;
+using Vec4 = glm::vec4;
+using Mat3 = glm::mat3;
+/// Column-major as in GLM; files and tensors hold row-major matrices and are transposed when read.
+using Mat4 = glm::mat4;
+
+inline constexpr float pi = 3.14159265358979323846f;
+
+/// IEC 61966-2-1 transfer functions on [0, 1]; values outside follow the same curve.
+float srgb_to_linear(float value);
+float linear_to_srgb(float value);
+
+}  // namespace item3d

@@ -1,0 +1,30 @@
+// One way to launch per-pixel and per-texel kernels on the CPU's threads.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+
+#include <omp.h>
+
+namespace item3d {
+
+/// Calls f(i) for every i in [0, count), in any order, on the threads that OpenMP gives this
+/// thread (omp_get_max_threads). `name` is what a profiler shows. f must not throw: kernels
+/// report through their outputs. Blocks of `grain` indices stay on one thread.
+template <typename F>
+void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t grain = 256) {
+    (void)name;
+    const std::int64_t blocks = (count + grain - 1) / grain;
+    if (blocks <= 1 || omp_in_parallel()) {
+        for (std::int64_t i = 0; i < count; ++i) f(i);
+        return;
+    }
+#pragma omp parallel for schedule(dynamic)
+    for (std::int64_t block = 0; block < blocks; ++block) {
+        const std::int64_t end = std::min(count, (block + 1) * grain);
+        for (std::int64_t i = block * grain; i < end; ++i) f(i);
+    }
+}
+
+}  // namespace item3d

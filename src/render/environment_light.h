@@ -1,0 +1,35 @@
+// Split-sum image-based lighting (Karis 2013): an environment prefiltered once, looked up a pixel.
+#pragma once
+
+#include <torch/torch.h>
+
+#include "item3d/scene/image.h"
+
+namespace item3d {
+
+/// An environment made ready for shading. Cube faces are in OpenGL's order +X -X +Y -Y +Z -Z;
+/// [6, S, S, 3] linear radiance. All tensors carry gradients back to what `prefilter` was given.
+struct EnvironmentLight {
+    torch::Tensor diffuse;                ///< [6, 16, 16, 3] irradiance / pi
+    std::vector<torch::Tensor> specular;  ///< GGX-prefiltered chain, finest first
+    std::vector<float> roughness;         ///< perceptual roughness of each level
+    EnvironmentLight to(torch::Device device) const;
+};
+
+/// [H, 2H, 3] equirectangular linear radiance -> [6, size, size, 3], differentiable.
+torch::Tensor equirectangular_to_cube(const torch::Tensor& equirectangular, int size);
+
+/// Differentiable in `cube` [6, S, S, 3]. S is a power of two, at least 16; the chain goes from S
+/// down to 16 with roughness 0.08 .. 0.5, then one level more for roughness 1.
+EnvironmentLight prefilter(const torch::Tensor& cube);
+
+/// Convenience for fixed lights. size: edge of the finest cube face.
+EnvironmentLight prefilter(const Image& equirectangular, int size = 256,
+                           torch::Device device = torch::kCPU);
+
+/// The 2D BSDF table, computed by us once a process: [256, 256, 2] float32, row = roughness, column
+/// = n.v, texel centres at (k + 0.5) / 256; specular albedo = F0 * A + B for GGX (alpha =
+/// roughness^2) with height-correlated Smith masking.
+const torch::Tensor& bsdf_table();
+
+}  // namespace item3d

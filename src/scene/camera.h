@@ -1,0 +1,39 @@
+// Pinhole cameras in OpenGL's convention: x right, y up, looking along -z.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "item3d/core/math.h"
+
+namespace item3d {
+
+struct Camera {
+    std::string name;
+    /// Camera-to-world, orthonormal rotation, glm column-major.
+    Mat4 camera_to_world{1.0f};
+    /// Horizontal field of view in radians.
+    float field_of_view_x = 0.8f;
+    float near_plane = 0.05f;
+    float far_plane = 100.0f;
+
+    Vec3 position() const { return Vec3(camera_to_world[3]); }
+    Mat4 world_to_camera() const;
+    /// OpenGL clip space: x, y, z in [-w, w]. width and height in pixels give the aspect ratio.
+    Mat4 world_to_clip(int width, int height) const;
+};
+
+/// Angles in radians; azimuth 0 looks from +Z, pi/2 from +X; elevation is positive above.
+Camera orbit_camera(Vec3 target, float distance, float azimuth, float elevation,
+                    float field_of_view_x);
+
+/// `count` cameras around the box, far enough that all of its bounding sphere is in view.
+std::vector<Camera> turntable(std::array<Vec3, 2> bounds, int count, float elevation,
+                              float field_of_view_x);
+
+/// Reads NeRF-synthetic transforms.json (camera_angle_x, frames[].transform_matrix, file_path).
+/// Matrices are taken in the model's own axes. Throws InputError.
+std::vector<Camera> load_cameras(const std::filesystem::path& path);
+
+}  // namespace item3d

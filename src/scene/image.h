@@ -1,0 +1,33 @@
+// Pictures in memory.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// Row 0 is the top; channels are interleaved: pixels[(y * width + x) * channels + c].
+/// Values are what the file says: 8-bit v is v / 255 with no transfer function applied (sRGB stays
+/// encoded), HDR formats are linear and unbounded.
+struct Image {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    std::vector<float> pixels;
+
+    Image() = default;
+    Image(int width, int height, int channels, float value = 0.0f)
+        : width(width), height(height), channels(channels),
+          pixels(static_cast<std::size_t>(width) * height * channels, value) {}
+
+    bool empty() const { return pixels.empty(); }
+    float& at(int x, int y, int c) {
+        return pixels[(static_cast<std::size_t>(y) * width + x) * channels + c];
+    }
+    float at(int x, int y, int c) const {
+        return pixels[(static_cast<std::size_t>(y) * width + x) * channels + c];
+    }
+};
+
+}  // namespace item3d

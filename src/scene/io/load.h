@@ -1,0 +1,21 @@
+// Files to models and images. Every function throws InputError for what can't be used; none reads
+// outside the model's folder, none allocates out of proportion to the file.
+#pragma once
+
+#include <filesystem>
+
+#include "item3d/scene/image.h"
+#include "item3d/scene/model.h"
+
+namespace item3d {
+
+/// glTF 2.0 (.glb, .gltf) or OBJ with MTL, by content and extension. A texture that cannot be read
+/// is a warning (the factor is used). A model without triangles or with non-finite positions is an
+/// InputError.
+Model load_model(const std::filesystem::path& path);
+
+/// PNG, JPEG, Radiance HDR, OpenEXR, by content. Channels as in the file (palettes are expanded,
+/// 1-bit and 16-bit scaled to [0, 1]).
+Image load_image(const std::filesystem::path& path);
+
+}  // namespace item3d

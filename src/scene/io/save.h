@@ -1,0 +1,47 @@
+// Models and images to files; every write is atomic.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "item3d/scene/image.h"
+#include "item3d/scene/model.h"
+
+namespace item3d {
+
+/// By extension: .png (values clamped to [0, 1], 8 or 16 bits), .jpg, .hdr, .exr (float32, or half).
+/// PNG and JPEG store the values as they are: give sRGB-encoded ones.
+void save_image(const std::filesystem::path& path, const Image& image, int bits_per_channel = 8);
+
+/// What an edit changed in one material. Images as they go into files: base colour sRGB-encoded,
+/// the others linear. An image that is not set leaves that slot of the material as it was.
+struct MaterialEdit {
+    std::optional<Image> base_color;          ///< RGB or RGBA
+    std::optional<Image> metallic_roughness;  ///< occlusion, roughness, metallic
+    std::optional<Image> normal;
+    /// With an image, factors are reset to 1 (base colour, metallic, roughness) so that texture
+    /// values are the material's. Bits per channel of the PNGs that are written.
+    int bits_per_channel = 8;
+};
+
+/// New UVs of one primitive: seams split vertices, so every vertex of the new primitive names the
+/// old vertex it copies.
+struct PrimitiveEdit {
+    std::vector<std::uint32_t> source_vertices;  ///< new vertex -> old vertex
+    std::vector<Vec2> uvs;                       ///< one a new vertex
+    std::vector<std::uint32_t> indices;          ///< three a triangle, into new vertices
+};
+
+struct ModelEdit {
+    std::map<int, MaterialEdit> materials;    ///< by index into Model::materials
+    std::map<int, PrimitiveEdit> primitives;  ///< by index into Model::primitives
+};
+
+/// Writes `model` with the edit applied: .glb, .gltf (+ .bin and PNGs beside it), or .obj (+ .mtl
+/// and PNGs). From a glTF source the document itself is patched: everything that was not edited
+/// (nodes, names, animations, skins, cameras, other materials, unknown extensions, extras) stays
+/// byte for byte or value for value. Other sources are written as a new, minimal document.
+void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit = {});
+
+}  // namespace item3d

@@ -1,0 +1,90 @@
+// A model as the renderer and the editor see it, whatever file it came from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "item3d/core/math.h"
+#include "item3d/scene/image.h"
+
+namespace item3d {
+
+enum class Wrap { repeat, mirrored_repeat, clamp_to_edge };
+
+/// An image with its sampler. `image` is empty when the file could not be read (a warning was given).
+struct Texture {
+    std::string name;
+    Image image;
+    int bits_per_channel = 8;
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
+};
+
+/// glTF's metallic-roughness material. Texture members index Model::textures, -1: none.
+/// Texture values multiply the factors. Factors are linear; base colour textures are sRGB.
+struct Material {
+    std::string name;
+    Vec4 base_color_factor{1.0f};
+    int base_color_texture = -1;
+    float metallic_factor = 1.0f;
+    float roughness_factor = 1.0f;
+    /// Roughness in G and metallic in B, linear.
+    int metallic_roughness_texture = -1;
+    /// Occlusion in R, linear; may be the same texture as metallic_roughness_texture.
+    int occlusion_texture = -1;
+    float occlusion_strength = 1.0f;
+    /// Tangent space, +Y up (OpenGL), linear.
+    int normal_texture = -1;
+    float normal_scale = 1.0f;
+    Vec3 emissive_factor{0.0f};
+    int emissive_texture = -1;
+    enum class Alpha { opaque, mask, blend } alpha = Alpha::opaque;
+    float alpha_cutoff = 0.5f;
+    bool double_sided = false;
+};
+
+/// The triangles of one primitive of one node, in world space (node transforms applied).
+struct Primitive {
+    std::string name;
+    std::vector<Vec3> positions;
+    /// Unit length. Always there: area-weighted by position where the file has none.
+    std::vector<Vec3> normals;
+    /// Empty when the file has none. glTF's convention: (0, 0) is the top left corner of the image.
+    std::vector<Vec2> uvs;
+    /// Unit tangent and handedness in w; empty when the file has none.
+    std::vector<Vec4> tangents;
+    /// Linear RGBA that multiplies the base colour; empty when the file has none.
+    std::vector<Vec4> colors;
+    /// Three a triangle, each below positions.size(); counter-clockwise is the front.
+    std::vector<std::uint32_t> indices;
+    /// Index into Model::materials (always valid: a default material is made when there is none).
+    int material = 0;
+    /// Where it came from in the source document, -1: not from glTF.
+    int source_mesh = -1;
+    int source_primitive = -1;
+    int source_node = -1;
+};
+
+class SourceDocument;
+
+struct Model {
+    std::string name;
+    std::vector<Primitive> primitives;
+    std::vector<Material> materials;
+    std::vector<Texture> textures;
+    /// What was loaded, for writing an edited copy that keeps all else. Null for made models.
+    std::shared_ptr<const SourceDocument> source;
+
+    std::size_t triangle_count() const;
+    /// Corners of the axis-aligned bounding box of all positions.
+    std::array<Vec3, 2> bounds() const;
+};
+
+/// Replaces normals by the area-weighted sum of face normals over equal positions.
+void compute_smooth_normals(Primitive& primitive);
+
+}  // namespace item3d
