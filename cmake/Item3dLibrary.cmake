@@ -1,33 +1,60 @@
-# item3d_library(NAME [DEPENDS lib...] [TORCH]): one folder of src/ as one static library.
-# DEPENDS is the whole list of item3d folders that this folder may include; include paths come
-# only through it, so a wrong dependency does not compile.
+# item3d_library(NAME [TORCH] [DEPENDS lib...] [PACKAGES target...]): one folder of src/ as one
+# static library. DEPENDS is the whole list of item3d folders that this folder may include; include
+# paths come only through it, so a wrong dependency does not compile. PACKAGES are imported targets
+# of other projects; TORCH links LibTorch and uses its precompiled header.
 function(item3d_library NAME)
     cmake_parse_arguments(ARG "TORCH" "" "DEPENDS;PACKAGES" ${ARGN})
     file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cpp)
-    add_library(item3d_${NAME} STATIC ${SOURCES})
-    add_library(item3d::${NAME} ALIAS item3d_${NAME})
+    set(TARGET item3d_${NAME})
+    if(SOURCES)
+        add_library(${TARGET} STATIC ${SOURCES})
+        set(SCOPE PUBLIC)
+        target_link_libraries(${TARGET} PRIVATE item3d_warnings)
+    else()
+        # A folder of headers alone.
+        add_library(${TARGET} INTERFACE)
+        set(SCOPE INTERFACE)
+    endif()
+    add_library(item3d::${NAME} ALIAS ${TARGET})
 
     # Each folder sees its own headers as "item3d/<folder>/x.h" through a link in the build tree.
     set(VIEW ${CMAKE_BINARY_DIR}/include/${NAME})
     file(MAKE_DIRECTORY ${VIEW}/item3d)
     file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${NAME} ${VIEW}/item3d/${NAME} SYMBOLIC)
-    target_include_directories(item3d_${NAME} PUBLIC ${VIEW})
+    target_include_directories(${TARGET} ${SCOPE} ${VIEW})
 
     foreach(DEPENDENCY ${ARG_DEPENDS})
-        target_link_libraries(item3d_${NAME} PUBLIC item3d::${DEPENDENCY})
+        target_link_libraries(${TARGET} ${SCOPE} item3d::${DEPENDENCY})
     endforeach()
-    target_link_libraries(item3d_${NAME} PUBLIC ${ARG_PACKAGES} PRIVATE item3d_warnings)
+    target_link_libraries(${TARGET} ${SCOPE} ${ARG_PACKAGES})
     if(ARG_TORCH)
-        target_link_libraries(item3d_${NAME} PUBLIC item3d_torch)
-        item3d_use_torch_headers(item3d_${NAME})
+        target_link_libraries(${TARGET} ${SCOPE} item3d_torch)
+        if(SOURCES)
+            item3d_use_torch_headers(${TARGET})
+        endif()
+    endif()
+endfunction()
+
+# item3d_program(NAME SOURCES file... [LINK target...] [INSTALL]): one executable, at the top of the
+# build folder, that uses LibTorch.
+function(item3d_program NAME)
+    cmake_parse_arguments(ARG "INSTALL" "" "SOURCES;LINK" ${ARGN})
+    add_executable(${NAME} ${ARG_SOURCES})
+    target_link_libraries(${NAME} PRIVATE ${ARG_LINK} item3d_warnings)
+    item3d_use_torch_headers(${NAME})
+    if(ARG_INSTALL)
+        set_target_properties(${NAME} PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/item3d")
+        install(TARGETS ${NAME} RUNTIME DESTINATION bin)
     endif()
 endfunction()
 
 # Parsing LibTorch's headers takes most of a compilation; every target that uses them shares one
-# precompiled header.
+# precompiled header. A target that reuses it must be compiled with the options of its owner: OpenMP,
+# which all get through core, and nothing else that changes how code is generated.
 function(item3d_use_torch_headers TARGET)
     if(NOT TARGET item3d_torch_pch)
-        file(WRITE ${CMAKE_BINARY_DIR}/torch_pch.cpp "// Owner of the precompiled LibTorch header.\n")
+        file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/torch_pch.cpp
+             CONTENT "// Owner of the precompiled LibTorch header.\n")
         add_library(item3d_torch_pch OBJECT ${CMAKE_BINARY_DIR}/torch_pch.cpp)
         target_link_libraries(item3d_torch_pch PRIVATE item3d_torch item3d_options OpenMP::OpenMP_CXX)
         target_precompile_headers(item3d_torch_pch PRIVATE <torch/torch.h>)
