@@ -17,9 +17,11 @@ struct Image {
     std::vector<float> pixels;
 
     Image() = default;
-    Image(int width, int height, int channels, float value = 0.0f)
-        : width(width), height(height), channels(channels),
-          pixels(static_cast<std::size_t>(width) * height * channels, value) {}
+    Image(int columns, int rows, int channel_count, float value = 0.0f)
+        : width(columns),
+          height(rows),
+          channels(channel_count),
+          pixels(static_cast<std::size_t>(columns) * rows * channel_count, value) {}
 
     bool empty() const { return pixels.empty(); }
     float& at(int x, int y, int c) {
