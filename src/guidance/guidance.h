@@ -3,25 +3,26 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <torch/torch.h>
 
-#include "item3d/core/random.h"
 #include "item3d/models/pipeline.h"
+#include "item3d/models/safetensors.h"
 
 namespace item3d {
 
-/// omega(t): how much a timestep counts.
+/// omega(t), how much a timestep counts: sqrt(abar)(1 - abar), 1/(1 - abar), 1 - abar, 1.
 enum class Weighting { early, late, dreamfusion, uniform };
 
 struct GuidanceOptions {
-    std::string method = "rdl";       ///< "sds" or "rdl"
-    std::string adjust = "learned";   ///< "off" or "learned"; rdl only
+    std::string method = "rdl";       ///< one of guidance_methods()
+    std::string adjust = "learned";   ///< "off" or "learned"; only rdl has a direction to adjust
     float guidance_scale = 7.5f;      ///< w of classifier-free guidance
     float anchor = 0.0f;              ///< lambda of anchored RDL: adds lambda (eps_target - eps)
     float adjust_learning_rate = 0.03f;
-    float min_timestep = 0.02f;       ///< as a part of the training timesteps
+    float min_timestep = 0.02f;       ///< as a fraction of the training timesteps
     float max_timestep = 0.98f;
     Weighting weighting = Weighting::dreamfusion;
     std::uint64_t seed = 0;
@@ -29,32 +30,42 @@ struct GuidanceOptions {
 
 /// Renders of one iteration.
 struct GuidanceInput {
-    torch::Tensor images;  ///< [N, 3, H, W] sRGB in [0, 1]; the gradient is with respect to these
-    torch::Tensor depth;   ///< [N, H, W] z-depth, 0: background; used where the U-Net takes depth
+    torch::Tensor images;  ///< [N, 3, H, W] sRGB in [0, 1]; what the gradient is with respect to
+    torch::Tensor depth;   ///< [N, H, W] z-depth, 0: background; read where the U-Net takes depth
 };
 
 struct GuidanceOutput {
-    torch::Tensor latents_gradient;  ///< [N, C, h, w]: g of DESIGN.md section 2, constant
-    torch::Tensor latents;           ///< [N, C, h, w] with graph: backward(latents, latents_gradient)
-    float direction_length = 0;      ///< RMS of (eps_target - eps_source), the report's curve
-    float adjustment_loss = 0;       ///< denoising loss of the learned source
+    /// [N, C, h, w] with its graph back to the images.
+    torch::Tensor latents;
+    /// [N, C, h, w] g of docs/method.md, a constant: call latents.backward(latents_gradient).
+    torch::Tensor latents_gradient;
+    float direction_length = 0;  ///< RMS of the direction before weighting; the report's curve
+    float adjustment_loss = 0;   ///< denoising loss of the learned source, 0 without one
     double seconds_encode = 0;
     double seconds_unet = 0;
 };
 
-/// One of the methods, with its state (the learned source embedding and its optimiser).
+/// A guidance method with its state.
 class Guidance {
   public:
     virtual ~Guidance() = default;
+    /// Noise and timesteps depend on the options' seed and `iteration` alone.
     virtual GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) = 0;
-    /// State that a checkpoint must hold, as named tensors; empty where there is none.
-    virtual std::vector<std::pair<std::string, torch::Tensor>> state() const = 0;
-    virtual void load_state(const std::vector<std::pair<std::string, torch::Tensor>>& state) = 0;
+    /// What a checkpoint must hold for an exact resume; empty for methods without state.
+    virtual NamedTensors state() const { return {}; }
+    /// Takes back what state() gave. Throws InputError when a tensor is missing.
+    virtual void load_state(const NamedTensors& state) { (void)state; }
 };
 
-/// Throws InputError on an unknown method, weighting or adjustment.
+const std::vector<std::string>& guidance_methods();
+const std::vector<std::string>& adjustment_names();
+/// "early", "late", "dreamfusion", "uniform"; throws InputError on others.
+Weighting parse_weighting(const std::string& name);
+
+/// Throws InputError on an unknown method or adjustment, or an empty prompt.
 std::unique_ptr<Guidance> make_guidance(std::shared_ptr<const Pipeline> pipeline,
-                                        const std::string& source, const std::string& target,
+                                        const std::string& source_prompt,
+                                        const std::string& target_prompt,
                                         const GuidanceOptions& options);
 
 }  // namespace item3d

@@ -1,0 +1,33 @@
+#include "item3d/edit/edit.h"
+
+#include "item3d/core/files.h"
+#include "item3d/edit/optimize.h"
+#include "item3d/edit/outputs.h"
+#include "item3d/edit/scene.h"
+#include "item3d/edit/timing.h"
+
+namespace item3d {
+
+nlohmann::json edit_model(const EditRequest& request) {
+    StageTimes times;
+    make_output_folder(request.output);
+
+    EditScene scene = load_scene(request);
+    times.end_stage("load");
+
+    EditState state = begin_or_resume(request, scene);
+    times.end_stage("fit");
+
+    const IterationTimes iteration_times = optimize(request, scene, state);
+    times.end_stage("optimize");
+
+    const EditedFiles files = bake_and_save(request, scene, state);
+    times.end_stage("bake");
+
+    const Pictures pictures = render_pictures(request, scene, files);
+    times.end_stage("report");
+
+    return write_summary(request, scene, state, times, iteration_times, pictures);
+}
+
+}  // namespace item3d

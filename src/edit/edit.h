@@ -1,0 +1,30 @@
+// item3d's main path: load model -> fit field -> loop { cameras -> render -> guidance -> backward ->
+// step } -> bake -> write.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "item3d/edit/settings.h"
+
+namespace item3d {
+
+struct EditRequest {
+    std::filesystem::path model;
+    std::filesystem::path prior;   ///< folder in the diffusers layout
+    std::filesystem::path output;  ///< folder, made when it is not there
+    EditSettings settings;
+    bool resume = false;
+    std::string device = "cpu";
+    std::string precision = "auto";  ///< of the networks: auto, fp32, bf16
+    std::string command;             ///< as typed, for edit.json and the resume hint
+};
+
+/// Runs an edit and writes everything that docs/formats.md lists into the output folder. Returns the
+/// content of edit.json. Throws InputError, ResourceError, and Interrupted (with the checkpoint
+/// written) as core/error.h says.
+nlohmann::json edit_model(const EditRequest& request);
+
+}  // namespace item3d

@@ -1,0 +1,73 @@
+#include "item3d/edit/material_source.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "item3d/core/error.h"
+
+namespace item3d {
+
+ChannelMask edited_channels(const std::vector<std::string>& keep) {
+    const auto edited = [&](const char* name) {
+        return std::find(keep.begin(), keep.end(), name) == keep.end();
+    };
+    return {edited("base_color"), edited("occlusion"), edited("roughness"), edited("metallic"),
+            edited("normal")};
+}
+
+std::vector<int> select_materials(const Model& model, const std::vector<std::string>& names) {
+    std::vector<bool> used(model.materials.size(), false);
+    for (const Primitive& primitive : model.primitives) {
+        used[static_cast<std::size_t>(primitive.material)] = true;
+    }
+    std::vector<int> selected;
+    for (std::size_t i = 0; i < model.materials.size(); ++i) {
+        const bool wanted = names.empty() || std::find(names.begin(), names.end(),
+                                                       model.materials[i].name) != names.end();
+        if (wanted && used[i]) selected.push_back(static_cast<int>(i));
+    }
+    for (const std::string& name : names) {
+        const bool found = std::any_of(selected.begin(), selected.end(), [&](int index) {
+            return model.materials[static_cast<std::size_t>(index)].name == name;
+        });
+        if (found) continue;
+        std::vector<std::string> known;
+        for (const Material& material : model.materials) known.push_back(material.name);
+        throw InputError("--material", fmt::format("'{}' is not a material of this model", name),
+                         fmt::format("it has {}", fmt::join(known, ", ")));
+    }
+    return selected;
+}
+
+MaterialSource::MaterialSource(const Model& model, const TexturedMaterials& textured,
+                               const std::vector<int>& edited_materials, ChannelMask channels)
+    : textured_(textured),
+      is_edited_(torch::zeros({static_cast<std::int64_t>(model.materials.size())}, torch::kBool)),
+      orm_is_edited_(torch::tensor({channels.occlusion, channels.roughness, channels.metallic})),
+      channels_(channels) {
+    for (const int index : edited_materials) is_edited_[index] = true;
+    for (const Primitive& primitive : model.primitives) {
+        all_edited_ = all_edited_ && is_edited_[primitive.material].item<bool>();
+    }
+}
+
+MaterialSample MaterialSource::sample(const Surface& surface, NeuralTexture& field) const {
+    MaterialSample own = [&] {
+        const torch::NoGradGuard no_grad;
+        return textured_.sample(surface);
+    }();
+    const MaterialSample edited = field->forward(surface.position);
+    const torch::Tensor here =
+        all_edited_ ? torch::ones({1, 1}, torch::kBool)
+                    : is_edited_.index_select(0, surface.material).unsqueeze(1);
+    if (channels_.base_color) own.base_color = torch::where(here, edited.base_color, own.base_color);
+    own.orm = torch::where(here & orm_is_edited_, edited.orm, own.orm);
+    if (channels_.normal) {
+        own.normal = own.normal.defined() ? torch::where(here, edited.normal, own.normal) : edited.normal;
+    }
+    return own;
+}
+
+}  // namespace item3d

@@ -1,0 +1,45 @@
+// Which surface points the edit changes, and what they are made of.
+#pragma once
+
+#include <vector>
+
+#include <torch/torch.h>
+
+#include "item3d/edit/settings.h"
+#include "item3d/field/neural_texture.h"
+#include "item3d/render/textured.h"
+
+namespace item3d {
+
+/// Material channels that an edit may change or keep.
+struct ChannelMask {
+    bool base_color = true;
+    bool occlusion = true;
+    bool roughness = true;
+    bool metallic = true;
+    bool normal = true;
+};
+ChannelMask edited_channels(const std::vector<std::string>& keep);
+
+/// Indices into Model::materials of the named ones (all for an empty list), in rising order.
+/// Throws InputError that lists the model's materials when a name is not among them.
+std::vector<int> select_materials(const Model& model, const std::vector<std::string>& names);
+
+/// The neural texture where a material is edited, the model's own textures elsewhere and for the
+/// channels that are kept.
+class MaterialSource {
+  public:
+    MaterialSource(const Model& model, const TexturedMaterials& textured,
+                   const std::vector<int>& edited_materials, ChannelMask channels);
+    /// Differentiable in the field's parameters.
+    MaterialSample sample(const Surface& surface, NeuralTexture& field) const;
+
+  private:
+    const TexturedMaterials& textured_;
+    torch::Tensor is_edited_;      ///< [materials] bool
+    bool all_edited_ = true;
+    torch::Tensor orm_is_edited_;  ///< [3] bool
+    ChannelMask channels_;
+};
+
+}  // namespace item3d

@@ -1,0 +1,49 @@
+#include "item3d/edit/scene.h"
+
+#include "item3d/core/error.h"
+#include "item3d/scene/io/load.h"
+
+namespace item3d {
+namespace {
+
+// A prior that sees few pixels needs no fine reflections, and coarse ones prefilter in a moment.
+constexpr int small_picture = 128;
+
+torch::Dtype choose_precision(const std::string& name, torch::Device device) {
+    if (name == "fp32") return torch::kFloat32;
+    if (name == "bf16") return torch::kBFloat16;
+    if (name == "auto") {
+        const bool fast_bf16 = device.is_cuda() || __builtin_cpu_supports("avx512bf16");
+        return fast_bf16 ? torch::kBFloat16 : torch::kFloat32;
+    }
+    throw InputError("--precision", "'" + name + "' is not known", "choose auto, fp32 or bf16");
+}
+
+}  // namespace
+
+EditScene load_scene(const EditRequest& request) {
+    if (request.device != "cpu" && request.device != "auto") {
+        throw ResourceError("--device " + request.device +
+                            ": this build runs on the CPU only; leave --device out");
+    }
+    const torch::Device device = torch::kCPU;
+    const EditSettings& settings = request.settings;
+
+    EditScene scene;
+    scene.model = load_model(request.model);
+    scene.materials = select_materials(scene.model, settings.material);
+    scene.channels = edited_channels(settings.keep);
+    scene.geometry = Geometry::from_model(scene.model, device);
+    scene.sphere = bounding_sphere(scene.model);
+    scene.textured = std::make_unique<TexturedMaterials>(scene.model, device);
+    scene.source = std::make_unique<MaterialSource>(scene.model, *scene.textured, scene.materials,
+                                                    scene.channels);
+    scene.lights = std::make_unique<LightRig>(
+        settings.light, settings.resolution <= small_picture ? 64 : 256, device);
+    scene.precision = choose_precision(request.precision, device);
+    scene.prior =
+        std::make_shared<Pipeline>(Pipeline::load(request.prior, device, scene.precision));
+    return scene;
+}
+
+}  // namespace item3d

@@ -1,0 +1,31 @@
+// Everything that an edit reads and does not change.
+#pragma once
+
+#include <memory>
+
+#include "item3d/edit/edit.h"
+#include "item3d/edit/material_source.h"
+#include "item3d/edit/views.h"
+#include "item3d/models/pipeline.h"
+#include "item3d/render/geometry.h"
+#include "item3d/render/textured.h"
+#include "item3d/scene/model.h"
+
+namespace item3d {
+
+struct EditScene {
+    Model model;
+    Geometry geometry;
+    BoundingSphere sphere;
+    std::vector<int> materials;  ///< edited ones, indices into model.materials
+    ChannelMask channels;
+    std::unique_ptr<TexturedMaterials> textured;
+    std::unique_ptr<MaterialSource> source;
+    std::unique_ptr<LightRig> lights;
+    std::shared_ptr<Pipeline> prior;
+    torch::Dtype precision = torch::kFloat32;
+};
+
+EditScene load_scene(const EditRequest& request);
+
+}  // namespace item3d

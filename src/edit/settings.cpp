@@ -1,0 +1,80 @@
+#include "item3d/edit/settings.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+
+namespace item3d {
+namespace {
+
+using nlohmann::json;
+
+json prior_defaults(const std::filesystem::path& prior) {
+    const auto path = prior / "prior.json";
+    if (!std::filesystem::exists(path)) return json::object();
+    const json document = json::parse(read_text(path), nullptr, false);
+    if (!document.is_object()) {
+        throw InputError(path.string(), "is not a JSON object", "fetch or train the prior again");
+    }
+    return document.value("defaults", json::object());
+}
+
+void require(bool condition, const std::string& option, const std::string& problem) {
+    if (!condition) throw InputError(option, problem);
+}
+
+void check(const EditSettings& settings) {
+    require(settings.iterations >= 0, "--iterations", "must be 0 or more");
+    require(settings.batch >= 1 && settings.batch <= 64, "--batch", "must be between 1 and 64");
+    require(settings.resolution >= 16 && settings.resolution <= 2048, "--resolution",
+            "must be between 16 and 2048 pixels");
+    require(settings.learning_rate > 0, "--learning-rate", "must be above 0");
+    require(settings.texture_size >= 0 && settings.texture_size <= 8192, "--texture-size",
+            "must be between 1 and 8192, or 0 for the input's own");
+    require(settings.timesteps.size() == 2 && settings.timesteps[0] >= 0 &&
+                settings.timesteps[0] < settings.timesteps[1] && settings.timesteps[1] <= 1,
+            "--timesteps", "must be two rising numbers between 0 and 1, as in 0.02,0.98");
+    constexpr std::array channels = {"base_color", "occlusion", "roughness", "metallic", "normal"};
+    for (const std::string& channel : settings.keep) {
+        require(std::find(channels.begin(), channels.end(), channel) != channels.end(), "--keep",
+                fmt::format("'{}' is not a channel; choose from {}", channel,
+                            fmt::join(channels, ", ")));
+    }
+}
+
+}  // namespace
+
+EditSettings resolve_settings(const std::filesystem::path& prior, const json& overrides) {
+    json merged = EditSettings{};
+    merged.update(prior_defaults(prior));
+    merged.update(overrides);
+    try {
+        EditSettings settings = merged.get<EditSettings>();
+        check(settings);
+        return settings;
+    } catch (const json::exception& error) {
+        throw InputError((prior / "prior.json").string(),
+                         std::string("its defaults are of the wrong kind: ") + error.what());
+    }
+}
+
+GuidanceOptions guidance_options(const EditSettings& settings) {
+    GuidanceOptions options;
+    options.method = settings.guidance;
+    options.adjust = settings.adjust;
+    options.guidance_scale = settings.cfg;
+    options.anchor = settings.anchor;
+    options.adjust_learning_rate = settings.adjust_learning_rate;
+    options.min_timestep = settings.timesteps[0];
+    options.max_timestep = settings.timesteps[1];
+    options.weighting = parse_weighting(settings.weighting);
+    options.seed = settings.seed;
+    return options;
+}
+
+}  // namespace item3d

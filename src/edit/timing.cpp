@@ -1,0 +1,13 @@
+#include "item3d/edit/timing.h"
+
+#include <sys/resource.h>
+
+namespace item3d {
+
+std::int64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace item3d

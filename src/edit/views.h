@@ -1,0 +1,48 @@
+// The cameras, lights and backgrounds of an edit: another draw each iteration.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <torch/torch.h>
+
+#include "item3d/edit/settings.h"
+#include "item3d/render/environment_light.h"
+#include "item3d/scene/camera.h"
+
+namespace item3d {
+
+/// Centre and radius of a sphere around the model, world units.
+struct BoundingSphere {
+    Vec3 center{0.0f};
+    float radius = 1.0f;
+};
+BoundingSphere bounding_sphere(const Model& model);
+
+/// The cameras of one iteration: all azimuths, elevation -10 to 45 degrees, horizontal field of
+/// view 25.7 to 45 degrees (ITEM3D's settings), the model filling the picture. They depend on the
+/// seed and the iteration alone.
+std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std::uint64_t seed,
+                                   std::int64_t iteration);
+
+/// Linear RGB backgrounds [count, 3]: the named colour, or another grey each time for "vary".
+torch::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
+                                 std::int64_t iteration);
+
+/// "red", "#rrggbb" or "r,g,b" in 0..255 -> linear RGB. Throws InputError.
+Vec3 parse_color(const std::string& text);
+
+/// One light turned to several azimuths, prefiltered once. Shading that stays the same in every
+/// picture could be painted into the base colour; a light that moves cannot.
+class LightRig {
+  public:
+    LightRig(const std::string& light, int cube_size, torch::Device device);
+    const EnvironmentLight& pick(std::uint64_t seed, std::int64_t iteration) const;
+    /// The light as it was given, for pictures.
+    const EnvironmentLight& front() const { return lights_.front(); }
+
+  private:
+    std::vector<EnvironmentLight> lights_;
+};
+
+}  // namespace item3d

@@ -1,0 +1,37 @@
+// A source embedding that follows the render (--adjust learned).
+//
+// The relative direction eps(y_target) - eps(y_source) does not vanish once the target is reached,
+// because the source prompt keeps describing the picture that was there before. Here the source
+// starts at the source prompt's embedding and takes one Adam step an iteration that lowers the
+// denoising loss of the current render, so that it always describes what is there now. It is the
+// paper's direction adjustment (section 3.4) without a captioner.
+#pragma once
+
+#include "item3d/guidance/guidance.h"
+#include "item3d/guidance/noised_latents.h"
+
+namespace item3d {
+
+class LearnedSource {
+  public:
+    /// source: [1, S, D], copied.
+    LearnedSource(const torch::Tensor& source, float learning_rate);
+
+    /// eps(source) for these latents (constant), then one step of the embedding.
+    torch::Tensor predict_and_follow(const Pipeline& pipeline, const NoisedLatents& latents);
+    /// Denoising loss of the last call, in the U-Net's own target (eps or v).
+    float loss() const { return loss_; }
+
+    NamedTensors state() const;
+    void load_state(const NamedTensors& state);
+
+  private:
+    float learning_rate_;
+    torch::Tensor embedding_;
+    torch::Tensor first_moment_;
+    torch::Tensor second_moment_;
+    std::int64_t steps_ = 0;
+    float loss_ = 0;
+};
+
+}  // namespace item3d

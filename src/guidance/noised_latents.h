@@ -1,0 +1,31 @@
+// What every method begins with: renders encoded, and noised at a random timestep.
+#pragma once
+
+#include "item3d/guidance/guidance.h"
+
+namespace item3d {
+
+struct NoisedLatents {
+    torch::Tensor latents;         ///< [N, C, h, w] with graph to the images
+    torch::Tensor noise;           ///< [N, C, h, w] eps
+    torch::Tensor noisy;           ///< [N, C, h, w] z_t, no graph
+    torch::Tensor timesteps;       ///< [N] int64
+    torch::Tensor alphas_cumprod;  ///< [N, 1, 1, 1] abar_t
+    torch::Tensor weight;          ///< [N, 1, 1, 1] omega(t)
+    torch::Tensor condition;       ///< [N, 1, h, w] depth, or undefined
+    double seconds_encode = 0;
+};
+
+/// The same timestep for all rows of an iteration, drawn with the noise from (seed, iteration).
+NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input,
+                            const GuidanceOptions& options, std::int64_t iteration);
+
+torch::Tensor timestep_weight(Weighting weighting, const torch::Tensor& alphas_cumprod);
+
+/// [rows, S, D] of one prompt's [1, S, D].
+torch::Tensor repeat_text(const torch::Tensor& text, std::int64_t rows);
+
+double seconds_now();
+float root_mean_square(const torch::Tensor& tensor);
+
+}  // namespace item3d

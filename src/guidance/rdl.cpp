@@ -1,0 +1,70 @@
+#include "item3d/guidance/rdl.h"
+
+#include "item3d/guidance/noised_latents.h"
+
+namespace item3d {
+
+RelativeDirection::RelativeDirection(std::shared_ptr<const Pipeline> pipeline,
+                                     const std::string& source_prompt,
+                                     const std::string& target_prompt,
+                                     const GuidanceOptions& options)
+    : pipeline_(std::move(pipeline)), options_(options) {
+    const torch::Tensor text = pipeline_->encode_text({target_prompt, source_prompt});
+    target_text_ = text.narrow(0, 0, 1);
+    source_text_ = text.narrow(0, 1, 1);
+    if (options_.adjust == "learned") {
+        learned_source_.emplace(source_text_, options_.adjust_learning_rate);
+    }
+}
+
+RelativeDirection::Predictions RelativeDirection::predict(const NoisedLatents& start) {
+    const std::int64_t rows = start.noisy.size(0);
+    if (learned_source_) {
+        const torch::Tensor source = learned_source_->predict_and_follow(*pipeline_, start);
+        const torch::NoGradGuard no_grad;
+        return {pipeline_->predict_noise(start.noisy, start.timesteps,
+                                         repeat_text(target_text_, rows), start.condition),
+                source};
+    }
+    const torch::NoGradGuard no_grad;
+    const auto twice = [](const torch::Tensor& tensor) {
+        return tensor.defined() ? torch::cat({tensor, tensor}) : tensor;
+    };
+    const torch::Tensor text =
+        torch::cat({repeat_text(target_text_, rows), repeat_text(source_text_, rows)});
+    const auto both =
+        pipeline_
+            ->predict_noise(twice(start.noisy), twice(start.timesteps), text, twice(start.condition))
+            .chunk(2);
+    return {both[0], both[1]};
+}
+
+GuidanceOutput RelativeDirection::step(const GuidanceInput& input, std::int64_t iteration) {
+    const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
+    const double before = seconds_now();
+    const Predictions predictions = predict(start);
+
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor direction = predictions.target - predictions.source;
+    torch::Tensor gradient = options_.guidance_scale * direction;
+    if (options_.anchor != 0) gradient = gradient + options_.anchor * (predictions.target - start.noise);
+
+    GuidanceOutput output;
+    output.latents = start.latents;
+    output.latents_gradient = start.weight * gradient;
+    output.direction_length = root_mean_square(direction);
+    output.adjustment_loss = learned_source_ ? learned_source_->loss() : 0.0f;
+    output.seconds_encode = start.seconds_encode;
+    output.seconds_unet = seconds_now() - before;
+    return output;
+}
+
+NamedTensors RelativeDirection::state() const {
+    return learned_source_ ? learned_source_->state() : NamedTensors{};
+}
+
+void RelativeDirection::load_state(const NamedTensors& state) {
+    if (learned_source_) learned_source_->load_state(state);
+}
+
+}  // namespace item3d

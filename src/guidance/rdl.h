@@ -1,0 +1,37 @@
+// Relative direction (ITEM3D, section 3.3), in its two-row form:
+//   g = omega(t) [ w (eps(y_target) - eps(y_source)) + lambda (eps(y_target) - eps) ].
+// With eps^w(y) = eps(empty) + w (eps(y) - eps(empty)) in both branches, the unconditional term of
+// eps^w(y_target) - eps^w(y_source) cancels, so two U-Net rows an image are enough. lambda is the
+// anchor (--anchor): a pull to the target's own score that plain RDL (lambda 0) lacks.
+#pragma once
+
+#include <optional>
+
+#include "item3d/guidance/guidance.h"
+#include "item3d/guidance/learned_source.h"
+
+namespace item3d {
+
+class RelativeDirection : public Guidance {
+  public:
+    RelativeDirection(std::shared_ptr<const Pipeline> pipeline, const std::string& source_prompt,
+                      const std::string& target_prompt, const GuidanceOptions& options);
+    GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
+    NamedTensors state() const override;
+    void load_state(const NamedTensors& state) override;
+
+  private:
+    struct Predictions {
+        torch::Tensor target;
+        torch::Tensor source;
+    };
+    Predictions predict(const NoisedLatents& start);
+
+    std::shared_ptr<const Pipeline> pipeline_;
+    GuidanceOptions options_;
+    torch::Tensor target_text_;  ///< [1, S, D]
+    torch::Tensor source_text_;  ///< [1, S, D]
+    std::optional<LearnedSource> learned_source_;
+};
+
+}  // namespace item3d

@@ -1,0 +1,22 @@
+// Score distillation sampling (Poole et al. 2022, DreamFusion), the baseline:
+//   g = omega(t) (eps^w(y_target) - eps),  eps^w(y) = eps(empty) + w (eps(y) - eps(empty)).
+// The source prompt is not used.
+#pragma once
+
+#include "item3d/guidance/guidance.h"
+
+namespace item3d {
+
+class ScoreDistillation : public Guidance {
+  public:
+    ScoreDistillation(std::shared_ptr<const Pipeline> pipeline, const std::string& target_prompt,
+                      const GuidanceOptions& options);
+    GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
+
+  private:
+    std::shared_ptr<const Pipeline> pipeline_;
+    GuidanceOptions options_;
+    torch::Tensor text_;  ///< [2, S, D] target, empty
+};
+
+}  // namespace item3d
