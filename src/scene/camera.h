@@ -1,11 +1,12 @@
 // Pinhole cameras in OpenGL's convention: x right, y up, looking along -z.
 #pragma once
 
+#include "item3d/core/math.h"
+
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
-
-#include "item3d/core/math.h"
 
 namespace item3d {
 
@@ -28,12 +29,25 @@ struct Camera {
 Camera orbit_camera(Vec3 target, float distance, float azimuth, float elevation,
                     float field_of_view_x);
 
-/// `count` cameras around the box, far enough that all of its bounding sphere is in view.
+/// `count` cameras around the box, far enough that all of its bounding sphere is in a square view.
 std::vector<Camera> turntable(std::array<Vec3, 2> bounds, int count, float elevation,
                               float field_of_view_x);
 
+/// The camera from `azimuth` and `elevation` (radians) that shows all of the box as large as it can
+/// with a twelfth of the picture free on each side. aspect: width / height; the shorter side of the
+/// picture spans `field_of_view`.
+Camera framing_camera(std::array<Vec3, 2> bounds, float azimuth, float elevation,
+                      float field_of_view, float aspect = 1.0f);
+
+/// Horizontal field of view of a picture whose shorter side spans `field_of_view` (radians).
+float horizontal_field_of_view(float field_of_view, float aspect);
+
+/// Sets near_plane and far_plane so that the box lies between them.
+void fit_depth_range(Camera& camera, std::array<Vec3, 2> bounds);
+
 /// Reads NeRF-synthetic transforms.json (camera_angle_x, frames[].transform_matrix, file_path).
-/// Matrices are taken in the model's own axes. Throws InputError.
+/// Matrices are taken in the model's own axes. A camera is named after its frame's file (no folder,
+/// no extension), made unique where two frames share a name. Throws InputError.
 std::vector<Camera> load_cameras(const std::filesystem::path& path);
 
 }  // namespace item3d
