@@ -2,10 +2,15 @@
 set(ITEM3D_DEPS ${CMAKE_SOURCE_DIR}/.deps CACHE PATH "Where scripts/setup.sh put what it fetched")
 
 find_package(Threads REQUIRED)
-find_package(OpenMP REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PkgConfig REQUIRED)
+
+# OpenMP by its flag alone: LibTorch brings a libgomp of its own, and a full path to the compiler's
+# would set two of the same name against each other.
+add_library(item3d_openmp INTERFACE)
+target_compile_options(item3d_openmp INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fopenmp>)
+target_link_options(item3d_openmp INTERFACE -fopenmp)
 
 add_library(item3d_options INTERFACE)
 if(CMAKE_BUILD_TYPE STREQUAL "Release")

@@ -49,14 +49,15 @@ function(item3d_program NAME)
 endfunction()
 
 # Parsing LibTorch's headers takes most of a compilation; every target that uses them shares one
-# precompiled header. A target that reuses it must be compiled with the options of its owner: OpenMP,
-# which all get through core, and nothing else that changes how code is generated.
+# precompiled header. A target that reuses it must be compiled with the options of its owner: the warnings
+# (-Wpedantic changes what is predefined), OpenMP (which all get through core), and nothing else that
+# changes how code is generated.
 function(item3d_use_torch_headers TARGET)
     if(NOT TARGET item3d_torch_pch)
         file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/torch_pch.cpp
              CONTENT "// Owner of the precompiled LibTorch header.\n")
         add_library(item3d_torch_pch OBJECT ${CMAKE_BINARY_DIR}/torch_pch.cpp)
-        target_link_libraries(item3d_torch_pch PRIVATE item3d_torch item3d_options OpenMP::OpenMP_CXX)
+        target_link_libraries(item3d_torch_pch PRIVATE item3d_torch item3d_warnings item3d_openmp)
         target_precompile_headers(item3d_torch_pch PRIVATE <torch/torch.h>)
     endif()
     target_precompile_headers(${TARGET} REUSE_FROM item3d_torch_pch)
