@@ -157,9 +157,9 @@ Image make_light_preset(const std::string& name, int height) {
     if (name == "studio") {
         image = make_studio(height);
     } else if (name == "noon") {
-        image = clear_sky(35, 58, 1.2f, Vec3(0.22f, 0.20f, 0.17f), height);
+        image = clear_sky(35, 58, 2.5f, Vec3(0.22f, 0.20f, 0.17f), height);
     } else if (name == "sunset") {
-        image = clear_sky(55, 3.5f, 2.2f, Vec3(0.20f, 0.18f, 0.15f), height);
+        image = clear_sky(55, 4, 6, Vec3(0.20f, 0.18f, 0.15f), height);
         peak = 0.7f;
     } else if (name == "overcast") {
         image = overcast_sky(height);
