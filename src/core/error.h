@@ -8,7 +8,14 @@
 namespace item3d {
 
 /// Exit codes of every command (docs/formats.md).
-enum class ExitCode { done = 0, bug = 1, usage = 2, bad_input = 3, no_resource = 4, interrupted = 130 };
+enum class ExitCode {
+    done = 0,
+    bug = 1,
+    usage = 2,
+    bad_input = 3,
+    no_resource = 4,
+    interrupted = 130
+};
 
 /// Base of all errors that a user can cause and mend. what() is one line.
 class Error : public std::runtime_error {
@@ -25,8 +32,8 @@ class InputError : public Error {
   public:
     /// subject: the file or option; problem: what was expected and found; hint: what to try.
     InputError(const std::string& subject, const std::string& problem, const std::string& hint = "")
-        : Error(ExitCode::bad_input,
-                subject + ": " + problem + (hint.empty() ? "" : "; " + hint)) {}
+        : Error(ExitCode::bad_input, subject + ": " + problem + (hint.empty() ? "" : "; " + hint)) {
+    }
 };
 
 /// Wrong usage of the command line.
@@ -54,8 +61,8 @@ class Interrupted : public Error {
 
 /// States what must hold unless our own code is wrong; throws std::logic_error with both the
 /// expression and the detail (any expression that makes a std::string) when it does not.
-#define ITEM3D_CHECK(condition, detail)                                              \
-    do {                                                                             \
-        if (!(condition)) [[unlikely]]                                               \
-            ::item3d::check_failed(#condition, __FILE__, __LINE__, (detail));        \
+#define ITEM3D_CHECK(condition, detail)                                       \
+    do {                                                                      \
+        if (!(condition)) [[unlikely]]                                        \
+            ::item3d::check_failed(#condition, __FILE__, __LINE__, (detail)); \
     } while (false)

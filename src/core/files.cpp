@@ -1,14 +1,14 @@
 #include "item3d/core/files.h"
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
+#include "item3d/core/error.h"
 
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "item3d/core/error.h"
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
 
 namespace item3d {
 namespace fs = std::filesystem;
@@ -83,7 +83,8 @@ void write_atomically(const fs::path& path, std::span<const std::uint8_t> bytes)
 }
 
 void write_atomically(const fs::path& path, std::string_view text) {
-    write_atomically(path, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+    write_atomically(path,
+                     std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {

@@ -1,11 +1,11 @@
 // One way to launch per-pixel and per-texel kernels on the CPU's threads.
 #pragma once
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <exception>
-
-#include <omp.h>
 
 namespace item3d {
 
@@ -17,13 +17,15 @@ void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t
     (void)name;
     const std::int64_t blocks = (count + grain - 1) / grain;
     if (blocks <= 1 || omp_in_parallel()) {
-        for (std::int64_t i = 0; i < count; ++i) f(i);
+        for (std::int64_t i = 0; i < count; ++i)
+            f(i);
         return;
     }
 #pragma omp parallel for schedule(dynamic)
     for (std::int64_t block = 0; block < blocks; ++block) {
         const std::int64_t end = std::min(count, (block + 1) * grain);
-        for (std::int64_t i = block * grain; i < end; ++i) f(i);
+        for (std::int64_t i = block * grain; i < end; ++i)
+            f(i);
     }
 }
 

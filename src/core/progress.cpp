@@ -1,11 +1,11 @@
 #include "item3d/core/progress.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-
-#include <fmt/format.h>
-#include <unistd.h>
 
 namespace item3d {
 namespace {
@@ -24,14 +24,20 @@ void on_interrupt(int signal) {
 
 }  // namespace
 
-void set_verbosity(Verbosity verbosity) { current_verbosity = verbosity; }
-Verbosity verbosity() { return current_verbosity; }
+void set_verbosity(Verbosity verbosity) {
+    current_verbosity = verbosity;
+}
+Verbosity verbosity() {
+    return current_verbosity;
+}
 
 void note(const std::string& message) {
     if (current_verbosity != Verbosity::quiet) fmt::print(stderr, "{}\n", message);
 }
 
-void warn(const std::string& message) { fmt::print(stderr, "warning: {}\n", message); }
+void warn(const std::string& message) {
+    fmt::print(stderr, "warning: {}\n", message);
+}
 
 std::string format_duration(double seconds) {
     const auto whole = static_cast<long>(seconds + 0.5);
@@ -49,7 +55,9 @@ Progress::Progress(std::string label, std::int64_t total, std::int64_t done)
       shown_(start_),
       terminal_(::isatty(STDERR_FILENO) != 0) {}
 
-Progress::~Progress() { finish(); }
+Progress::~Progress() {
+    finish();
+}
 
 void Progress::update(std::int64_t done, const std::string& detail) {
     done_ = done;
@@ -72,19 +80,19 @@ void Progress::print(std::int64_t done, const std::string& detail, bool last) {
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
     const double rate = seconds > 0 ? static_cast<double>(done - first_) / seconds : 0.0;
     const std::string time =
-        last ? format_duration(seconds)
-        : rate > 0
-            ? format_duration(static_cast<double>(total_ - done) / rate) + " left"
-            : "";
+        last       ? format_duration(seconds)
+        : rate > 0 ? format_duration(static_cast<double>(total_ - done) / rate) + " left"
+                   : "";
     const std::string tail = detail.empty() ? "" : "  " + detail;
     if (terminal_) {
         constexpr int width = 28;
         const int filled =
-            total_ > 0 ? static_cast<int>(std::clamp<std::int64_t>(done * width / total_, 0, width)) : width;
+            total_ > 0 ? static_cast<int>(std::clamp<std::int64_t>(done * width / total_, 0, width))
+                       : width;
         fmt::print(stderr, "\r\033[K{:8} {}{} {}/{}  {:.1f}/s  {}{}{}", label_,
                    std::string(static_cast<std::size_t>(filled), '#'),
-                   std::string(static_cast<std::size_t>(width - filled), '.'), done, total_, rate, time,
-                   tail, last ? "\n" : "");
+                   std::string(static_cast<std::size_t>(width - filled), '.'), done, total_, rate,
+                   time, tail, last ? "\n" : "");
         std::fflush(stderr);
     } else {
         fmt::print(stderr, "{}: {}/{}  {:.1f}/s  {}{}\n", label_, done, total_, rate, time, tail);
@@ -96,6 +104,8 @@ void install_interrupt_handler() {
     std::signal(SIGTERM, on_interrupt);
 }
 
-bool interrupted() { return interrupt_count > 0; }
+bool interrupted() {
+    return interrupt_count > 0;
+}
 
 }  // namespace item3d

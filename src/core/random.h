@@ -18,7 +18,8 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
 /// A stream of random numbers. Copying it copies its position; `counter` is its whole state.
 class Random {
   public:
-    /// Streams of one seed are independent: give each use (cameras, noise, ...) a stream of its own.
+    /// Streams of one seed are independent: give each use (cameras, noise, ...) a stream of its
+    /// own.
     explicit Random(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t counter = 0)
         : key_(mix_bits(seed ^ mix_bits(stream + 0x632be59bd9b4e019ull))), counter_(counter) {}
 

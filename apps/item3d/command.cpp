@@ -1,0 +1,57 @@
+#include "command.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+
+#include <omp.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace item3d {
+
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description,
+                      CommonOptions& options) {
+    CLI::App* command = app.add_subcommand(name, description);
+    command->add_flag("--quiet", options.quiet, "Say nothing but warnings and errors")
+        ->group("Common options");
+    command->add_flag("--json", options.json, "Print the result as one JSON object on stdout")
+        ->group("Common options");
+    command->add_option("--threads", options.threads, "CPU threads; without it, one for each core")
+        ->check(CLI::Range(1, 1024))
+        ->group("Common options");
+    command->add_option("--device", options.device, "What to compute on: cpu, cuda, or auto")
+        ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+        ->capture_default_str()
+        ->group("Common options");
+    return command;
+}
+
+torch::Device start_command(const CommonOptions& options) {
+    set_verbosity(options.quiet ? Verbosity::quiet : Verbosity::normal);
+    // LibTorch and our own kernels share OpenMP's threads; both are told the same number.
+    const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
+    omp_set_num_threads(threads);
+    at::set_num_threads(threads);
+    install_interrupt_handler();
+
+    if (options.device == "cuda" && !torch::cuda::is_available()) {
+        throw ResourceError(
+            "--device cuda: this build or machine has no CUDA device; use --device cpu or auto");
+    }
+    const bool use_cuda = options.device != "cpu" && torch::cuda::is_available();
+    return use_cuda ? torch::Device(torch::kCUDA) : torch::Device(torch::kCPU);
+}
+
+void print_json(const nlohmann::json& value) {
+    // Names of files need not be UTF-8; what is not is replaced rather than refused.
+    const std::string text =
+        value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (!written || std::fflush(stdout) != 0) {
+        throw ResourceError(std::string("stdout: cannot be written: ") + std::strerror(errno));
+    }
+}
+
+}  // namespace item3d
