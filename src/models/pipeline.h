@@ -1,18 +1,18 @@
 // A text-to-image diffusion model in the diffusers layout, whole.
 #pragma once
 
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include <torch/torch.h>
-
 #include "item3d/models/autoencoder.h"
 #include "item3d/models/clip_text.h"
 #include "item3d/models/clip_tokenizer.h"
 #include "item3d/models/ddim.h"
 #include "item3d/models/unet.h"
+
+#include <torch/torch.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -34,7 +34,8 @@ class Pipeline {
     /// U-Net's noise prediction eps (v-prediction is converted), float32. `condition`: extra input
     /// channels [N, c, h, w], concatenated to the latents where the U-Net takes them.
     torch::Tensor predict_noise(const torch::Tensor& noisy_latents, const torch::Tensor& timesteps,
-                                const torch::Tensor& text, const torch::Tensor& condition = {}) const;
+                                const torch::Tensor& text,
+                                const torch::Tensor& condition = {}) const;
 
     int latent_channels() const;
     int condition_channels() const;  ///< in_channels - latent_channels (1: depth)
@@ -48,9 +49,9 @@ class Pipeline {
     DdimScheduler scheduler;
 };
 
-/// Depth as the U-Net's fifth channel wants it: z-depth [N, H, W] (0: nothing there) -> [N, 1, h, w]
-/// on the latents' grid: disparity scaled an image to 0.2 (far) .. 1 (near), background -1, averaged
-/// over each latent cell.
+/// Depth as the U-Net's fifth channel wants it: z-depth [N, H, W] (0: nothing there) -> [N, 1, h,
+/// w] on the latents' grid: disparity scaled an image to 0.2 (far) .. 1 (near), background -1,
+/// averaged over each latent cell.
 torch::Tensor depth_condition(const torch::Tensor& depth, int downscale);
 
 struct GenerateOptions {
@@ -58,7 +59,7 @@ struct GenerateOptions {
     std::string negative_prompt;
     int steps = 30;
     float guidance_scale = 7.5f;
-    int width = 0;   ///< pixels; 0: the U-Net's sample_size
+    int width = 0;  ///< pixels; 0: the U-Net's sample_size
     int height = 0;
     int count = 1;
     std::uint64_t seed = 0;

@@ -1,0 +1,89 @@
+// CLIP's byte-level BPE tokenizer, as transformers' CLIPTokenizer does it.
+#pragma once
+
+#include "item3d/models/config.h"
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace item3d {
+
+/// A token that is found in the text as a whole, before BPE.
+struct SpecialToken {
+    std::string content;
+    /// True: looked for after the text was lower-cased; false: in the text as it was written.
+    bool normalized = false;
+};
+
+class ClipTokenizer {
+  public:
+    using Vocabulary = std::unordered_map<std::string, int>;  ///< token -> id
+    using Merges = std::vector<std::pair<std::string, std::string>>;
+
+    struct Options {
+        SpecialToken bos{"<|startoftext|>"};
+        SpecialToken eos{"<|endoftext|>"};
+        SpecialToken unk{"<|endoftext|>"};
+        SpecialToken pad{"<|endoftext|>"};
+        std::vector<SpecialToken> additional;
+        int model_max_length = 77;
+    };
+
+    /// merges: in order of priority; both parts and their joint must be in the vocabulary, as must
+    /// the special tokens. Throws InputError (calling the vocabulary `subject`) otherwise.
+    ClipTokenizer(Vocabulary vocabulary, Merges merges, const Options& options,
+                  const std::string& subject = "vocabulary");
+    /// Reads vocab.json, merges.txt, tokenizer_config.json and special_tokens_map.json; the last
+    /// two may be missing. Throws InputError.
+    static ClipTokenizer load(const std::filesystem::path& folder);
+    /// Writes the same four files.
+    void save(const std::filesystem::path& folder) const;
+
+    /// Start token, the text, end token; neither padded nor truncated. text: UTF-8 (what is not
+    /// becomes U+FFFD).
+    std::vector<int> encode(const std::string& text) const;
+    /// As above, truncated and padded to `length` ids (0: model_max_length).
+    std::vector<int> encode_padded(const std::string& text, int length = 0) const;
+    /// [N, length] int64, row by row encode_padded.
+    torch::Tensor encode_batch(const std::vector<std::string>& texts, int length = 0) const;
+    /// Lower-cased text with one space between tokens' words.
+    std::string decode(const std::vector<int>& ids, bool skip_special_tokens = true) const;
+
+    /// The pieces that BPE works on: normalised words, numbers, runs of punctuation.
+    static std::vector<std::string> split_words(const std::string& text);
+
+    int bos_id() const { return id_of_.at(options_.bos.content); }
+    int eos_id() const { return id_of_.at(options_.eos.content); }
+    int pad_id() const { return id_of_.at(options_.pad.content); }
+    int unk_id() const { return id_of_.at(options_.unk.content); }
+    int model_max_length() const { return options_.model_max_length; }
+    /// The number of tokens, and the largest id.
+    std::size_t size() const { return id_of_.size(); }
+    int largest_id() const { return largest_id_; }
+    /// The id of a token as vocab.json spells it ("red</w>"), or -1.
+    int id_of(const std::string& token) const;
+
+  private:
+    struct Merge {
+        std::int64_t rank;
+        int id;
+    };
+    void append_plain(const std::string& text, std::vector<int>& ids) const;
+    void append_word(const std::string& bytes, std::vector<int>& ids) const;
+
+    Options options_;
+    Vocabulary id_of_;
+    Merges merge_list_;
+    std::unordered_map<int, std::string> token_of_;
+    std::unordered_map<std::uint64_t, Merge> merges_;  ///< by both ids
+    std::vector<std::pair<std::string, int>> raw_specials_, normalized_specials_;
+    int largest_id_ = 0;
+};
+
+}  // namespace item3d

@@ -1,0 +1,66 @@
+// The safetensors format: reading by memory map, writing atomically.
+// https://github.com/huggingface/safetensors#format : a u64 header length, a JSON header
+// {name: {dtype, shape, data_offsets}}, then the tensors' bytes without holes.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace item3d {
+
+using NamedTensors = std::vector<std::pair<std::string, torch::Tensor>>;
+
+/// One open file. Tensors that it hands out share its memory map and keep it alive; writing to one
+/// changes private memory, never the file.
+class SafeTensors {
+  public:
+    /// Reads and checks the whole header (length, JSON, types, shapes, offsets, overlap, holes)
+    /// before any tensor is touched. Throws InputError that names the file.
+    static SafeTensors open(const std::filesystem::path& path);
+
+    const std::filesystem::path& path() const { return path_; }
+    /// Names in the order of their bytes.
+    const std::vector<std::string>& names() const { return names_; }
+    bool contains(const std::string& name) const { return entries_.count(name) > 0; }
+    /// Element counts of all tensors together.
+    std::int64_t total_elements() const;
+    /// The header's "__metadata__" strings.
+    const std::map<std::string, std::string>& metadata() const { return metadata_; }
+
+    /// A view of the file's bytes, in the file's own type. Throws InputError when absent.
+    torch::Tensor tensor(const std::string& name) const;
+    /// All of them, in the order of names().
+    NamedTensors tensors() const;
+
+  private:
+    struct Entry {
+        torch::Dtype dtype;
+        std::vector<std::int64_t> shape;
+        std::uint64_t begin;  ///< offset from the start of the data
+        std::uint64_t end;
+    };
+    struct Map;
+
+    void read_header(const std::string& header, std::uint64_t data_size);
+
+    std::filesystem::path path_;
+    std::shared_ptr<Map> map_;
+    std::uint64_t data_start_ = 0;
+    std::map<std::string, Entry> entries_;
+    std::vector<std::string> names_;
+    std::map<std::string, std::string> metadata_;
+};
+
+/// Writes float32, float16, bfloat16, float64, int64, int32, int16, int8, uint8 or bool tensors of
+/// any device, atomically. Names must differ. Throws ResourceError on a full disk.
+void save_safetensors(const std::filesystem::path& path, const NamedTensors& tensors,
+                      const std::map<std::string, std::string>& metadata = {});
+
+}  // namespace item3d

@@ -1,0 +1,136 @@
+#include "item3d/models/unet_blocks.h"
+
+#include "item3d/models/attention.h"
+
+namespace item3d {
+namespace nn = torch::nn;
+namespace {
+
+nn::Conv2d conv3x3(int in_channels, int out_channels) {
+    return nn::Conv2d(nn::Conv2dOptions(in_channels, out_channels, 3).padding(1));
+}
+
+nn::GroupNorm group_norm(int groups, int channels, double epsilon) {
+    return nn::GroupNorm(nn::GroupNormOptions(groups, channels).eps(epsilon));
+}
+
+}  // namespace
+
+ResnetBlockImpl::ResnetBlockImpl(const Options& options) : options_(options) {
+    const int in = options.in_channels, out = options.out_channels;
+    norm1_ = register_module("norm1", group_norm(options.groups, in, options.epsilon));
+    conv1_ = register_module("conv1", conv3x3(in, out));
+    if (options.time_channels > 0)
+        time_emb_proj_ = register_module("time_emb_proj", nn::Linear(options.time_channels, out));
+    norm2_ = register_module("norm2", group_norm(options.groups, out, options.epsilon));
+    conv2_ = register_module("conv2", conv3x3(out, out));
+    if (in != out)
+        conv_shortcut_ =
+            register_module("conv_shortcut", nn::Conv2d(nn::Conv2dOptions(in, out, 1)));
+}
+
+torch::Tensor ResnetBlockImpl::forward(const torch::Tensor& x, const torch::Tensor& time) {
+    torch::Tensor hidden = conv1_(torch::silu(norm1_(x)));
+    if (time_emb_proj_) hidden = hidden + time_emb_proj_(time).unsqueeze(-1).unsqueeze(-1);
+    hidden = conv2_(torch::silu(norm2_(hidden)));
+    const torch::Tensor sum = (conv_shortcut_ ? conv_shortcut_(x) : x) + hidden;
+    return options_.output_scale == 1.0 ? sum : sum / options_.output_scale;
+}
+
+AttentionLayerImpl::AttentionLayerImpl(int channels, int context_channels, int heads, bool bias)
+    : heads_(heads) {
+    to_q_ = register_module("to_q", nn::Linear(nn::LinearOptions(channels, channels).bias(bias)));
+    to_k_ = register_module("to_k",
+                            nn::Linear(nn::LinearOptions(context_channels, channels).bias(bias)));
+    to_v_ = register_module("to_v",
+                            nn::Linear(nn::LinearOptions(context_channels, channels).bias(bias)));
+    to_out_ = register_module("to_out", nn::ModuleList(nn::Linear(channels, channels)));
+}
+
+torch::Tensor AttentionLayerImpl::forward(const torch::Tensor& x, const torch::Tensor& context) {
+    const torch::Tensor& source = context.defined() ? context : x;
+    const torch::Tensor result = attention(to_q_(x), to_k_(source), to_v_(source), heads_);
+    return to_out_[0]->as<nn::Linear>()->forward(result);
+}
+
+TransformerBlockImpl::TransformerBlockImpl(int channels, int context_channels, int heads) {
+    const nn::LayerNormOptions norm({channels});
+    norm1_ = register_module("norm1", nn::LayerNorm(norm));
+    attn1_ = register_module("attn1", AttentionLayer(channels, channels, heads));
+    norm2_ = register_module("norm2", nn::LayerNorm(norm));
+    attn2_ = register_module("attn2", AttentionLayer(channels, context_channels, heads));
+    norm3_ = register_module("norm3", nn::LayerNorm(norm));
+
+    // diffusers: ff.net = [GEGLU{proj}, Dropout, Linear]; the dropout is never active here.
+    constexpr int expansion = 4;
+    feed_in_ = nn::Linear(channels, 2 * expansion * channels);
+    feed_out_ = nn::Linear(expansion * channels, channels);
+    auto gate = std::make_shared<nn::Module>("GEGLU");
+    gate->register_module("proj", feed_in_.ptr());
+    nn::ModuleList net;
+    net->push_back(gate);
+    net->push_back(nn::Identity());
+    net->push_back(feed_out_);
+    auto feed_forward = std::make_shared<nn::Module>("FeedForward");
+    feed_forward->register_module("net", net.ptr());
+    register_module("ff", feed_forward);
+}
+
+torch::Tensor TransformerBlockImpl::forward(torch::Tensor x, const torch::Tensor& context) {
+    x = x + attn1_(norm1_(x));
+    x = x + attn2_(norm2_(x), context);
+    const auto halves = feed_in_(norm3_(x)).chunk(2, -1);
+    return x + feed_out_(halves[0] * torch::gelu(halves[1]));
+}
+
+SpatialTransformerImpl::SpatialTransformerImpl(const Options& options) : options_(options) {
+    const int channels = options.channels;
+    norm_ = register_module("norm", group_norm(options.groups, channels, 1e-6));
+    if (options.linear_projection) {
+        linear_in_ = register_module("proj_in", nn::Linear(channels, channels));
+        linear_out_ = register_module("proj_out", nn::Linear(channels, channels));
+    } else {
+        const nn::Conv2dOptions pointwise(channels, channels, 1);
+        conv_in_ = register_module("proj_in", nn::Conv2d(pointwise));
+        conv_out_ = register_module("proj_out", nn::Conv2d(pointwise));
+    }
+    nn::ModuleList list;
+    for (int i = 0; i < options.layers; ++i)
+        append(list, blocks_, TransformerBlock(channels, options.context_channels, options.heads));
+    register_module("transformer_blocks", list);
+}
+
+torch::Tensor SpatialTransformerImpl::forward(const torch::Tensor& x,
+                                              const torch::Tensor& context) {
+    const auto rows = x.size(0), channels = x.size(1), height = x.size(2), width = x.size(3);
+    torch::Tensor hidden = norm_(x);
+    if (conv_in_) hidden = conv_in_(hidden);
+    hidden = hidden.permute({0, 2, 3, 1}).reshape({rows, height * width, channels});
+    if (linear_in_) hidden = linear_in_(hidden);
+    for (TransformerBlock& block : blocks_)
+        hidden = block(hidden, context);
+    if (linear_out_) hidden = linear_out_(hidden);
+    hidden = hidden.reshape({rows, height, width, channels}).permute({0, 3, 1, 2});
+    if (conv_out_) hidden = conv_out_(hidden);
+    return x + hidden;
+}
+
+DownsampleImpl::DownsampleImpl(int channels, int padding) : padding_(padding) {
+    conv_ = register_module(
+        "conv", nn::Conv2d(nn::Conv2dOptions(channels, channels, 3).stride(2).padding(padding)));
+}
+
+torch::Tensor DownsampleImpl::forward(const torch::Tensor& x) {
+    return conv_(padding_ == 0 ? torch::constant_pad_nd(x, {0, 1, 0, 1}) : x);
+}
+
+UpsampleImpl::UpsampleImpl(int channels) {
+    conv_ = register_module("conv", conv3x3(channels, channels));
+}
+
+torch::Tensor UpsampleImpl::forward(const torch::Tensor& x, std::int64_t height,
+                                    std::int64_t width) {
+    return conv_(at::upsample_nearest2d(x, {height, width}));
+}
+
+}  // namespace item3d
