@@ -1,47 +1,70 @@
-// The neural texture: object-space position -> material (ITEM3D section 3.2, Instant-NGP's encoding).
+// The neural texture: position -> material (ITEM3D section 3.2 on Instant-NGP's encoding).
 #pragma once
+
+#include "item3d/core/math.h"
+#include "item3d/field/hash_grid.h"
+#include "item3d/render/shade.h"
 
 #include <torch/torch.h>
 
-#include "item3d/core/random.h"
-#include "item3d/render/shade.h"
-#include "item3d/scene/model.h"
+#include <array>
+#include <cstdint>
 
 namespace item3d {
 
-/// What the field's outputs may be; sigmoid outputs are mapped into [low, high] by channel.
+/// What each output may be: {lowest, highest}. Base colour is bounded sRGB-encoded, where equal
+/// steps look about equal; the others are the material's own linear values.
 struct MaterialRanges {
-    std::array<float, 3> base_color{0.0f, 1.0f, 0.0f};  // see field docs; low, high, unused
+    std::array<float, 2> base_color{0.0f, 1.0f};
     std::array<float, 2> occlusion{0.0f, 1.0f};
-    std::array<float, 2> roughness{0.05f, 1.0f};
+    std::array<float, 2> roughness{0.03f, 1.0f};
     std::array<float, 2> metallic{0.0f, 1.0f};
+    /// Largest |x / z| and |y / z| of the tangent-space normal.
+    float normal_slope = 1.5f;
 };
 
+/// The defaults suit one object with a texture of 1024 pixels; see suggest_field_options (fit.h).
+/// Eight levels of four features cost half the look-ups of Instant-NGP's sixteen of two, at the
+/// same width and measured quality.
 struct NeuralTextureOptions {
-    int levels = 16;
-    int features = 2;
-    int log2_table_size = 19;
-    int base_resolution = 16;
-    int finest_resolution = 4096;
+    int levels = 8;
+    int features = 4;
+    int log2_table_size = 17;
+    int base_resolution = 16;  ///< cells along the longest edge of the bounds
+    int finest_resolution = 1024;
     int hidden_width = 32;
-    std::array<Vec3, 2> bounds{Vec3(-1), Vec3(1)};  ///< positions outside are clamped
+    std::array<Vec3, 2> bounds{Vec3(-1.0f), Vec3(1.0f)};  ///< positions outside are clamped
+    MaterialRanges ranges;
     std::uint64_t seed = 0;
 };
 
-/// A multi-resolution hash grid (Mueller et al. 2022) and a two-hidden-layer MLP.
+/// A hash grid and a network with two hidden layers. Parameters: "table", the grid's features with
+/// sparse gradients (for Adam of adam.h), and "weight0", "bias0", ... of the network.
 class NeuralTextureImpl : public torch::nn::Module {
   public:
     explicit NeuralTextureImpl(const NeuralTextureOptions& options);
-    /// positions [P, 3] world space -> material; `normal` is tangent space.
+
+    /// positions [P, 3] world space (first instances', see FieldSpace) -> base colour, orm and
+    /// tangent-space normal; emissive and alpha stay undefined. Differentiable in the parameters
+    /// and, inside the bounds, in the positions.
     MaterialSample forward(const torch::Tensor& positions);
 
     const NeuralTextureOptions& options() const { return options_; }
+    torch::Tensor& table() { return table_; }
+    /// Weights and biases of the network.
+    std::vector<torch::Tensor> network_parameters() const;
 
   private:
     NeuralTextureOptions options_;
-    torch::Tensor table_;
-    torch::nn::Sequential mlp_{nullptr};
+    HashGrid grid_;
+    torch::Tensor table_;                 ///< [entries, features]
+    std::vector<torch::Tensor> weights_;  ///< [out, in] each
+    std::vector<torch::Tensor> biases_;   ///< [out]
+    torch::Tensor low_, high_;            ///< [8] ranges of the outputs
 };
 TORCH_MODULE(NeuralTexture);
+
+/// A copy that training leaves alone: what the field was, to compare with what it has become.
+NeuralTexture snapshot(const NeuralTexture& field);
 
 }  // namespace item3d

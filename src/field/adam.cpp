@@ -1,0 +1,150 @@
+#include "item3d/field/adam.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/host_device.h"
+#include "item3d/core/parallel.h"
+
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+/// What one step needs beyond the gradient; rates are already bias corrected.
+struct AdamRates {
+    float beta1, beta2, epsilon;
+    float step_size;       ///< learning_rate / (1 - beta1^t)
+    float variance_scale;  ///< 1 / (1 - beta2^t)
+};
+
+ITEM3D_HOST_DEVICE inline void adam_update(float& parameter, float& momentum, float& variance,
+                                           float gradient, const AdamRates& rates) {
+    momentum = rates.beta1 * momentum + (1.0f - rates.beta1) * gradient;
+    variance = rates.beta2 * variance + (1.0f - rates.beta2) * gradient * gradient;
+    parameter -=
+        rates.step_size * momentum / (std::sqrt(variance * rates.variance_scale) + rates.epsilon);
+}
+
+AdamRates make_rates(const AdamOptions& options, int updates) {
+    return {static_cast<float>(options.beta1), static_cast<float>(options.beta2),
+            static_cast<float>(options.epsilon),
+            static_cast<float>(options.learning_rate / (1.0 - std::pow(options.beta1, updates))),
+            static_cast<float>(1.0 / (1.0 - std::pow(options.beta2, updates)))};
+}
+
+/// Whether a sparse gradient's rows are unique and in rising order.
+bool rows_rise(const torch::Tensor& indices) {
+    if (indices.size(0) != 1 || !indices.is_contiguous()) return false;
+    const std::int64_t* index = indices.data_ptr<std::int64_t>();
+    for (std::int64_t i = 1; i < indices.size(1); ++i) {
+        if (index[i] <= index[i - 1]) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::size_t Adam::add_group(std::vector<torch::Tensor> parameters, const AdamOptions& options) {
+    Group group;
+    group.options = options;
+    for (torch::Tensor& parameter : parameters) {
+        ITEM3D_CHECK(parameter.is_cpu() && parameter.is_contiguous() && parameter.dim() > 0 &&
+                         parameter.scalar_type() == torch::kFloat32,
+                     "Adam updates contiguous float32 tensors on the CPU");
+        Slot slot;
+        slot.parameter = parameter;
+        slot.momentum = torch::zeros_like(parameter, torch::TensorOptions().requires_grad(false));
+        slot.variance = torch::zeros_like(slot.momentum);
+        slot.updates = torch::zeros({parameter.size(0)}, torch::kInt32);
+        group.slots.push_back(std::move(slot));
+    }
+    groups_.push_back(std::move(group));
+    return groups_.size() - 1;
+}
+
+void Adam::step() {
+    const torch::NoGradGuard no_grad;
+    for (Group& group : groups_) {
+        // Most rows were updated equally often, so powers are taken once for each count.
+        std::vector<AdamRates> rates;
+        const auto grow_rates = [&](int updates) {
+            while (static_cast<int>(rates.size()) <= updates) {
+                rates.push_back(
+                    make_rates(group.options, std::max(1, static_cast<int>(rates.size()))));
+            }
+        };
+        for (Slot& slot : group.slots) {
+            torch::Tensor gradient = slot.parameter.grad();
+            if (!gradient.defined()) continue;
+            const std::int64_t width =
+                slot.parameter.numel() / std::max<std::int64_t>(1, slot.parameter.size(0));
+            std::int64_t rows = slot.parameter.size(0);
+            torch::Tensor row_index;  // undefined: all rows
+            if (gradient.is_sparse()) {
+                // Accumulation drops the mark that says "coalesced", so the rows themselves are looked at.
+                if (!rows_rise(gradient._indices())) gradient = gradient.coalesce();
+                row_index = gradient._indices().select(0, 0).contiguous();
+                gradient = gradient._values();
+                rows = row_index.size(0);
+            }
+            gradient = gradient.contiguous();
+            const std::int64_t* index =
+                row_index.defined() ? row_index.data_ptr<std::int64_t>() : nullptr;
+            const float* g = gradient.data_ptr<float>();
+            float* parameter = slot.parameter.data_ptr<float>();
+            float* momentum = slot.momentum.data_ptr<float>();
+            float* variance = slot.variance.data_ptr<float>();
+            std::int32_t* updates = slot.updates.data_ptr<std::int32_t>();
+            int most = 0;
+            for (std::int64_t i = 0; i < rows; ++i) {
+                most = std::max(most, ++updates[index ? index[i] : i]);
+            }
+            grow_rates(most);
+            parallel_for(
+                "adam_step", rows,
+                [&](std::int64_t i) {
+                    const std::int64_t row = index ? index[i] : i;
+                    const AdamRates& rate = rates[static_cast<std::size_t>(updates[row])];
+                    for (std::int64_t c = 0; c < width; ++c) {
+                        const std::int64_t at = row * width + c;
+                        adam_update(parameter[at], momentum[at], variance[at], g[i * width + c],
+                                    rate);
+                    }
+                },
+                4096);
+        }
+    }
+}
+
+void Adam::zero_grad() {
+    for (Group& group : groups_) {
+        for (Slot& slot : group.slots)
+            slot.parameter.mutable_grad() = torch::Tensor();
+    }
+}
+
+std::map<std::string, torch::Tensor> Adam::state() const {
+    std::map<std::string, torch::Tensor> all;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        for (std::size_t p = 0; p < groups_[g].slots.size(); ++p) {
+            const Slot& slot = groups_[g].slots[p];
+            const std::string prefix = std::to_string(g) + "." + std::to_string(p) + ".";
+            all[prefix + "momentum"] = slot.momentum;
+            all[prefix + "variance"] = slot.variance;
+            all[prefix + "updates"] = slot.updates;
+        }
+    }
+    return all;
+}
+
+void Adam::load_state(const std::map<std::string, torch::Tensor>& state) {
+    for (auto& [name, own] : this->state()) {
+        const auto found = state.find(name);
+        ITEM3D_CHECK(found != state.end(), "optimiser state " + name + " is missing");
+        ITEM3D_CHECK(found->second.sizes() == own.sizes(),
+                     "optimiser state " + name + " has the wrong shape");
+        torch::Tensor target = own;
+        target.copy_(found->second);
+    }
+}
+
+}  // namespace item3d

@@ -1,0 +1,35 @@
+// Makes the neural texture look like the model's own materials, so that an edit starts there.
+#pragma once
+
+#include "item3d/field/neural_texture.h"
+#include "item3d/field/surface_points.h"
+#include "item3d/render/textured.h"
+
+namespace item3d {
+
+struct FitOptions {
+    int steps = 300;
+    std::int64_t batch = 8192;  ///< surface points a step
+    double table_learning_rate = 0.02;
+    double network_learning_rate = 0.005;
+    std::uint64_t seed = 0;
+    bool show_progress = true;
+};
+
+struct FitResult {
+    double seconds = 0.0;
+    double base_color_psnr = 0.0;  ///< dB, sRGB-encoded base colour, at fresh surface points
+    double orm_psnr = 0.0;         ///< dB, occlusion, roughness and metallic
+};
+
+/// A field for the edited surface: bounds around it, and a finest lattice and table that suit
+/// `texture_size` texels along an edge of the atlas.
+NeuralTextureOptions suggest_field_options(const Geometry& geometry, const FieldSpace& space,
+                                           int texture_size = 1024, std::uint64_t seed = 0);
+
+/// Regresses the field to the materials at random surface points: squared error, of the base colour
+/// sRGB-encoded. Deterministic in options.seed. Throws Interrupted after Ctrl-C.
+FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
+                           const TexturedMaterials& materials, const FitOptions& options = {});
+
+}  // namespace item3d

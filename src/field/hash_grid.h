@@ -1,0 +1,34 @@
+// The multi-resolution hash grid as a differentiable operation on tensors.
+#pragma once
+
+#include "item3d/field/hash_grid_kernels.h"
+
+#include <torch/torch.h>
+
+#include <vector>
+
+namespace item3d {
+
+/// The lattices of one grid, coarsest first; resolutions grow geometrically.
+struct HashGrid {
+    int features = 4;  ///< an entry: 1, 2, 4 or 8
+    std::vector<HashGridLevel> levels;
+
+    /// Levels from base to finest resolution (both included), at most 2^log2_table_size entries
+    /// each.
+    static HashGrid make(int levels, int features, int log2_table_size, int base_resolution,
+                         int finest_resolution);
+
+    std::int64_t entries() const;  ///< of all levels together
+    int output_width() const { return static_cast<int>(levels.size()) * features; }
+};
+
+/// points [P, 3] float32 in the unit cube (others are clamped to it), table [grid.entries(), F]
+/// float32 -> [P, levels * F], level-major. On the CPU.
+///
+/// Differentiable in both. The table's gradient is a sparse tensor (unique rows in rising order) of just the
+/// entries that the points touched: a step of an edit touches thousands of an table's million. Sums
+/// run in the order of the points within a level, so the result does not depend on threads.
+torch::Tensor encode(const HashGrid& grid, const torch::Tensor& points, const torch::Tensor& table);
+
+}  // namespace item3d

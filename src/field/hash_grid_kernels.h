@@ -1,0 +1,132 @@
+// The arithmetic of a multi-resolution hash grid, one point and one level at a time (Mueller et al.
+// 2022, "Instant Neural Graphics Primitives"). No torch here: the same functions run on the CPU's
+// threads and in CUDA grids.
+//
+// A level is a lattice of (resolution + 1)^3 vertices over the unit cube with F features each.
+// Coarse levels store every vertex; where that would be more than the table holds, vertices share
+// entries by a spatial hash and the network that follows sorts out the collisions.
+#pragma once
+
+#include "item3d/core/host_device.h"
+#include "item3d/core/math.h"
+
+#include <cstdint>
+
+namespace item3d {
+
+struct HashGridLevel {
+    int resolution = 16;        ///< cells along an edge of the unit cube
+    std::uint32_t first = 0;    ///< index of the level's first entry in the whole table
+    std::uint32_t entries = 0;  ///< a power of two when hashed
+    bool hashed = false;
+};
+
+/// Where a point lies in one level: the lattice cell and the position in it.
+struct HashGridCell {
+    int x = 0, y = 0, z = 0;
+    Vec3 fraction{0.0f};
+    Vec3 slope{0.0f};  ///< d fraction / d point; 0 along axes on which the point was clamped
+};
+
+ITEM3D_HOST_DEVICE inline void locate_axis(float p, int resolution, int& cell, float& fraction,
+                                           float& slope) {
+    const float scaled = p * static_cast<float>(resolution);
+    if (!(scaled > 0.0f)) {  // NaN counts as outside
+        cell = 0, fraction = 0.0f, slope = 0.0f;
+    } else if (scaled >= static_cast<float>(resolution)) {
+        cell = resolution - 1, fraction = 1.0f, slope = 0.0f;
+    } else {
+        cell = static_cast<int>(scaled);
+        fraction = scaled - static_cast<float>(cell);
+        slope = static_cast<float>(resolution);
+    }
+}
+
+ITEM3D_HOST_DEVICE inline HashGridCell locate(const HashGridLevel& level, Vec3 point) {
+    HashGridCell cell;
+    locate_axis(point.x, level.resolution, cell.x, cell.fraction.x, cell.slope.x);
+    locate_axis(point.y, level.resolution, cell.y, cell.fraction.y, cell.slope.y);
+    locate_axis(point.z, level.resolution, cell.z, cell.fraction.z, cell.slope.z);
+    return cell;
+}
+
+/// Entries of the cell's eight corners, relative to the level's first. Corner c lies at
+/// (c & 1, c >> 1 & 1, c >> 2 & 1).
+ITEM3D_HOST_DEVICE inline void corner_entries(const HashGridLevel& level, const HashGridCell& cell,
+                                              std::uint32_t entries[8]) {
+    const std::uint32_t x = static_cast<std::uint32_t>(cell.x);
+    const std::uint32_t y = static_cast<std::uint32_t>(cell.y);
+    const std::uint32_t z = static_cast<std::uint32_t>(cell.z);
+    if (level.hashed) {
+        // The primes of Mueller et al., equation 4.
+        const std::uint32_t hash_y[2] = {y * 2654435761u, (y + 1) * 2654435761u};
+        const std::uint32_t hash_z[2] = {z * 805459861u, (z + 1) * 805459861u};
+        const std::uint32_t mask = level.entries - 1;
+        for (std::uint32_t c = 0; c < 8; ++c) {
+            entries[c] = ((x + (c & 1)) ^ hash_y[c >> 1 & 1] ^ hash_z[c >> 2]) & mask;
+        }
+    } else {
+        const std::uint32_t row = static_cast<std::uint32_t>(level.resolution) + 1;
+        const std::uint32_t base = (z * row + y) * row + x;
+        for (std::uint32_t c = 0; c < 8; ++c) {
+            entries[c] = base + (c & 1) + (c >> 1 & 1) * row + (c >> 2) * row * row;
+        }
+    }
+}
+
+/// Trilinear weights of the corners; they sum to 1.
+ITEM3D_HOST_DEVICE inline void corner_weights(const HashGridCell& cell, float weights[8]) {
+    const Vec3 f = cell.fraction;
+    const float x[2] = {1.0f - f.x, f.x};
+    const float yz[4] = {(1.0f - f.y) * (1.0f - f.z), f.y * (1.0f - f.z), (1.0f - f.y) * f.z,
+                         f.y * f.z};
+    for (int c = 0; c < 8; ++c)
+        weights[c] = x[c & 1] * yz[c >> 1];
+}
+
+/// out[F] = interpolated features. table: the level's own entries, [entries, F].
+template <int F>
+ITEM3D_HOST_DEVICE inline void encode_level(const HashGridLevel& level, const float* table,
+                                            Vec3 point, float* out) {
+    const HashGridCell cell = locate(level, point);
+    std::uint32_t entries[8];
+    float weights[8];
+    corner_entries(level, cell, entries);
+    corner_weights(cell, weights);
+    float sum[F] = {};
+    for (int c = 0; c < 8; ++c) {
+        const float* features = table + static_cast<std::size_t>(entries[c]) * F;
+        for (int f = 0; f < F; ++f)
+            sum[f] += weights[c] * features[f];
+    }
+    for (int f = 0; f < F; ++f)
+        out[f] = sum[f];
+}
+
+/// Gradient of dot(encode_level(point), grad[F]) with respect to the point.
+template <int F>
+ITEM3D_HOST_DEVICE inline Vec3 encode_level_point_gradient(const HashGridLevel& level,
+                                                           const float* table, Vec3 point,
+                                                           const float* grad) {
+    const HashGridCell cell = locate(level, point);
+    std::uint32_t entries[8];
+    corner_entries(level, cell, entries);
+    float value[8];
+    for (int c = 0; c < 8; ++c) {
+        const float* features = table + static_cast<std::size_t>(entries[c]) * F;
+        value[c] = 0.0f;
+        for (int f = 0; f < F; ++f)
+            value[c] += grad[f] * features[f];
+    }
+    const Vec3 t = cell.fraction;
+    const Vec3 s = Vec3(1.0f) - t;
+    const float dx = s.y * s.z * (value[1] - value[0]) + t.y * s.z * (value[3] - value[2]) +
+                     s.y * t.z * (value[5] - value[4]) + t.y * t.z * (value[7] - value[6]);
+    const float dy = s.x * s.z * (value[2] - value[0]) + t.x * s.z * (value[3] - value[1]) +
+                     s.x * t.z * (value[6] - value[4]) + t.x * t.z * (value[7] - value[5]);
+    const float dz = s.x * s.y * (value[4] - value[0]) + t.x * s.y * (value[5] - value[1]) +
+                     s.x * t.y * (value[6] - value[2]) + t.x * t.y * (value[7] - value[3]);
+    return Vec3(dx, dy, dz) * cell.slope;
+}
+
+}  // namespace item3d

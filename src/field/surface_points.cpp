@@ -1,0 +1,145 @@
+#include "item3d/field/surface_points.h"
+
+#include "item3d/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace item3d {
+namespace {
+
+/// [4, 3] float32 affine map that takes `from` to `to`, two sets of corresponding points.
+torch::Tensor affine_between(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+    constexpr std::size_t most = 4096;  // points are plenty: twelve numbers are sought
+    const std::size_t stride = std::max<std::size_t>(1, from.size() / most);
+    std::vector<double> a, b;
+    for (std::size_t i = 0; i < from.size(); i += stride) {
+        a.insert(a.end(), {from[i].x, from[i].y, from[i].z, 1.0});
+        b.insert(b.end(), {to[i].x, to[i].y, to[i].z});
+    }
+    const torch::Tensor lhs = torch::tensor(a, torch::kFloat64).view({-1, 4});
+    const torch::Tensor rhs = torch::tensor(b, torch::kFloat64).view({-1, 3});
+    // The pseudo-inverse: flat primitives determine the map within their plane alone.
+    return torch::matmul(torch::linalg_pinv(lhs, 1e-7), rhs).to(torch::kFloat32);
+}
+
+}  // namespace
+
+Surface surface_at(const Geometry& geometry, const torch::Tensor& triangle,
+                   const torch::Tensor& barycentrics) {
+    const torch::Tensor corners = geometry.triangles.index_select(0, triangle).to(torch::kInt64);
+    const torch::Tensor u = barycentrics.narrow(1, 0, 1);
+    const torch::Tensor v = barycentrics.narrow(1, 1, 1);
+    const torch::Tensor w = 1.0f - u - v;
+    const auto interpolate = [&](const torch::Tensor& attribute) {
+        return attribute.index_select(0, corners.select(1, 0)) * u +
+               attribute.index_select(0, corners.select(1, 1)) * v +
+               attribute.index_select(0, corners.select(1, 2)) * w;
+    };
+    const auto unit = [](const torch::Tensor& vector) {
+        return vector / torch::sqrt(vector.square().sum(1, true)).clamp_min(1e-12);
+    };
+    Surface surface;
+    surface.pixel = torch::arange(triangle.size(0), torch::kInt64);
+    surface.position = interpolate(geometry.positions);
+    surface.normal = unit(interpolate(geometry.normals));
+    surface.tangent = interpolate(geometry.tangents);
+    surface.uv = interpolate(geometry.uvs);
+    surface.color = interpolate(geometry.colors);
+    surface.view = surface.normal;
+    surface.material = geometry.triangle_material.index_select(0, triangle).to(torch::kInt64);
+    surface.primitive = geometry.triangle_primitive.index_select(0, triangle).to(torch::kInt64);
+    return surface;
+}
+
+FieldSpace::FieldSpace(const Model& model, const std::vector<int>& materials) {
+    std::map<std::pair<int, int>, int> seen;
+    std::vector<torch::Tensor> transforms;
+    bounds_ = {Vec3(1e30f), Vec3(-1e30f)};
+    bool any = false;
+    for (std::size_t i = 0; i < model.primitives.size(); ++i) {
+        const Primitive& primitive = model.primitives[i];
+        int first = static_cast<int>(i);
+        if (primitive.source_mesh >= 0) {
+            const auto [at, fresh] =
+                seen.try_emplace({primitive.source_mesh, primitive.source_primitive}, first);
+            if (model.primitives[static_cast<std::size_t>(at->second)].positions.size() ==
+                primitive.positions.size()) {
+                first = at->second;
+            }
+        }
+        first_instance_.push_back(first);
+        edited_.push_back(std::find(materials.begin(), materials.end(), primitive.material) !=
+                          materials.end());
+        if (first == static_cast<int>(i)) {
+            transforms.push_back(torch::eye(4).narrow(1, 0, 3));
+            if (!edited_.back()) continue;
+            any = true;
+            for (const Vec3& p : primitive.positions) {
+                bounds_ = {glm::min(bounds_[0], p), glm::max(bounds_[1], p)};
+            }
+        } else {
+            has_instances_ = true;
+            transforms.push_back(affine_between(
+                primitive.positions, model.primitives[static_cast<std::size_t>(first)].positions));
+        }
+    }
+    ITEM3D_CHECK(any, "no primitive has one of the edited materials");
+    transforms_ = torch::stack(transforms);
+}
+
+torch::Tensor FieldSpace::positions(const Surface& surface) const {
+    if (!has_instances_) return surface.position;
+    const torch::Tensor transform = transforms_.index_select(0, surface.primitive);  // [P, 4, 3]
+    return torch::matmul(surface.position.unsqueeze(1), transform.narrow(1, 0, 3)).squeeze(1) +
+           transform.select(1, 3);
+}
+
+SurfaceSampler::SurfaceSampler(const Geometry& geometry, const FieldSpace& space)
+    : geometry_(geometry) {
+    const torch::Tensor positions = geometry.positions.detach().contiguous();
+    const torch::Tensor corners = geometry.triangles.contiguous();
+    const torch::Tensor owners = geometry.triangle_primitive.contiguous();
+    const float* p = positions.data_ptr<float>();
+    const std::int32_t* triangle = corners.data_ptr<std::int32_t>();
+    const std::int32_t* primitive = owners.data_ptr<std::int32_t>();
+    const auto corner = [&](std::int64_t t, int c) {
+        const std::int64_t v = triangle[3 * t + c];
+        return Vec3(p[3 * v], p[3 * v + 1], p[3 * v + 2]);
+    };
+    for (std::int64_t t = 0; t < corners.size(0); ++t) {
+        const int owner = primitive[t];
+        if (!space.edited(owner)) continue;
+        if (space.first_instance()[static_cast<std::size_t>(owner)] != owner) continue;
+        const Vec3 a = corner(t, 0);
+        const double area = 0.5 * glm::length(glm::cross(corner(t, 1) - a, corner(t, 2) - a));
+        if (!(area > 0.0)) continue;
+        area_ += area;
+        triangles_.push_back(static_cast<std::int32_t>(t));
+        cumulative_.push_back(area_);
+    }
+    ITEM3D_CHECK(!triangles_.empty(), "the edited materials cover no area");
+}
+
+Surface SurfaceSampler::sample(std::int64_t count, Random& random) const {
+    torch::Tensor triangle = torch::empty({count}, torch::kInt64);
+    torch::Tensor barycentrics = torch::empty({count, 2}, torch::kFloat32);
+    std::int64_t* t = triangle.data_ptr<std::int64_t>();
+    float* b = barycentrics.data_ptr<float>();
+    for (std::int64_t i = 0; i < count; ++i) {
+        // Stratified: each point has its own slice of the area.
+        const double at =
+            (static_cast<double>(i) + random.uniform()) / static_cast<double>(count) * area_;
+        const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, at);
+        t[i] = triangles_[static_cast<std::size_t>(found - cumulative_.begin())];
+        const double root = std::sqrt(random.uniform());
+        const double v = random.uniform() * root;
+        b[2 * i] = static_cast<float>(1.0 - root);
+        b[2 * i + 1] = static_cast<float>(v);
+    }
+    return surface_at(geometry_, triangle, barycentrics);
+}
+
+}  // namespace item3d
