@@ -1,0 +1,145 @@
+#!/usr/bin/env bash
+# Makes a machine ready to build item3d: Debian packages (scripts/packages.txt) and the pinned
+# downloads of scripts/wheels.txt, unpacked into .deps/. Does nothing when all is there; goes on
+# where an interrupted run stopped. Works as root and as a user who may use sudo.
+#
+#   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+root=$PWD
+deps=$root/.deps
+
+say() { echo "setup: $*" >&2; }
+fail() {
+    echo "setup: error: $*" >&2
+    exit 1
+}
+
+# ------------------------------------------------------------------------------ Debian packages
+missing_packages() {
+    local package
+    while read -r package; do
+        [[ $(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) == installed ]] ||
+            echo "$package"
+    done < <(grep -vE '^[[:space:]]*(#|$)' scripts/packages.txt)
+}
+
+install_packages() {
+    if ! command -v dpkg-query >/dev/null; then
+        say "not a Debian system; expecting the counterparts of scripts/packages.txt to be there"
+        return
+    fi
+    local missing as_root=()
+    mapfile -t missing < <(missing_packages)
+    ((${#missing[@]})) || return 0
+    if ((EUID != 0)); then
+        command -v sudo >/dev/null ||
+            fail "these packages are missing and there is no sudo; as root: apt-get install ${missing[*]}"
+        as_root=(sudo)
+    fi
+    say "installing ${#missing[@]} Debian packages: ${missing[*]}"
+    local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y
+        -o DPkg::Lock::Timeout=300 -o APT::Acquire::Retries=3)
+    "${apt[@]}" update >"$deps/apt.log" 2>&1 ||
+        fail "apt-get update failed: $(tail -n 1 "$deps/apt.log") (all of it: .deps/apt.log)"
+    "${apt[@]}" install --no-install-recommends "${missing[@]}" >>"$deps/apt.log" 2>&1 ||
+        fail "apt-get install failed: $(tail -n 1 "$deps/apt.log") (all of it: .deps/apt.log)"
+}
+
+# ------------------------------------------------------------------------------ Pinned downloads
+find_pip() {
+    local python
+    for python in python3 /usr/bin/python3; do
+        if "$python" -m pip --version >/dev/null 2>&1; then
+            echo "$python"
+            return
+        fi
+    done
+    fail "no Python with pip was found; install python3-pip"
+}
+
+# download NAME PIP_OPTION...: fetches one line of wheels.txt into .deps/wheels and says where it
+# is in $archive. pip checks the hash, moves the file there only when it is whole, and does not fetch
+# again what an interrupted run left there.
+download() {
+    local name=$1 pin python pin_file
+    shift
+    pin=$(grep "^$name==" scripts/wheels.txt) || fail "scripts/wheels.txt does not name $name"
+    say "downloading ${pin%% *}"
+    mkdir -p "$deps/wheels"
+    pin_file=$deps/wheels/$name.txt
+    echo "$pin" >"$pin_file"
+    python=$(find_pip)
+    "$python" -m pip download --no-deps --require-hashes --no-cache-dir --retries 5 --timeout 60 \
+        --progress-bar off -q --disable-pip-version-check --dest "$deps/wheels" "$@" -r "$pin_file" \
+        >"$deps/pip.log" 2>&1 ||
+        fail "downloading ${pin%% *} failed: $(grep -i error "$deps/pip.log" | tail -n 1) (all of it: .deps/pip.log)"
+    local stem=${pin%% *}
+    stem=${stem/==/-}
+    archive=$(compgen -G "$deps/wheels/${name//-/_}-${stem##*-}[-.]*" | head -n 1) ||
+        fail "pip left no $stem in .deps/wheels"
+}
+
+# The same files on every machine, whatever Python it has.
+wheel_options=(--only-binary=:all: --implementation cp --python-version 3.11 --abi cp311
+    --platform manylinux_2_28_x86_64 --platform manylinux_2_25_x86_64
+    --platform manylinux2014_x86_64)
+
+# component NAME PINS UNPACK: runs UNPACK in an empty folder and renames that folder to .deps/NAME,
+# unless .deps/NAME came from the same pins.
+component() {
+    local name=$1 pins=$2 unpack=$3 wanted temporary
+    wanted=$(grep -E "^($pins)==" scripts/wheels.txt | sha256sum | cut -d ' ' -f 1)
+    [[ -f $deps/$name/.pins && $(<"$deps/$name/.pins") == "$wanted" ]] && return
+    temporary=$deps/$name.unpacking
+    rm -rf "$temporary"
+    mkdir -p "$temporary"
+    "$unpack" "$temporary"
+    echo "$wanted" >"$temporary/.pins"
+    rm -rf "${deps:?}/$name"
+    mv "$temporary" "$deps/$name"
+    rm -rf "$deps/wheels"
+}
+
+# extract ARCHIVE FOLDER FILE_PATTERN...: unpacks the named files of a wheel.
+extract() {
+    local archive=$1 into=$2
+    shift 2
+    say "unpacking $(basename "$archive")"
+    unzip -q -o "$archive" "$@" -d "$into" || fail "unpacking $archive failed; is the disk full?"
+}
+
+unpack_site() {
+    local into=$1 archive torch runtime cupti
+    download nvidia-cuda-runtime "${wheel_options[@]}" && runtime=$archive
+    download nvidia-cuda-cupti "${wheel_options[@]}" && cupti=$archive
+    download torch "${wheel_options[@]}" && torch=$archive
+    extract "$torch" "$into" 'torch/include/*' torch/lib/libtorch_cpu.so torch/lib/libc10.so \
+        'torch/lib/libgomp*.so*' 'torch-*.dist-info/*LICENSE*'
+    extract "$runtime" "$into" 'nvidia/cu13/lib/libcudart.so.*'
+    extract "$cupti" "$into" 'nvidia/cu13/lib/libcupti.so.*'
+}
+
+unpack_xatlas() {
+    local into=$1 archive inner
+    download xatlas --no-binary=xatlas
+    say "unpacking $(basename "$archive")"
+    inner=$(basename "$archive" .tar.gz)/extern/xatlas
+    tar -xzf "$archive" -C "$into" --transform 's|.*/||' \
+        "$inner/source/xatlas/xatlas.cpp" "$inner/source/xatlas/xatlas.h" "$inner/LICENSE" ||
+        fail "unpacking $archive failed; is the disk full?"
+}
+
+mkdir -p "$deps" || fail "cannot write to $root"
+exec 9>"$deps/lock"
+flock 9 # a second `make` waits here and then finds all done
+install_packages
+if [[ -n ${ITEM3D_TORCH_ROOT:-} ]]; then
+    [[ -f $ITEM3D_TORCH_ROOT/lib/libtorch_cpu.so ]] ||
+        fail "ITEM3D_TORCH_ROOT=$ITEM3D_TORCH_ROOT has no lib/libtorch_cpu.so"
+else
+    [[ $(uname -m) == x86_64 ]] ||
+        fail "the pinned LibTorch is for x86_64; set ITEM3D_TORCH_ROOT to a LibTorch of this machine"
+    component site 'torch|nvidia-cuda-runtime|nvidia-cuda-cupti' unpack_site
+fi
+component xatlas xatlas unpack_xatlas
