@@ -1,6 +1,9 @@
 // A model as the renderer and the editor see it, whatever file it came from.
 #pragma once
 
+#include "item3d/core/math.h"
+#include "item3d/scene/image.h"
+
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -8,14 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "item3d/core/math.h"
-#include "item3d/scene/image.h"
-
 namespace item3d {
 
 enum class Wrap { repeat, mirrored_repeat, clamp_to_edge };
 
-/// An image with its sampler. `image` is empty when the file could not be read (a warning was given).
+/// An image with its sampler. Pictures that could not be read are not in Model::textures: the
+/// materials that wanted them have -1 in that slot and keep their factors.
 struct Texture {
     std::string name;
     Image image;
@@ -67,6 +68,8 @@ struct Primitive {
     int source_mesh = -1;
     int source_primitive = -1;
     int source_node = -1;
+    /// The node mirrors, so the triangles were reversed to face outwards.
+    bool is_mirrored = false;
 };
 
 class SourceDocument;

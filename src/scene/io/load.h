@@ -2,10 +2,10 @@
 // outside the model's folder, none allocates out of proportion to the file.
 #pragma once
 
-#include <filesystem>
-
 #include "item3d/scene/image.h"
 #include "item3d/scene/model.h"
+
+#include <filesystem>
 
 namespace item3d {
 

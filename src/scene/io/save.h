@@ -1,17 +1,17 @@
 // Models and images to files; every write is atomic.
 #pragma once
 
+#include "item3d/scene/image.h"
+#include "item3d/scene/model.h"
+
 #include <filesystem>
 #include <map>
 #include <optional>
 
-#include "item3d/scene/image.h"
-#include "item3d/scene/model.h"
-
 namespace item3d {
 
-/// By extension: .png (values clamped to [0, 1], 8 or 16 bits), .jpg, .hdr, .exr (float32, or half).
-/// PNG and JPEG store the values as they are: give sRGB-encoded ones.
+/// By extension: .png (values clamped to [0, 1], 8 or 16 bits), .jpg, .hdr, .exr (float32, or
+/// half). PNG and JPEG store the values as they are: give sRGB-encoded ones.
 void save_image(const std::filesystem::path& path, const Image& image, int bits_per_channel = 8);
 
 /// What an edit changed in one material. Images as they go into files: base colour sRGB-encoded,

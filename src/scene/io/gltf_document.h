@@ -1,0 +1,86 @@
+// A glTF document in memory: the JSON as it stands in the file and the bytes of its buffers. Kept
+// beside the model so that an edited copy can be written by patching it. Internal to scene/io.
+#pragma once
+
+#include "item3d/core/files.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// Keeps the order of keys.
+using Json = nlohmann::ordered_json;
+
+class SourceDocument {
+  public:
+    std::filesystem::path path;
+    Json json;
+    /// One for each of json["buffers"]; exactly as in the files, so perhaps longer than byteLength.
+    std::vector<Bytes> buffers;
+    /// buffers[0] is the BIN chunk of a .glb.
+    bool has_binary_chunk = false;
+    struct Chunk {
+        std::uint32_t type;
+        Bytes bytes;
+    };
+    /// Chunks of a .glb other than JSON and BIN.
+    std::vector<Chunk> other_chunks;
+};
+
+/// Reads the container, the JSON and all buffers. Throws InputError.
+std::shared_ptr<SourceDocument> parse_gltf(const std::filesystem::path& path, const Bytes& bytes);
+
+/// A JSON object of the document with its place in it ("meshes[0].primitives[1]"): every access is
+/// checked, and what is wrong is an InputError that names the file and the place.
+class GltfObject {
+  public:
+    GltfObject(const SourceDocument& document, const Json& json, std::string where);
+
+    const Json& json() const { return *json_; }
+    const std::string& where() const { return where_; }
+    bool has(const char* key) const { return json_->contains(key); }
+    std::optional<GltfObject> object(const char* key) const;
+    std::string text(const char* key, const std::string& otherwise) const;
+    double number(const char* key, double otherwise) const;
+    bool boolean(const char* key, bool otherwise) const;
+    /// A non-negative integer below 2^53.
+    std::size_t integer(const char* key, std::size_t otherwise) const;
+    std::size_t integer(const char* key) const;
+    /// Exactly `count` numbers; empty when the key is missing.
+    std::vector<double> numbers(const char* key, std::size_t count) const;
+    /// Zero when the key is missing.
+    std::size_t list_size(const char* key) const;
+    /// An object of a list.
+    GltfObject item(const char* key, std::size_t index) const;
+    /// An integer of a list, below `limit`.
+    std::size_t index_item(const char* key, std::size_t index, std::size_t limit) const;
+    /// An index into a list of `limit` things; no value when the key is missing.
+    std::optional<std::size_t> index(const char* key, std::size_t limit) const;
+
+    [[noreturn]] void fail(const std::string& problem, const std::string& hint = "") const;
+
+  private:
+    const Json* find(const char* key) const;
+    std::size_t to_integer(const Json& value, const std::string& place) const;
+
+    const SourceDocument* document_;
+    const Json* json_;
+    std::string where_;
+};
+
+/// The document's root object.
+GltfObject root_of(const SourceDocument& document);
+
+/// The encoded bytes of an image (from its URI, data URI or buffer view). Throws InputError.
+Bytes read_image_bytes(const SourceDocument& document, std::size_t image);
+
+/// The bytes that a buffer view covers. Throws InputError.
+std::span<const std::uint8_t> buffer_view_bytes(const SourceDocument& document, std::size_t view);
+
+}  // namespace item3d

@@ -1,0 +1,29 @@
+// Files and data that a model refers to, without ever leaving its folder. Internal to scene/io.
+#pragma once
+
+#include "item3d/core/files.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace item3d {
+
+/// The regular file `relative` (native separators or '/') in `folder`. Absolute paths, "..", and
+/// links that lead out of the folder are an InputError that names `subject`, as is a missing file.
+std::filesystem::path resolve_in_folder(const std::filesystem::path& folder,
+                                        const std::filesystem::path& relative,
+                                        const std::string& subject);
+
+bool is_data_uri(std::string_view uri);
+/// The bytes of "data:...;base64,..." or "data:,...". Throws InputError.
+Bytes decode_data_uri(std::string_view uri, const std::string& subject);
+
+/// The relative path that a URI of a glTF names (percent-decoded). Other schemes than a plain
+/// relative reference ("http:", "file:", ...) are an InputError: nothing is fetched.
+std::filesystem::path uri_to_relative_path(std::string_view uri, const std::string& subject);
+std::string path_to_uri(const std::filesystem::path& relative);
+
+std::string encode_base64(std::span<const std::uint8_t> bytes);
+
+}  // namespace item3d
