@@ -1,9 +1,9 @@
 // Split-sum image-based lighting (Karis 2013): an environment prefiltered once, looked up a pixel.
 #pragma once
 
-#include <torch/torch.h>
-
 #include "item3d/scene/image.h"
+
+#include <torch/torch.h>
 
 namespace item3d {
 

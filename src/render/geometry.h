@@ -1,9 +1,9 @@
 // A model's triangles as tensors, ready for the renderer.
 #pragma once
 
-#include <torch/torch.h>
-
 #include "item3d/scene/model.h"
+
+#include <torch/torch.h>
 
 namespace item3d {
 
@@ -17,6 +17,10 @@ struct Geometry {
     torch::Tensor triangles;  ///< [T, 3] int32, indices of vertices
     torch::Tensor triangle_material;   ///< [T] int32, index into Model::materials
     torch::Tensor triangle_primitive;  ///< [T] int32, index into Model::primitives
+    /// [T, 3] int32: the third vertex of the neighbour across the edge opposite to each corner, -1
+    /// where there is none; vertices at equal positions count as one (see topology.h). `antialias`
+    /// computes it at each call where it is undefined.
+    torch::Tensor opposite;
 
     static Geometry from_model(const Model& model, torch::Device device = torch::kCPU);
 };

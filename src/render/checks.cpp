@@ -1,0 +1,33 @@
+#include "item3d/render/checks.h"
+
+#include "item3d/core/error.h"
+
+#include <sstream>
+
+namespace item3d {
+
+torch::Tensor checked(const char* operation, const char* name, const torch::Tensor& tensor,
+                      torch::ScalarType type, std::initializer_list<std::int64_t> shape) {
+    const std::vector<std::int64_t> wanted(shape);
+    bool good = tensor.defined() && tensor.device().is_cpu() && tensor.scalar_type() == type &&
+                tensor.dim() == static_cast<std::int64_t>(wanted.size());
+    for (std::size_t i = 0; good && i < wanted.size(); ++i)
+        good = wanted[i] < 0 || tensor.size(static_cast<std::int64_t>(i)) == wanted[i];
+    if (!good) {
+        std::ostringstream message;
+        message << operation << ": " << name << " must be a " << torch::toString(type)
+                << " CPU tensor [";
+        for (std::size_t i = 0; i < wanted.size(); ++i)
+            message << (i ? ", " : "") << (wanted[i] < 0 ? "*" : std::to_string(wanted[i]));
+        message << "], found ";
+        if (tensor.defined())
+            message << torch::toString(tensor.scalar_type()) << " " << tensor.device() << " "
+                    << tensor.sizes();
+        else
+            message << "an undefined tensor";
+        throw std::logic_error(message.str());
+    }
+    return tensor.contiguous();
+}
+
+}  // namespace item3d

@@ -1,0 +1,81 @@
+#include "item3d/render/kernels/equirectangular.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/parallel.h"
+#include "item3d/render/checks.h"
+#include "item3d/render/environment_light.h"
+#include "item3d/render/scatter_sum.h"
+
+#include <algorithm>
+
+namespace item3d {
+namespace {
+
+using kernels::EquirectangularParameters;
+using torch::autograd::AutogradContext;
+using torch::autograd::tensor_list;
+
+/// [H, W, 3] -> [6, S, S, 3]
+struct EquirectangularToCube : torch::autograd::Function<EquirectangularToCube> {
+    static EquirectangularParameters parameters(std::int64_t height, std::int64_t width, int size) {
+        EquirectangularParameters p{};
+        p.height = static_cast<int>(height);
+        p.width = static_cast<int>(width);
+        p.size = size;
+        // A cube texel at a face's centre spans height / (2 size) texels of the map; twice as many
+        // samples as texels.
+        p.samples = std::max(2, (p.height + size - 1) / size);
+        return p;
+    }
+    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& map,
+                                 std::int64_t size) {
+        EquirectangularParameters p = parameters(map.size(0), map.size(1), static_cast<int>(size));
+        p.map = map.const_data_ptr<float>();
+        torch::Tensor cube = torch::empty({6, size, size, 3}, torch::kFloat32);
+        float* out = cube.data_ptr<float>();
+        parallel_for("equirectangular_to_cube", 6 * size * size, [=](std::int64_t index) {
+            float sum[3] = {0, 0, 0};
+            kernels::for_each_equirectangular_tap(p, index, [&](int texel, float weight) {
+                for (int c = 0; c < 3; ++c)
+                    sum[c] += weight * p.map[3 * texel + c];
+            });
+            for (int c = 0; c < 3; ++c)
+                out[3 * index + c] = sum[c];
+        });
+        context->saved_data["height"] = map.size(0);
+        context->saved_data["width"] = map.size(1);
+        return cube;
+    }
+    static tensor_list backward(AutogradContext* context, tensor_list gradients) {
+        const std::int64_t height = context->saved_data["height"].toInt();
+        const std::int64_t width = context->saved_data["width"].toInt();
+        const torch::Tensor gradient = gradients[0].contiguous();
+        const std::int64_t size = gradient.size(1);
+        const EquirectangularParameters p = parameters(height, width, static_cast<int>(size));
+        const float* values = gradient.const_data_ptr<float>();
+        const torch::Tensor map_gradient = scatter_sum(
+            "equirectangular_to_cube backward", 6 * size * size, 3 * height * width,
+            [=](std::int64_t index, float* buffer) {
+                kernels::for_each_equirectangular_tap(p, index, [&](int texel, float weight) {
+                    for (int c = 0; c < 3; ++c)
+                        buffer[3 * texel + c] += weight * values[3 * index + c];
+                });
+            });
+        return {map_gradient.reshape({height, width, 3}), torch::Tensor()};
+    }
+};
+
+}  // namespace
+
+torch::Tensor equirectangular_to_cube(const torch::Tensor& equirectangular, int size) {
+    torch::Tensor map = checked("equirectangular_to_cube", "equirectangular", equirectangular,
+                                torch::kFloat32, {-1, -1, 3});
+    ITEM3D_CHECK(size >= 1 && size <= 4096 && map.size(0) >= 1 && map.size(1) >= 1,
+                 "equirectangular_to_cube: size in [1, 4096], found " + std::to_string(size));
+    // Maps much finer than the cube are halved first, which costs less than more samples a texel.
+    while (map.size(0) > 4 * size && map.size(0) % 2 == 0 && map.size(1) % 2 == 0)
+        map = map.reshape({map.size(0) / 2, 2, map.size(1) / 2, 2, 3}).mean({1, 3});
+    return EquirectangularToCube::apply(map, static_cast<std::int64_t>(size));
+}
+
+}  // namespace item3d

@@ -1,0 +1,195 @@
+#include "item3d/render/kernels/interpolate.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/parallel.h"
+#include "item3d/render/checks.h"
+#include "item3d/render/rasterize.h"
+
+namespace item3d {
+namespace {
+
+using torch::autograd::AutogradContext;
+using torch::autograd::tensor_list;
+
+/// Indices of covered pixels, ascending: [P] int64.
+torch::Tensor covered_pixels(const torch::Tensor& triangle) {
+    const std::int64_t rows = triangle.size(0) * triangle.size(1), width = triangle.size(2);
+    const std::int32_t* ids = triangle.const_data_ptr<std::int32_t>();
+    std::vector<std::int64_t> start(static_cast<std::size_t>(rows + 1), 0);
+    parallel_for(
+        "count_covered", rows,
+        [&](std::int64_t row) {
+            std::int64_t count = 0;
+            for (std::int64_t x = 0; x < width; ++x)
+                count += ids[row * width + x] >= 0;
+            start[static_cast<std::size_t>(row + 1)] = count;
+        },
+        64);
+    for (std::size_t row = 1; row < start.size(); ++row)
+        start[row] += start[row - 1];
+    torch::Tensor pixel = torch::empty({start.back()}, torch::kInt64);
+    std::int64_t* out = pixel.data_ptr<std::int64_t>();
+    parallel_for(
+        "list_covered", rows,
+        [&](std::int64_t row) {
+            std::int64_t next = start[static_cast<std::size_t>(row)];
+            for (std::int64_t i = row * width; i < (row + 1) * width; ++i)
+                if (ids[i] >= 0) out[next++] = i;
+        },
+        64);
+    return pixel;
+}
+
+struct InterpolateInput {
+    torch::Tensor triangles, barycentrics, triangle, pixel;
+};
+
+kernels::InterpolateParameters interpolate_parameters(const InterpolateInput& input,
+                                                      const torch::Tensor& attributes,
+                                                      const torch::Tensor& positions_clip) {
+    kernels::InterpolateParameters p{};
+    p.attributes = attributes.const_data_ptr<float>();
+    p.positions_clip = positions_clip.const_data_ptr<float>();
+    p.triangles = input.triangles.const_data_ptr<std::int32_t>();
+    p.barycentrics = input.barycentrics.const_data_ptr<float>();
+    p.triangle = input.triangle.const_data_ptr<std::int32_t>();
+    p.pixel = input.pixel.const_data_ptr<std::int64_t>();
+    p.vertices = attributes.size(0);
+    p.channels = static_cast<int>(attributes.size(1));
+    p.width = static_cast<int>(input.triangle.size(2));
+    p.height = static_cast<int>(input.triangle.size(1));
+    return p;
+}
+
+/// attributes [V, A], positions_clip [N, V, 4] -> [P, A].
+struct Interpolate : torch::autograd::Function<Interpolate> {
+    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& attributes,
+                                 const torch::Tensor& positions_clip,
+                                 const InterpolateInput& input) {
+        torch::Tensor values =
+            torch::empty({input.pixel.size(0), attributes.size(1)}, torch::kFloat32);
+        kernels::InterpolateParameters p =
+            interpolate_parameters(input, attributes, positions_clip);
+        p.values = values.data_ptr<float>();
+        parallel_for("interpolate", input.pixel.size(0),
+                     [=](std::int64_t i) { kernels::interpolate_forward(p, i); });
+        context->save_for_backward({attributes, positions_clip, input.triangles, input.barycentrics,
+                                    input.triangle, input.pixel});
+        return values;
+    }
+    static tensor_list backward(AutogradContext* context, tensor_list gradients) {
+        const auto saved = context->get_saved_variables();
+        const InterpolateInput input{saved[2], saved[3], saved[4], saved[5]};
+        const torch::Tensor gradient = gradients[0].contiguous();
+        torch::Tensor attribute_gradient = torch::zeros_like(saved[0]);
+        torch::Tensor clip_gradient;
+        kernels::InterpolateParameters p = interpolate_parameters(input, saved[0], saved[1]);
+        p.value_gradient = gradient.const_data_ptr<float>();
+        p.attribute_gradient = attribute_gradient.data_ptr<float>();
+        if (context->needs_input_grad(1)) {
+            clip_gradient = torch::zeros_like(saved[1]);
+            p.clip_gradient = clip_gradient.data_ptr<float>();
+        }
+        // One thread: pixels share vertices, and sums in a fixed order give the same bytes again.
+        for (std::int64_t i = 0; i < input.pixel.size(0); ++i)
+            kernels::interpolate_backward(p, i);
+        return {attribute_gradient, clip_gradient, torch::Tensor()};
+    }
+};
+
+torch::Tensor camera_positions(const std::vector<Camera>& cameras) {
+    torch::Tensor positions = torch::empty({static_cast<std::int64_t>(cameras.size()), 3});
+    float* out = positions.data_ptr<float>();
+    for (const Camera& camera : cameras) {
+        kernels::store3(out, camera.position());
+        out += 3;
+    }
+    return positions;
+}
+
+}  // namespace
+
+Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
+                            const std::vector<Camera>& cameras) {
+    constexpr const char* op = "interpolate_surface";
+    constexpr auto real = torch::kFloat32;
+    const std::int64_t vertices = geometry.positions.size(0);
+    const std::int64_t triangle_count = geometry.triangles.size(0);
+    const torch::Tensor positions = checked(op, "positions", geometry.positions, real, {-1, 3});
+    const torch::Tensor normals = checked(op, "normals", geometry.normals, real, {vertices, 3});
+    const torch::Tensor tangents = checked(op, "tangents", geometry.tangents, real, {vertices, 4});
+    const torch::Tensor uvs = checked(op, "uvs", geometry.uvs, real, {vertices, 2});
+    const torch::Tensor colors = checked(op, "colors", geometry.colors, real, {vertices, 4});
+    const torch::Tensor triangles =
+        checked(op, "triangles", geometry.triangles, torch::kInt32, {-1, 3});
+    const torch::Tensor materials = checked(op, "triangle_material", geometry.triangle_material,
+                                            torch::kInt32, {triangle_count});
+    const torch::Tensor primitives = checked(op, "triangle_primitive", geometry.triangle_primitive,
+                                             torch::kInt32, {triangle_count});
+    const torch::Tensor triangle =
+        checked(op, "raster.triangle", raster.triangle, torch::kInt32, {-1, -1, -1});
+    const torch::Tensor barycentrics =
+        checked(op, "raster.barycentrics", raster.barycentrics, real,
+                {raster.views(), raster.height(), raster.width(), 2});
+    ITEM3D_CHECK(static_cast<int>(cameras.size()) == raster.views(),
+                 "interpolate_surface: the raster's " + std::to_string(raster.views()) +
+                     " cameras are needed, found " + std::to_string(cameras.size()));
+
+    Surface surface;
+    surface.pixel = covered_pixels(triangle);
+    const std::int64_t count = surface.count();
+    const torch::Tensor eyes = camera_positions(cameras);
+    surface.position = torch::empty({count, 3}, real);
+    surface.normal = torch::empty({count, 3}, real);
+    surface.tangent = torch::empty({count, 4}, real);
+    surface.uv = torch::empty({count, 2}, real);
+    surface.color = torch::empty({count, 4}, real);
+    surface.view = torch::empty({count, 3}, real);
+    surface.material = torch::empty({count}, torch::kInt64);
+    surface.primitive = torch::empty({count}, torch::kInt64);
+    const kernels::SurfaceParameters parameters{
+        positions.const_data_ptr<float>(),
+        normals.const_data_ptr<float>(),
+        tangents.const_data_ptr<float>(),
+        uvs.const_data_ptr<float>(),
+        colors.const_data_ptr<float>(),
+        triangles.const_data_ptr<std::int32_t>(),
+        materials.const_data_ptr<std::int32_t>(),
+        primitives.const_data_ptr<std::int32_t>(),
+        barycentrics.const_data_ptr<float>(),
+        triangle.const_data_ptr<std::int32_t>(),
+        eyes.const_data_ptr<float>(),
+        static_cast<std::int64_t>(raster.height()) * raster.width(),
+        surface.pixel.const_data_ptr<std::int64_t>(),
+        surface.position.data_ptr<float>(),
+        surface.normal.data_ptr<float>(),
+        surface.tangent.data_ptr<float>(),
+        surface.uv.data_ptr<float>(),
+        surface.color.data_ptr<float>(),
+        surface.view.data_ptr<float>(),
+        surface.material.data_ptr<std::int64_t>(),
+        surface.primitive.data_ptr<std::int64_t>()};
+    parallel_for("interpolate_surface", count,
+                 [=](std::int64_t i) { kernels::interpolate_surface_point(parameters, i); });
+
+    const bool moves = positions.requires_grad() || raster.positions_clip.requires_grad();
+    if (torch::GradMode::is_enabled() && (moves || normals.requires_grad())) {
+        const torch::Tensor attributes = torch::cat({positions, normals}, 1);
+        const torch::Tensor values =
+            Interpolate::apply(attributes, raster.positions_clip,
+                               InterpolateInput{triangles, barycentrics, triangle, surface.pixel});
+        const torch::Tensor raw = values.narrow(1, 3, 3);
+        const torch::Tensor turned = ((raw.detach() * surface.normal).sum(1, true) < 0).to(real);
+        surface.normal = torch::nn::functional::normalize(raw) * (1 - 2 * turned);
+        if (moves) {
+            surface.position = values.narrow(1, 0, 3);
+            const torch::Tensor view_index = torch::floor_divide(
+                surface.pixel, static_cast<std::int64_t>(raster.height()) * raster.width());
+            surface.view = torch::nn::functional::normalize(eyes.index_select(0, view_index) -
+                                                            surface.position);
+        }
+    }
+    return surface;
+}
+
+}  // namespace item3d

@@ -1,0 +1,64 @@
+// Equirectangular maps resampled onto cube texels.
+#pragma once
+
+#include "item3d/core/host_device.h"
+#include "item3d/core/math.h"
+#include "item3d/render/kernels/cube.h"
+
+#include <cmath>
+#include <cstdint>
+
+namespace item3d::kernels {
+
+struct EquirectangularParameters {
+    const float* map;  ///< [H, W, 3]
+    int height;        ///< H
+    int width;         ///< W
+    int size;          ///< S, edge of the cube's faces
+    int samples;       ///< sub-samples along each side of a texel
+};
+
+/// Calls f(texel of the map, weight) for what a cube texel (index into [6, S, S]) is the mean of:
+/// bilinear samples weighted by their solid angle, close enough together that no texel is missed.
+template <typename F>
+ITEM3D_HOST_DEVICE inline void for_each_equirectangular_tap(const EquirectangularParameters& p,
+                                                            std::int64_t index, const F& f) {
+    const int face = static_cast<int>(index / (p.size * p.size));
+    const int row = static_cast<int>(index / p.size % p.size);
+    const int column = static_cast<int>(index % p.size);
+    const int fine = p.size * p.samples;
+    float total = 0;
+    for (int j = 0; j < p.samples; ++j) {
+        for (int i = 0; i < p.samples; ++i) {
+            const float s = texel_centre(column * p.samples + i, fine);
+            const float t = texel_centre(row * p.samples + j, fine);
+            const float squared = 1 + s * s + t * t;
+            total += 1 / (squared * std::sqrt(squared));
+        }
+    }
+    for (int j = 0; j < p.samples; ++j) {
+        for (int i = 0; i < p.samples; ++i) {
+            const float s = texel_centre(column * p.samples + i, fine);
+            const float t = texel_centre(row * p.samples + j, fine);
+            const float squared = 1 + s * s + t * t, length = std::sqrt(squared);
+            const float weight = 1 / (squared * length * total);
+            const Vec3 d = cube_direction(face, s, t);
+            const float y = d.y / length;
+            const float u = std::atan2(d.x, -d.z) * (0.5f / pi) + 0.5f;
+            const float v = std::acos(y < -1 ? -1.0f : (y > 1 ? 1.0f : y)) / pi;
+            const float x = u * p.width - 0.5f;
+            float z = v * p.height - 0.5f;
+            z = z < 0 ? 0.0f : (z > p.height - 1 ? static_cast<float>(p.height - 1) : z);
+            const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(z);
+            const int y1 = y0 + 1 < p.height ? y0 + 1 : y0;
+            const float fx = x - x0, fy = z - y0;
+            const int left = (x0 + p.width) % p.width, right = (x0 + 1) % p.width;
+            f(y0 * p.width + left, weight * (1 - fx) * (1 - fy));
+            f(y0 * p.width + right, weight * fx * (1 - fy));
+            f(y1 * p.width + left, weight * (1 - fx) * fy);
+            f(y1 * p.width + right, weight * fx * fy);
+        }
+    }
+}
+
+}  // namespace item3d::kernels

@@ -1,0 +1,191 @@
+// Vertex attributes at covered pixels, and the gradient of perspective-correct interpolation.
+#pragma once
+
+#include "item3d/core/host_device.h"
+#include "item3d/core/math.h"
+
+#include <cstdint>
+
+namespace item3d::kernels {
+
+struct SurfaceParameters {
+    const float* positions;                  ///< [V, 3]
+    const float* normals;                    ///< [V, 3]
+    const float* tangents;                   ///< [V, 4]
+    const float* uvs;                        ///< [V, 2]
+    const float* colors;                     ///< [V, 4]
+    const std::int32_t* triangles;           ///< [T, 3]
+    const std::int32_t* triangle_material;   ///< [T]
+    const std::int32_t* triangle_primitive;  ///< [T]
+    const float* barycentrics;               ///< [N, H, W, 2]
+    const std::int32_t* triangle;            ///< [N, H, W]
+    const float* camera_positions;           ///< [N, 3] world space
+    std::int64_t pixels_per_view;            ///< H * W
+    const std::int64_t* pixel;               ///< [P]
+    float* position;                         ///< [P, 3]
+    float* normal;                           ///< [P, 3]
+    float* tangent;                          ///< [P, 4]
+    float* uv;                               ///< [P, 2]
+    float* color;                            ///< [P, 4]
+    float* view;                             ///< [P, 3]
+    std::int64_t* material;                  ///< [P]
+    std::int64_t* primitive;                 ///< [P]
+};
+
+template <int Channels>
+ITEM3D_HOST_DEVICE inline void interpolate_attribute(const float* attribute,
+                                                     const std::int32_t* corners,
+                                                     const float* weights, float* out) {
+    for (int c = 0; c < Channels; ++c) {
+        float sum = 0;
+        for (int k = 0; k < 3; ++k)
+            sum += weights[k] * attribute[Channels * static_cast<std::int64_t>(corners[k]) + c];
+        out[c] = sum;
+    }
+}
+
+ITEM3D_HOST_DEVICE inline Vec3 load3(const float* p) {
+    return Vec3(p[0], p[1], p[2]);
+}
+ITEM3D_HOST_DEVICE inline void store3(float* p, Vec3 v) {
+    p[0] = v.x;
+    p[1] = v.y;
+    p[2] = v.z;
+}
+/// Zero stays zero.
+ITEM3D_HOST_DEVICE inline Vec3 safe_normalize(Vec3 v) {
+    const float squared = glm::dot(v, v);
+    return squared > 1e-30f ? v / std::sqrt(squared) : Vec3(0.0f);
+}
+
+/// The shading normal faces the same side of the triangle as the viewer does. The test takes the
+/// triangle's own plane, not the interpolated normal, so that normals that bend away near a
+/// silhouette are kept, and not its winding, so that wrongly wound meshes still look right.
+ITEM3D_HOST_DEVICE inline void interpolate_surface_point(const SurfaceParameters& p,
+                                                         std::int64_t index) {
+    const std::int64_t pixel = p.pixel[index];
+    const std::int64_t t = p.triangle[pixel];
+    const std::int32_t* corners = p.triangles + 3 * t;
+    const float b0 = p.barycentrics[2 * pixel], b1 = p.barycentrics[2 * pixel + 1];
+    const float weights[3] = {b0, b1, 1.0f - b0 - b1};
+
+    interpolate_attribute<3>(p.positions, corners, weights, p.position + 3 * index);
+    interpolate_attribute<3>(p.normals, corners, weights, p.normal + 3 * index);
+    interpolate_attribute<4>(p.tangents, corners, weights, p.tangent + 4 * index);
+    interpolate_attribute<2>(p.uvs, corners, weights, p.uv + 2 * index);
+    interpolate_attribute<4>(p.colors, corners, weights, p.color + 4 * index);
+    p.material[index] = p.triangle_material[t];
+    p.primitive[index] = p.triangle_primitive[t];
+
+    const Vec3 position = load3(p.position + 3 * index);
+    const Vec3 camera = load3(p.camera_positions + 3 * (pixel / p.pixels_per_view));
+    const Vec3 view = safe_normalize(camera - position);
+    store3(p.view + 3 * index, view);
+
+    const Vec3 v0 = load3(p.positions + 3 * static_cast<std::int64_t>(corners[0]));
+    const Vec3 v1 = load3(p.positions + 3 * static_cast<std::int64_t>(corners[1]));
+    const Vec3 v2 = load3(p.positions + 3 * static_cast<std::int64_t>(corners[2]));
+    const Vec3 face = glm::cross(v1 - v0, v2 - v0);
+    Vec3 normal = load3(p.normal + 3 * index);
+    if (!(glm::dot(normal, normal) > 1e-20f)) normal = face;
+    normal = safe_normalize(normal);
+    float* tangent = p.tangent + 4 * index;
+    // The handedness of a mirrored seam must not fade to zero between vertices.
+    if (tangent[3] != 0) tangent[3] = tangent[3] < 0 ? -1.0f : 1.0f;
+    if (glm::dot(normal, face) * glm::dot(view, face) < 0) {
+        // The whole tangent frame is turned, as glTF's double-sided materials ask for.
+        normal = -normal;
+        for (int c = 0; c < 4; ++c)
+            tangent[c] = -tangent[c];
+    }
+    store3(p.normal + 3 * index, normal);
+}
+
+struct InterpolateParameters {
+    const float* attributes;        ///< [V, A]
+    const float* positions_clip;    ///< [N, V, 4]
+    const std::int32_t* triangles;  ///< [T, 3]
+    const float* barycentrics;      ///< [N, H, W, 2]
+    const std::int32_t* triangle;   ///< [N, H, W]
+    const std::int64_t* pixel;      ///< [P]
+    std::int64_t vertices;          ///< V
+    int channels;                   ///< A
+    int width;
+    int height;
+    float* values;                ///< [P, A]
+    const float* value_gradient;  ///< [P, A]
+    float* attribute_gradient;    ///< [V, A]
+    float* clip_gradient;         ///< [N, V, 4]
+};
+
+ITEM3D_HOST_DEVICE inline void interpolate_forward(const InterpolateParameters& p,
+                                                   std::int64_t index) {
+    const std::int64_t pixel = p.pixel[index];
+    const std::int32_t* corners = p.triangles + 3 * static_cast<std::int64_t>(p.triangle[pixel]);
+    const float b0 = p.barycentrics[2 * pixel], b1 = p.barycentrics[2 * pixel + 1];
+    const float weights[3] = {b0, b1, 1.0f - b0 - b1};
+    for (int c = 0; c < p.channels; ++c) {
+        float sum = 0;
+        for (int k = 0; k < 3; ++k)
+            sum +=
+                weights[k] * p.attributes[p.channels * static_cast<std::int64_t>(corners[k]) + c];
+        p.values[p.channels * index + c] = sum;
+    }
+}
+
+/// Adds one pixel's gradients. The weights b_i = e_i / (e_0 + e_1 + e_2), with the edge functions
+/// e_0 = q . (p_1 x p_2) and so on over clip-space (x, y, w) and the pixel q = (x, y, 1), move with
+/// the vertices. Not safe for concurrent calls that share vertices.
+ITEM3D_HOST_DEVICE inline void interpolate_backward(const InterpolateParameters& p,
+                                                    std::int64_t index) {
+    const std::int64_t pixel = p.pixel[index];
+    const std::int32_t* corners = p.triangles + 3 * static_cast<std::int64_t>(p.triangle[pixel]);
+    const float b0 = p.barycentrics[2 * pixel], b1 = p.barycentrics[2 * pixel + 1];
+    const float weights[3] = {b0, b1, 1.0f - b0 - b1};
+    const float* gradient = p.value_gradient + p.channels * index;
+
+    double weight_gradient[3] = {0, 0, 0};
+    for (int k = 0; k < 3; ++k) {
+        const std::int64_t row = p.channels * static_cast<std::int64_t>(corners[k]);
+        for (int c = 0; c < p.channels; ++c) {
+            p.attribute_gradient[row + c] += weights[k] * gradient[c];
+            weight_gradient[k] += static_cast<double>(gradient[c]) * p.attributes[row + c];
+        }
+    }
+    if (p.clip_gradient == nullptr) return;
+
+    using DVec3 = glm::dvec3;
+    const std::int64_t per_view = static_cast<std::int64_t>(p.width) * p.height;
+    const std::int64_t view = pixel / per_view;
+    const int y = static_cast<int>(pixel % per_view / p.width);
+    const int x = static_cast<int>(pixel % p.width);
+    const DVec3 q((x + 0.5) * 2.0 / p.width - 1.0, 1.0 - (y + 0.5) * 2.0 / p.height, 1.0);
+    DVec3 v[3];
+    for (int k = 0; k < 3; ++k) {
+        const float* clip =
+            p.positions_clip + 4 * (view * p.vertices + static_cast<std::int64_t>(corners[k]));
+        v[k] = DVec3(clip[0], clip[1], clip[3]);
+    }
+    const DVec3 edges(glm::dot(q, glm::cross(v[1], v[2])), glm::dot(q, glm::cross(v[2], v[0])),
+                      glm::dot(q, glm::cross(v[0], v[1])));
+    const double sum = edges.x + edges.y + edges.z;
+    if (sum == 0) return;
+    const double mean = weight_gradient[0] * weights[0] + weight_gradient[1] * weights[1] +
+                        weight_gradient[2] * weights[2];
+    DVec3 position_gradient[3] = {DVec3(0), DVec3(0), DVec3(0)};
+    for (int k = 0; k < 3; ++k) {
+        const double edge_gradient = (weight_gradient[k] - mean) / sum;
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        position_gradient[i] += edge_gradient * glm::cross(v[j], q);
+        position_gradient[j] += edge_gradient * glm::cross(q, v[i]);
+    }
+    for (int k = 0; k < 3; ++k) {
+        float* out =
+            p.clip_gradient + 4 * (view * p.vertices + static_cast<std::int64_t>(corners[k]));
+        out[0] += static_cast<float>(position_gradient[k].x);
+        out[1] += static_cast<float>(position_gradient[k].y);
+        out[3] += static_cast<float>(position_gradient[k].z);
+    }
+}
+
+}  // namespace item3d::kernels

@@ -1,0 +1,220 @@
+// Coverage of pixel centres by triangles, in homogeneous coordinates (Olano and Greer 1997,
+// "Triangle Scan Conversion using 2D Homogeneous Coordinates"): edge functions come from clip-space
+// (x, y, w) without a division, so triangles that cross the near plane need no clipping.
+//
+// Watertight: products of two floats are exact in double, so the edge function that two triangles
+// share is the same number with opposite sign, and a tie goes to exactly one of them.
+#pragma once
+
+#include "item3d/core/host_device.h"
+
+#include <cmath>
+#include <cstdint>
+
+namespace item3d::kernels {
+
+/// Half-open box of pixels; empty when x0 >= x1 or y0 >= y1.
+struct PixelBox {
+    std::int16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+struct RasterParameters {
+    const float* positions_clip;    ///< [N, V, 4]
+    const std::int32_t* triangles;  ///< [T, 3]
+    PixelBox* boxes;                ///< [N, T]
+    std::int64_t vertices;          ///< V
+    std::int64_t triangle_count;    ///< T
+    int width;
+    int height;
+    float* barycentrics;     ///< [N, H, W, 2]
+    float* depth;            ///< [N, H, W]; 1/w while rasterizing, 0: none
+    std::int32_t* triangle;  ///< [N, H, W], -1: none
+};
+
+/// Accumulates the pixel box of points in normalized device coordinates.
+struct BoxBuilder {
+    float low_x = 1e30f, low_y = 1e30f, high_x = -1e30f, high_y = -1e30f;
+
+    ITEM3D_HOST_DEVICE void add(float x, float y) {
+        low_x = x < low_x ? x : low_x;
+        high_x = x > high_x ? x : high_x;
+        low_y = y < low_y ? y : low_y;
+        high_y = y > high_y ? y : high_y;
+    }
+    /// Covers every pixel whose centre may lie inside, with a margin for rounding.
+    ITEM3D_HOST_DEVICE PixelBox pixels(int width, int height) const {
+        constexpr float margin = 4e-3f;
+        const auto clamp = [](float value, int limit) {
+            return static_cast<std::int16_t>(
+                value < 0 ? 0.0f : (value > limit ? static_cast<float>(limit) : value));
+        };
+        PixelBox box;
+        if (!(low_x <= high_x) || !(low_y <= high_y)) return box;
+        const float half_width = 0.5f * width, half_height = 0.5f * height;
+        box.x0 = clamp(std::ceil(low_x * half_width + half_width - 0.5f - margin), width);
+        box.x1 = clamp(std::floor(high_x * half_width + half_width - 0.5f + margin) + 1, width);
+        box.y0 = clamp(std::ceil(half_height - high_y * half_height - 0.5f - margin), height);
+        box.y1 = clamp(std::floor(half_height - low_y * half_height - 0.5f + margin) + 1, height);
+        return box;
+    }
+};
+
+/// index: view * T + triangle. Fills boxes[index].
+ITEM3D_HOST_DEVICE inline void bound_triangle(const RasterParameters& p, std::int64_t index) {
+    const float* clip = p.positions_clip + 4 * p.vertices * (index / p.triangle_count);
+    const std::int32_t* corners = p.triangles + 3 * (index % p.triangle_count);
+    const float* v[3];
+    float near_distance[3];
+    int in_front = 0;
+    bool finite = true;
+    for (int i = 0; i < 3; ++i) {
+        v[i] = clip + 4 * static_cast<std::int64_t>(corners[i]);
+        near_distance[i] = v[i][2] + v[i][3];
+        // false for NaN as well
+        finite = finite && std::fabs(v[i][0]) < 1e30f && std::fabs(v[i][1]) < 1e30f &&
+                 std::fabs(near_distance[i]) < 1e30f;
+        in_front += near_distance[i] >= 0 && v[i][3] > 0;
+    }
+    PixelBox box;
+    if (finite && in_front > 0) {
+        BoxBuilder builder;
+        for (int i = 0; i < 3; ++i) {
+            const int j = i == 2 ? 0 : i + 1;
+            if (near_distance[i] >= 0 && v[i][3] > 0)
+                builder.add(v[i][0] / v[i][3], v[i][1] / v[i][3]);
+            if ((near_distance[i] >= 0) != (near_distance[j] >= 0)) {
+                const float t = near_distance[i] / (near_distance[i] - near_distance[j]);
+                float w = v[i][3] + t * (v[j][3] - v[i][3]);
+                w = w > 1e-20f ? w : 1e-20f;
+                builder.add((v[i][0] + t * (v[j][0] - v[i][0])) / w,
+                            (v[i][1] + t * (v[j][1] - v[i][1])) / w);
+            }
+        }
+        box = builder.pixels(p.width, p.height);
+    }
+    p.boxes[index] = box;
+}
+
+/// Edge functions of one triangle, all positive inside.
+struct TriangleEdges {
+    double a[3], b[3], c[3];     ///< e_i = a x + b y + c in normalized device coordinates
+    bool keeps_zero[3];          ///< whether e_i = 0 belongs to this triangle
+    double inverse_determinant;  ///< 1/w at a pixel = (e_0 + e_1 + e_2) * inverse_determinant
+
+    /// False for triangles without area on the screen.
+    ITEM3D_HOST_DEVICE bool set(const float* v0, const float* v1, const float* v2) {
+        const float* v[3] = {v0, v1, v2};
+        for (int i = 0; i < 3; ++i) {
+            const float* p = v[(i + 1) % 3];
+            const float* q = v[(i + 2) % 3];
+            const double px = p[0], py = p[1], pw = p[3], qx = q[0], qy = q[1], qw = q[3];
+            a[i] = py * qw - pw * qy;
+            b[i] = pw * qx - px * qw;
+            c[i] = px * qy - py * qx;
+        }
+        const double determinant = a[0] * v0[0] + b[0] * v0[1] + c[0] * v0[3];
+        if (!(determinant > 0) && !(determinant < 0)) return false;
+        if (determinant < 0) {
+            for (int i = 0; i < 3; ++i) {
+                a[i] = -a[i];
+                b[i] = -b[i];
+                c[i] = -c[i];
+            }
+        }
+        inverse_determinant = 1.0 / (determinant < 0 ? -determinant : determinant);
+        for (int i = 0; i < 3; ++i)
+            keeps_zero[i] = a[i] > 0 || (a[i] == 0 && (b[i] > 0 || (b[i] == 0 && c[i] > 0)));
+        return true;
+    }
+};
+
+/// Draws one triangle of one view into rows [row_begin, row_end). Must be called in ascending order
+/// of triangles for each pixel: at equal depth the first one stays.
+inline void rasterize_triangle(const RasterParameters& p, std::int64_t view, std::int64_t t,
+                               int row_begin, int row_end) {
+    const PixelBox box = p.boxes[view * p.triangle_count + t];
+    const int y0 = box.y0 > row_begin ? box.y0 : row_begin;
+    const int y1 = box.y1 < row_end ? box.y1 : row_end;
+    if (y0 >= y1 || box.x0 >= box.x1) return;
+
+    const float* clip = p.positions_clip + 4 * p.vertices * view;
+    const std::int32_t* corners = p.triangles + 3 * t;
+    const float* v[3];
+    for (int i = 0; i < 3; ++i)
+        v[i] = clip + 4 * static_cast<std::int64_t>(corners[i]);
+    TriangleEdges edges;
+    if (!edges.set(v[0], v[1], v[2])) return;
+
+    double near_distance[3];
+    bool crosses_near = false;
+    double low_inverse = 1e300, high_inverse = 0;
+    for (int i = 0; i < 3; ++i) {
+        near_distance[i] = static_cast<double>(v[i][2]) + v[i][3];
+        crosses_near = crosses_near || near_distance[i] < 0 || v[i][3] <= 0;
+        const double inverse = 1.0 / v[i][3];
+        low_inverse = inverse < low_inverse ? inverse : low_inverse;
+        high_inverse = inverse > high_inverse ? inverse : high_inverse;
+    }
+
+    const double step_x = 2.0 / p.width, step_y = 2.0 / p.height;
+    const bool wide = box.x1 - box.x0 > 8;
+    for (int y = y0; y < y1; ++y) {
+        const double ndc_y = 1.0 - (y + 0.5) * step_y;
+        double row[3];
+        int x0 = box.x0, x1 = box.x1;
+        for (int i = 0; i < 3; ++i) {
+            row[i] = edges.b[i] * ndc_y + edges.c[i];
+            // Skips to where the edge function changes sign; one pixel of slack for rounding.
+            if (wide && edges.a[i] != 0) {
+                const double crossing = (1.0 - row[i] / edges.a[i]) * 0.5 * p.width - 0.5;
+                if (edges.a[i] > 0) {
+                    if (crossing > x1)
+                        x0 = x1;
+                    else if (crossing - 1 > x0)
+                        x0 = static_cast<int>(crossing - 1);
+                } else {
+                    if (crossing < x0 - 1)
+                        x1 = x0;
+                    else if (crossing + 2 < x1)
+                        x1 = static_cast<int>(crossing + 2);
+                }
+            }
+        }
+        const std::int64_t row_pixel = (view * p.height + y) * p.width;
+        for (int x = x0; x < x1; ++x) {
+            const double ndc_x = (x + 0.5) * step_x - 1.0;
+            double e[3];
+            bool inside = true;
+            for (int i = 0; i < 3; ++i) {
+                e[i] = edges.a[i] * ndc_x + row[i];
+                inside = inside && (e[i] > 0 || (e[i] == 0 && edges.keeps_zero[i]));
+            }
+            if (!inside) continue;
+            const double sum = e[0] + e[1] + e[2];
+            if (!(sum > 0)) continue;
+            double inverse_w = sum * edges.inverse_determinant;
+            if (crosses_near) {
+                if (e[0] * near_distance[0] + e[1] * near_distance[1] + e[2] * near_distance[2] < 0)
+                    continue;
+            } else {
+                // Slivers: rounding must not push them in front of everything else.
+                inverse_w = inverse_w < low_inverse ? low_inverse : inverse_w;
+                inverse_w = inverse_w > high_inverse ? high_inverse : inverse_w;
+            }
+            const std::int64_t pixel = row_pixel + x;
+            const float nearness = static_cast<float>(inverse_w);
+            if (!(nearness > p.depth[pixel])) continue;
+            p.depth[pixel] = nearness;
+            p.triangle[pixel] = static_cast<std::int32_t>(t);
+            p.barycentrics[2 * pixel] = static_cast<float>(e[0] / sum);
+            p.barycentrics[2 * pixel + 1] = static_cast<float>(e[1] / sum);
+        }
+    }
+}
+
+/// Turns the 1/w that rasterize_triangle left into z-depth.
+ITEM3D_HOST_DEVICE inline void finish_depth(const RasterParameters& p, std::int64_t pixel) {
+    if (p.depth[pixel] > 0) p.depth[pixel] = 1.0f / p.depth[pixel];
+}
+
+}  // namespace item3d::kernels

@@ -1,0 +1,263 @@
+// Split-sum shading of one surface point (Karis 2013), and its gradient by hand.
+#pragma once
+
+#include "item3d/core/host_device.h"
+#include "item3d/core/math.h"
+#include "item3d/render/kernels/cube.h"
+#include "item3d/render/kernels/interpolate.h"
+
+#include <cmath>
+#include <cstdint>
+
+namespace item3d::kernels {
+
+inline constexpr int max_specular_levels = 16;
+inline constexpr float dielectric_f0 = 0.04f;
+inline constexpr float smallest_n_dot_v = 1e-3f;
+
+struct ShadeParameters {
+    const float* base_color;  ///< [P, 3]
+    const float* orm;         ///< [P, 3]
+    const float* normal_map;  ///< [P, 3] tangent space; null: the surface's normal
+    const float* normal;      ///< [P, 3]
+    const float* tangent;     ///< [P, 4]
+    const float* view;        ///< [P, 3]
+    const float* bsdf;        ///< [B, B, 2]
+    int bsdf_size;            ///< B
+    bool multiple_scattering;
+    const float* diffuse;  ///< [6, D, D, 3]
+    int diffuse_size;      ///< D
+    int levels;
+    const float* specular[max_specular_levels];  ///< [6, S, S, 3] each
+    int specular_size[max_specular_levels];
+    float specular_roughness[max_specular_levels];  ///< ascending
+
+    float* radiance;  ///< [P, 3]
+
+    // Backward. Any of the gradients may be null.
+    const float* radiance_gradient;  ///< [P, 3]
+    float* base_color_gradient;
+    float* orm_gradient;
+    float* normal_map_gradient;
+    float* normal_gradient;
+};
+
+/// Where one thread adds the light's gradients; null: not wanted.
+struct LightGradient {
+    float* diffuse = nullptr;
+    float* specular[max_specular_levels] = {};
+};
+
+struct ShadingFrame {
+    Vec3 surface, raw_tangent, tangent, bitangent, map, unnormalized, normal;
+    float handedness, inverse_tangent, inverse_length;
+};
+
+/// Perturbs the surface's normal by the normal map.
+ITEM3D_HOST_DEVICE inline ShadingFrame shading_frame(const ShadeParameters& p, std::int64_t i) {
+    ShadingFrame f;
+    f.surface = load3(p.normal + 3 * i);
+    f.normal = f.surface;
+    if (p.normal_map == nullptr) return f;
+    f.map = load3(p.normal_map + 3 * i);
+    f.raw_tangent = load3(p.tangent + 4 * i);
+    f.handedness = p.tangent[4 * i + 3];
+    Vec3 across = f.raw_tangent - f.surface * glm::dot(f.surface, f.raw_tangent);
+    if (!(glm::dot(across, across) > 1e-12f)) {
+        // No UVs: any frame will do.
+        f.raw_tangent = std::fabs(f.surface.x) < 0.7f ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+        f.handedness = 1;
+        across = f.raw_tangent - f.surface * glm::dot(f.surface, f.raw_tangent);
+    }
+    f.inverse_tangent = 1 / std::sqrt(glm::dot(across, across));
+    f.tangent = across * f.inverse_tangent;
+    f.bitangent = f.handedness * glm::cross(f.surface, f.tangent);
+    f.unnormalized = f.map.x * f.tangent + f.map.y * f.bitangent + f.map.z * f.surface;
+    const float squared = glm::dot(f.unnormalized, f.unnormalized);
+    f.inverse_length = 1 / std::sqrt(squared > 1e-12f ? squared : 1e-12f);
+    f.normal = f.unnormalized * f.inverse_length;
+    return f;
+}
+
+/// Bilinear lookup in the BSDF table, with derivatives.
+struct BsdfValue {
+    float scale, bias;
+    float scale_by_view, bias_by_view;            ///< d / d n.v
+    float scale_by_roughness, bias_by_roughness;  ///< d / d roughness
+};
+
+ITEM3D_HOST_DEVICE inline BsdfValue bsdf_lookup(const float* table, int size, float n_dot_v,
+                                                float roughness) {
+    const float limit = static_cast<float>(size - 1);
+    const float raw_x = n_dot_v * size - 0.5f, raw_y = roughness * size - 0.5f;
+    const float x = raw_x < 0 ? 0.0f : (raw_x > limit ? limit : raw_x);
+    const float y = raw_y < 0 ? 0.0f : (raw_y > limit ? limit : raw_y);
+    const int x0 = x < limit ? static_cast<int>(x) : size - 2;
+    const int y0 = y < limit ? static_cast<int>(y) : size - 2;
+    const float fx = x - x0, fy = y - y0;
+    const float slope_x = raw_x == x ? static_cast<float>(size) : 0.0f;
+    const float slope_y = raw_y == y ? static_cast<float>(size) : 0.0f;
+    const float* t00 = table + 2 * (y0 * size + x0);
+    const float* t10 = t00 + 2 * size;
+    float value[2], by_x[2], by_y[2];
+    for (int c = 0; c < 2; ++c) {
+        const float upper = t00[c] + fx * (t00[c + 2] - t00[c]);
+        const float lower = t10[c] + fx * (t10[c + 2] - t10[c]);
+        value[c] = upper + fy * (lower - upper);
+        by_x[c] = slope_x * ((1 - fy) * (t00[c + 2] - t00[c]) + fy * (t10[c + 2] - t10[c]));
+        by_y[c] = slope_y * (lower - upper);
+    }
+    return {value[0], value[1], by_x[0], by_x[1], by_y[0], by_y[1]};
+}
+
+/// The two levels of the chain around a roughness.
+struct SpecularLevels {
+    int low, high;
+    float fraction;  ///< weight of `high`
+    float slope;     ///< d fraction / d roughness
+};
+
+ITEM3D_HOST_DEVICE inline SpecularLevels specular_levels(const ShadeParameters& p,
+                                                         float roughness) {
+    const float* steps = p.specular_roughness;
+    if (p.levels == 1 || roughness <= steps[0]) return {0, 0, 0, 0};
+    if (roughness >= steps[p.levels - 1]) return {p.levels - 1, p.levels - 1, 0, 0};
+    int low = 0;
+    while (roughness >= steps[low + 1])
+        ++low;
+    const float slope = 1 / (steps[low + 1] - steps[low]);
+    return {low, low + 1, (roughness - steps[low]) * slope, slope};
+}
+
+/// All that forward and backward share.
+struct ShadingPoint {
+    ShadingFrame frame;
+    Vec3 view, reflected, base_color, f0;
+    float occlusion, roughness, metallic, n_dot_v;
+    bool view_clamped;
+    CubeTaps diffuse_taps, low_taps, high_taps;
+    SpecularLevels levels;
+    Vec3 irradiance, low, high, specular;
+    BsdfValue bsdf;
+    float albedo, lost;  ///< single-scattering albedo at F0 = 1, and 1 / albedo - 1
+    Vec3 single, boost;  ///< reflectance F0 A + B, and the factor for multiple scattering
+    Vec3 diffuse_part, specular_part;
+};
+
+ITEM3D_HOST_DEVICE inline ShadingPoint shading_point(const ShadeParameters& p, std::int64_t i) {
+    ShadingPoint s;
+    s.frame = shading_frame(p, i);
+    s.view = load3(p.view + 3 * i);
+    s.base_color = load3(p.base_color + 3 * i);
+    s.occlusion = p.orm[3 * i];
+    s.roughness = p.orm[3 * i + 1];
+    s.metallic = p.orm[3 * i + 2];
+
+    const float cosine = glm::dot(s.frame.normal, s.view);
+    s.view_clamped = cosine < smallest_n_dot_v;
+    s.n_dot_v = s.view_clamped ? smallest_n_dot_v : cosine;
+    s.reflected = 2 * cosine * s.frame.normal - s.view;
+
+    s.diffuse_taps = cube_taps(s.frame.normal, p.diffuse_size);
+    s.irradiance = cube_value(p.diffuse, s.diffuse_taps);
+    s.levels = specular_levels(p, s.roughness);
+    s.low_taps = cube_taps(s.reflected, p.specular_size[s.levels.low]);
+    s.low = cube_value(p.specular[s.levels.low], s.low_taps);
+    s.high = s.low;
+    if (s.levels.high != s.levels.low) {
+        s.high_taps = cube_taps(s.reflected, p.specular_size[s.levels.high]);
+        s.high = cube_value(p.specular[s.levels.high], s.high_taps);
+    }
+    s.specular = s.low + s.levels.fraction * (s.high - s.low);
+
+    s.bsdf = bsdf_lookup(p.bsdf, p.bsdf_size, s.n_dot_v, s.roughness);
+    s.albedo = s.bsdf.scale + s.bsdf.bias;
+    s.lost = p.multiple_scattering ? 1 / s.albedo - 1 : 0.0f;
+    s.f0 = Vec3(dielectric_f0 * (1 - s.metallic)) + s.metallic * s.base_color;
+    s.single = s.f0 * s.bsdf.scale + Vec3(s.bsdf.bias);
+    s.boost = Vec3(1.0f) + s.lost * s.f0;
+    s.diffuse_part = (1 - s.metallic) * s.base_color * s.irradiance;
+    s.specular_part = s.specular * s.single * s.boost;
+    return s;
+}
+
+ITEM3D_HOST_DEVICE inline void shade_forward(const ShadeParameters& p, std::int64_t i) {
+    const ShadingPoint s = shading_point(p, i);
+    store3(p.radiance + 3 * i, s.occlusion * (s.diffuse_part + s.specular_part));
+}
+
+ITEM3D_HOST_DEVICE inline float sum(Vec3 v) {
+    return v.x + v.y + v.z;
+}
+
+ITEM3D_HOST_DEVICE inline void shade_backward(const ShadeParameters& p, std::int64_t i,
+                                              const LightGradient& light) {
+    const ShadingPoint s = shading_point(p, i);
+    const Vec3 out = load3(p.radiance_gradient + 3 * i);
+    const Vec3 g = s.occlusion * out;
+
+    const Vec3 reflectance = g * s.specular;  // d / d (single * boost)
+    const Vec3 by_single = reflectance * s.boost, by_boost = reflectance * s.single;
+    const Vec3 by_f0 = by_single * s.bsdf.scale + by_boost * s.lost;
+    // lost = 1 / (scale + bias) - 1
+    const float by_albedo =
+        p.multiple_scattering ? -sum(by_boost * s.f0) / (s.albedo * s.albedo) : 0.0f;
+    const float by_scale = sum(by_single * s.f0) + by_albedo;
+    const float by_bias = sum(by_single) + by_albedo;
+    const Vec3 by_irradiance = (1 - s.metallic) * g * s.base_color;
+    const Vec3 by_specular = g * s.single * s.boost;
+
+    if (p.base_color_gradient != nullptr)
+        store3(p.base_color_gradient + 3 * i,
+               (1 - s.metallic) * g * s.irradiance + s.metallic * by_f0);
+    if (p.orm_gradient != nullptr) {
+        p.orm_gradient[3 * i] = sum(out * (s.diffuse_part + s.specular_part));
+        p.orm_gradient[3 * i + 1] = by_scale * s.bsdf.scale_by_roughness +
+                                    by_bias * s.bsdf.bias_by_roughness +
+                                    s.levels.slope * sum(by_specular * (s.high - s.low));
+        p.orm_gradient[3 * i + 2] = sum(by_f0 * (s.base_color - Vec3(dielectric_f0))) -
+                                    sum(g * s.base_color * s.irradiance);
+    }
+    const Vec3 by_low = (1 - s.levels.fraction) * by_specular;
+    const Vec3 by_high = s.levels.fraction * by_specular;
+    const bool two_levels = s.levels.high != s.levels.low;
+    if (light.diffuse != nullptr) cube_add_gradient(light.diffuse, s.diffuse_taps, by_irradiance);
+    if (light.specular[s.levels.low] != nullptr)
+        cube_add_gradient(light.specular[s.levels.low], s.low_taps, by_low);
+    if (two_levels && light.specular[s.levels.high] != nullptr)
+        cube_add_gradient(light.specular[s.levels.high], s.high_taps, by_high);
+
+    if (p.normal_gradient == nullptr && p.normal_map_gradient == nullptr) return;
+    const ShadingFrame& f = s.frame;
+    Vec3 by_reflected = cube_direction_gradient(p.specular[s.levels.low], s.low_taps, by_low);
+    if (two_levels)
+        by_reflected += cube_direction_gradient(p.specular[s.levels.high], s.high_taps, by_high);
+    const float by_n_dot_v =
+        s.view_clamped ? 0.0f : by_scale * s.bsdf.scale_by_view + by_bias * s.bsdf.bias_by_view;
+    // reflected = 2 (n.v) n - v
+    Vec3 by_normal =
+        cube_direction_gradient(p.diffuse, s.diffuse_taps, by_irradiance) + by_n_dot_v * s.view +
+        2.0f *
+            (glm::dot(f.normal, s.view) * by_reflected + glm::dot(by_reflected, f.normal) * s.view);
+    if (p.normal_map == nullptr) {
+        store3(p.normal_gradient + 3 * i, by_normal);
+        return;
+    }
+    by_normal = (by_normal - f.normal * glm::dot(f.normal, by_normal)) * f.inverse_length;
+    if (p.normal_map_gradient != nullptr)
+        store3(p.normal_map_gradient + 3 * i,
+               Vec3(glm::dot(by_normal, f.tangent), glm::dot(by_normal, f.bitangent),
+                    glm::dot(by_normal, f.surface)));
+    if (p.normal_gradient != nullptr) {
+        const Vec3 by_bitangent = f.map.y * f.handedness * by_normal;
+        Vec3 by_tangent = f.map.x * by_normal + glm::cross(by_bitangent, f.surface);
+        by_tangent = (by_tangent - f.tangent * glm::dot(f.tangent, by_tangent)) * f.inverse_tangent;
+        // across = raw - n (n.raw)
+        store3(p.normal_gradient + 3 * i, f.map.z * by_normal +
+                                              glm::cross(f.tangent, by_bitangent) -
+                                              glm::dot(by_tangent, f.surface) * f.raw_tangent -
+                                              glm::dot(f.surface, f.raw_tangent) * by_tangent);
+    }
+}
+
+}  // namespace item3d::kernels

@@ -1,0 +1,105 @@
+#include "item3d/render/rasterize.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/parallel.h"
+#include "item3d/render/checks.h"
+#include "item3d/render/kernels/project.h"
+#include "item3d/render/kernels/raster.h"
+
+namespace item3d {
+namespace {
+
+using torch::autograd::AutogradContext;
+using torch::autograd::tensor_list;
+
+/// [V, 3], [N, 4, 4] column-major -> [N, V, 4].
+struct ProjectVertices : torch::autograd::Function<ProjectVertices> {
+    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& positions,
+                                 const torch::Tensor& world_to_clip) {
+        const std::int64_t vertices = positions.size(0), views = world_to_clip.size(0);
+        torch::Tensor positions_clip = torch::empty({views, vertices, 4}, torch::kFloat32);
+        const kernels::ProjectParameters parameters{positions.const_data_ptr<float>(),
+                                                    world_to_clip.const_data_ptr<float>(),
+                                                    positions_clip.data_ptr<float>(), vertices};
+        parallel_for(
+            "project_vertices", views * vertices,
+            [=](std::int64_t i) { kernels::project_vertex(parameters, i); }, 4096);
+        context->save_for_backward({world_to_clip});
+        return positions_clip;
+    }
+    static tensor_list backward(AutogradContext* context, tensor_list gradients) {
+        // Column-major matrices read as rows are transposes: [N, 4, 4] with [n][k][row].
+        const torch::Tensor transposed = context->get_saved_variables()[0].narrow(1, 0, 3);
+        return {torch::matmul(gradients[0], transposed.transpose(1, 2)).sum(0), torch::Tensor()};
+    }
+};
+
+torch::Tensor clip_matrices(const std::vector<Camera>& cameras, int width, int height) {
+    torch::Tensor matrices = torch::empty({static_cast<std::int64_t>(cameras.size()), 4, 4});
+    float* out = matrices.data_ptr<float>();
+    for (std::size_t n = 0; n < cameras.size(); ++n) {
+        const Mat4 matrix = cameras[n].world_to_clip(width, height);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row)
+                out[16 * n + 4 * column + row] = matrix[column][row];
+    }
+    return matrices;
+}
+
+}  // namespace
+
+Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, int width,
+                 int height) {
+    ITEM3D_CHECK(width > 0 && height > 0 && width <= 16384 && height <= 16384,
+                 "rasterize: width and height must be in [1, 16384], found " +
+                     std::to_string(width) + " x " + std::to_string(height));
+    ITEM3D_CHECK(!cameras.empty(), "rasterize: at least one camera");
+    const torch::Tensor positions =
+        checked("rasterize", "positions", geometry.positions, torch::kFloat32, {-1, 3});
+    const torch::Tensor triangles =
+        checked("rasterize", "triangles", geometry.triangles, torch::kInt32, {-1, 3});
+    const std::int64_t views = static_cast<std::int64_t>(cameras.size());
+
+    Raster raster;
+    raster.positions_clip =
+        ProjectVertices::apply(positions, clip_matrices(cameras, width, height));
+    raster.barycentrics = torch::zeros({views, height, width, 2}, torch::kFloat32);
+    raster.depth = torch::zeros({views, height, width}, torch::kFloat32);
+    raster.triangle = torch::full({views, height, width}, -1, torch::kInt32);
+
+    const std::int64_t triangle_count = triangles.size(0);
+    std::vector<kernels::PixelBox> boxes(static_cast<std::size_t>(views * triangle_count));
+    const kernels::RasterParameters parameters{raster.positions_clip.const_data_ptr<float>(),
+                                               triangles.const_data_ptr<std::int32_t>(),
+                                               boxes.data(),
+                                               positions.size(0),
+                                               triangle_count,
+                                               width,
+                                               height,
+                                               raster.barycentrics.data_ptr<float>(),
+                                               raster.depth.data_ptr<float>(),
+                                               raster.triangle.data_ptr<std::int32_t>()};
+    parallel_for(
+        "bound_triangles", views * triangle_count,
+        [=](std::int64_t i) { kernels::bound_triangle(parameters, i); }, 4096);
+
+    // Bands of rows are independent of each other, so their number changes no result.
+    const std::int64_t bands =
+        std::clamp<std::int64_t>(4 * omp_get_max_threads() / views, 1, std::max(1, height / 16));
+    parallel_for(
+        "rasterize", views * bands,
+        [=](std::int64_t i) {
+            const std::int64_t view = i / bands, band = i % bands;
+            const int row_begin = static_cast<int>(height * band / bands);
+            const int row_end = static_cast<int>(height * (band + 1) / bands);
+            for (std::int64_t t = 0; t < triangle_count; ++t)
+                kernels::rasterize_triangle(parameters, view, t, row_begin, row_end);
+            for (std::int64_t pixel = (view * height + row_begin) * width;
+                 pixel < (view * height + row_end) * width; ++pixel)
+                kernels::finish_depth(parameters, pixel);
+        },
+        1);
+    return raster;
+}
+
+}  // namespace item3d

@@ -1,0 +1,30 @@
+// Scatter-adds that give the same bytes whatever the number of threads.
+#pragma once
+
+#include "item3d/core/parallel.h"
+
+#include <torch/torch.h>
+
+#include <algorithm>
+
+namespace item3d {
+
+/// Sum over i in [0, count) of what add(i, buffer) adds to a float buffer of `elements`. Work is
+/// cut into a fixed number of chunks with a buffer each, summed in order: memory is 8 * elements.
+template <typename F>
+torch::Tensor scatter_sum(const char* name, std::int64_t count, std::int64_t elements,
+                          const F& add) {
+    constexpr std::int64_t chunks = 8;
+    torch::Tensor buffers = torch::zeros({chunks, elements}, torch::kFloat32);
+    float* data = buffers.data_ptr<float>();
+    parallel_for(
+        name, chunks,
+        [=, &add](std::int64_t chunk) {
+            for (std::int64_t i = count * chunk / chunks; i < count * (chunk + 1) / chunks; ++i)
+                add(i, data + chunk * elements);
+        },
+        1);
+    return buffers.sum(0);
+}
+
+}  // namespace item3d

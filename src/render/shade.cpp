@@ -1,0 +1,167 @@
+#include "item3d/render/shade.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/parallel.h"
+#include "item3d/render/checks.h"
+#include "item3d/render/kernels/shade.h"
+#include "item3d/render/scatter_sum.h"
+
+namespace item3d {
+namespace {
+
+using kernels::LightGradient;
+using kernels::ShadeParameters;
+using torch::autograd::AutogradContext;
+using torch::autograd::tensor_list;
+
+/// What is not differentiated.
+struct ShadeSettings {
+    torch::Tensor tangent, view;
+    std::vector<float> roughness;
+    bool multiple_scattering;
+};
+
+/// Inputs in this order: base_color, orm, normal map (may be undefined), surface normal, diffuse,
+/// specular levels.
+constexpr std::size_t first_level = 5;
+
+ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings& settings) {
+    const auto pointer = [](const torch::Tensor& tensor) {
+        return tensor.defined() ? tensor.const_data_ptr<float>() : nullptr;
+    };
+    ShadeParameters p{};
+    p.base_color = pointer(inputs[0]);
+    p.orm = pointer(inputs[1]);
+    p.normal_map = pointer(inputs[2]);
+    p.normal = pointer(inputs[3]);
+    p.tangent = pointer(settings.tangent);
+    p.view = pointer(settings.view);
+    p.bsdf = pointer(bsdf_table());
+    p.bsdf_size = static_cast<int>(bsdf_table().size(0));
+    p.multiple_scattering = settings.multiple_scattering;
+    p.diffuse = pointer(inputs[4]);
+    p.diffuse_size = static_cast<int>(inputs[4].size(1));
+    p.levels = static_cast<int>(inputs.size() - first_level);
+    for (int level = 0; level < p.levels; ++level) {
+        const torch::Tensor& map = inputs[first_level + static_cast<std::size_t>(level)];
+        p.specular[level] = pointer(map);
+        p.specular_size[level] = static_cast<int>(map.size(1));
+        p.specular_roughness[level] = settings.roughness[static_cast<std::size_t>(level)];
+    }
+    return p;
+}
+
+struct Shade : torch::autograd::Function<Shade> {
+    static torch::Tensor forward(AutogradContext* context, at::TensorList inputs_,
+                                 const ShadeSettings& settings) {
+        const tensor_list inputs = inputs_.vec();
+        torch::Tensor radiance = torch::empty_like(inputs[0]);
+        ShadeParameters p = shade_parameters(inputs, settings);
+        p.radiance = radiance.data_ptr<float>();
+        parallel_for("shade", inputs[0].size(0),
+                     [&p](std::int64_t i) { kernels::shade_forward(p, i); });
+
+        tensor_list saved = inputs;
+        saved.push_back(settings.tangent);
+        saved.push_back(settings.view);
+        context->save_for_backward(saved);
+        context->saved_data["roughness"] =
+            std::vector<double>(settings.roughness.begin(), settings.roughness.end());
+        context->saved_data["multiple_scattering"] = settings.multiple_scattering;
+        return radiance;
+    }
+
+    static tensor_list backward(AutogradContext* context, tensor_list gradients) {
+        tensor_list inputs = context->get_saved_variables();
+        ShadeSettings settings;
+        settings.view = inputs.back();
+        inputs.pop_back();
+        settings.tangent = inputs.back();
+        inputs.pop_back();
+        for (const double roughness : context->saved_data["roughness"].toDoubleVector())
+            settings.roughness.push_back(static_cast<float>(roughness));
+        settings.multiple_scattering = context->saved_data["multiple_scattering"].toBool();
+
+        const torch::Tensor radiance_gradient = gradients[0].contiguous();
+        ShadeParameters p = shade_parameters(inputs, settings);
+        p.radiance_gradient = radiance_gradient.const_data_ptr<float>();
+        tensor_list results(inputs.size() + 1);
+        const auto wanted = [&](std::size_t i) -> float* {
+            if (!inputs[i].defined() || !context->needs_input_grad(i)) return nullptr;
+            results[i] = torch::empty_like(inputs[i]);
+            return results[i].data_ptr<float>();
+        };
+        p.base_color_gradient = wanted(0);
+        p.orm_gradient = wanted(1);
+        p.normal_map_gradient = wanted(2);
+        p.normal_gradient = wanted(3);
+
+        const std::int64_t count = radiance_gradient.size(0);
+        std::int64_t light_elements = 0;
+        std::vector<std::int64_t> offsets(inputs.size(), -1);
+        for (std::size_t i = first_level - 1; i < inputs.size(); ++i) {
+            if (!context->needs_input_grad(i)) continue;
+            offsets[i] = light_elements;
+            light_elements += inputs[i].numel();
+        }
+        if (light_elements == 0) {
+            parallel_for("shade backward", count,
+                         [&p](std::int64_t i) { kernels::shade_backward(p, i, {}); });
+            return results;
+        }
+        const torch::Tensor light_gradient = scatter_sum(
+            "shade backward", count, light_elements, [&](std::int64_t i, float* buffer) {
+                LightGradient light;
+                if (offsets[first_level - 1] >= 0)
+                    light.diffuse = buffer + offsets[first_level - 1];
+                for (int level = 0; level < p.levels; ++level) {
+                    const std::int64_t offset =
+                        offsets[first_level + static_cast<std::size_t>(level)];
+                    if (offset >= 0) light.specular[level] = buffer + offset;
+                }
+                kernels::shade_backward(p, i, light);
+            });
+        for (std::size_t i = first_level - 1; i < inputs.size(); ++i)
+            if (offsets[i] >= 0)
+                results[i] = light_gradient.narrow(0, offsets[i], inputs[i].numel())
+                                 .reshape(inputs[i].sizes());
+        return results;
+    }
+};
+
+}  // namespace
+
+torch::Tensor shade(const Surface& surface, const MaterialSample& material,
+                    const EnvironmentLight& light, const ShadeOptions& options) {
+    constexpr const char* op = "shade";
+    constexpr auto real = torch::kFloat32;
+    const std::int64_t count = surface.count();
+    ITEM3D_CHECK(!light.specular.empty() && light.specular.size() == light.roughness.size() &&
+                     light.specular.size() <= kernels::max_specular_levels,
+                 "shade: light.specular needs 1 to 16 levels with a roughness each");
+    const auto cube = [&](const char* name, const torch::Tensor& map) {
+        torch::Tensor good = checked(op, name, map, real, {6, -1, -1, 3});
+        ITEM3D_CHECK(good.size(1) == good.size(2) && good.size(1) >= 2,
+                     std::string("shade: ") + name + " must have square faces of at least 2 x 2");
+        return good;
+    };
+    tensor_list inputs{checked(op, "base_color", material.base_color, real, {count, 3}),
+                       checked(op, "orm", material.orm, real, {count, 3}),
+                       material.normal.defined()
+                           ? checked(op, "normal", material.normal, real, {count, 3})
+                           : torch::Tensor(),
+                       checked(op, "surface.normal", surface.normal, real, {count, 3}),
+                       cube("light.diffuse", light.diffuse)};
+    for (const torch::Tensor& level : light.specular)
+        inputs.push_back(cube("light.specular", level));
+    const ShadeSettings settings{
+        checked(op, "surface.tangent", surface.tangent.detach(), real, {count, 4}),
+        checked(op, "surface.view", surface.view.detach(), real, {count, 3}), light.roughness,
+        options.multiple_scattering};
+    torch::Tensor radiance = Shade::apply(at::TensorList(inputs), settings);
+    if (material.emissive.defined())
+        radiance = radiance + checked(op, "emissive", material.emissive, real, {count, 3});
+    return radiance;
+}
+
+}  // namespace item3d
