@@ -80,7 +80,8 @@ void Adam::step() {
             std::int64_t rows = slot.parameter.size(0);
             torch::Tensor row_index;  // undefined: all rows
             if (gradient.is_sparse()) {
-                // Accumulation drops the mark that says "coalesced", so the rows themselves are looked at.
+                // Accumulation drops the mark that says "coalesced", so the rows themselves are
+                // looked at.
                 if (!rows_rise(gradient._indices())) gradient = gradient.coalesce();
                 row_index = gradient._indices().select(0, 0).contiguous();
                 gradient = gradient._values();

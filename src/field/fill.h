@@ -1,0 +1,17 @@
+// Continues an image beyond the texels that are covered.
+#pragma once
+
+#include "item3d/scene/image.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace item3d {
+
+/// Gives each texel with covered == 0 the mean of its neighbours (of eight) that have a value
+/// already, layer by layer outwards, in the channels of `channels` (bit c: channel c). Layers:
+/// at most this many, 0: until the image is full. covered: [height * width].
+void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels = ~0u,
+                    int layers = 0);
+
+}  // namespace item3d
