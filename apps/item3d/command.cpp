@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 
 namespace item3d {
 
@@ -42,6 +43,27 @@ torch::Device start_command(const CommonOptions& options) {
     }
     const bool use_cuda = options.device != "cpu" && torch::cuda::is_available();
     return use_cuda ? torch::Device(torch::kCUDA) : torch::Device(torch::kCPU);
+}
+
+std::string command_line() {
+    std::ifstream file("/proc/self/cmdline", std::ios::binary);
+    std::string line;
+    for (std::string argument; std::getline(file, argument, '\0');) {
+        const bool plain =
+            !argument.empty() &&
+            argument.find_first_of(" \t\n'\"\\$`&|;<>()*?[]#~!{}") == std::string::npos;
+        if (!line.empty()) line += ' ';
+        if (plain) {
+            line += argument;
+            continue;
+        }
+        line += '\'';
+        for (const char character : argument) {
+            line += character == '\'' ? std::string("'\\''") : std::string(1, character);
+        }
+        line += '\'';
+    }
+    return line;
 }
 
 void print_json(const nlohmann::json& value) {

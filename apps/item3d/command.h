@@ -40,6 +40,9 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
 /// and returns the device to compute on. Throws ResourceError when that device is not there.
 torch::Device start_command(const CommonOptions& options);
 
+/// The command line as typed, quoted for a shell.
+std::string command_line();
+
 /// Writes one JSON object and a line end to stdout. Throws ResourceError when stdout is full.
 void print_json(const nlohmann::json& value);
 

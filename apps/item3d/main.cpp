@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -66,6 +67,8 @@ void keep_large_blocks() {
 }  // namespace
 
 int main(int argc, char** argv) {
+    // A file that may not grow any more is an error of write(), not the end of the program.
+    std::signal(SIGXFSZ, SIG_IGN);
     keep_large_blocks();
     try {
         return run(argc, argv);

@@ -3,8 +3,12 @@
 namespace item3d {
 
 void check_failed(const char* expression, const char* file, int line, const std::string& detail) {
-    throw std::logic_error(std::string(file) + ":" + std::to_string(line) +
-                           ": check failed: " + expression + ": " + detail);
+    // What stands before the sources' own folder differs from machine to machine.
+    const std::string path = file;
+    const std::size_t own = path.rfind("item3d/");
+    const std::string shown = own == std::string::npos ? path : path.substr(own);
+    throw std::logic_error(shown + ":" + std::to_string(line) + ": check failed: " + expression +
+                           ": " + detail);
 }
 
 }  // namespace item3d

@@ -31,7 +31,7 @@ fs::path temporary_beside(const fs::path& path) {
                      "choose a folder that you may write to");
 }
 
-void write_and_sync(const fs::path& path, std::span<const std::uint8_t> bytes) {
+void write_all(const fs::path& path, std::span<const std::uint8_t> bytes) {
     const int file = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
     if (file < 0) throw_write_error(path, errno);
     std::size_t done = 0;
@@ -45,9 +45,16 @@ void write_and_sync(const fs::path& path, std::span<const std::uint8_t> bytes) {
         }
         done += static_cast<std::size_t>(wrote);
     }
+    if (::close(file) != 0) throw_write_error(path, errno);
+}
+
+/// Errors that the system found only after write() had returned show here.
+void sync_file(const fs::path& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) throw_write_error(path, errno);
     const bool synced = ::fsync(file) == 0 || errno == EINVAL;
     const int error = errno;
-    if (::close(file) != 0) throw_write_error(path, errno);
+    ::close(file);
     if (!synced) throw_write_error(path, error);
 }
 
@@ -79,7 +86,7 @@ std::string read_text(const fs::path& path) {
 }
 
 void write_atomically(const fs::path& path, std::span<const std::uint8_t> bytes) {
-    write_atomically(path, [&](const fs::path& temporary) { write_and_sync(temporary, bytes); });
+    write_atomically(path, [&](const fs::path& temporary) { write_all(temporary, bytes); });
 }
 
 void write_atomically(const fs::path& path, std::string_view text) {
@@ -91,6 +98,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     const fs::path temporary = temporary_beside(path);
     try {
         write(temporary);
+        sync_file(temporary);
         std::error_code code;
         fs::rename(temporary, path, code);
         if (code) throw_write_error(path, code.value());
@@ -111,7 +119,7 @@ void make_output_folder(const fs::path& folder) {
                          "choose another -o");
     }
     const fs::path probe = folder / (".write-test-" + std::to_string(::getpid()));
-    write_and_sync(probe, {});
+    write_all(probe, {});
     fs::remove(probe, code);
 }
 
