@@ -63,6 +63,7 @@ class GltfReader {
     void add_mesh(std::size_t mesh, std::optional<std::size_t> node);
     void add_primitive(const GltfObject& mesh, const GltfObject& source, Primitive primitive,
                        std::optional<std::size_t> node);
+    void check_compression(const GltfObject& source, const GltfObject& attributes) const;
     Vertices read_vertices(const GltfObject& attributes) const;
     void apply_morph_targets(const GltfObject& source, const std::vector<double>& weights,
                              Vertices& vertices) const;
@@ -329,18 +330,31 @@ void GltfReader::read_triangles(const GltfObject& source, std::size_t mode,
     }
 }
 
+// Compressed vertices may come with plain ones for readers that cannot decompress, or without.
+void GltfReader::check_compression(const GltfObject& source, const GltfObject& attributes) const {
+    const std::string hint =
+        "decompress it first, for instance with 'gltf-transform copy in.glb out.glb'";
+    const GltfObject position = root_.item("accessors", *accessor_of(attributes, "POSITION"));
+    const auto view = position.index("bufferView", root_.list_size("bufferViews"));
+    const auto extensions = source.object("extensions");
+    if (extensions && extensions->has("KHR_draco_mesh_compression") && !view) {
+        source.fail("is compressed with KHR_draco_mesh_compression, which cannot be read", hint);
+    }
+    if (!view) return;
+    const GltfObject view_object = root_.item("bufferViews", *view);
+    const auto buffer = view_object.index("buffer", document_->buffers.size());
+    if (view_object.has("extensions") && buffer && document_->buffers[*buffer].empty()) {
+        source.fail("is compressed with EXT_meshopt_compression, which cannot be read", hint);
+    }
+}
+
 void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
                                Primitive primitive, std::optional<std::size_t> node) {
     const std::size_t mode = source.integer("mode", 4);
     if (mode > 6) source.fail(fmt::format("mode {} is unknown", mode));
     const auto attributes = source.object("attributes");
     if (mode < 4 || !attributes || !attributes->has("POSITION")) return;
-    if (const auto extensions = source.object("extensions");
-        extensions && extensions->has("KHR_draco_mesh_compression") &&
-        !accessor_of(source, "indices")) {
-        source.fail("is compressed with KHR_draco_mesh_compression, which cannot be read",
-                    "decompress it first, for instance with 'gltf-transform copy in.glb out.glb'");
-    }
+    check_compression(source, *attributes);
     const std::size_t materials = root_.list_size("materials");
     const auto material = source.index("material", materials);
     uses_default_material_ = uses_default_material_ || !material;

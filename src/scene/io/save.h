@@ -20,13 +20,19 @@ struct MaterialEdit {
     std::optional<Image> base_color;          ///< RGB or RGBA
     std::optional<Image> metallic_roughness;  ///< occlusion, roughness, metallic
     std::optional<Image> normal;
-    /// With an image, factors are reset to 1 (base colour, metallic, roughness) so that texture
-    /// values are the material's. Bits per channel of the PNGs that are written.
+    /// With an image, the factors of that slot are reset (base colour, metallic, roughness and
+    /// occlusion strength, normal scale to 1) so that texture values are the material's; alpha
+    /// stays a factor where base_color is RGB. Occlusion is used where the material had it, or
+    /// where it is not 1 throughout. Bits per channel of the PNGs that are written.
     int bits_per_channel = 8;
+    /// base_color holds what vertex colours multiplied before, so primitives with it lose COLOR_0.
+    bool includes_vertex_colors = true;
 };
 
 /// New UVs of one primitive: seams split vertices, so every vertex of the new primitive names the
-/// old vertex it copies.
+/// old vertex it copies. Edited textures look at the new UVs (TEXCOORD_0); textures of the material
+/// that were not edited go on looking at the old ones, which move to another set. When some
+/// primitives of an edited material have new UVs, the others keep theirs.
 struct PrimitiveEdit {
     std::vector<std::uint32_t> source_vertices;  ///< new vertex -> old vertex
     std::vector<Vec2> uvs;                       ///< one a new vertex
