@@ -3,6 +3,7 @@
 # make test       check the format, test the loaders under sanitizers, test everything
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
 # make format     format all sources
+# make lint       run clang-tidy on all sources (needs clang-tidy and libomp-dev)
 # make install    install to PREFIX (default /usr/local)
 # make clean      remove what was built; .deps/ stays
 #
@@ -13,7 +14,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo test test-loaders bench format check-format install clean
+.PHONY: setup configure build demo test test-loaders bench format check-format lint install clean
 
 setup:
 	@scripts/setup.sh
@@ -47,6 +48,9 @@ bench: configure
 
 format: setup
 	@scripts/format.sh
+
+lint: configure
+	@scripts/lint.sh
 
 install: build
 	@cmake --install build --prefix "$(PREFIX)"
