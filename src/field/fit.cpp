@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 namespace item3d {
 namespace {
@@ -69,7 +70,8 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
     const std::size_t network = adam.add_group(
         field->network_parameters(),
         {.learning_rate = options.network_learning_rate, .beta1 = 0.9, .beta2 = 0.99});
-    Progress progress("fit", options.show_progress ? options.steps : 0);
+    std::optional<Progress> progress;
+    if (options.show_progress) progress.emplace("fit", options.steps);
     for (int step = 0; step < options.steps; ++step) {
         const Surface surface = sampler.sample(options.batch, random);
         const Target target = make_target(surface, materials);
@@ -87,11 +89,11 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
         adam.options(table).learning_rate = options.table_learning_rate * decay;
         adam.options(network).learning_rate = options.network_learning_rate * decay;
         adam.step();
-        if (options.show_progress) progress.update(step + 1);
+        if (progress) progress->update(step + 1);
         if (interrupted()) throw Interrupted("interrupted while the neural texture was fitted");
     }
     adam.zero_grad();
-    progress.finish();
+    progress.reset();
 
     const torch::NoGradGuard no_grad;
     const Surface surface = sampler.sample(32768, random);

@@ -10,6 +10,7 @@
 #include "item3d/core/host_device.h"
 #include "item3d/core/math.h"
 
+#include <cstddef>
 #include <cstdint>
 
 namespace item3d {

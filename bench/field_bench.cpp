@@ -1,0 +1,94 @@
+// What an iteration of an edit spends in the neural texture: look-up, gradient, optimiser step.
+// Arguments: surface points. Points lie on a sphere, in the order of a picture's pixels.
+#include "item3d/field/adam.h"
+#include "item3d/field/neural_texture.h"
+
+#include <benchmark/benchmark.h>
+#include <torch/torch.h>
+
+namespace item3d {
+namespace {
+
+torch::Tensor sphere_points(std::int64_t count) {
+    const torch::Tensor i = torch::arange(count).to(torch::kFloat32);
+    const torch::Tensor y = 1.0f - 2.0f * (i + 0.5f) / static_cast<float>(count);
+    const torch::Tensor r = torch::sqrt(1.0f - y * y);
+    const torch::Tensor angle = i * 0.05f;
+    return torch::stack({r * torch::cos(angle), y, r * torch::sin(angle)}, 1).contiguous();
+}
+
+NeuralTextureOptions shape(std::int64_t levels, std::int64_t features) {
+    NeuralTextureOptions options;
+    options.levels = static_cast<int>(levels);
+    options.features = static_cast<int>(features);
+    return options;
+}
+
+void encode_forward(benchmark::State& state) {
+    const torch::NoGradGuard no_grad;
+    const NeuralTextureOptions options = shape(state.range(1), state.range(2));
+    const HashGrid grid = HashGrid::make(options.levels, options.features, options.log2_table_size,
+                                         options.base_resolution, options.finest_resolution);
+    const torch::Tensor points = sphere_points(state.range(0)) * 0.5f + 0.5f;
+    const torch::Tensor table = torch::rand({grid.entries(), grid.features});
+    for (auto _ : state)
+        benchmark::DoNotOptimize(encode(grid, points, table));
+}
+
+void encode_backward(benchmark::State& state) {
+    const NeuralTextureOptions options = shape(state.range(1), state.range(2));
+    const HashGrid grid = HashGrid::make(options.levels, options.features, options.log2_table_size,
+                                         options.base_resolution, options.finest_resolution);
+    const torch::Tensor points = sphere_points(state.range(0)) * 0.5f + 0.5f;
+    torch::Tensor table = torch::rand({grid.entries(), grid.features}).set_requires_grad(true);
+    const torch::Tensor seed = torch::rand({state.range(0), grid.output_width()});
+    for (auto _ : state) {
+        state.PauseTiming();
+        table.mutable_grad() = torch::Tensor();
+        const torch::Tensor out = encode(grid, points, table);
+        state.ResumeTiming();
+        out.backward(seed);
+    }
+}
+
+/// Field forward, backward, and the step: all of an iteration that happens here.
+void field_iteration(benchmark::State& state) {
+    NeuralTexture field(shape(state.range(1), state.range(2)));
+    Adam adam;
+    adam.add_group({field->table()}, {});
+    adam.add_group(field->network_parameters(), {});
+    const torch::Tensor points = sphere_points(state.range(0));
+    for (auto _ : state) {
+        adam.zero_grad();
+        const MaterialSample sample = field->forward(points);
+        (sample.base_color.square().mean() + sample.orm.square().mean()).backward();
+        adam.step();
+    }
+}
+
+void adam_step(benchmark::State& state) {
+    NeuralTexture field(shape(state.range(1), state.range(2)));
+    Adam adam;
+    adam.add_group({field->table()}, {});
+    field->forward(sphere_points(state.range(0))).base_color.sum().backward();
+    for (auto _ : state)
+        adam.step();
+}
+
+void sizes(benchmark::internal::Benchmark* benchmark) {
+    for (const int count : {1500, 6000, 20000}) {
+        benchmark->Args({count, 8, 4});
+        benchmark->Args({count, 16, 2});
+    }
+    benchmark->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+
+BENCHMARK(encode_forward)->Apply(sizes);
+BENCHMARK(encode_backward)->Apply(sizes);
+BENCHMARK(adam_step)->Apply(sizes);
+BENCHMARK(field_iteration)->Apply(sizes);
+
+}  // namespace
+}  // namespace item3d
+
+BENCHMARK_MAIN();
