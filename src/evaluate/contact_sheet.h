@@ -1,0 +1,37 @@
+// Pictures side by side on one page, with labels.
+#pragma once
+
+#include "item3d/core/math.h"
+#include "item3d/scene/image.h"
+
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+struct Tile {
+    Image picture;      ///< sRGB, 1 to 4 channels (alpha straight); empty: the place stays free
+    std::string label;  ///< below the picture; may be empty
+};
+
+struct ContactSheetOptions {
+    int columns = 0;      ///< 0: as square as can be
+    int tile_width = 0;   ///< 0: of the largest picture; others are scaled to fit
+    int tile_height = 0;  ///< 0: of the largest picture
+    int gap = 12;
+    std::string title;
+    Vec3 paper{0.961f, 0.957f, 0.945f};   ///< sRGB, behind everything
+    Vec3 ground{0.898f, 0.890f, 0.871f};  ///< sRGB, behind transparent pictures
+    Vec3 ink{0.165f, 0.161f, 0.149f};     ///< sRGB, of the writing
+};
+
+/// Row by row, left to right. Returns sRGB with three channels.
+Image contact_sheet(const std::vector<Tile>& tiles, const ContactSheetOptions& options = {});
+
+/// Writes one line of text, its upper left corner at (x, y), `scale` pixels for each pixel of the
+/// 12 pixel high font. ASCII is drawn; other characters become '?'.
+void draw_text(Image& image, int x, int y, const std::string& text, Vec3 color, int scale = 1);
+int text_width(const std::string& text, int scale = 1);
+int text_height(int scale = 1);
+
+}  // namespace item3d

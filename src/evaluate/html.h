@@ -1,0 +1,65 @@
+// Pieces of self-contained HTML pages: pictures are inside the page, nothing is fetched.
+//
+// Every function returns markup that is ready to be joined; texts that they are given are plain and
+// are escaped here.
+#pragma once
+
+#include "item3d/core/files.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace item3d {
+
+/// An encoded picture (PNG, JPEG, WebP, GIF; told by its first bytes) and what it shows.
+struct ReportImage {
+    std::string caption;
+    Bytes bytes;
+};
+
+/// One line of a chart: values[i] stands at x = first + i * step. Values that are not finite leave
+/// a gap.
+struct Curve {
+    std::string name;
+    std::vector<double> values;
+    double first = 0;
+    double step = 1;
+};
+
+struct Chart {
+    std::string title;
+    std::string x_label;
+    std::vector<Curve> curves;
+    /// Draws a running mean over the faint raw line; for noisy curves.
+    bool smooth = false;
+};
+
+using TableRows = std::vector<std::pair<std::string, std::string>>;
+
+std::string html_escape(const std::string& text);
+/// "data:image/png;base64,...".
+std::string data_uri(const Bytes& bytes);
+
+/// A picture with its caption below (none when empty). `checkered` shows what is transparent.
+std::string html_figure(const ReportImage& image, bool checkered = false);
+/// Figures in a grid whose columns are at least `least_width` CSS pixels wide.
+std::string html_gallery(const std::vector<std::string>& figures, int least_width = 220);
+/// Two pictures of one size, one over the other, with a handle that uncovers the second.
+std::string html_comparison(const ReportImage& before, const ReportImage& after,
+                            const std::string& caption);
+/// Two columns: what, and its value.
+std::string html_table(const TableRows& rows);
+/// A table with a head line; rows may be shorter than the head.
+std::string html_grid(const std::vector<std::string>& head,
+                      const std::vector<std::vector<std::string>>& rows);
+/// A line chart as inline SVG. Charts without a finite value say so.
+std::string html_chart(const Chart& chart);
+/// Horizontal bars with their share of the sum: seconds by stage.
+std::string html_timings(const std::vector<std::pair<std::string, double>>& seconds);
+/// A titled part of the page; nothing when `content` is empty.
+std::string html_section(const std::string& title, const std::string& content);
+/// The page around `body`, with its style and the few lines of script that it needs.
+std::string html_page(const std::string& title, const std::string& body);
+
+}  // namespace item3d

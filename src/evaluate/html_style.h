@@ -1,0 +1,11 @@
+// The look of the pages, and the script that moves the comparison's handle. Internal to evaluate.
+#pragma once
+
+#include <string_view>
+
+namespace item3d {
+
+extern const std::string_view html_style;
+extern const std::string_view html_script;
+
+}  // namespace item3d
