@@ -21,13 +21,13 @@ struct ShadeSettings {
     bool multiple_scattering;
 };
 
-/// Inputs in this order: base_color, orm, normal map (may be undefined), surface normal, diffuse,
+/// Inputs in this order: base_color, orm, normal map ([0, 3]: none), surface normal, diffuse,
 /// specular levels.
 constexpr std::size_t first_level = 5;
 
 ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings& settings) {
     const auto pointer = [](const torch::Tensor& tensor) {
-        return tensor.defined() ? tensor.const_data_ptr<float>() : nullptr;
+        return tensor.numel() > 0 ? tensor.const_data_ptr<float>() : nullptr;
     };
     ShadeParameters p{};
     p.base_color = pointer(inputs[0]);
@@ -87,7 +87,7 @@ struct Shade : torch::autograd::Function<Shade> {
         p.radiance_gradient = radiance_gradient.const_data_ptr<float>();
         tensor_list results(inputs.size() + 1);
         const auto wanted = [&](std::size_t i) -> float* {
-            if (!inputs[i].defined() || !context->needs_input_grad(i)) return nullptr;
+            if (inputs[i].numel() == 0 || !context->needs_input_grad(i)) return nullptr;
             results[i] = torch::empty_like(inputs[i]);
             return results[i].data_ptr<float>();
         };
@@ -149,7 +149,7 @@ torch::Tensor shade(const Surface& surface, const MaterialSample& material,
                        checked(op, "orm", material.orm, real, {count, 3}),
                        material.normal.defined()
                            ? checked(op, "normal", material.normal, real, {count, 3})
-                           : torch::Tensor(),
+                           : torch::empty({0, 3}, real),
                        checked(op, "surface.normal", surface.normal, real, {count, 3}),
                        cube("light.diffuse", light.diffuse)};
     for (const torch::Tensor& level : light.specular)
