@@ -111,9 +111,9 @@ Image contact_sheet(const std::vector<Tile>& tiles, const ContactSheetOptions& o
                             : static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
     const int rows = (count + columns - 1) / columns;
     const int gap = options.gap;
-    const int scale = width >= 640 ? 2 : 1;
+    const int scale = width >= 384 ? 2 : 1;
     const int label_height = labelled ? text_height(scale) + gap / 2 : 0;
-    const int title_scale = 2 * scale;
+    const int title_scale = 2;
     const int title_height = options.title.empty() ? 0 : text_height(title_scale) + gap;
 
     Image page(columns * (width + gap) + gap,

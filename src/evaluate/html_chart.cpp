@@ -144,6 +144,8 @@ std::string html_chart(const Chart& chart) {
     if (x.empty()) return head + "<p>No values were recorded.</p></div>\n";
     x.widen_if_flat();
     y.widen_if_flat();
+    // A scale that could as well begin at zero does, so that heights can be compared.
+    if (y.low > 0 && y.low < 0.6 * y.high) y.low = 0;
 
     const Axes axes(x, y);
     std::string svg = axes.frame(chart.x_label);

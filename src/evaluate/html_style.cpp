@@ -45,9 +45,9 @@ section + section { border-top: 1px solid var(--line); padding-top: 38px; }
 .warnings { margin: 26px 0 0; padding: 12px 16px 12px 34px; border-left: 3px solid var(--accent);
   background: var(--card); border-radius: 0 8px 8px 0; }
 .scores { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 1px;
-  background: var(--line); border: 1px solid var(--line); border-radius: 12px; overflow: hidden;
+  background: var(--card); border: 1px solid var(--line); border-radius: 12px; overflow: hidden;
   margin: 0; }
-.scores div { background: var(--card); padding: 16px 18px; }
+.scores div { padding: 16px 18px; box-shadow: 0 0 0 1px var(--line); }
 .scores dt { color: var(--soft); font-size: 13px; }
 .scores dd { margin: 2px 0 0; font-family: var(--serif); font-size: 26px;
   font-variant-numeric: tabular-nums; }

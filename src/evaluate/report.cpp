@@ -102,10 +102,12 @@ std::string settings(const EditReport& report) {
 std::string edit_report_html(const EditReport& report) {
     std::string body = header(report);
     body += html_section("Before and after", views(report));
+    // The scores stand beside the turning model, where both are there.
+    std::string around = scores(report);
     if (report.turntable) {
-        body += html_section("All around", html_gallery({html_figure(*report.turntable)}, 420));
+        around = html_gallery({html_figure(*report.turntable), "<div>" + around + "</div>\n"}, 420);
     }
-    body += html_section("Scores", scores(report));
+    body += html_section(report.turntable ? "All around" : "Scores", around);
     body += html_section("Textures", textures(report));
     body += html_section("How it went", charts(report));
     body += html_section("Where the time went", html_timings(report.seconds));
