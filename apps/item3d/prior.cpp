@@ -1,0 +1,132 @@
+// item3d prior: train the embedded prior, and look at what it is trained on.
+#include "command.h"
+#include "item3d/core/error.h"
+#include "item3d/prior/captions.h"
+#include "item3d/prior/train.h"
+#include "item3d/scene/io/save.h"
+
+#include <fmt/format.h>
+
+namespace item3d {
+namespace {
+
+struct TrainOptions : CommonOptions {
+    TrainSettings settings;
+    std::string output;
+    std::string work;
+};
+
+void add_train(CLI::App& app) {
+    auto options = std::make_shared<TrainOptions>();
+    CLI::App* command =
+        add_command(app, "train", "Train the embedded prior from nothing", *options);
+    TrainSettings& settings = options->settings;
+    command->add_option("-o,--output", options->output, "Folder to write the prior to")->required();
+    command->add_option("--work", options->work,
+                        "Folder for data and checkpoints; without it, work/ in the output folder");
+    command
+        ->add_option("--samples", settings.samples, "Pictures to learn from, repetitions counted")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--data", settings.data_samples, "Different pictures")
+        ->check(CLI::Range(64, 10000000))
+        ->capture_default_str();
+    command
+        ->add_option("--autoencoder-samples", settings.autoencoder_samples,
+                     "Pictures that the autoencoder learns from, repetitions counted")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command
+        ->add_option("--autoencoder-data", settings.autoencoder_pictures,
+                     "Different pictures for the autoencoder")
+        ->check(CLI::Range(32, 1000000))
+        ->capture_default_str();
+    command->add_option("--variants", settings.shape_variants, "Shapes of each class")
+        ->check(CLI::Range(1, 30))
+        ->capture_default_str();
+    command->add_option("--views", settings.views_each, "Views of each shape")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command->add_option("--lights", settings.lights, "Different lights")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    command->add_option("--batch", settings.batch, "Pictures a step and replica")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    command
+        ->add_option("--replicas", settings.replicas, "Copies of the model that train in parallel")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    command->add_option("--learning-rate", settings.learning_rate, "Highest learning rate")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--seed", settings.seed, "Of everything random")->capture_default_str();
+    command->add_flag("--resume", settings.resume, "Go on from the checkpoint in the work folder");
+    command->callback([options] {
+        start_command(*options);
+        options->settings.output = options->output;
+        options->settings.work = options->work.empty() ? options->settings.output / "work"
+                                                       : std::filesystem::path(options->work);
+        train_prior(options->settings);
+    });
+}
+
+struct PicturesOptions : CommonOptions {
+    std::string output;
+    int columns = 8;
+    int rows = 8;
+    int variants = 2;
+    std::uint64_t seed = 1;
+};
+
+/// A contact sheet of training pictures; their captions go to stdout, row by row.
+void run_pictures(const PicturesOptions& options) {
+    std::vector<TrainingLight> lights = make_training_lights(options.seed + 1, 64, 2);
+    const ExampleSource source(make_view_pool(false, options.variants, 4, options.seed, 2),
+                               std::move(lights), options.seed);
+    constexpr int tile = picture_size + 2;
+    Image sheet(options.columns * tile, options.rows * tile, 3, 1.0f);
+    nlohmann::json captions = nlohmann::json::array();
+    for (int i = 0; i < options.columns * options.rows; ++i) {
+        const Example example = source.draw(i);
+        const auto* pixels = example.image.data_ptr<float>();
+        for (int y = 0; y < picture_size; ++y)
+            for (int x = 0; x < picture_size; ++x)
+                for (int c = 0; c < 3; ++c)
+                    sheet.at(i % options.columns * tile + x, i / options.columns * tile + y, c) =
+                        pixels[(y * picture_size + x) * 3 + c];
+        captions.push_back(example.caption);
+        if (!options.json) fmt::print("{}\n", example.caption);
+    }
+    save_image(options.output, sheet);
+    if (options.json) print_json({{"captions", captions}});
+}
+
+void add_pictures(CLI::App& app) {
+    auto options = std::make_shared<PicturesOptions>();
+    CLI::App* command = add_command(app, "pictures", "Draw a sheet of training pictures", *options);
+    command->add_option("-o,--output", options->output, "Image file")->required();
+    command->add_option("--columns", options->columns)
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    command->add_option("--rows", options->rows)->check(CLI::Range(1, 64))->capture_default_str();
+    command->add_option("--variants", options->variants, "Shapes of each class")
+        ->check(CLI::Range(1, 30))
+        ->capture_default_str();
+    command->add_option("--seed", options->seed)->capture_default_str();
+    command->callback([options] {
+        start_command(*options);
+        run_pictures(*options);
+    });
+}
+
+}  // namespace
+
+void add_prior_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("prior", "Train and inspect the embedded prior");
+    command->require_subcommand(1);
+    add_train(*command);
+    add_pictures(*command);
+}
+
+}  // namespace item3d

@@ -1,0 +1,52 @@
+// Training pairs: a random material and light on a random view, with its caption.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <torch/torch.h>
+
+#include "item3d/prior/lights.h"
+#include "item3d/prior/materials.h"
+#include "item3d/prior/views.h"
+
+namespace item3d {
+
+/// A picture with its caption and what is on it.
+struct Example {
+    torch::Tensor image;    ///< [picture_size, picture_size, 3] float32, sRGB in [0, 1]
+    torch::Tensor depth;    ///< [1, latent_size, latent_size] fp16
+    torch::Tensor covered;  ///< [picture_size, picture_size] float32, part of the pixel that is object
+    std::string caption;
+    std::string material;   ///< ProceduralMaterial::kind
+    std::string light;      ///< TrainingLight::kind
+};
+
+/// What an example should show; what is not said is drawn at random.
+struct ExampleWish {
+    MaterialWish material;
+    const TrainingLight* light = nullptr;
+    bool plain_background = false;  ///< an even light grey
+};
+
+/// Draws examples from views and lights; safe to use from several threads.
+class ExampleSource {
+  public:
+    ExampleSource(std::vector<View> views, std::vector<TrainingLight> lights, std::uint64_t seed);
+
+    /// The example of that index depends on the seed and the index alone.
+    Example draw(std::int64_t index) const;
+    /// As above with a given view and wishes.
+    Example draw(Random& random, const View& view, const ExampleWish& wish) const;
+
+    const std::vector<View>& views() const { return views_; }
+    const std::vector<TrainingLight>& lights() const { return lights_; }
+
+  private:
+    std::vector<View> views_;
+    std::vector<TrainingLight> lights_;
+    std::uint64_t seed_;
+};
+
+}  // namespace item3d

@@ -1,0 +1,59 @@
+#include "item3d/prior/export.h"
+
+#include "item3d/core/files.h"
+#include "item3d/models/pipeline.h"
+#include "item3d/prior/views.h"
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_json(const fs::path& path, const nlohmann::json& json) {
+    write_atomically(path, json.dump(2) + "\n");
+}
+
+nlohmann::json model_index() {
+    const auto of = [](const char* library, const char* name) {
+        return nlohmann::json::array({library, name});
+    };
+    return {{"_class_name", "StableDiffusionPipeline"},
+            {"scheduler", of("diffusers", "DDIMScheduler")},
+            {"text_encoder", of("transformers", "CLIPTextModel")},
+            {"tokenizer", of("transformers", "CLIPTokenizer")},
+            {"unet", of("diffusers", "UNet2DConditionModel")},
+            {"vae", of("diffusers", "AutoencoderTiny")},
+            {"safety_checker", nlohmann::json::array({nullptr, nullptr})},
+            {"feature_extractor", nlohmann::json::array({nullptr, nullptr})},
+            {"requires_safety_checker", false}};
+}
+
+}  // namespace
+
+void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencoder,
+                        const ClipTokenizer& tokenizer) {
+    for (const char* part : {"tokenizer", "vae", "scheduler"}) make_output_folder(folder / part);
+    tokenizer.save(folder / "tokenizer");
+    save_autoencoder(folder / "vae", autoencoder);
+    write_json(folder / "scheduler" / "scheduler_config.json",
+               DdimConfig::stable_diffusion("v_prediction").to_json());
+    write_json(folder / "model_index.json", model_index());
+}
+
+void export_diffusion(const fs::path& folder, const UNet2DCondition& unet, const ClipTextModel& text,
+                      const nlohmann::json& train) {
+    for (const char* part : {"unet", "text_encoder"}) make_output_folder(folder / part);
+    save_unet(folder / "unet", unet);
+    save_clip_text(folder / "text_encoder", text);
+
+    nlohmann::json prior = nlohmann::json::object();
+    if (fs::exists(folder / "prior.json"))
+        prior = nlohmann::json::parse(read_text(folder / "prior.json"), nullptr, false);
+    if (!prior.is_object()) prior = nlohmann::json::object();
+    prior["name"] = "item3d embedded prior";
+    prior["resolution"] = picture_size;
+    prior["train"] = train;
+    write_json(folder / "prior.json", prior);
+}
+
+}  // namespace item3d

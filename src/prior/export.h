@@ -1,0 +1,24 @@
+// The prior as a folder in the diffusers layout, weights in fp16.
+#pragma once
+
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "item3d/models/autoencoder.h"
+#include "item3d/models/clip_text.h"
+#include "item3d/models/clip_tokenizer.h"
+#include "item3d/models/unet.h"
+
+namespace item3d {
+
+/// Writes tokenizer/, vae/, scheduler/ and model_index.json.
+void export_autoencoder(const std::filesystem::path& folder, const AutoencoderTiny& autoencoder,
+                        const ClipTokenizer& tokenizer);
+
+/// Writes unet/, text_encoder/ and prior.json with `train` as its "train" (what else an existing
+/// prior.json says is kept). Every file is written atomically.
+void export_diffusion(const std::filesystem::path& folder, const UNet2DCondition& unet,
+                      const ClipTextModel& text, const nlohmann::json& train);
+
+}  // namespace item3d

@@ -1,0 +1,30 @@
+// The lights of the training pictures, prefiltered once, with the words that describe them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "item3d/core/random.h"
+#include "item3d/render/environment_light.h"
+
+namespace item3d {
+
+struct TrainingLight {
+    /// "plain" (no words), "studio", "sunset", "night", "bright", "overcast" or "noon".
+    std::string kind;
+    /// What captions may append: " at sunset". One of them is "" where words are optional.
+    std::vector<std::string> phrases;
+    EnvironmentLight light;
+};
+
+/// Every kind but "plain".
+const std::vector<std::string>& light_kinds();
+
+/// Draws one: a room with soft boxes, or a preset turned at random. Rooms have bright and dark
+/// parts, because an even light shows metal as paint. size: edge of the finest cube face.
+TrainingLight make_training_light(Random& random, const std::string& kind, int size = 64);
+
+/// `count` of them in the training's proportions (six in ten plain), on `threads` threads.
+std::vector<TrainingLight> make_training_lights(std::uint64_t seed, int count, int threads);
+
+}  // namespace item3d

@@ -1,0 +1,28 @@
+// A cheap band-limited random field: sums of cosines of random wave vectors, close to N(0, 1).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "item3d/core/math.h"
+#include "item3d/core/random.h"
+
+namespace item3d {
+
+class CosineNoise {
+  public:
+    /// frequency: mean length of the wave vectors in radians a unit; every octave doubles it (2.1)
+    /// and halves the amplitude. stretch multiplies the coordinates.
+    CosineNoise(Random& random, float frequency, int octaves = 1, const Vec3& stretch = Vec3(1.0f));
+    float operator()(const Vec3& p) const;
+
+  private:
+    static constexpr int waves = 12;
+    struct Octave {
+        std::array<float, waves> x, y, z, phase;  ///< in turns, not radians
+        float amplitude;
+    };
+    std::vector<Octave> octaves_;
+};
+
+}  // namespace item3d

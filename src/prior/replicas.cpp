@@ -1,0 +1,168 @@
+#include "item3d/prior/replicas.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <ATen/autocast_mode.h>
+
+#include "item3d/core/error.h"
+
+namespace item3d {
+namespace {
+
+/// A view of `flat` from `offset` on with the shape of `like`; four-dimensional ones channels-last.
+torch::Tensor view_of(const torch::Tensor& flat, std::int64_t offset, const torch::Tensor& like) {
+    const auto part = flat.narrow(0, offset, like.numel());
+    if (like.dim() != 4) return part.view(like.sizes());
+    const auto s = like.sizes();
+    return part.view({s[0], s[2], s[3], s[1]}).permute({0, 3, 1, 2});
+}
+
+}  // namespace
+
+FlatModel::FlatModel(const std::vector<std::shared_ptr<torch::nn::Module>>& modules) {
+    std::int64_t total = 0;
+    for (const auto& module : modules) {
+        for (const torch::Tensor& parameter : module->parameters()) {
+            parameters_.push_back(parameter);
+            total += parameter.numel();
+        }
+    }
+    values = torch::zeros({total});
+    gradients = torch::zeros({total});
+    const torch::NoGradGuard no_grad;
+    std::int64_t offset = 0;
+    for (torch::Tensor& parameter : parameters_) {
+        view_of(values, offset, parameter).copy_(parameter);
+        parameter.mutable_grad() = view_of(gradients, offset, parameter);
+        offset += parameter.numel();
+    }
+    use_values(values);
+}
+
+void FlatModel::use_values(const torch::Tensor& other) {
+    ITEM3D_CHECK(other.numel() == gradients.numel(), "another model's parameters");
+    std::int64_t offset = 0;
+    for (torch::Tensor& parameter : parameters_) {
+        parameter.set_data(view_of(other, offset, parameter));
+        offset += parameter.numel();
+    }
+}
+
+ReplicaGroup::ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas,
+                           const AdamOptions& options)
+    : replicas_(std::move(replicas)),
+      options_(options),
+      square_sums_(replicas_.size()),
+      barrier_(static_cast<std::ptrdiff_t>(replicas_.size())) {
+    ITEM3D_CHECK(!replicas_.empty(), "a group needs a replica");
+    const torch::Tensor& values = replicas_[0]->values;
+    for (auto& replica : replicas_) replica->values.copy_(values);
+    first_moment_ = torch::zeros_like(values);
+    second_moment_ = torch::zeros_like(values);
+    average_ = values.clone();
+}
+
+void ReplicaGroup::wait() {
+    barrier_.arrive_and_wait();
+    if (failed_) throw std::runtime_error("another replica failed");
+}
+
+void ReplicaGroup::fail() {
+    failed_ = true;
+    barrier_.arrive_and_drop();
+}
+
+ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
+    const auto ranks = static_cast<std::int64_t>(replicas_.size());
+    const std::int64_t total = replicas_[0]->size();
+    const std::int64_t begin = total * rank / ranks, end = total * (rank + 1) / ranks;
+    if (rank == 0) stop_ = request.stop;
+    wait();
+
+    // Each rank looks after its part of the vector: the sum goes to replica 0's gradients.
+    auto* sum = replicas_[0]->gradients.data_ptr<float>();
+    for (std::int64_t other = 1; other < ranks; ++other) {
+        const auto* from = replicas_[static_cast<std::size_t>(other)]->gradients.data_ptr<float>();
+        for (std::int64_t i = begin; i < end; ++i) sum[i] += from[i];
+    }
+    const float share = 1.0f / static_cast<float>(ranks);
+    double squares = 0;
+    for (std::int64_t i = begin; i < end; ++i) {
+        sum[i] *= share;
+        squares += static_cast<double>(sum[i]) * sum[i];
+    }
+    square_sums_[static_cast<std::size_t>(rank)] = squares;
+    wait();
+
+    double all_squares = 0;
+    for (const double each : square_sums_) all_squares += each;
+    const auto norm = static_cast<float>(std::sqrt(all_squares));
+    const float clip = norm > options_.clip_norm ? options_.clip_norm / norm : 1.0f;
+    const auto time = static_cast<double>(steps_ + 1);
+    const auto correction1 = static_cast<float>(1 / (1 - std::pow(double{options_.beta1}, time)));
+    const auto correction2 = static_cast<float>(1 / (1 - std::pow(double{options_.beta2}, time)));
+    auto* values = replicas_[0]->values.data_ptr<float>();
+    auto* m = first_moment_.data_ptr<float>();
+    auto* v = second_moment_.data_ptr<float>();
+    auto* average = average_.data_ptr<float>();
+    for (std::int64_t i = begin; i < end; ++i) {
+        const float gradient = sum[i] * clip;
+        m[i] = options_.beta1 * m[i] + (1 - options_.beta1) * gradient;
+        v[i] = options_.beta2 * v[i] + (1 - options_.beta2) * gradient * gradient;
+        const float change = m[i] * correction1 / (std::sqrt(v[i] * correction2) + options_.epsilon);
+        values[i] -= request.learning_rate * (change + options_.weight_decay * values[i]);
+        average[i] += (1 - request.ema_decay) * (values[i] - average[i]);
+        sum[i] = 0;
+    }
+    for (std::int64_t other = 1; other < ranks; ++other) {
+        FlatModel& replica = *replicas_[static_cast<std::size_t>(other)];
+        std::copy(values + begin, values + end, replica.values.data_ptr<float>() + begin);
+        std::fill_n(replica.gradients.data_ptr<float>() + begin, end - begin, 0.0f);
+    }
+    const bool stop = stop_;
+    wait();
+    if (rank == 0) ++steps_;  // read by the others only after the next wait
+    return {norm, stop};
+}
+
+std::vector<std::pair<std::string, torch::Tensor>> ReplicaGroup::state() const {
+    return {{"values", replicas_[0]->values},
+            {"average", average_},
+            {"first_moment", first_moment_},
+            {"second_moment", second_moment_},
+            {"steps", torch::tensor({steps_}, torch::kInt64)}};
+}
+
+void ReplicaGroup::load_state(const std::vector<std::pair<std::string, torch::Tensor>>& state) {
+    const torch::NoGradGuard no_grad;
+    for (const auto& [name, tensor] : state) {
+        if (name == "steps") {
+            steps_ = tensor.item<std::int64_t>();
+            continue;
+        }
+        ITEM3D_CHECK(tensor.numel() == average_.numel(), "the state of another model: " + name);
+        if (name == "average") average_.copy_(tensor);
+        if (name == "first_moment") first_moment_.copy_(tensor);
+        if (name == "second_moment") second_moment_.copy_(tensor);
+        if (name == "values")
+            for (auto& replica : replicas_) replica->values.copy_(tensor);
+    }
+}
+
+Autocast::Autocast()
+    : enabled_before_(at::autocast::is_autocast_enabled(at::kCPU)),
+      cache_before_(at::autocast::is_autocast_cache_enabled()) {
+    at::autocast::set_autocast_enabled(at::kCPU, true);
+    at::autocast::set_autocast_dtype(at::kCPU, at::kBFloat16);
+    // The cache of converted weights is shared by all threads; each weight is used once anyway.
+    at::autocast::set_autocast_cache_enabled(false);
+}
+
+Autocast::~Autocast() {
+    at::autocast::set_autocast_enabled(at::kCPU, enabled_before_);
+    at::autocast::set_autocast_cache_enabled(cache_before_);
+}
+
+}  // namespace item3d

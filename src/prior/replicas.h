@@ -1,0 +1,97 @@
+// Data-parallel training on the threads of one process: each replica has its own copy of the model,
+// gradients are averaged in a fixed order, so that results do not depend on timing.
+#pragma once
+
+#include <atomic>
+#include <barrier>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <torch/torch.h>
+
+namespace item3d {
+
+/// All parameters of some modules as views of one vector, and their gradients of another.
+/// Convolution weights are laid out channels-last.
+class FlatModel {
+  public:
+    explicit FlatModel(const std::vector<std::shared_ptr<torch::nn::Module>>& modules);
+    torch::Tensor values;     ///< [P] float32
+    torch::Tensor gradients;  ///< [P] float32; backward() adds to it
+    /// Makes the modules use another vector of values from now on (for the moving average).
+    void use_values(const torch::Tensor& other);
+    std::int64_t size() const { return values.numel(); }
+
+  private:
+    std::vector<torch::Tensor> parameters_;
+};
+
+struct AdamOptions {
+    float beta1 = 0.9f;
+    float beta2 = 0.99f;
+    float epsilon = 1e-8f;
+    float weight_decay = 0.01f;
+    float clip_norm = 1.0f;  ///< largest norm of the averaged gradient
+};
+
+/// AdamW (Loshchilov and Hutter 2019) over the replicas, with a moving average of the parameters.
+class ReplicaGroup {
+  public:
+    /// All replicas get the first one's values.
+    ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas, const AdamOptions& options);
+
+    FlatModel& replica(int rank) { return *replicas_[static_cast<std::size_t>(rank)]; }
+    int size() const { return static_cast<int>(replicas_.size()); }
+
+    struct Request {
+        float learning_rate = 0;
+        float ema_decay = 0;
+        bool stop = false;  ///< rank 0's is what counts
+    };
+    struct Result {
+        float gradient_norm;  ///< before clipping
+        bool stop;
+    };
+    /// To be called by every rank, on its own thread, after its backward pass: averages the gradients,
+    /// clips, steps all replicas alike, and clears the gradients. Throws std::runtime_error when
+    /// another rank has failed. Between two calls rank 0 may read everything but gradients.
+    Result step(int rank, const Request& request);
+    /// To be called by a rank that leaves early through an exception, so that the others do not wait.
+    void fail();
+
+    std::int64_t steps() const { return steps_; }
+    const torch::Tensor& average() const { return average_; }  ///< [P] moving average
+
+    /// Everything but gradients, by name; load_state takes what state gave.
+    std::vector<std::pair<std::string, torch::Tensor>> state() const;
+    void load_state(const std::vector<std::pair<std::string, torch::Tensor>>& state);
+
+  private:
+    void wait();
+
+    std::vector<std::unique_ptr<FlatModel>> replicas_;
+    AdamOptions options_;
+    torch::Tensor first_moment_, second_moment_, average_;
+    std::vector<double> square_sums_;
+    std::int64_t steps_ = 0;
+    bool stop_ = false;
+    std::atomic<bool> failed_ = false;
+    std::barrier<> barrier_;
+};
+
+/// bfloat16 autocast on this thread for as long as it lives (CPU operations).
+class Autocast {
+  public:
+    Autocast();
+    ~Autocast();
+    Autocast(const Autocast&) = delete;
+    Autocast& operator=(const Autocast&) = delete;
+
+  private:
+    bool enabled_before_;
+    bool cache_before_;
+};
+
+}  // namespace item3d

@@ -1,0 +1,197 @@
+#include "item3d/prior/train.h"
+
+#include <atomic>
+#include <mutex>
+
+#include <fmt/format.h>
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/progress.h"
+#include "item3d/models/safetensors.h"
+#include "item3d/prior/captions.h"
+#include "item3d/prior/export.h"
+#include "item3d/prior/replicas.h"
+#include "item3d/prior/tokenizer_training.h"
+#include "item3d/prior/workers.h"
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Streams of the seed for each use.
+enum Stream : std::uint64_t { vocabulary_stream = 11, light_stream, view_stream, example_stream,
+                              held_out_stream };
+
+std::uint64_t seed_of(const TrainSettings& settings, Stream stream) {
+    return mix_bits(settings.seed * 1000 + stream);
+}
+
+void stop_if_interrupted(const TrainSettings& settings) {
+    if (interrupted())
+        throw Interrupted("what was finished is in " + settings.work.string() +
+                          "; the same command with --resume goes on");
+}
+
+ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLight> lights,
+                          bool held_out) {
+    std::vector<View> views =
+        make_view_pool(held_out, settings.shape_variants, settings.views_each,
+                       seed_of(settings, held_out ? held_out_stream : view_stream), settings.replicas);
+    stop_if_interrupted(settings);
+    return ExampleSource(std::move(views), std::move(lights),
+                         seed_of(settings, held_out ? held_out_stream : example_stream));
+}
+
+PictureData draw_pictures(const ExampleSource& source, std::int64_t count,
+                          const TrainSettings& settings) {
+    PictureData data;
+    data.images = torch::empty({count, picture_size, picture_size, 3}, torch::kUInt8);
+    data.covered = torch::empty({count, picture_size, picture_size}, torch::kUInt8);
+    Progress progress("pictures", count);
+    std::atomic<std::int64_t> done = 0;
+    std::mutex mutex;
+    run_workers(count, settings.replicas, [&](std::int64_t i) {
+        const Example example = source.draw(i);
+        data.images[i].copy_((example.image * 255).round());
+        data.covered[i].copy_((example.covered * 255).round());
+        const std::lock_guard lock(mutex);
+        progress.update(++done);
+    });
+    stop_if_interrupted(settings);
+    return data;
+}
+
+LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencoder,
+                        const ClipTokenizer& tokenizer, const TrainSettings& settings) {
+    constexpr std::int64_t block = 32;
+    const std::int64_t count = settings.data_samples / block * block;
+    LatentData data;
+    data.latents = torch::empty({count, 4, latent_size, latent_size}, torch::kHalf);
+    data.depth = torch::empty({count, 1, latent_size, latent_size}, torch::kHalf);
+    data.tokens = torch::empty({count, text_length}, torch::kInt16);
+    data.empty_tokens = tokenizer.encode_batch({""}, text_length)[0].to(torch::kInt16);
+    Progress progress("examples", count);
+    std::atomic<std::int64_t> done = 0;
+    std::mutex mutex;
+    run_workers(count / block, settings.replicas, [&](std::int64_t job) {
+        const Autocast autocast;
+        std::vector<torch::Tensor> images, depths;
+        std::vector<std::string> captions;
+        for (std::int64_t i = job * block; i < (job + 1) * block; ++i) {
+            Example example = source.draw(i);
+            images.push_back(std::move(example.image));
+            depths.push_back(std::move(example.depth));
+            captions.push_back(std::move(example.caption));
+        }
+        // [N, H, W, 3] seen as [N, 3, H, W] is channels-last already.
+        const torch::Tensor pictures = torch::stack(images).permute({0, 3, 1, 2}) * 2 - 1;
+        const torch::Tensor latents =
+            autoencoder.encode(pictures).to(torch::kFloat32) * autoencoder.scaling_factor();
+        const auto rows = [&](torch::Tensor& all) { return all.slice(0, job * block, (job + 1) * block); };
+        rows(data.latents).copy_(latents);
+        rows(data.depth).copy_(torch::stack(depths));
+        rows(data.tokens).copy_(tokenizer.encode_batch(captions, text_length));
+        const std::lock_guard lock(mutex);
+        progress.update(done += block);
+    });
+    stop_if_interrupted(settings);
+    return data;
+}
+
+/// What the data depends on: a work folder made with other settings is not gone on with.
+nlohmann::json fingerprint(const TrainSettings& s) {
+    return {{"version", 1},
+            {"seed", s.seed},
+            {"data_samples", s.data_samples},
+            {"autoencoder_samples", s.autoencoder_samples},
+            {"autoencoder_pictures", s.autoencoder_pictures},
+            {"shape_variants", s.shape_variants},
+            {"views_each", s.views_each},
+            {"lights", s.lights},
+            {"replicas", s.replicas},
+            {"batch", s.batch}};
+}
+
+void open_work_folder(const TrainSettings& settings) {
+    make_output_folder(settings.work);
+    const fs::path file = settings.work / "settings.json";
+    if (settings.resume && fs::exists(file)) {
+        const auto before = nlohmann::json::parse(read_text(file), nullptr, false);
+        if (before != fingerprint(settings))
+            throw InputError(file.string(),
+                             "the work folder was made with other settings: " + before.dump(),
+                             "give the same ones, or train without --resume");
+        return;
+    }
+    for (const char* stale : {"autoencoder.safetensors", "pictures.safetensors", "data.safetensors",
+                              "checkpoint.safetensors", "autoencoder.json"})
+        fs::remove(settings.work / stale);
+    write_atomically(file, fingerprint(settings).dump(2) + "\n");
+}
+
+struct Prepared {
+    LatentData data;
+    nlohmann::json record;  ///< for prior.json's "train"
+};
+
+Prepared read_prepared(const TrainSettings& settings) {
+    const SafeTensors file = SafeTensors::open(settings.work / "data.safetensors");
+    Prepared prepared;
+    prepared.data = {file.tensor("latents"), file.tensor("depth"), file.tensor("tokens"),
+                     file.tensor("empty_tokens")};
+    prepared.record = nlohmann::json::parse(read_text(settings.work / "autoencoder.json"));
+    return prepared;
+}
+
+Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) {
+    const std::vector<TrainingLight> lights =
+        make_training_lights(seed_of(settings, light_stream), settings.lights, settings.replicas);
+    stop_if_interrupted(settings);
+    const ExampleSource source = make_source(settings, lights, false);
+    const fs::path pictures_file = settings.work / "pictures.safetensors";
+    if (!settings.resume || !fs::exists(pictures_file)) {
+        const ExampleSource held_out = make_source(settings, lights, true);
+        const PictureData seen = draw_pictures(source, settings.autoencoder_pictures, settings);
+        const PictureData unseen =
+            draw_pictures(held_out, std::min<std::int64_t>(512, settings.autoencoder_pictures), settings);
+        save_safetensors(pictures_file, {{"images", seen.images},
+                                         {"covered", seen.covered},
+                                         {"held_out_images", unseen.images},
+                                         {"held_out_covered", unseen.covered}});
+    }
+    const SafeTensors file = SafeTensors::open(pictures_file);
+    const TrainedAutoencoder autoencoder =
+        train_autoencoder({file.tensor("images"), file.tensor("covered")},
+                          {file.tensor("held_out_images"), file.tensor("held_out_covered")}, settings);
+    note(fmt::format("autoencoder: held-out PSNR {:.2f} dB, on objects {:.2f} dB, scaling factor {:.4f}",
+                     autoencoder.psnr, autoencoder.object_psnr, autoencoder.model->scaling_factor()));
+    export_autoencoder(settings.output, *autoencoder.model, tokenizer);
+    Prepared prepared;
+    prepared.record = {{"psnr", autoencoder.psnr}, {"object_psnr", autoencoder.object_psnr}};
+    write_atomically(settings.work / "autoencoder.json", prepared.record.dump(2) + "\n");
+    prepared.data = draw_latents(source, *autoencoder.model, tokenizer, settings);
+    save_safetensors(settings.work / "data.safetensors", {{"latents", prepared.data.latents},
+                                                          {"depth", prepared.data.depth},
+                                                          {"tokens", prepared.data.tokens},
+                                                          {"empty_tokens", prepared.data.empty_tokens}});
+    return prepared;
+}
+
+}  // namespace
+
+void train_prior(const TrainSettings& settings) {
+    keep_freed_memory();
+    make_output_folder(settings.output);
+    open_work_folder(settings);
+    const ClipTokenizer tokenizer = train_tokenizer(
+        caption_vocabulary(seed_of(settings, vocabulary_stream)), text_length);
+    const bool prepared_before = settings.resume && fs::exists(settings.work / "data.safetensors");
+    const Prepared prepared = prepared_before ? read_prepared(settings) : prepare(settings, tokenizer);
+    const ClipTextConfig text = prior_text_config(static_cast<int>(tokenizer.size()),
+                                                  tokenizer.bos_id(), tokenizer.eos_id());
+    train_diffusion(prepared.data, settings, text, prepared.record);
+}
+
+}  // namespace item3d

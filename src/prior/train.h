@@ -1,0 +1,81 @@
+// Training the embedded prior from nothing: data, tokenizer, autoencoder, text encoder and U-Net.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+#include <torch/torch.h>
+
+#include "item3d/models/autoencoder.h"
+#include "item3d/models/clip_text.h"
+#include "item3d/models/unet.h"
+#include "item3d/prior/dataset.h"
+
+namespace item3d {
+
+struct TrainSettings {
+    std::filesystem::path output;       ///< the diffusers folder
+    std::filesystem::path work;         ///< data, checkpoints; may be deleted afterwards
+    std::int64_t samples = 600000;      ///< pictures that the U-Net sees, repetitions counted
+    std::int64_t data_samples = 120000; ///< different pictures
+    std::int64_t autoencoder_samples = 72000;
+    std::int64_t autoencoder_pictures = 12000;
+    int shape_variants = 30;
+    int views_each = 8;
+    int lights = 320;
+    int replicas = 2;
+    int batch = 32;                     ///< pictures a step and replica
+    float learning_rate = 1e-3f;
+    std::uint64_t seed = 1;
+    bool resume = false;
+    double checkpoint_seconds = 120;
+    double export_seconds = 600;
+};
+
+/// What the U-Net learns from, encoded. N rows.
+struct LatentData {
+    torch::Tensor latents;  ///< [N, 4, 16, 16] fp16, scaled
+    torch::Tensor depth;    ///< [N, 1, 16, 16] fp16
+    torch::Tensor tokens;   ///< [N, 20] int16
+    torch::Tensor empty_tokens;  ///< [20] int16, the empty prompt
+};
+
+inline constexpr int text_length = 20;
+
+/// Pictures for the autoencoder.
+struct PictureData {
+    torch::Tensor images;   ///< [N, 64, 64, 3] uint8 sRGB
+    torch::Tensor covered;  ///< [N, 64, 64] uint8
+};
+
+/// The learning rate after `seen` of `total` pictures, as a part of the highest: a short rise, a
+/// plateau, and a linear fall over the last 30 %. A function of counts alone, so that a longer
+/// training can go on from a shorter one's plateau.
+double learning_rate_part(std::int64_t seen, std::int64_t total);
+
+AutoencoderTinyConfig prior_autoencoder_config();
+UNet2DConditionConfig prior_unet_config();
+ClipTextConfig prior_text_config(int vocabulary, int start_of_text, int end_of_text);
+
+/// Trains (or, when resuming, reads) the autoencoder. Sets its scaling factor. Returns it with its
+/// held-out PSNR in dB, over `held_out` pictures.
+struct TrainedAutoencoder {
+    std::shared_ptr<AutoencoderTiny> model;
+    double psnr = 0;
+    double object_psnr = 0;  ///< of object pixels alone
+};
+TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureData& held_out,
+                                     const TrainSettings& settings);
+
+/// Trains text encoder and U-Net together. Exports now and then. Throws Interrupted after writing a
+/// checkpoint. Returns {"samples", "loss", "seconds", ...}.
+nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& settings,
+                               const ClipTextConfig& text_config, const nlohmann::json& so_far);
+
+/// The whole training; fills settings.output.
+void train_prior(const TrainSettings& settings);
+
+}  // namespace item3d

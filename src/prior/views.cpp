@@ -1,0 +1,150 @@
+#include "item3d/prior/views.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+
+#include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+#include "item3d/models/pipeline.h"
+#include "item3d/prior/polygonize.h"
+#include "item3d/prior/shapes.h"
+#include "item3d/prior/workers.h"
+#include "item3d/render/rasterize.h"
+#include "item3d/scene/camera.h"
+
+namespace item3d {
+namespace {
+
+/// A camera on a random side, so far away that the mesh fills that part of the picture.
+Camera random_camera(Random& random, const std::vector<Vec3>& positions) {
+    const auto azimuth = static_cast<float>(random.uniform(0, 2 * pi));
+    const auto elevation = static_cast<float>(glm::radians(random.uniform(-10, 50)));
+    const auto fov = static_cast<float>(glm::radians(random.uniform(25, 45)));
+    const auto fill = static_cast<float>(random.uniform(.6, .95));
+    const Mat4 to_camera = orbit_camera(Vec3(0.0f), 1, azimuth, elevation, fov).world_to_camera();
+    const float tangent = std::tan(fov / 2);
+    float distance = 0;
+    // One vertex in seven is enough to find the outline.
+    for (std::size_t i = 0; i < positions.size(); i += 7) {
+        const Vec3 p = Vec3(to_camera * Vec4(positions[i], 1));  // origin is 1 in front: z = -1 + ..
+        const float reach = std::max(std::abs(p.x), std::abs(p.y)) / (tangent * fill);
+        distance = std::max(distance, p.z + 1 + reach);
+    }
+    Camera camera = orbit_camera(Vec3(0.0f), distance, azimuth, elevation, fov);
+    // Shift the camera sideways by a part of the free margin.
+    const float margin = (1 - fill) * tangent * distance * .7f;
+    const auto dx = static_cast<float>(random.uniform(-margin, margin));
+    const auto dy = static_cast<float>(random.uniform(-margin, margin));
+    camera.camera_to_world[3] += camera.camera_to_world[0] * dx + camera.camera_to_world[1] * dy;
+    return camera;
+}
+
+Geometry to_geometry(const Primitive& primitive) {
+    Model model;
+    model.primitives.push_back(primitive);
+    model.materials.emplace_back();
+    return Geometry::from_model(model);
+}
+
+std::int16_t pack(float value) {
+    return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 32767.0f));
+}
+
+/// Open sky along the normal, near and a little farther off: 1 in the open, less in corners.
+float ambient_occlusion(const SignedDistance& distance, const Polygonized& mesh, const Vec3& p,
+                        const Vec3& n) {
+    float open = 0;
+    for (const float step : {.08f, .25f}) {
+        const Vec3 q = (p + step * n) * mesh.scale + mesh.center;
+        open += std::clamp(distance(q) / (step * mesh.scale), 0.0f, 1.0f) * .5f;
+    }
+    return open;
+}
+
+}  // namespace
+
+std::vector<View> make_views(const std::string& shape_class, int variant, int count,
+                             std::uint64_t seed, int resolution) {
+    const torch::NoGradGuard no_grad;
+    const SignedDistance distance = make_shape(shape_class, variant);
+    const Polygonized mesh = polygonize(distance, resolution);
+    const Geometry geometry = to_geometry(mesh.primitive);
+
+    const auto& classes = shape_classes();
+    const auto known = std::find_if(classes.begin(), classes.end(),
+                                    [&](const ShapeClass& c) { return c.name == shape_class; });
+    ITEM3D_CHECK(known != classes.end(), "no shape class is called " + shape_class);
+    const auto index = static_cast<int>(known - classes.begin());
+    Random random(seed, static_cast<std::uint64_t>(index * 1000 + variant));
+    std::vector<Camera> cameras;
+    for (int i = 0; i < count; ++i) cameras.push_back(random_camera(random, mesh.primitive.positions));
+    const Raster raster = rasterize(geometry, cameras, view_size, view_size);
+    const Surface surface = interpolate_surface(geometry, raster, cameras);
+    const torch::Tensor depth = depth_condition(raster.depth, view_size / latent_size);  // [N, 1, h, w]
+
+    std::vector<View> views(cameras.size());
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        views[i].shape_class = index;
+        views[i].variant = variant;
+        views[i].camera = cameras[i].position();
+        views[i].depth = depth[static_cast<std::int64_t>(i)].to(torch::kHalf).contiguous();
+    }
+    const torch::Tensor pixels = surface.pixel.contiguous();
+    const torch::Tensor positions = surface.position.contiguous();
+    const torch::Tensor normals = surface.normal.contiguous();
+    const auto* pixel = pixels.data_ptr<std::int64_t>();
+    const auto* position = positions.data_ptr<float>();
+    const auto* normal = normals.data_ptr<float>();
+    for (std::int64_t i = 0; i < surface.count(); ++i) {
+        constexpr std::int64_t area = view_size * view_size;
+        View& view = views[static_cast<std::size_t>(pixel[i] / area)];
+        const Vec3 p(position[3 * i], position[3 * i + 1], position[3 * i + 2]);
+        const Vec3 n(normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]);
+        view.pixel.push_back(static_cast<std::uint16_t>(pixel[i] % area));
+        for (int c = 0; c < 3; ++c) {
+            view.position.push_back(pack(p[c]));
+            view.normal.push_back(pack(n[c]));
+        }
+        view.occlusion.push_back(
+            static_cast<std::uint8_t>(ambient_occlusion(distance, mesh, p, n) * 255.0f + .5f));
+    }
+    for (View& view : views) {
+        view.pixel.shrink_to_fit();
+        view.position.shrink_to_fit();
+        view.normal.shrink_to_fit();
+        view.occlusion.shrink_to_fit();
+    }
+    return views;
+}
+
+std::vector<View> make_view_pool(bool held_out, int variants, int views_each, std::uint64_t seed,
+                                 int threads) {
+    struct Job {
+        std::string shape_class;
+        int variant;
+    };
+    std::vector<Job> jobs;
+    for (const ShapeClass& each : shape_classes()) {
+        const int first = held_out && !each.held_out ? training_variants : 0;
+        const int end = held_out ? shape_variants : each.held_out ? 0 : training_variants;
+        for (int i = first; i < std::min(end, first + variants); ++i) jobs.push_back({each.name, i});
+    }
+    std::vector<std::vector<View>> made(jobs.size());
+    std::atomic<std::int64_t> done = 0;
+    std::mutex mutex;
+    Progress progress(held_out ? "held-out shapes" : "shapes", static_cast<std::int64_t>(jobs.size()));
+    run_workers(static_cast<std::int64_t>(jobs.size()), threads, [&](std::int64_t i) {
+        const Job& job = jobs[static_cast<std::size_t>(i)];
+        made[static_cast<std::size_t>(i)] = make_views(job.shape_class, job.variant, views_each, seed);
+        const std::lock_guard lock(mutex);
+        progress.update(++done);
+    });
+    std::vector<View> pool;
+    for (std::vector<View>& views : made)
+        for (View& view : views) pool.push_back(std::move(view));
+    return pool;
+}
+
+}  // namespace item3d

@@ -1,0 +1,53 @@
+// Procedural shapes seen from random cameras: G-buffers, rendered once and shaded many times.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <torch/torch.h>
+
+#include "item3d/core/math.h"
+#include "item3d/core/random.h"
+
+namespace item3d {
+
+/// Edge of a G-buffer in pixels, of a picture (each pixel the mean of 2x2), and of its latents.
+inline constexpr int view_size = 128;
+inline constexpr int picture_size = 64;
+inline constexpr int latent_size = 16;
+
+/// One view of one shape, covered pixels alone (P of them), 15 bytes a pixel. Coordinates are the
+/// shape's own, scaled into the unit sphere.
+struct View {
+    int shape_class = 0;  ///< index into shape_classes()
+    int variant = 0;
+    Vec3 camera{0.0f};                  ///< position
+    std::vector<std::uint16_t> pixel;   ///< [P] y * view_size + x
+    std::vector<std::int16_t> position; ///< [P * 3] in units of 1 / 32767
+    std::vector<std::int16_t> normal;   ///< [P * 3] likewise, unit, towards the viewer
+    std::vector<std::uint8_t> occlusion;///< [P] 255: open
+    torch::Tensor depth;  ///< [1, latent_size, latent_size] fp16, depth_condition of models/pipeline.h
+
+    std::size_t count() const { return pixel.size(); }
+    Vec3 position_at(std::size_t i) const {
+        return Vec3(position[3 * i], position[3 * i + 1], position[3 * i + 2]) / 32767.0f;
+    }
+    Vec3 normal_at(std::size_t i) const {
+        return glm::normalize(Vec3(normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]));
+    }
+};
+
+/// `count` views of one shape from random cameras all around: elevation -10..50 degrees,
+/// horizontal field of view 25..45 degrees, the shape filling 60 to 95 % of the picture.
+std::vector<View> make_views(const std::string& shape_class, int variant, int count,
+                             std::uint64_t seed, int resolution = 96);
+
+/// Views of every shape that is for training, or of every one that is held out (variants from
+/// training_variants on, and whole classes), in a fixed order. variants: at most this many of each
+/// class. Returns what there is after an interrupt.
+std::vector<View> make_view_pool(bool held_out, int variants, int views_each, std::uint64_t seed,
+                                 int threads);
+
+}  // namespace item3d
