@@ -1,0 +1,152 @@
+// The program as a user meets it: what it says, where, and its exit code.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+    int code = -1;
+    std::string out;
+    std::string error;
+};
+
+std::string read_file(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+class Program : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("item3d_cli_" + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+        cube_ = folder_ / "cube.obj";
+        std::ofstream(cube_) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    /// Runs `item3d ARGUMENTS`; 124 stands for a minute without an end.
+    Result run(const std::string& arguments, const std::string& before = "") const {
+        const fs::path out = folder_ / "stdout";
+        const fs::path error = folder_ / "stderr";
+        const std::string command = before + "timeout 60 '" ITEM3D_PROGRAM "' " + arguments +
+                                    " >'" + out.string() + "' 2>'" + error.string() + "'";
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(error)};
+    }
+
+    /// The error is one line on stderr that names `subject`.
+    void expect_error(const std::string& arguments, int code, const std::string& subject,
+                      const std::string& before = "") const {
+        const Result result = run(arguments, before);
+        EXPECT_EQ(result.code, code) << arguments << "\n" << result.error;
+        const std::size_t start = result.error.find("item3d: error: ");
+        ASSERT_NE(start, std::string::npos) << arguments << "\n" << result.error;
+        const std::string line = result.error.substr(start);
+        EXPECT_NE(line.find(subject), std::string::npos) << line;
+        EXPECT_EQ(line.find('\n'), line.size() - 1) << "more than one line: " << line;
+    }
+
+    std::string quoted(const fs::path& path) const { return "'" + path.string() + "'"; }
+
+    fs::path folder_;
+    fs::path cube_;
+};
+
+TEST_F(Program, HelpAndVersionGoToStdout) {
+    const Result help = run("--help");
+    EXPECT_EQ(help.code, 0);
+    for (const char* command : {"edit", "render", "generate", "prior"}) {
+        EXPECT_NE(help.out.find(command), std::string::npos) << command;
+        EXPECT_EQ(run(std::string(command) + " --help").code, 0) << command;
+    }
+    const Result version = run("--version");
+    EXPECT_EQ(version.code, 0);
+    EXPECT_EQ(version.out.rfind("item3d ", 0), 0u) << version.out;
+}
+
+TEST_F(Program, WrongUsageIsTwo) {
+    EXPECT_EQ(run("").code, 2);
+    EXPECT_EQ(run("no_such_command").code, 2);
+    EXPECT_EQ(run("render").code, 2);
+    EXPECT_EQ(run("render a.glb -o b.png --no-such-option").code, 2);
+    EXPECT_EQ(run("render a.glb -o b.png --threads 0").code, 2);
+    EXPECT_EQ(run("render a.glb -o b.png --device tpu").code, 2);
+    EXPECT_EQ(
+        run("render " + quoted(cube_) + " -o " + quoted(folder_ / "b.png") + " --size 0x0").code,
+        2);
+}
+
+TEST_F(Program, WhatCannotBeReadIsThreeAndNamed) {
+    const std::string to = " -o " + quoted(folder_ / "picture.png");
+    expect_error("render /nowhere/model.glb" + to, 3, "/nowhere/model.glb");
+    expect_error("render " + quoted(folder_) + to, 3, folder_.string());
+    expect_error("render " + quoted(cube_) + to + " --light /nowhere.hdr", 3, "/nowhere.hdr");
+    expect_error("render " + quoted(cube_) + to + " --cameras /nowhere.json", 3, "/nowhere.json");
+    std::ofstream(folder_ / "empty.glb").flush();
+    expect_error("render " + quoted(folder_ / "empty.glb") + to, 3, "empty.glb");
+    EXPECT_FALSE(fs::exists(folder_ / "picture.png"));
+}
+
+TEST_F(Program, WhatCannotBeWrittenIsNamed) {
+    expect_error("render " + quoted(cube_) + " -o " + quoted(cube_ / "below" / "p.png"), 3,
+                 "below");
+    // A limit on file sizes stands for a full disk.
+    expect_error("render " + quoted(cube_) + " --size 256x256 -o " + quoted(folder_ / "full.png"),
+                 4, "full", "ulimit -f 0; exec 2>&1; ");
+    EXPECT_FALSE(fs::exists(folder_ / "full.png"));
+}
+
+TEST_F(Program, QuietIsQuiet) {
+    const Result result =
+        run("render " + quoted(cube_) + " --quiet --size 32x32 -o " + quoted(folder_ / "p.png"));
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    EXPECT_TRUE(fs::exists(folder_ / "p.png"));
+}
+
+TEST_F(Program, JsonIsOneObjectOnStdout) {
+    const Result result =
+        run("render " + quoted(cube_) + " --json --size 32x32 -o " + quoted(folder_ / "p.png"));
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_EQ(result.out.front(), '{') << result.out;
+    EXPECT_EQ(result.out.substr(result.out.size() - 2), "}\n") << result.out;
+}
+
+// Malformed models and images of all kinds: refused (3) or read with a warning (0), in seconds.
+TEST_F(Program, MalformedFilesAreRefusedOrWarnedAbout) {
+    const fs::path bad = fs::path(ITEM3D_SHARED_DATA) / "data" / "bad";
+    if (!fs::is_directory(bad)) GTEST_SKIP() << "no " << bad;
+    const std::string to = " --quiet --size 16x16 -o " + quoted(folder_ / "bad.png");
+    for (const auto& entry : fs::directory_iterator(bad)) {
+        const std::string extension = entry.path().extension().string();
+        std::string arguments;
+        if (extension == ".glb" || extension == ".gltf" || extension == ".obj") {
+            arguments = "render " + quoted(entry.path()) + to;
+        } else if (extension == ".hdr" || extension == ".exr" || extension == ".png") {
+            arguments = "render " + quoted(cube_) + to + " --light " + quoted(entry.path());
+        } else {
+            continue;
+        }
+        const Result result = run(arguments);
+        EXPECT_TRUE(result.code == 0 || result.code == 3)
+            << entry.path().filename() << ": " << result.code << "\n"
+            << result.error;
+        EXPECT_FALSE(result.code == 3 && result.error.empty()) << entry.path().filename();
+    }
+}
+
+}  // namespace
