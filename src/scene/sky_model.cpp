@@ -29,6 +29,10 @@ const Double3 ozone_absorption(0.650e-3, 1.881e-3, 0.085e-3);
 constexpr double ozone_centre = 25.0;
 constexpr double ozone_half_width = 15.0;
 
+/// Along the longest ray that the observer sees (1100 km) the zenith turns by 10 degrees, so the
+/// cosine of the sun's zenith angle stays within this of the observer's.
+constexpr double mu_sun_reach = 0.2;
+
 /// What a small volume of air does to light, per kilometre.
 struct Medium {
     Double3 rayleigh;
@@ -116,8 +120,9 @@ class Atmosphere {
         : haze_(options.haze),
           sun_radius_(options.sun_radius),
           ground_albedo_(options.ground_albedo),
+          mu_sun_(options.sun_direction.y),
           transmittance_(128, 48),
-          multiple_(32, 32) {
+          multiple_(9, 32) {
         fill_transmittance();
         fill_multiple_scattering();
     }
@@ -189,7 +194,8 @@ class Atmosphere {
 
   private:
     Double3 multiple(double radius, double mu_sun) const {
-        return multiple_.lookup(0.5 + 0.5 * mu_sun, height_parameter(radius));
+        return multiple_.lookup((mu_sun - mu_sun_) / (2 * mu_sun_reach) + 0.5,
+                                height_parameter(radius));
     }
 
     void fill_transmittance() {
@@ -231,7 +237,9 @@ class Atmosphere {
                 const double radius = std::min(
                     std::sqrt(rho * rho + ground_radius * ground_radius) + 1e-3, top_radius - 1e-3);
                 for (int column = 0; column < multiple_.width(); ++column) {
-                    const double mu_sun = 2.0 * column / (multiple_.width() - 1) - 1.0;
+                    const double part = static_cast<double>(column) / (multiple_.width() - 1);
+                    const double mu_sun =
+                        std::clamp(mu_sun_ + (2 * part - 1) * mu_sun_reach, -1.0, 1.0);
                     const double sine_sun = std::sqrt(std::max(0.0, 1 - mu_sun * mu_sun));
                     Double3 second(0);
                     Double3 again(0);
@@ -255,6 +263,7 @@ class Atmosphere {
     double haze_;
     double sun_radius_;
     Double3 ground_albedo_;
+    double mu_sun_;  ///< cosine of the sun's zenith angle at the observer
     Table transmittance_;
     Table multiple_;
 };
