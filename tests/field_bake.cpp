@@ -281,11 +281,30 @@ TEST(Bake, KeepsAlpha) {
     }
 }
 
-TEST(Bake, VertexColoursAreNotBakedIn) {
+TEST(Bake, VertexColoursBecomePartOfTheTexture) {
     Model model = make_model(make_quad());
-    model.primitives[0].colors.assign(4, Vec4(0.5f, 0.5f, 0.5f, 1.0f));
+    EXPECT_FALSE(Fitted(model, 5).bake_now(quiet_bake()).includes_vertex_colors);
+    model.primitives[0].colors.assign(4, Vec4(0.5f, 0.25f, 1.0f, 1.0f));
     Fitted quad(model, 60);
-    EXPECT_EQ(quad.bake_now(quiet_bake()).base_color->pixels, model.textures[0].image.pixels);
+    const MaterialEdit edit = quad.bake_now(quiet_bake());
+    EXPECT_TRUE(edit.includes_vertex_colors);
+    Image wanted = model.textures[0].image;
+    for (std::size_t i = 0; i < wanted.pixels.size(); ++i) {
+        const float factor = model.primitives[0].colors[0][static_cast<int>(i % 3)];
+        wanted.pixels[i] = linear_to_srgb(srgb_to_linear(wanted.pixels[i]) * factor);
+    }
+    EXPECT_GT(texel_psnr(*edit.base_color, wanted), 30.0);  // resampled, no longer copied
+}
+
+TEST(Bake, DoesNotSwitchOnOcclusionThatTheMaterialLacks) {
+    Model model = make_model(make_quad());
+    model.materials[0].occlusion_texture = -1;
+    Fitted quad(model, 60);
+    quad.paint_blue();
+    const MaterialEdit edit = quad.bake_now(quiet_bake());
+    for (std::size_t i = 0; i < edit.metallic_roughness->pixels.size(); i += 3) {
+        ASSERT_EQ(edit.metallic_roughness->pixels[i], 1.0f);
+    }
 }
 
 TEST(Bake, ShowsNoSeamWhereChartsMeet) {

@@ -48,7 +48,16 @@ class MaterialBaker {
           options_(options),
           index_(material),
           material_(scene.model.materials[static_cast<std::size_t>(material)]),
-          is_own_(scene.atlas.is_own(material)) {}
+          is_own_(scene.atlas.is_own(material)) {
+        for (const Primitive& primitive : scene.model.primitives) {
+            if (primitive.material != material) continue;
+            has_uvs_ = has_uvs_ && !primitive.uvs.empty();
+            for (const Vec4& color : primitive.colors) {
+                has_vertex_colors_ = has_vertex_colors_ || Vec3(color) != Vec3(1.0f);
+                has_vertex_alpha_ = has_vertex_alpha_ || color.w != 1.0f;
+            }
+        }
+    }
 
     MaterialEdit run(NeuralTexture& fitted, NeuralTexture& now, Progress* progress);
 
@@ -89,6 +98,8 @@ class MaterialBaker {
     int index_;
     const Material& material_;
     bool is_own_;
+    bool has_uvs_ = true;
+    bool has_vertex_colors_ = false, has_vertex_alpha_ = false;
     bool wants_base_color_ = false, wants_orm_ = false, wants_normal_ = false;
     bool normal_changed_ = false;
     Size base_color_size_, orm_size_, normal_size_;
@@ -102,20 +113,17 @@ class MaterialBaker {
 
 void MaterialBaker::plan() {
     const BakedChannels& edited = options_.channels;
-    const int orm_texture = material_.metallic_roughness_texture >= 0
-                                ? material_.metallic_roughness_texture
-                                : material_.occlusion_texture;
-    wants_base_color_ = edited.base_color || (!is_own_ && material_.base_color_texture >= 0);
-    wants_orm_ =
-        edited.occlusion || edited.roughness || edited.metallic || (!is_own_ && orm_texture >= 0);
+    wants_base_color_ = edited.base_color;
+    wants_orm_ = edited.occlusion || edited.roughness || edited.metallic;
     // Tangent space needs a UV map in the source: without one the field's normals mean nothing.
-    bool has_uvs = true;
-    for (const Primitive& primitive : scene_.model.primitives) {
-        has_uvs = has_uvs && (primitive.material != index_ || !primitive.uvs.empty());
-    }
-    wants_normal_ = (edited.normal && has_uvs) || (!is_own_ && material_.normal_texture >= 0);
+    wants_normal_ = edited.normal && has_uvs_;
     base_color_size_ = slot_size(material_.base_color_texture);
-    orm_size_ = slot_size(orm_texture);
+    // One image takes two slots' channels; it has the texels of one that must not change.
+    const bool occlusion_rules = material_.metallic_roughness_texture < 0 ||
+                                 (material_.occlusion_texture >= 0 && !edited.occlusion &&
+                                  edited.roughness && edited.metallic);
+    orm_size_ = slot_size(occlusion_rules ? material_.occlusion_texture
+                                          : material_.metallic_roughness_texture);
     normal_size_ = slot_size(material_.normal_texture);
     if (wants_base_color_) start_base_color();
     if (wants_orm_) start_orm();
@@ -124,9 +132,11 @@ void MaterialBaker::plan() {
 
 void MaterialBaker::start_base_color() {
     base_color_texels_ = texels_of(material_.base_color_texture, base_color_size_);
+    if (has_vertex_colors_ || has_vertex_alpha_) base_color_texels_ = nullptr;
     const Texture* source = texture(material_.base_color_texture);
-    const bool has_alpha = (source != nullptr && source->image.channels % 2 == 0) ||
-                           material_.base_color_factor.w < 1.0f;
+    // Without, the alpha factor stays a factor.
+    const bool has_alpha =
+        has_vertex_alpha_ || (source != nullptr && source->image.channels % 2 == 0);
     const auto [width, height] = base_color_size_;
     base_color_.open(width, height, has_alpha ? 4 : 3);
     base_color_.filled_channels = is_own_ && base_color_texels_ != nullptr ? 0u : ~0u;
@@ -152,19 +162,17 @@ void MaterialBaker::start_orm() {
     orm_.open(width, height, 3);
     orm_texels_ = texels_of(material_.metallic_roughness_texture, orm_size_);
     occlusion_texels_ = texels_of(material_.occlusion_texture, orm_size_);
-    if (occlusion_texels_ != nullptr && material_.occlusion_strength != 1.0f) {
-        occlusion_texels_ = nullptr;
-    }
-    // Red means nothing without an occlusion texture, but a kept channel is kept.
-    if (material_.occlusion_texture < 0) occlusion_texels_ = orm_texels_;
-    const bool copies_orm = orm_texels_ != nullptr && orm_texels_->channels >= 3;
-    if (!copies_orm) orm_texels_ = nullptr;
-    orm_.filled_channels = (occlusion_texels_ != nullptr ? 0u : 1u) | (copies_orm ? 0u : 6u);
+    if (orm_texels_ != nullptr && orm_texels_->channels < 3) orm_texels_ = nullptr;
+    // Where the material has no occlusion red is 1: other values would switch it on.
+    const bool fills_occlusion = occlusion_texels_ == nullptr && material_.occlusion_texture >= 0;
+    orm_.filled_channels = (fills_occlusion ? 1u : 0u) | (orm_texels_ != nullptr ? 0u : 6u);
+    const float strength = material_.occlusion_strength;
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            orm_.image.at(x, y, 0) =
-                occlusion_texels_ != nullptr ? occlusion_texels_->at(x, y, 0) : 1.0f;
-            if (!copies_orm) continue;
+            float& occlusion = orm_.image.at(x, y, 0);
+            occlusion = occlusion_texels_ != nullptr ? occlusion_texels_->at(x, y, 0) : 1.0f;
+            if (strength != 1.0f) occlusion = 1.0f + strength * (occlusion - 1.0f);
+            if (orm_texels_ == nullptr) continue;
             orm_.image.at(x, y, 1) = orm_texels_->at(x, y, 1) * material_.roughness_factor;
             orm_.image.at(x, y, 2) = orm_texels_->at(x, y, 2) * material_.metallic_factor;
         }
@@ -175,7 +183,10 @@ void MaterialBaker::start_normal() {
     const auto [width, height] = normal_size_;
     normal_.open(width, height, 3);
     normal_texels_ = texels_of(material_.normal_texture, normal_size_);
-    if (normal_texels_ != nullptr && normal_texels_->channels < 3) normal_texels_ = nullptr;
+    if (normal_texels_ != nullptr &&
+        (normal_texels_->channels < 3 || material_.normal_scale != 1.0f)) {
+        normal_texels_ = nullptr;
+    }
     normal_.filled_channels = normal_texels_ != nullptr ? 0u : 7u;
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
@@ -240,9 +251,6 @@ void MaterialBaker::write_normal(const TexelValue& texel) {
         normal_changed_ = true;
         normal_.filled_channels = 7u;
     }
-    // The material's scale is applied on top of the image.
-    const float scale = material_.normal_texture >= 0 ? material_.normal_scale : 1.0f;
-    if (scale != 0.0f) normal = Vec3(normal.x / scale, normal.y / scale, normal.z);
     const float length = glm::length(normal);
     normal = length > 1e-6f ? normal / length : Vec3(0.0f, 0.0f, 1.0f);
     for (int c = 0; c < 3; ++c)
@@ -262,7 +270,8 @@ MaterialEdit MaterialBaker::run(NeuralTexture& fitted, NeuralTexture& now, Progr
     want(wants_normal_, normal_size_);
     for (std::size_t i = 0; i < sizes.size(); ++i) {
         const auto [width, height] = sizes[i];
-        const TexelEvaluator evaluator(scene_, index_, width, height, options_.supersampling);
+        const TexelEvaluator evaluator(scene_, index_, width, height, options_.supersampling,
+                                       wants_normal_);
         for (int first = 0; first < height; first += evaluator.rows_at_once()) {
             const int last = std::min(height, first + evaluator.rows_at_once());
             for (const TexelValue& texel : evaluator.rows(first, last, fitted, now)) {
@@ -290,8 +299,8 @@ MaterialEdit MaterialBaker::run(NeuralTexture& fitted, NeuralTexture& now, Progr
     };
     finish(wants_base_color_, base_color_, material_.base_color_texture, edit.base_color);
     finish(wants_orm_, orm_, material_.metallic_roughness_texture, edit.metallic_roughness);
-    finish(wants_normal_ && (normal_changed_ || !is_own_), normal_, material_.normal_texture,
-           edit.normal);
+    finish(wants_normal_ && normal_changed_, normal_, material_.normal_texture, edit.normal);
+    edit.includes_vertex_colors = has_vertex_colors_ || has_vertex_alpha_;
     edit.bits_per_channel = edit.bits_per_channel > 8 ? 16 : 8;
     return edit;
 }

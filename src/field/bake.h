@@ -51,7 +51,8 @@ struct BakeScene {
 /// fitted: the field before the edit (`snapshot`), now: after it. Returns images for all edited
 /// materials of the atlas and the atlas's new UVs, ready for save_model. Texels that no triangle
 /// covers continue their neighbours, so that filtering finds no seam. A normal image is only made
-/// where the normal channel changed or its UVs did. Throws Interrupted after Ctrl-C.
+/// where the field's normals changed. Vertex colours become part of the base colour's image. Throws
+/// Interrupted after Ctrl-C.
 ModelEdit bake(const BakeScene& scene, NeuralTexture& fitted, NeuralTexture& now,
                const BakeOptions& options = {});
 

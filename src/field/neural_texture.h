@@ -50,7 +50,7 @@ class NeuralTextureImpl : public torch::nn::Module {
     MaterialSample forward(const torch::Tensor& positions);
 
     const NeuralTextureOptions& options() const { return options_; }
-    torch::Tensor& table() { return table_; }
+    const torch::Tensor& table() const { return table_; }
     /// Weights and biases of the network.
     std::vector<torch::Tensor> network_parameters() const;
 

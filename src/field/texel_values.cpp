@@ -9,8 +9,6 @@ namespace {
 
 constexpr int packed_width = 10;
 constexpr int samples_at_once = 65536;
-/// Vertex colours darker than this are not divided out: the quotient would be noise.
-constexpr float darkest_vertex_color = 0.05f;
 
 /// [P, 3, 3] with rows tangent, bitangent, normal of glTF's tangent space.
 torch::Tensor tangent_frame(const torch::Tensor& normal, const torch::Tensor& tangent) {
@@ -26,7 +24,7 @@ torch::Tensor tangent_frame(const torch::Tensor& normal, const torch::Tensor& ta
 }  // namespace
 
 TexelEvaluator::TexelEvaluator(const BakeScene& scene, int material, int width, int height,
-                               int supersampling)
+                               int supersampling, bool needs_normals)
     : scene_(scene),
       width_(width),
       height_(height),
@@ -39,12 +37,7 @@ TexelEvaluator::TexelEvaluator(const BakeScene& scene, int material, int width, 
         triangles_.push_back(scene.atlas.triangles[static_cast<std::size_t>(t)]);
     }
     raster_ = rasterize_uv(triangles_, width * samples_, height * samples_);
-    for (const Primitive& primitive : scene.model.primitives) {
-        has_vertex_colors_ =
-            has_vertex_colors_ || (primitive.material == material && !primitive.colors.empty());
-    }
-    const Material& own = scene.model.materials[static_cast<std::size_t>(material)];
-    if (!scene.atlas.is_own(material) && own.normal_texture >= 0) {
+    if (needs_normals && !scene.atlas.is_own(material)) {
         Model remade;
         for (std::size_t i = 0; i < scene.model.primitives.size(); ++i) {
             const auto edit = scene.atlas.primitives.find(static_cast<int>(i));
@@ -69,21 +62,18 @@ torch::Tensor TexelEvaluator::frame_change(const Surface& surface, const torch::
                          tangent_frame(surface.normal, surface.tangent).transpose(1, 2));
 }
 
-torch::Tensor TexelEvaluator::pack(const MaterialSample& sample, const torch::Tensor& vertex_color,
+torch::Tensor TexelEvaluator::pack(const MaterialSample& sample,
                                    const torch::Tensor& rotation) const {
     const std::int64_t count = sample.base_color.size(0);
-    torch::Tensor base_color = sample.base_color;
-    if (vertex_color.defined()) {
-        base_color = base_color / vertex_color.narrow(1, 0, 3).clamp_min(darkest_vertex_color);
-    }
     torch::Tensor normal = sample.normal.defined()
                                ? sample.normal
                                : torch::tensor({0.0f, 0.0f, 1.0f}).expand({count, 3});
     if (rotation.defined()) normal = torch::matmul(rotation, normal.unsqueeze(2)).squeeze(2);
     const torch::Tensor alpha =
         sample.alpha.defined() ? sample.alpha.unsqueeze(1) : torch::ones({count, 1});
-    return torch::cat({base_color.clamp(0.0f, 1.0f), sample.orm.clamp(0.0f, 1.0f), normal, alpha},
-                      1)
+    return torch::cat(
+               {sample.base_color.clamp(0.0f, 1.0f), sample.orm.clamp(0.0f, 1.0f), normal, alpha},
+               1)
         .contiguous();
 }
 
@@ -128,15 +118,12 @@ std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture&
     const torch::NoGradGuard no_grad;
     const torch::Tensor triangles = torch::tensor(triangle, torch::kInt64);
     const torch::Tensor weights = torch::tensor(barycentrics, torch::kFloat32).view({-1, 2});
-    Surface surface = surface_at(scene_.geometry, triangles, weights);
+    const Surface surface = surface_at(scene_.geometry, triangles, weights);
     const torch::Tensor rotation = frame_change(surface, triangles, weights);
-    const torch::Tensor vertex_color = has_vertex_colors_ ? surface.color : torch::Tensor();
     const torch::Tensor positions = scene_.space.positions(surface);
-    // Vertex colours stay in the file and multiply the texture, so they are not in the texture.
-    surface.color = torch::ones_like(surface.color);
-    const torch::Tensor values[3] = {pack(scene_.materials.sample(surface), {}, rotation),
-                                     pack(fitted->forward(positions), vertex_color, rotation),
-                                     pack(now->forward(positions), vertex_color, rotation)};
+    const torch::Tensor values[3] = {pack(scene_.materials.sample(surface), rotation),
+                                     pack(fitted->forward(positions), rotation),
+                                     pack(now->forward(positions), rotation)};
     for (std::size_t i = 0; i < texels.size(); ++i) {
         const float share = 1.0f / static_cast<float>(first_sample[i + 1] - first_sample[i]);
         TexelMaterial* targets[3] = {&texels[i].source, &texels[i].fitted, &texels[i].now};

@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// Averages over a texel's samples: linear base colour without vertex colours, orm, tangent-space
-/// normal (not unit), alpha.
+/// Averages over a texel's samples: linear base colour (vertex colours included), orm,
+/// tangent-space normal (not unit), alpha.
 struct TexelMaterial {
     Vec3 base_color{0.0f};
     Vec3 orm{0.0f};
@@ -26,7 +26,9 @@ struct TexelValue {
 /// Samples of one material's triangles on a grid of width x height texels.
 class TexelEvaluator {
   public:
-    TexelEvaluator(const BakeScene& scene, int material, int width, int height, int supersampling);
+    /// needs_normals: normals are to be in the tangent space of the atlas.
+    TexelEvaluator(const BakeScene& scene, int material, int width, int height, int supersampling,
+                   bool needs_normals);
 
     /// The covered texels of rows [first, last).
     std::vector<TexelValue> rows(int first, int last, NeuralTexture& fitted,
@@ -37,8 +39,7 @@ class TexelEvaluator {
   private:
     TexelMaterial read(const float* row) const;
     /// [P, 10] of a sample at `surface`; rotation [P, 3, 3] or undefined goes to the normals.
-    torch::Tensor pack(const MaterialSample& sample, const torch::Tensor& vertex_color,
-                       const torch::Tensor& rotation) const;
+    torch::Tensor pack(const MaterialSample& sample, const torch::Tensor& rotation) const;
     torch::Tensor frame_change(const Surface& surface, const torch::Tensor& triangle,
                                const torch::Tensor& barycentrics) const;
 
@@ -47,7 +48,6 @@ class TexelEvaluator {
     std::vector<UvTriangle> triangles_;
     const std::vector<std::int32_t>& model_triangles_;  ///< of each of triangles_
     UvRaster raster_;
-    bool has_vertex_colors_ = false;
     /// The model with the atlas's UVs, for its tangents; where they differ from the source's.
     std::optional<Geometry> atlas_geometry_;
 };
