@@ -100,16 +100,17 @@ class GltfPatch {
         if (is_default) append(builder_.json(), "materials", Json::object());
         Json& material = builder_.json()["materials"][static_cast<std::size_t>(index)];
         const UvPlan plan = plan_of(index);
-        UvLayout layout;
-        if (!is_default) layout = material_uv_layout(root_of(document_).item("materials", index));
         const auto edit = edit_.materials.find(index);
         if (plan.moved_set) move_texture_coordinates(material, *plan.moved_set);
         if (edit == edit_.materials.end()) return;
         std::string name = material.value("name", std::string());
         if (name.empty()) name = fmt::format("material_{}", index);
-        // Adding to the JSON's lists moves nothing but those lists.
+        // Adding textures does not move the material, but a copy is safe from every addition.
         Json copy = material;
-        patch_material(document_, edit->second, plan, layout, name, copy, builder_);
+        const Json original = is_default
+                                  ? Json::object()
+                                  : document_.json["materials"][static_cast<std::size_t>(index)];
+        patch_material(document_, original, edit->second, plan, name, copy, builder_);
         builder_.json()["materials"][static_cast<std::size_t>(index)] = std::move(copy);
     }
 
@@ -119,12 +120,30 @@ class GltfPatch {
                edit->second.includes_vertex_colors;
     }
 
+    std::size_t uv_set_of(int material) const {
+        if (material == default_material_) return 0;
+        return material_uv_layout(
+                   root_of(document_).item("materials", static_cast<std::size_t>(material)))
+            .tex_coord;
+    }
+
+    // A texture must have coordinates to look at, and be they all the same.
+    bool lacks_uvs(const PrimitiveUse& use) const {
+        const int material = material_of(use);
+        const auto edit = edit_.materials.find(material);
+        const bool has_images =
+            edit != edit_.materials.end() &&
+            (edit->second.base_color || edit->second.metallic_roughness || edit->second.normal);
+        return has_images && !source_primitive(use.mesh, use.primitive)["attributes"].contains(
+                                 uv_name(uv_set_of(material)));
+    }
+
     std::optional<PrimitiveChange> change_of(const PrimitiveUse& use) const {
         const int material = material_of(use);
         const bool is_new_default = use.material < 0 && edit_.materials.contains(material);
         const bool has_colors =
             source_primitive(use.mesh, use.primitive)["attributes"].contains("COLOR_0");
-        if (!plan_of(material).has_new_uvs && !is_new_default &&
+        if (!plan_of(material).has_new_uvs && !is_new_default && !lacks_uvs(use) &&
             !(drops_colors(material) && has_colors)) {
             return std::nullopt;
         }
@@ -193,8 +212,14 @@ class GltfPatch {
         if (!primitive.contains("material") && edit != edit_.materials.end()) {
             primitive["material"] = change.material;
         }
-        const UvPlan plan = plan_of(change.material);
+        UvPlan plan = plan_of(change.material);
         if (change.edit) gather(*change.edit, primitive);
+        if (!plan.has_new_uvs && edit != edit_.materials.end()) {
+            plan.new_set = uv_set_of(change.material);
+            if (!primitive["attributes"].contains(uv_name(plan.new_set))) {
+                set_uvs(change, plan, primitive["attributes"]);
+            }
+        }
         if (plan.has_new_uvs) {
             set_uvs(change, plan, primitive["attributes"]);
             // A tangent frame follows the coordinates of its normal map.

@@ -37,9 +37,10 @@ struct UvPlan {
     std::optional<std::size_t> moved_set;
 };
 
-/// Writes the textures of one edit into a material.
-void patch_material(const SourceDocument& document, const MaterialEdit& edit, const UvPlan& plan,
-                    const UvLayout& layout, const std::string& name, Json& material,
+/// Writes the textures of one edit into `material`, which was `original` before its texture
+/// coordinates moved.
+void patch_material(const SourceDocument& document, const Json& original, const MaterialEdit& edit,
+                    const UvPlan& plan, const std::string& name, Json& material,
                     GltfBuilder& builder);
 
 /// Makes every texture of a material that looks at set 0 look at `set`.

@@ -109,15 +109,15 @@ void move_texture_coordinates(Json& material, std::size_t set) {
     }
 }
 
-void patch_material(const SourceDocument& document, const MaterialEdit& edit, const UvPlan& plan,
-                    const UvLayout& layout, const std::string& name, Json& material,
+void patch_material(const SourceDocument& document, const Json& original, const MaterialEdit& edit,
+                    const UvPlan& plan, const std::string& name, Json& material,
                     GltfBuilder& builder) {
+    const UvLayout layout = material_uv_layout(GltfObject(document, original, "material"));
     InfoWriter infos(plan, layout, builder.json());
     const auto add_texture = [&](const Image& image, const char* what, const Json* old_info) {
         return builder.add_png_texture(encode_png(image, edit.bits_per_channel), name + "_" + what,
                                        sampler_of(document.json, old_info));
     };
-    const Json original = material;
     const Json* old_pbr = find(original, "pbrMetallicRoughness");
     if (edit.base_color || edit.metallic_roughness) {
         // Viewers that know this older model would prefer it to the edited values.
