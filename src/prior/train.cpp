@@ -76,7 +76,6 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
     run_workers(count / block, settings.replicas, [&](std::int64_t job) {
-        const Autocast autocast;
         std::vector<torch::Tensor> images, depths;
         std::vector<std::string> captions;
         for (std::int64_t i = job * block; i < (job + 1) * block; ++i) {
@@ -87,8 +86,12 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
         }
         // [N, H, W, 3] seen as [N, 3, H, W] is channels-last already.
         const torch::Tensor pictures = torch::stack(images).permute({0, 3, 1, 2}) * 2 - 1;
-        const torch::Tensor latents =
-            autoencoder.encode(pictures).to(torch::kFloat32) * autoencoder.scaling_factor();
+        torch::Tensor latents;
+        {
+            const Autocast autocast;
+            latents = autoencoder.encode(pictures);
+        }
+        latents = latents.to(torch::kFloat32) * autoencoder.scaling_factor();
         const auto rows = [&](torch::Tensor& all) { return all.slice(0, job * block, (job + 1) * block); };
         rows(data.latents).copy_(latents);
         rows(data.depth).copy_(torch::stack(depths));

@@ -21,7 +21,7 @@ struct TrainSettings {
     std::filesystem::path work;         ///< data, checkpoints; may be deleted afterwards
     std::int64_t samples = 600000;      ///< pictures that the U-Net sees, repetitions counted
     std::int64_t data_samples = 120000; ///< different pictures
-    std::int64_t autoencoder_samples = 72000;
+    std::int64_t autoencoder_samples = 48000;
     std::int64_t autoencoder_pictures = 12000;
     int shape_variants = 30;
     int views_each = 8;
