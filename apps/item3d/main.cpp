@@ -2,9 +2,9 @@
 #include "command.h"
 #include "commands.h"
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/core/version.h"
 
-#include <fmt/format.h>
 #include <malloc.h>
 
 #include <csignal>

@@ -1,8 +1,8 @@
 #include "item3d/evaluate/animation.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 
-#include <fmt/format.h>
 #include <webp/encode.h>
 #include <webp/mux.h>
 

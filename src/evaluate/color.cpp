@@ -1,8 +1,7 @@
 #include "item3d/evaluate/color.h"
 
 #include "item3d/core/error.h"
-
-#include <fmt/format.h>
+#include "item3d/core/format.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,10 +1,9 @@
 #include "item3d/evaluate/html.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/evaluate/html_style.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>

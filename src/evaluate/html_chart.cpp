@@ -1,6 +1,5 @@
 #include "item3d/evaluate/html.h"
-
-#include <fmt/format.h>
+#include "item3d/core/format.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
 #include "item3d/evaluate/report.h"
-
-#include <fmt/format.h>
+#include "item3d/core/format.h"
 
 #include <algorithm>
 

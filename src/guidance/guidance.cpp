@@ -2,10 +2,8 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/guidance/rdl.h"
 #include "item3d/guidance/sds.h"
 

@@ -2,9 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
 #include "item3d/models/text_normalization.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <queue>
@@ -139,6 +138,11 @@ ClipTokenizer::ClipTokenizer(Vocabulary vocabulary, Merges merges, const Options
 }
 
 ClipTokenizer ClipTokenizer::load(const std::filesystem::path& folder) {
+    return load(folder, folder);
+}
+
+ClipTokenizer ClipTokenizer::load(const std::filesystem::path& folder,
+                                  const std::filesystem::path& vocabulary_folder) {
     Options options;
     for (const char* name : {"special_tokens_map.json", "tokenizer_config.json"}) {
         if (!std::filesystem::exists(folder / name)) continue;
@@ -156,8 +160,9 @@ ClipTokenizer ClipTokenizer::load(const std::filesystem::path& folder) {
                 options.additional.push_back(read_special(added, id, {}));
         }
     }
-    return ClipTokenizer(read_vocabulary(folder / "vocab.json"), read_merges(folder / "merges.txt"),
-                         options, (folder / "vocab.json").string());
+    return ClipTokenizer(read_vocabulary(vocabulary_folder / "vocab.json"),
+                         read_merges(vocabulary_folder / "merges.txt"), options,
+                         (vocabulary_folder / "vocab.json").string());
 }
 
 void ClipTokenizer::save(const std::filesystem::path& folder) const {

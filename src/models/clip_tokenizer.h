@@ -42,6 +42,9 @@ class ClipTokenizer {
     /// Reads vocab.json, merges.txt, tokenizer_config.json and special_tokens_map.json; the last
     /// two may be missing. Throws InputError.
     static ClipTokenizer load(const std::filesystem::path& folder);
+    /// With vocab.json and merges.txt of another folder.
+    static ClipTokenizer load(const std::filesystem::path& folder,
+                              const std::filesystem::path& vocabulary_folder);
     /// Writes the same four files.
     void save(const std::filesystem::path& folder) const;
 

@@ -1,10 +1,9 @@
 // Pictures from a prompt: depth_condition() and generate() of pipeline.h.
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/models/pipeline.h"
-
-#include <fmt/format.h>
 
 #include <limits>
 

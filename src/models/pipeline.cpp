@@ -2,9 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
 #include "item3d/models/weights.h"
-
-#include <fmt/format.h>
 
 namespace item3d {
 namespace {

@@ -1,10 +1,8 @@
 #include "item3d/models/weights.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/models/config.h"
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <set>
 

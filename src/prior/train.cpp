@@ -3,10 +3,9 @@
 #include <atomic>
 #include <mutex>
 
-#include <fmt/format.h>
-
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/models/safetensors.h"
 #include "item3d/prior/captions.h"

@@ -1,9 +1,8 @@
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/models/weights.h"

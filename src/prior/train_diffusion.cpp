@@ -2,10 +2,9 @@
 #include <chrono>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/models/ddim.h"

@@ -1,0 +1,73 @@
+// One relative-direction step: the four-row form that was recorded, with both bases of the source
+// branch, and the two-row form that the program uses (it equals the one with the right base).
+#include "item3d/core/error.h"
+#include "item3d/guidance/noised_latents.h"
+#include "item3d/guidance/rdl.h"
+#include "item3d/models/pipeline.h"
+#include "parity.h"
+
+namespace item3d::parity {
+
+void check_relative_direction(Case& golden) {
+    const Config meta = golden.meta();
+    const Pipeline pipeline = Pipeline::load(golden.folder() / meta.text("pipeline", ""));
+    const auto vae = std::dynamic_pointer_cast<AutoencoderKL>(pipeline.vae);
+    if (!vae) meta.reject("pipeline", "expected one with an AutoencoderKL");
+    const double scale = meta.number("guidance", 7.5);
+    const auto compare = [&](const std::string& name, const torch::Tensor& actual) {
+        golden.compare(name, actual, within::guidance_step);
+    };
+
+    torch::Tensor image, latents;
+    {
+        const torch::AutoGradMode with_gradients(true);
+        image = golden.input("image").clone().requires_grad_();
+        const LatentDistribution posterior = vae->encode_distribution(2 * image - 1);
+        latents = (posterior.mean + posterior.deviation() * golden.input("posterior_noise")) *
+                  vae->scaling_factor();
+    }
+    const torch::Tensor timesteps = golden.input("t");
+    NoisedLatents start;
+    start.timesteps = timesteps;
+    start.alphas_cumprod = pipeline.scheduler.alphas_at(timesteps);
+    start.noisy = pipeline.scheduler.add_noise(latents.detach(), golden.input("noise"), timesteps);
+    compare("latents", latents);
+    compare("noisy_latents", start.noisy);
+
+    const torch::Tensor text = pipeline.encode_text(
+        {meta.text("negative_text", ""), meta.text("text", ""), meta.text("ori_text", "")});
+    const auto predict = [&](int row) {
+        return pipeline.predict_noise(start.noisy, timesteps, text.slice(0, row, row + 1));
+    };
+    const torch::Tensor empty = predict(0), target = predict(1), source = predict(2);
+    compare("eps_uncond", empty);
+    compare("eps_target_cond", target);
+    compare("eps_source_cond", source);
+    const torch::Tensor guided_target = empty + scale * (target - empty);
+    compare("eps_target", guided_target);
+
+    const auto compare_gradient = [&](const std::string& suffix, const torch::Tensor& direction) {
+        for (const auto& [name, weighting] :
+             {std::pair("_early", Weighting::early), std::pair("_late", Weighting::late)}) {
+            const torch::Tensor gradient =
+                timestep_weight(weighting, start.alphas_cumprod) * direction;
+            compare("grad_latents" + suffix + name, gradient);
+            compare("grad_image" + suffix + name,
+                    torch::autograd::grad({latents}, {image}, {gradient}, true)[0]);
+        }
+    };
+    for (const auto& [suffix, base] : {std::pair("_uncond", empty), std::pair("_text", source)}) {
+        const torch::Tensor guided_source = base + scale * (source - empty);
+        compare(std::string("eps_source_base") + suffix, guided_source);
+        compare_gradient(suffix, guided_target - guided_source);
+    }
+
+    const PromptPair pair = predict_pair(pipeline, start, text.slice(0, 1, 2), text.slice(0, 2, 3));
+    const torch::Tensor direction = scale * (pair.target - pair.source);
+    for (const auto& [name, weighting] : {std::pair("grad_latents_uncond_early", Weighting::early),
+                                          std::pair("grad_latents_uncond_late", Weighting::late)})
+        golden.compare(name, timestep_weight(weighting, start.alphas_cumprod) * direction,
+                       within::guidance_step, std::string("two-row ") + name);
+}
+
+}  // namespace item3d::parity

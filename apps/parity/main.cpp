@@ -1,0 +1,106 @@
+// parity CASE_DIR: computes what the reference libraries recorded in a folder and compares.
+// One JSON object on stdout; exit code 0 when all is within tolerance, 1 when not, 3 when the
+// folder cannot be used.
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "parity.h"
+
+#include <cstdio>
+#include <exception>
+
+namespace item3d::parity {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_tokenizer(const fs::path& folder) {
+    if (fs::exists(folder / "tokenizer_config.json")) return true;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.is_directory() && fs::exists(entry.path() / "tokenizer_config.json")) return true;
+    return false;
+}
+
+/// The class of a single model's config.json, of diffusers or of transformers.
+std::string class_of_config(const Config& config) {
+    if (config.has("_class_name")) return config.text("_class_name", "");
+    const auto names = config.texts("architectures", {});
+    return names.empty() ? "" : names[0];
+}
+
+[[noreturn]] void reject(const fs::path& file, const std::string& found) {
+    throw InputError(file.string(), "the class " + (found.empty() ? "(none)" : found) +
+                                        " is not one that parity can check");
+}
+
+/// Finds out what the folder holds and runs its checker.
+void check(Case& golden) {
+    const fs::path& folder = golden.folder();
+    if (fs::exists(folder / "config.json")) {
+        const std::string name = class_of_config(Config::read(folder / "config.json"));
+        golden.set_class(name);
+        if (name == "UNet2DConditionModel") return check_unet(golden);
+        if (name == "AutoencoderKL") return check_autoencoder_kl(golden);
+        if (name == "AutoencoderTiny") return check_autoencoder_tiny(golden);
+        if (name == "CLIPTextModel" || name == "CLIPTextModelWithProjection")
+            return check_clip_text(golden);
+        reject(folder / "config.json", name);
+    }
+    if (fs::exists(folder / "model_index.json")) {
+        const std::string name = class_of_config(Config::read(folder / "model_index.json"));
+        golden.set_class(name);
+        if (name == "StableDiffusionPipeline") return check_pipeline(golden);
+        reject(folder / "model_index.json", name);
+    }
+    if (golden.has_meta()) {
+        const Config meta = golden.meta();
+        if (meta.has("kinds") && meta.has("configs")) {
+            golden.set_class("schedulers");
+            return check_schedulers(golden);
+        }
+        if (meta.has("pipeline") && golden.has("out.noisy_latents")) {
+            golden.set_class("relative direction");
+            return check_relative_direction(golden);
+        }
+        if (meta.has("texts") && has_tokenizer(folder)) {
+            golden.set_class("CLIPTokenizer");
+            return check_clip_tokenizer(golden);
+        }
+    }
+    throw InputError(folder.string(),
+                     "no config.json, model_index.json or meta.json says which "
+                     "class to check");
+}
+
+int run(const fs::path& folder) {
+    if (!fs::is_directory(folder))
+        throw InputError(folder.string(), "no such folder", "name the folder of a case");
+    Case golden(folder);
+    const torch::NoGradGuard no_grad;
+    check(golden);
+    fmt::print("{}\n", golden.report().dump(1));
+    return golden.passed() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace item3d::parity
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        fmt::print(stderr, "usage: parity CASE_DIR\n");
+        return static_cast<int>(item3d::ExitCode::usage);
+    }
+    try {
+        return item3d::parity::run(argv[1]);
+    } catch (const item3d::Error& error) {
+        fmt::print(stderr, "parity: {}\n", error.what());
+        return static_cast<int>(error.code());
+    } catch (const c10::Error& error) {
+        // Inputs of shapes that the network cannot take.
+        const std::string message = error.what_without_backtrace();
+        fmt::print(stderr, "parity: {}: {}\n", argv[1], message.substr(0, message.find('\n')));
+        return static_cast<int>(item3d::ExitCode::bad_input);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "parity: {}: {}\n", argv[1], error.what());
+        return static_cast<int>(item3d::ExitCode::bad_input);
+    }
+}

@@ -1,0 +1,83 @@
+// Comparing networks with recorded outputs of the reference libraries: what the checkers share.
+#pragma once
+
+#include "item3d/models/config.h"
+#include "item3d/models/safetensors.h"
+
+#include <nlohmann/json.hpp>
+#include <torch/torch.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace item3d::parity {
+
+/// The largest errors that count as equal, relative to max(1, max |expected|).
+namespace within {
+inline constexpr double one_pass = 2e-5;
+inline constexpr double guidance_step = 5e-5;
+inline constexpr double several_steps = 2e-4;
+inline constexpr double image = 1e-3;
+inline constexpr double scheduler_step = 1e-5;
+inline constexpr double exact = 0.0;
+}  // namespace within
+
+/// One folder with the recorded tensors of its io.safetensors, and the report about it.
+class Case {
+  public:
+    /// Throws InputError without a readable io.safetensors.
+    explicit Case(const std::filesystem::path& folder);
+
+    const std::filesystem::path& folder() const { return folder_; }
+    /// meta.json. Throws InputError when it is not there.
+    Config meta() const;
+    bool has_meta() const;
+    bool has(const std::string& tensor) const { return io_.contains(tensor); }
+    /// "in.NAME". Throws InputError when it is not there.
+    torch::Tensor input(const std::string& name) const;
+    /// Names of all recorded outputs, without "out.".
+    std::vector<std::string> outputs() const;
+    torch::Tensor expected(const std::string& name) const;
+    /// NAME of each output PREFIX<NAME>.
+    std::vector<std::string> outputs_with_prefix(const std::string& prefix) const;
+
+    void set_class(const std::string& name) { class_ = name; }
+    /// Compares with "out.NAME", reported as `name` (or `reported_as`); does nothing where the case
+    /// has no such output.
+    void compare(const std::string& name, const torch::Tensor& actual, double tolerance,
+                 const std::string& reported_as = "");
+    /// A bfloat16 run, for orientation: its relative L2 distance to "out.NAME" beside twice the
+    /// distance between that and the float32 output. Does not decide.
+    void orient(const std::string& name, const torch::Tensor& actual,
+                const std::string& float32_name);
+    /// Counts differing strings; `count` were compared.
+    void compare_texts(const std::string& name, std::int64_t count, std::int64_t different);
+    /// Outputs that start with this are known and left out, for this reason.
+    void skip(const std::string& prefix, const std::string& reason);
+
+    /// True when something was compared and nothing exceeds its tolerance.
+    bool passed() const;
+    nlohmann::json report() const;
+
+  private:
+    std::filesystem::path folder_;
+    SafeTensors io_;
+    std::string class_;
+    nlohmann::json results_ = nlohmann::json::array();
+    nlohmann::json skipped_ = nlohmann::json::object();
+    std::set<std::string> seen_;
+    bool failed_ = false;
+    bool compared_ = false;
+};
+
+void check_unet(Case& golden);
+void check_autoencoder_kl(Case& golden);
+void check_autoencoder_tiny(Case& golden);
+void check_clip_text(Case& golden);
+void check_clip_tokenizer(Case& golden);
+void check_pipeline(Case& golden);
+void check_schedulers(Case& golden);
+void check_relative_direction(Case& golden);
+
+}  // namespace item3d::parity
