@@ -105,11 +105,11 @@ Geometry Geometry::from_model(const Model& model, torch::Device device) {
     geometry.triangles = to_indices(triangles).reshape({-1, 3});
     geometry.triangle_material = to_indices(materials);
     geometry.triangle_primitive = to_indices(primitives);
-    geometry.opposite = opposite_vertices(geometry.positions, geometry.triangles);
+    geometry.neighbours = triangle_neighbours(geometry.positions, geometry.triangles);
     for (torch::Tensor* tensor :
          {&geometry.positions, &geometry.normals, &geometry.tangents, &geometry.uvs,
           &geometry.colors, &geometry.triangles, &geometry.triangle_material,
-          &geometry.triangle_primitive, &geometry.opposite})
+          &geometry.triangle_primitive, &geometry.neighbours})
         *tensor = tensor->to(device);
     return geometry;
 }

@@ -17,10 +17,10 @@ struct Geometry {
     torch::Tensor triangles;  ///< [T, 3] int32, indices of vertices
     torch::Tensor triangle_material;   ///< [T] int32, index into Model::materials
     torch::Tensor triangle_primitive;  ///< [T] int32, index into Model::primitives
-    /// [T, 3] int32: the third vertex of the neighbour across the edge opposite to each corner, -1
-    /// where there is none; vertices at equal positions count as one (see topology.h). `antialias`
-    /// computes it at each call where it is undefined.
-    torch::Tensor opposite;
+    /// [T, 3] int32: the neighbour across the edge that faces each corner, as 3 * triangle + the
+    /// corner that faces the same edge from there; -1 where there is none (see topology.h).
+    /// `antialias` computes it at each call where it is undefined.
+    torch::Tensor neighbours;
 
     static Geometry from_model(const Model& model, torch::Device device = torch::kCPU);
 };

@@ -107,6 +107,10 @@ torch::Tensor camera_positions(const std::vector<Camera>& cameras) {
     return positions;
 }
 
+torch::Tensor unit_rows(const torch::Tensor& rows) {
+    return rows / rows.norm(2, 1, true).clamp_min(1e-12f);
+}
+
 }  // namespace
 
 Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
@@ -180,13 +184,12 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
                                InterpolateInput{triangles, barycentrics, triangle, surface.pixel});
         const torch::Tensor raw = values.narrow(1, 3, 3);
         const torch::Tensor turned = ((raw.detach() * surface.normal).sum(1, true) < 0).to(real);
-        surface.normal = torch::nn::functional::normalize(raw) * (1 - 2 * turned);
+        surface.normal = unit_rows(raw) * (1 - 2 * turned);
         if (moves) {
             surface.position = values.narrow(1, 0, 3);
             const torch::Tensor view_index = torch::floor_divide(
                 surface.pixel, static_cast<std::int64_t>(raster.height()) * raster.width());
-            surface.view = torch::nn::functional::normalize(eyes.index_select(0, view_index) -
-                                                            surface.position);
+            surface.view = unit_rows(eyes.index_select(0, view_index) - surface.position);
         }
     }
     return surface;

@@ -49,7 +49,7 @@ torch::Tensor clip_matrices(const std::vector<Camera>& cameras, int width, int h
 }  // namespace
 
 Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, int width,
-                 int height) {
+                 int height, const torch::Tensor& behind_) {
     ITEM3D_CHECK(width > 0 && height > 0 && width <= 16384 && height <= 16384,
                  "rasterize: width and height must be in [1, 16384], found " +
                      std::to_string(width) + " x " + std::to_string(height));
@@ -59,6 +59,10 @@ Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, i
     const torch::Tensor triangles =
         checked("rasterize", "triangles", geometry.triangles, torch::kInt32, {-1, 3});
     const std::int64_t views = static_cast<std::int64_t>(cameras.size());
+    const torch::Tensor behind =
+        behind_.defined()
+            ? checked("rasterize", "behind", behind_, torch::kFloat32, {views, height, width})
+            : torch::Tensor();
 
     Raster raster;
     raster.positions_clip =
@@ -69,16 +73,18 @@ Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, i
 
     const std::int64_t triangle_count = triangles.size(0);
     std::vector<kernels::PixelBox> boxes(static_cast<std::size_t>(views * triangle_count));
-    const kernels::RasterParameters parameters{raster.positions_clip.const_data_ptr<float>(),
-                                               triangles.const_data_ptr<std::int32_t>(),
-                                               boxes.data(),
-                                               positions.size(0),
-                                               triangle_count,
-                                               width,
-                                               height,
-                                               raster.barycentrics.data_ptr<float>(),
-                                               raster.depth.data_ptr<float>(),
-                                               raster.triangle.data_ptr<std::int32_t>()};
+    const kernels::RasterParameters parameters{
+        raster.positions_clip.const_data_ptr<float>(),
+        triangles.const_data_ptr<std::int32_t>(),
+        boxes.data(),
+        positions.size(0),
+        triangle_count,
+        width,
+        height,
+        raster.barycentrics.data_ptr<float>(),
+        raster.depth.data_ptr<float>(),
+        raster.triangle.data_ptr<std::int32_t>(),
+        behind.defined() ? behind.const_data_ptr<float>() : nullptr};
     parallel_for(
         "bound_triangles", views * triangle_count,
         [=](std::int64_t i) { kernels::bound_triangle(parameters, i); }, 4096);

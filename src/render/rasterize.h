@@ -21,8 +21,10 @@ struct Raster {
     int width() const { return static_cast<int>(triangle.size(2)); }
 };
 
+/// behind: [N, H, W] z-depths; a pixel then sees the nearest surface farther than that (the next
+/// layer of a transparent model). Undefined: no limit.
 Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, int width,
-                 int height);
+                 int height, const torch::Tensor& behind = {});
 
 /// Attributes of the covered pixels alone, P in number, interpolated with perspective.
 struct Surface {

@@ -4,15 +4,26 @@
 #include "item3d/render/shade.h"
 #include "item3d/scene/model.h"
 
+#include <memory>
+#include <optional>
+
 namespace item3d {
+
+/// Bilinear values [P, C] of a texture [H, W, C] at uv [P, 2], where (0, 0) is the top left corner
+/// of the image as in glTF; differentiable in the texture.
+torch::Tensor sample_texture(const torch::Tensor& texture, const torch::Tensor& uv,
+                             Wrap wrap_u = Wrap::repeat, Wrap wrap_v = Wrap::repeat);
 
 /// The materials of a model as tensors, textures linearised (sRGB decoded before filtering).
 class TexturedMaterials {
   public:
     explicit TexturedMaterials(const Model& model, torch::Device device = torch::kCPU);
-    /// Bilinear, with each texture's wrap modes; differentiable in the textures where they require
-    /// gradients. Vertex colours multiply the base colour.
+    /// Bilinear, with each texture's wrap modes. Vertex colours multiply the base colour. `normal`,
+    /// `emissive` and `alpha` are undefined where no material of the model has such; alpha of
+    /// masked materials is 0 or 1.
     MaterialSample sample(const Surface& surface) const;
+    /// Whether any material is masked or blended.
+    bool has_alpha() const;
 
   private:
     struct State;
@@ -26,6 +37,7 @@ struct RenderOptions {
     int supersampling = 2;
     /// Linear RGB behind the model; no value: transparent.
     std::optional<Vec3> background;
+    ShadeOptions shade;
 };
 
 /// One picture a camera: [N, H, W, 4] linear radiance, premultiplied, with coverage in A (1 where a

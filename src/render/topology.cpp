@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <tuple>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -38,11 +40,12 @@ struct Edge {
 
 }  // namespace
 
-torch::Tensor opposite_vertices(const torch::Tensor& positions_, const torch::Tensor& triangles_) {
+torch::Tensor triangle_neighbours(const torch::Tensor& positions_,
+                                  const torch::Tensor& triangles_) {
     const torch::Tensor positions =
-        checked("opposite_vertices", "positions", positions_.detach(), torch::kFloat32, {-1, 3});
+        checked("triangle_neighbours", "positions", positions_.detach(), torch::kFloat32, {-1, 3});
     const torch::Tensor triangles =
-        checked("opposite_vertices", "triangles", triangles_, torch::kInt32, {-1, 3});
+        checked("triangle_neighbours", "triangles", triangles_, torch::kInt32, {-1, 3});
     // Adding zero turns -0 into 0, whose bits differ.
     const torch::Tensor unsigned_zeros = positions + 0.0f;
     const std::vector<std::int32_t> merged =
@@ -62,19 +65,19 @@ torch::Tensor opposite_vertices(const torch::Tensor& positions_, const torch::Te
         return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
     });
 
-    torch::Tensor opposite = torch::full_like(triangles, -1);
-    std::int32_t* out = opposite.data_ptr<std::int32_t>();
+    torch::Tensor neighbours = torch::full_like(triangles, -1);
+    std::int32_t* out = neighbours.data_ptr<std::int32_t>();
     for (std::size_t i = 0; i < edges.size();) {
         std::size_t end = i + 1;
         while (end < edges.size() && edges[end].same(edges[i]))
             ++end;
         if (end - i == 2) {
-            out[edges[i].corner] = corners[edges[i + 1].corner];
-            out[edges[i + 1].corner] = corners[edges[i].corner];
+            out[edges[i].corner] = static_cast<std::int32_t>(edges[i + 1].corner);
+            out[edges[i + 1].corner] = static_cast<std::int32_t>(edges[i].corner);
         }
         i = end;
     }
-    return opposite;
+    return neighbours;
 }
 
 }  // namespace item3d

@@ -5,8 +5,8 @@
 
 namespace item3d {
 
-/// positions [V, 3] float32, triangles [T, 3] int32 -> [T, 3] int32 as Geometry::opposite says.
-/// Vertices at bit-equal positions are one. Edges of one triangle, or of more than two: -1.
-torch::Tensor opposite_vertices(const torch::Tensor& positions, const torch::Tensor& triangles);
+/// positions [V, 3] float32, triangles [T, 3] int32 -> [T, 3] int32 as Geometry::neighbours says.
+/// Vertices at equal positions are one. Edges of one triangle, or of more than two: -1.
+torch::Tensor triangle_neighbours(const torch::Tensor& positions, const torch::Tensor& triangles);
 
 }  // namespace item3d

@@ -29,6 +29,7 @@ struct RasterParameters {
     float* barycentrics;     ///< [N, H, W, 2]
     float* depth;            ///< [N, H, W]; 1/w while rasterizing, 0: none
     std::int32_t* triangle;  ///< [N, H, W], -1: none
+    const float* behind;     ///< [N, H, W] z-depth that fragments must pass; null: none
 };
 
 /// Accumulates the pixel box of points in normalized device coordinates.
@@ -204,6 +205,8 @@ inline void rasterize_triangle(const RasterParameters& p, std::int64_t view, std
             const std::int64_t pixel = row_pixel + x;
             const float nearness = static_cast<float>(inverse_w);
             if (!(nearness > p.depth[pixel])) continue;
+            // The margin keeps a fragment from being found again behind itself.
+            if (p.behind != nullptr && nearness * p.behind[pixel] > 1 - 1e-6f) continue;
             p.depth[pixel] = nearness;
             p.triangle[pixel] = static_cast<std::int32_t>(t);
             p.barycentrics[2 * pixel] = static_cast<float>(e[0] / sum);

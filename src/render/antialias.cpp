@@ -1,0 +1,158 @@
+#include "item3d/render/kernels/antialias.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/parallel.h"
+#include "item3d/render/checks.h"
+#include "item3d/render/rasterize.h"
+#include "item3d/render/topology.h"
+
+#include <cstring>
+
+namespace item3d {
+namespace {
+
+using kernels::AntialiasParameters;
+using kernels::Crossing;
+using torch::autograd::AutogradContext;
+using torch::autograd::tensor_list;
+
+struct AntialiasInput {
+    torch::Tensor triangles, neighbours, triangle, depth;
+};
+
+AntialiasParameters antialias_parameters(const AntialiasInput& input,
+                                         const torch::Tensor& positions_clip) {
+    return {positions_clip.const_data_ptr<float>(),
+            input.triangles.const_data_ptr<std::int32_t>(),
+            input.neighbours.const_data_ptr<std::int32_t>(),
+            input.triangle.const_data_ptr<std::int32_t>(),
+            input.depth.const_data_ptr<float>(),
+            positions_clip.size(1),
+            static_cast<int>(input.triangle.size(2)),
+            static_cast<int>(input.triangle.size(1))};
+}
+
+/// All crossings in the order of their pixels, as bytes.
+torch::Tensor find_crossings(const AntialiasParameters& p, std::int64_t views) {
+    const std::int64_t rows = views * p.height;
+    std::vector<std::vector<Crossing>> by_row(static_cast<std::size_t>(rows));
+    parallel_for(
+        "find_crossings", rows,
+        [&](std::int64_t row) {
+            Crossing crossing;
+            std::vector<Crossing>& found = by_row[static_cast<std::size_t>(row)];
+            for (int x = 0; x < p.width; ++x) {
+                const std::int64_t pixel = row * p.width + x;
+                if (x + 1 < p.width && kernels::find_crossing(p, pixel, false, crossing))
+                    found.push_back(crossing);
+                if (row % p.height + 1 < p.height &&
+                    kernels::find_crossing(p, pixel, true, crossing))
+                    found.push_back(crossing);
+            }
+        },
+        8);
+    std::size_t count = 0;
+    for (const auto& row : by_row)
+        count += row.size();
+    torch::Tensor bytes =
+        torch::empty({static_cast<std::int64_t>(count * sizeof(Crossing))}, torch::kUInt8);
+    std::uint8_t* out = bytes.data_ptr<std::uint8_t>();
+    for (const auto& row : by_row) {
+        if (row.empty()) continue;
+        std::memcpy(out, row.data(), row.size() * sizeof(Crossing));
+        out += row.size() * sizeof(Crossing);
+    }
+    return bytes;
+}
+
+template <typename F>
+void for_each_crossing(const torch::Tensor& bytes, const F& f) {
+    const std::uint8_t* in = bytes.const_data_ptr<std::uint8_t>();
+    Crossing crossing;
+    for (std::int64_t offset = 0; offset < bytes.numel();
+         offset += static_cast<std::int64_t>(sizeof(Crossing))) {
+        std::memcpy(&crossing, in + offset, sizeof(Crossing));
+        f(crossing);
+    }
+}
+
+/// Pairs are found by all threads and blended by one: pixels belong to several pairs, and sums in
+/// a fixed order give the same bytes again.
+struct Antialias : torch::autograd::Function<Antialias> {
+    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& image,
+                                 const torch::Tensor& positions_clip, const AntialiasInput& input) {
+        const torch::Tensor crossings =
+            find_crossings(antialias_parameters(input, positions_clip), image.size(0));
+        torch::Tensor result = image.clone();
+        const std::int64_t channels = image.size(3);
+        const float* in = image.const_data_ptr<float>();
+        float* out = result.data_ptr<float>();
+        for_each_crossing(crossings, [&](const Crossing& crossing) {
+            const kernels::Blend blend = kernels::blend_of(crossing);
+            for (std::int64_t c = 0; c < channels; ++c)
+                out[blend.pixel * channels + c] += blend.weight * (in[blend.other * channels + c] -
+                                                                   in[blend.pixel * channels + c]);
+        });
+        context->save_for_backward({image, positions_clip, input.triangles, input.neighbours,
+                                    input.triangle, input.depth, crossings});
+        return result;
+    }
+    static tensor_list backward(AutogradContext* context, tensor_list gradients) {
+        const auto saved = context->get_saved_variables();
+        const torch::Tensor gradient = gradients[0].contiguous();
+        const torch::Tensor& image = saved[0];
+        const AntialiasParameters p =
+            antialias_parameters({saved[2], saved[3], saved[4], saved[5]}, saved[1]);
+        const std::int64_t channels = image.size(3);
+        const float* in = image.const_data_ptr<float>();
+        const float* by_out = gradient.const_data_ptr<float>();
+        torch::Tensor by_image = gradient.clone(), by_clip;
+        float* by_in = by_image.data_ptr<float>();
+        float* clip_gradient = nullptr;
+        if (context->needs_input_grad(1)) {
+            by_clip = torch::zeros_like(saved[1]);
+            clip_gradient = by_clip.data_ptr<float>();
+        }
+        for_each_crossing(saved[6], [&](const Crossing& crossing) {
+            const kernels::Blend blend = kernels::blend_of(crossing);
+            float by_distance = 0;
+            for (std::int64_t c = 0; c < channels; ++c) {
+                const float g = by_out[blend.pixel * channels + c];
+                by_in[blend.pixel * channels + c] -= blend.weight * g;
+                by_in[blend.other * channels + c] += blend.weight * g;
+                by_distance += g * (in[crossing.foreground * channels + c] -
+                                    in[crossing.background * channels + c]);
+            }
+            if (clip_gradient != nullptr)
+                kernels::crossing_backward(p, crossing, by_distance, clip_gradient);
+        });
+        return {by_image, by_clip, torch::Tensor()};
+    }
+};
+
+}  // namespace
+
+torch::Tensor antialias(const torch::Tensor& image_, const Raster& raster,
+                        const Geometry& geometry) {
+    constexpr const char* op = "antialias";
+    const std::int64_t views = raster.views(), height = raster.height(), width = raster.width();
+    const torch::Tensor image =
+        checked(op, "image", image_, torch::kFloat32, {views, height, width, -1});
+    const torch::Tensor positions_clip =
+        checked(op, "raster.positions_clip", raster.positions_clip, torch::kFloat32,
+                {views, geometry.positions.size(0), 4});
+    AntialiasInput input;
+    input.triangles = checked(op, "triangles", geometry.triangles, torch::kInt32, {-1, 3});
+    input.neighbours = checked(op, "neighbours",
+                               geometry.neighbours.defined()
+                                   ? geometry.neighbours
+                                   : triangle_neighbours(geometry.positions, geometry.triangles),
+                               torch::kInt32, {input.triangles.size(0), 3});
+    input.triangle =
+        checked(op, "raster.triangle", raster.triangle, torch::kInt32, {views, height, width});
+    input.depth =
+        checked(op, "raster.depth", raster.depth, torch::kFloat32, {views, height, width});
+    return Antialias::apply(image, positions_clip, input);
+}
+
+}  // namespace item3d

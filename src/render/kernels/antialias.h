@@ -1,0 +1,159 @@
+// Where silhouette edges cross between two neighbouring pixel centres (Laine et al. 2020, section
+// 3.4). The paper looks at the edges of the triangle seen at the nearer pixel; here the search
+// walks on over inner edges to the triangles beside it, so that meshes finer than pixels are
+// smoothed too.
+#pragma once
+
+#include "item3d/core/host_device.h"
+#include "item3d/core/math.h"
+
+#include <cmath>
+#include <cstdint>
+
+namespace item3d::kernels {
+
+struct AntialiasParameters {
+    const float* positions_clip;     ///< [N, V, 4]
+    const std::int32_t* triangles;   ///< [T, 3]
+    const std::int32_t* neighbours;  ///< [T, 3], see Geometry::neighbours
+    const std::int32_t* triangle;    ///< [N, H, W]
+    const float* depth;              ///< [N, H, W]
+    std::int64_t vertices;           ///< V
+    int width;
+    int height;
+};
+
+/// One blended pixel pair.
+struct Crossing {
+    std::int64_t foreground, background;  ///< pixels, indices into N*H*W
+    std::int64_t first, second;           ///< ends of the edge, indices into N*V
+    float distance;          ///< of the edge from the foreground's centre, in pixels, [0, 1]
+    std::int16_t vertical;   ///< whether the pair is a column
+    std::int16_t direction;  ///< +1: the background is to the right or below
+};
+
+/// A vertex relative to the foreground's centre, in pixels: u towards the background, v across.
+struct PairCoordinates {
+    float u, v;
+};
+
+ITEM3D_HOST_DEVICE inline PairCoordinates pair_coordinates(const AntialiasParameters& p,
+                                                           const float* clip, std::int64_t pixel,
+                                                           bool vertical, int direction) {
+    const std::int64_t in_view = pixel % (static_cast<std::int64_t>(p.width) * p.height);
+    const float inverse = 1.0f / clip[3];
+    const float x = (clip[0] * inverse + 1) * 0.5f * p.width - (in_view % p.width + 0.5f);
+    const float y = (1 - clip[1] * inverse) * 0.5f * p.height - (in_view / p.width + 0.5f);
+    return vertical ? PairCoordinates{direction * y, x} : PairCoordinates{direction * x, y};
+}
+
+/// Orientation of a triangle on the screen; the sign is right behind the camera as well.
+ITEM3D_HOST_DEVICE inline double orientation(const float* a, const float* b, const float* c) {
+    const double bx = b[0], by = b[1], bw = b[3], cx = c[0], cy = c[1], cw = c[3];
+    return a[0] * (by * cw - bw * cy) + a[1] * (bw * cx - bx * cw) + a[3] * (bx * cy - by * cx);
+}
+
+/// Looks between `pixel` and the next one to the right or below; false when no silhouette edge
+/// crosses there.
+ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::int64_t pixel,
+                                             bool vertical, Crossing& crossing) {
+    const std::int64_t other = pixel + (vertical ? p.width : 1);
+    const std::int32_t here = p.triangle[pixel], there = p.triangle[other];
+    if (here == there) return false;
+    const bool near_here = there < 0 || (here >= 0 && p.depth[pixel] <= p.depth[other]);
+    crossing.foreground = near_here ? pixel : other;
+    crossing.background = near_here ? other : pixel;
+    crossing.vertical = vertical;
+    crossing.direction = near_here ? 1 : -1;
+
+    constexpr float tolerance = 1.0f / 16;
+    constexpr int most_steps = 64;
+    const std::int64_t view = pixel / (static_cast<std::int64_t>(p.width) * p.height);
+    const float* clip = p.positions_clip + 4 * view * p.vertices;
+    std::int64_t t = near_here ? here : there;
+    int entered = -1;  // the corner that faces the edge through which the walk came
+    for (int step = 0; step < most_steps; ++step) {
+        const std::int32_t* corners = p.triangles + 3 * t;
+        const float* v[3];
+        PairCoordinates at[3];
+        for (int k = 0; k < 3; ++k) {
+            v[k] = clip + 4 * static_cast<std::int64_t>(corners[k]);
+            if (!(v[k][3] > 1e-12f)) return false;
+            at[k] = pair_coordinates(p, v[k], crossing.foreground, vertical, crossing.direction);
+        }
+        // The edge through which the line v = 0 leaves the triangle.
+        int leaves = -1;
+        float farthest = -1e30f;
+        for (int k = 0; k < 3; ++k) {
+            const PairCoordinates a = at[(k + 1) % 3], b = at[(k + 2) % 3];
+            if (k == entered || (a.v < 0) == (b.v < 0)) continue;
+            const float u = (a.u * b.v - b.u * a.v) / (b.v - a.v);
+            if (u > farthest) {
+                farthest = u;
+                leaves = k;
+            }
+        }
+        if (leaves < 0 || farthest > 1 + tolerance) return false;
+        const int first = (leaves + 1) % 3, second = (leaves + 2) % 3;
+        const std::int32_t neighbour = p.neighbours[3 * t + leaves];
+        bool silhouette = neighbour < 0;
+        if (!silhouette) {
+            const float* beyond = clip + 4 * static_cast<std::int64_t>(p.triangles[neighbour]);
+            silhouette = orientation(v[first], v[second], v[leaves]) *
+                             orientation(v[first], v[second], beyond) >
+                         0;
+        }
+        if (silhouette) {
+            if (farthest < -tolerance) return false;
+            crossing.first = view * p.vertices + corners[first];
+            crossing.second = view * p.vertices + corners[second];
+            crossing.distance = farthest < 0 ? 0.0f : (farthest > 1 ? 1.0f : farthest);
+            return true;
+        }
+        t = neighbour / 3;
+        entered = neighbour % 3;
+    }
+    return false;
+}
+
+/// The pixel that a crossing changes, and by how much it takes on the other's colour.
+struct Blend {
+    std::int64_t pixel, other;
+    float weight;
+};
+ITEM3D_HOST_DEVICE inline Blend blend_of(const Crossing& crossing) {
+    const float beyond = crossing.distance - 0.5f;
+    return beyond > 0 ? Blend{crossing.background, crossing.foreground, beyond}
+                      : Blend{crossing.foreground, crossing.background, -beyond};
+}
+
+/// Adds the gradient by a crossing's distance to the edge's ends; clip_gradient [N, V, 4].
+ITEM3D_HOST_DEVICE inline void crossing_backward(const AntialiasParameters& p,
+                                                 const Crossing& crossing, float gradient,
+                                                 float* clip_gradient) {
+    if (crossing.distance <= 0 || crossing.distance >= 1) return;
+    const bool vertical = crossing.vertical != 0;
+    const std::int64_t ends[2] = {crossing.first, crossing.second};
+    PairCoordinates at[2];
+    for (int k = 0; k < 2; ++k)
+        at[k] = pair_coordinates(p, p.positions_clip + 4 * ends[k], crossing.foreground, vertical,
+                                 crossing.direction);
+    const float span = at[1].v - at[0].v;
+    const float u = crossing.distance;
+    const PairCoordinates by_end[2] = {{at[1].v / span, (u - at[1].u) / span},
+                                       {-at[0].v / span, (at[0].u - u) / span}};
+    for (int k = 0; k < 2; ++k) {
+        const float along = gradient * by_end[k].u * crossing.direction;
+        const float across = gradient * by_end[k].v;
+        const float by_x = vertical ? across : along, by_y = vertical ? along : across;
+        const float* clip = p.positions_clip + 4 * ends[k];
+        const float inverse = 1.0f / clip[3];
+        const float x_scale = 0.5f * p.width * inverse, y_scale = -0.5f * p.height * inverse;
+        float* out = clip_gradient + 4 * ends[k];
+        out[0] += by_x * x_scale;
+        out[1] += by_y * y_scale;
+        out[3] -= (by_x * x_scale * clip[0] + by_y * y_scale * clip[1]) * inverse;
+    }
+}
+
+}  // namespace item3d::kernels

@@ -1,0 +1,73 @@
+#include "item3d/core/error.h"
+#include "item3d/render/textured.h"
+
+namespace item3d {
+namespace {
+
+/// Layers of a transparent model that are seen through each other.
+constexpr int most_layers = 8;
+
+/// One layer, front to back: [1, H, W, 4] premultiplied.
+torch::Tensor shade_layer(const Raster& raster, const Geometry& geometry,
+                          const TexturedMaterials& materials, const EnvironmentLight& light,
+                          const std::vector<Camera>& camera, const ShadeOptions& options) {
+    const Surface surface = interpolate_surface(geometry, raster, camera);
+    const MaterialSample material = materials.sample(surface);
+    const torch::Tensor radiance = shade(surface, material, light, options);
+    const torch::Tensor alpha = material.alpha.defined()
+                                    ? material.alpha.unsqueeze(1)
+                                    : torch::ones({surface.count(), 1}, radiance.options());
+    return scatter(torch::cat({radiance * alpha, alpha}, 1), surface, raster,
+                   torch::zeros({4}, radiance.options()));
+}
+
+torch::Tensor render_view(const Geometry& geometry, const TexturedMaterials& materials,
+                          const EnvironmentLight& light, const Camera& camera,
+                          const RenderOptions& options) {
+    const std::vector<Camera> cameras{camera};
+    const int samples = options.supersampling;
+    const int width = options.width * samples, height = options.height * samples;
+    const Raster first = rasterize(geometry, cameras, width, height);
+    torch::Tensor picture = shade_layer(first, geometry, materials, light, cameras, options.shade);
+
+    if (materials.has_alpha()) {
+        Raster layer = first;
+        for (int depth = 1; depth < most_layers; ++depth) {
+            const torch::Tensor open =
+                (picture.select(3, 3) < 0.999f).logical_and(layer.triangle >= 0);
+            if (!open.any().item<bool>()) break;
+            // Nothing lies behind the farthest depth, so closed pixels stay as they are.
+            layer =
+                rasterize(geometry, cameras, width, height,
+                          torch::where(open, layer.depth, torch::full_like(layer.depth, 1e30f)));
+            picture = picture + (1 - picture.narrow(3, 3, 1)) * shade_layer(layer, geometry,
+                                                                            materials, light,
+                                                                            cameras, options.shade);
+        }
+    }
+    if (options.background) {
+        const Vec3 color = *options.background;
+        picture = picture +
+                  (1 - picture.narrow(3, 3, 1)) * torch::tensor({color.x, color.y, color.z, 1.0f});
+    }
+    picture = antialias(picture, first, geometry);
+    if (samples == 1) return picture;
+    return picture.reshape({1, options.height, samples, options.width, samples, 4}).mean({2, 4});
+}
+
+}  // namespace
+
+torch::Tensor render(const Geometry& geometry, const TexturedMaterials& materials,
+                     const EnvironmentLight& light, const std::vector<Camera>& cameras,
+                     const RenderOptions& options) {
+    ITEM3D_CHECK(options.supersampling >= 1 && options.width >= 1 && options.height >= 1,
+                 "render: width, height and supersampling of at least 1");
+    // One view at a time: memory stays that of one supersampled picture.
+    std::vector<torch::Tensor> pictures;
+    for (const Camera& camera : cameras)
+        pictures.push_back(render_view(geometry, materials, light, camera, options));
+    ITEM3D_CHECK(!pictures.empty(), "render: at least one camera");
+    return torch::cat(pictures);
+}
+
+}  // namespace item3d

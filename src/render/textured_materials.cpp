@@ -1,0 +1,179 @@
+#include "item3d/core/error.h"
+#include "item3d/render/textured.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+/// A texture of one use, with the channels that this use wants.
+struct MaterialTexture {
+    torch::Tensor texels;  ///< [H, W, C]; undefined: none
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+
+    torch::Tensor at(const torch::Tensor& uv) const {
+        return sample_texture(texels, uv, wrap_u, wrap_v);
+    }
+};
+
+/// channels: 3 or 4. Grey images fill all colours; a missing alpha is 1.
+torch::Tensor with_channels(const torch::Tensor& image, std::int64_t channels) {
+    const std::int64_t have = image.size(2);
+    const bool alpha = have == 2 || have >= 4;
+    const std::int64_t colors = have >= 3 ? 3 : 1;
+    torch::Tensor rgb = image.narrow(2, 0, colors).expand({image.size(0), image.size(1), 3});
+    if (channels == 3) return rgb;
+    return torch::cat({rgb, alpha ? image.narrow(2, have >= 4 ? 3 : 1, 1)
+                                  : torch::ones({image.size(0), image.size(1), 1})},
+                      2);
+}
+
+MaterialTexture load_texture(const Model& model, int index, std::int64_t channels, bool srgb,
+                             torch::Device device) {
+    MaterialTexture texture;
+    if (index < 0 || index >= static_cast<int>(model.textures.size())) return texture;
+    const Texture& source = model.textures[static_cast<std::size_t>(index)];
+    if (source.image.empty()) return texture;
+    torch::Tensor texels = with_channels(to_tensor(source.image), channels);
+    if (srgb) {
+        torch::Tensor linear = srgb_to_linear(texels.narrow(2, 0, 3));
+        texels = channels == 4 ? torch::cat({linear, texels.narrow(2, 3, 1)}, 2) : linear;
+    }
+    texture.texels = texels.contiguous().to(device);
+    texture.wrap_u = source.wrap_u;
+    texture.wrap_v = source.wrap_v;
+    return texture;
+}
+
+struct MaterialTextures {
+    Material factors;
+    MaterialTexture base_color, metallic_roughness, occlusion, normal, emissive;
+    bool emits() const {
+        return std::max({factors.emissive_factor.x, factors.emissive_factor.y,
+                         factors.emissive_factor.z}) > 0;
+    }
+    bool transparent() const { return factors.alpha != Material::Alpha::opaque; }
+};
+
+torch::Tensor row(std::initializer_list<float> values, torch::Device device) {
+    return torch::tensor(std::vector<float>(values)).to(device);
+}
+
+}  // namespace
+
+struct TexturedMaterials::State {
+    std::vector<MaterialTextures> materials;
+    bool any_normal = false, any_emissive = false, any_alpha = false;
+
+    MaterialSample sample_one(const MaterialTextures& material, const torch::Tensor& uv,
+                              const torch::Tensor& color) const;
+};
+
+TexturedMaterials::TexturedMaterials(const Model& model, torch::Device device) {
+    const torch::NoGradGuard no_gradient;
+    auto state = std::make_shared<State>();
+    for (const Material& material : model.materials) {
+        MaterialTextures textures;
+        textures.factors = material;
+        textures.base_color = load_texture(model, material.base_color_texture, 4, true, device);
+        textures.metallic_roughness =
+            load_texture(model, material.metallic_roughness_texture, 3, false, device);
+        textures.occlusion = load_texture(model, material.occlusion_texture, 3, false, device);
+        textures.normal = load_texture(model, material.normal_texture, 3, false, device);
+        textures.emissive = load_texture(model, material.emissive_texture, 3, true, device);
+        state->any_normal = state->any_normal || textures.normal.texels.defined();
+        state->any_emissive = state->any_emissive || textures.emits();
+        state->any_alpha = state->any_alpha || textures.transparent();
+        state->materials.push_back(std::move(textures));
+    }
+    state_ = std::move(state);
+}
+
+bool TexturedMaterials::has_alpha() const {
+    return state_->any_alpha;
+}
+
+MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& material,
+                                                    const torch::Tensor& uv,
+                                                    const torch::Tensor& color) const {
+    const Material& factors = material.factors;
+    const torch::Device device = uv.device();
+    const std::int64_t count = uv.size(0);
+
+    const Vec4 base = factors.base_color_factor;
+    torch::Tensor base_color = color * row({base.x, base.y, base.z, base.w}, device);
+    if (material.base_color.texels.defined()) base_color = base_color * material.base_color.at(uv);
+
+    MaterialSample sample;
+    sample.base_color = base_color.narrow(1, 0, 3).clamp(0, 1);
+    torch::Tensor roughness_metallic =
+        row({factors.roughness_factor, factors.metallic_factor}, device).expand({count, 2});
+    if (material.metallic_roughness.texels.defined())
+        roughness_metallic =
+            roughness_metallic * material.metallic_roughness.at(uv).narrow(1, 1, 2);
+    torch::Tensor occlusion = torch::ones({count, 1}, uv.options());
+    if (material.occlusion.texels.defined())
+        occlusion =
+            1 + factors.occlusion_strength * (material.occlusion.at(uv).narrow(1, 0, 1) - 1);
+    sample.orm = torch::cat({occlusion, roughness_metallic}, 1).clamp(0, 1);
+
+    if (any_normal) {
+        if (material.normal.texels.defined()) {
+            const torch::Tensor scale =
+                row({factors.normal_scale, factors.normal_scale, 1}, device);
+            const torch::Tensor normal = (2 * material.normal.at(uv) - 1) * scale;
+            sample.normal = normal / normal.norm(2, 1, true).clamp_min(1e-6f);
+        } else {
+            sample.normal = row({0, 0, 1}, device).expand({count, 3});
+        }
+    }
+    if (any_emissive) {
+        const Vec3 emissive = factors.emissive_factor;
+        sample.emissive = row({emissive.x, emissive.y, emissive.z}, device).expand({count, 3});
+        if (material.emissive.texels.defined())
+            sample.emissive = sample.emissive * material.emissive.at(uv);
+    }
+    if (any_alpha) {
+        const torch::Tensor alpha = base_color.select(1, 3);
+        if (factors.alpha == Material::Alpha::mask)
+            sample.alpha = (alpha >= factors.alpha_cutoff).to(torch::kFloat32);
+        else if (factors.alpha == Material::Alpha::blend)
+            sample.alpha = alpha.clamp(0, 1);
+        else
+            sample.alpha = torch::ones_like(alpha);
+    }
+    return sample;
+}
+
+MaterialSample TexturedMaterials::sample(const Surface& surface) const {
+    const std::size_t materials = state_->materials.size();
+    ITEM3D_CHECK(materials > 0, "TexturedMaterials: a model with at least one material");
+    if (materials == 1) return state_->sample_one(state_->materials[0], surface.uv, surface.color);
+
+    // Each point is sampled from its own material, then put back in its place.
+    std::vector<MaterialSample> parts;
+    std::vector<torch::Tensor> places;
+    for (std::size_t m = 0; m < materials; ++m) {
+        const torch::Tensor place =
+            (surface.material == static_cast<std::int64_t>(m)).nonzero().squeeze(1);
+        if (place.size(0) == 0 && !(parts.empty() && m + 1 == materials)) continue;
+        places.push_back(place);
+        parts.push_back(state_->sample_one(state_->materials[m], surface.uv.index_select(0, place),
+                                           surface.color.index_select(0, place)));
+    }
+    const torch::Tensor order = torch::argsort(torch::cat(places));
+    const auto gather = [&](torch::Tensor MaterialSample::*member) -> torch::Tensor {
+        if (!(parts[0].*member).defined()) return {};
+        std::vector<torch::Tensor> values;
+        for (const MaterialSample& part : parts)
+            values.push_back(part.*member);
+        return torch::cat(values).index_select(0, order);
+    };
+    return {gather(&MaterialSample::base_color), gather(&MaterialSample::orm),
+            gather(&MaterialSample::normal), gather(&MaterialSample::emissive),
+            gather(&MaterialSample::alpha)};
+}
+
+}  // namespace item3d
