@@ -75,24 +75,40 @@ TEST(Camera, TurntableKeepsTheBoundingSphereInView) {
     EXPECT_GT(widest, 0.9f);
 }
 
-TEST(Camera, FramesABoxToFiveSixthsOfThePicture) {
-    const std::array<Vec3, 2> bounds{Vec3(-3, -1, 0), Vec3(3, 1, 1)};
+TEST(Camera, FramesPointsInTheMiddleAtFiveSixthsOfThePicture) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 200; ++i) {
+        points.emplace_back(3 * std::sin(0.7f * i), std::cos(0.3f * i), 0.005f * i);
+    }
     for (const float aspect : {0.5f, 1.0f, 2.0f}) {
-        const Camera camera = framing_camera(bounds, 0.6f, 0.3f, 0.6f, aspect);
+        const Camera camera = framing_camera(points, 0.6f, 0.3f, 0.6f, aspect);
         const int width = static_cast<int>(100 * aspect);
         Vec2 low(9);
         Vec2 high(-9);
-        for (int i = 0; i < 8; ++i) {
-            const Vec3 corner(bounds[i & 1].x, bounds[(i >> 1) & 1].y, bounds[i >> 2].z);
-            const Vec3 p = to_device(camera, corner, width, 100);
+        for (const Vec3& point : points) {
+            const Vec3 p = to_device(camera, point, width, 100);
             low = glm::min(low, Vec2(p));
             high = glm::max(high, Vec2(p));
             EXPECT_LT(std::abs(p.z), 1);
         }
-        const Vec2 reach = glm::max(high, -low);
-        EXPECT_NEAR(std::max(reach.x, reach.y), 5.0f / 6.0f, 0.04f) << aspect;
-        EXPECT_LT(std::min(reach.x, reach.y), 0.875f) << aspect;
+        const int tight = high.x > high.y ? 0 : 1;
+        EXPECT_NEAR(high[tight], 5.0f / 6.0f, 1e-4) << aspect;
+        EXPECT_NEAR(low[tight], -5.0f / 6.0f, 1e-4) << aspect;
+        EXPECT_LE(high[1 - tight], 5.0f / 6.0f) << aspect;
+        EXPECT_GE(low[1 - tight], -5.0f / 6.0f) << aspect;
     }
+}
+
+TEST(Camera, FramesAllCornersOfABox) {
+    const std::array<Vec3, 2> bounds{Vec3(-3, -1, 0), Vec3(3, 1, 1)};
+    const Camera camera = framing_camera(bounds, 0.6f, 0.3f, 0.6f);
+    float widest = 0;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 corner(bounds[i & 1].x, bounds[(i >> 1) & 1].y, bounds[i >> 2].z);
+        const Vec3 p = to_device(camera, corner, 64, 64);
+        widest = std::max({widest, std::abs(p.x), std::abs(p.y)});
+    }
+    EXPECT_NEAR(widest, 5.0f / 6.0f, 1e-4);
 }
 
 TEST(Camera, DepthRangeHoldsTheBoxEvenAroundTheCamera) {

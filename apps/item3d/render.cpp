@@ -2,6 +2,7 @@
 #include "command.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/evaluate/color.h"
 #include "item3d/evaluate/picture.h"
@@ -10,8 +11,6 @@
 #include "item3d/scene/environment.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -125,7 +124,11 @@ std::vector<Camera> choose_cameras(const RenderCommand& options, const Model& mo
             camera.field_of_view_x = horizontal_field_of_view(default_field_of_view, aspect);
         }
     } else {
-        cameras = {framing_camera(bounds, default_azimuth, default_elevation, default_field_of_view,
+        std::vector<Vec3> points;
+        for (const Primitive& primitive : model.primitives) {
+            points.insert(points.end(), primitive.positions.begin(), primitive.positions.end());
+        }
+        cameras = {framing_camera(points, default_azimuth, default_elevation, default_field_of_view,
                                   aspect)};
         cameras.front().name = "view_000";
     }
@@ -201,7 +204,7 @@ class Painter {
   private:
     /// Material channels are taken at pixel centres: a mean over an edge would be no material.
     Image values(const Camera& camera) const {
-        const Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
+        const Raster raster = visible(camera);
         if (channel_ == "depth") return to_image(raster.depth[0].unsqueeze(-1).cpu());
         const torch::Tensor mask = (raster.triangle[0] >= 0).to(torch::kFloat32).unsqueeze(-1);
         if (channel_ == "mask") return to_image(mask.cpu());
@@ -216,8 +219,31 @@ class Painter {
         return to_image(torch::cat({image[0], mask}, -1).cpu());
     }
 
-    /// 1 at the nearest point the camera could see of the model's box, falling to 0.1 at the
-    /// farthest; 0 where there is nothing.
+    /// The nearest surface that is at least half opaque.
+    Raster visible(const Camera& camera) const {
+        constexpr int most_layers = 8;
+        Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
+        for (int layer = 1; materials_.has_alpha() && layer < most_layers; ++layer) {
+            const Surface surface = interpolate_surface(geometry_, raster, {camera});
+            const torch::Tensor alpha = materials_.sample(surface).alpha.unsqueeze(-1);
+            const torch::Tensor open =
+                scatter(alpha, surface, raster, torch::ones({1}, alpha.options())).squeeze(-1) <
+                0.5f;
+            if (!open.any().item<bool>()) break;
+            // Nothing lies behind the farthest depth, so the other pixels stay as they are.
+            const Raster next =
+                rasterize(geometry_, {camera}, size_.width, size_.height,
+                          torch::where(open, raster.depth, torch::full_like(raster.depth, 1e30f)));
+            raster.triangle = torch::where(open, next.triangle, raster.triangle);
+            raster.depth = torch::where(open, next.depth, raster.depth);
+            raster.barycentrics =
+                torch::where(open.unsqueeze(-1), next.barycentrics, raster.barycentrics);
+        }
+        return raster;
+    }
+
+    /// 1 at the near end of the model's box, falling to 0.1 at its far end; 0 where there is
+    /// nothing.
     static Image depth_display(const Image& depth, const Camera& camera) {
         Image picture = depth;
         const float span =

@@ -169,37 +169,44 @@ float horizontal_field_of_view(float field_of_view, float aspect) {
     return 2 * std::atan(std::tan(field_of_view / 2) * std::max(aspect, 1.0f));
 }
 
-Camera framing_camera(std::array<Vec3, 2> bounds, float azimuth, float elevation,
+Camera framing_camera(std::span<const Vec3> points, float azimuth, float elevation,
                       float field_of_view, float aspect) {
+    ITEM3D_CHECK(!points.empty(), "there is nothing to frame");
     const float field_of_view_x = horizontal_field_of_view(field_of_view, aspect);
-    const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
-    const float size = std::max(glm::length(bounds[1] - bounds[0]), 1e-6f);
     const float slope_x = std::tan(field_of_view_x / 2) * (5.0f / 6.0f);
     const float slope_y = slope_x / aspect;
-    const Mat4 view =
-        orbit_camera(centre, 0, azimuth, elevation, field_of_view_x).world_to_camera();
-
-    // Along each picture axis the box touches both edges when the camera stands at
-    // depth = (extent of corner + its depth) / slope; shifting sideways by `offset` centres it.
-    float distance = 0.5f * size;
-    Vec2 offset(0);
-    for (int pass = 0; pass < 2; ++pass) {
-        Vec4 reach(-std::numeric_limits<float>::max());
-        for (const Vec3& corner : corners(bounds)) {
-            const Vec3 p = Vec3(view * Vec4(corner, 1));
-            reach = glm::max(reach, Vec4(p.x / slope_x + p.z, -p.x / slope_x + p.z,
-                                         p.y / slope_y + p.z, -p.y / slope_y + p.z));
-        }
-        offset =
-            Vec2(0.5f * (reach[0] - reach[1]) * slope_x, 0.5f * (reach[2] - reach[3]) * slope_y);
-        distance = std::max(0.5f * (reach[0] + reach[1]), 0.5f * (reach[2] + reach[3]));
+    std::array<Vec3, 2> bounds{points.front(), points.front()};
+    for (const Vec3& point : points) {
+        bounds[0] = glm::min(bounds[0], point);
+        bounds[1] = glm::max(bounds[1], point);
     }
-    distance = std::max(distance, 1e-3f * size);
-    const Mat4 axes = orbit_camera(centre, 0, azimuth, elevation, field_of_view_x).camera_to_world;
+    const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
+    const float size = std::max(glm::length(bounds[1] - bounds[0]), 1e-6f);
+
+    // With the camera `distance` before the centre and moved sideways by `offset`, a point at p
+    // (its z towards the camera) is inside when |p.x - offset.x| <= slope_x (distance - p.z), and
+    // so for y. The two bounds of an axis meet at the offset that centres the points.
+    const Mat4 axes = orbit_camera(Vec3(0), 0, azimuth, elevation, field_of_view_x).camera_to_world;
+    Vec4 reach(-std::numeric_limits<float>::max());
+    for (const Vec3& point : points) {
+        const Vec3 p = glm::transpose(Mat3(axes)) * (point - centre);
+        reach = glm::max(reach,
+                         Vec4(p.x / slope_x, -p.x / slope_x, p.y / slope_y, -p.y / slope_y) + p.z);
+    }
+    const Vec2 offset =
+        0.5f * Vec2((reach[0] - reach[1]) * slope_x, (reach[2] - reach[3]) * slope_y);
+    const float distance =
+        std::max({0.5f * (reach[0] + reach[1]), 0.5f * (reach[2] + reach[3]), 1e-3f * size});
     const Vec3 target = centre + offset.x * Vec3(axes[0]) + offset.y * Vec3(axes[1]);
     Camera camera = orbit_camera(target, distance, azimuth, elevation, field_of_view_x);
     fit_depth_range(camera, bounds);
     return camera;
+}
+
+Camera framing_camera(std::array<Vec3, 2> bounds, float azimuth, float elevation,
+                      float field_of_view, float aspect) {
+    return framing_camera(std::span<const Vec3>(corners(bounds)), azimuth, elevation, field_of_view,
+                          aspect);
 }
 
 void fit_depth_range(Camera& camera, std::array<Vec3, 2> bounds) {

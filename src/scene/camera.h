@@ -5,6 +5,7 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,9 +34,13 @@ Camera orbit_camera(Vec3 target, float distance, float azimuth, float elevation,
 std::vector<Camera> turntable(std::array<Vec3, 2> bounds, int count, float elevation,
                               float field_of_view_x);
 
-/// The camera from `azimuth` and `elevation` (radians) that shows all of the box as large as it can
-/// with a twelfth of the picture free on each side. aspect: width / height; the shorter side of the
-/// picture spans `field_of_view`.
+/// The camera from `azimuth` and `elevation` (radians) that shows all points as large as it can, in
+/// the middle, with a twelfth of the picture free on each side. aspect: width / height; the shorter
+/// side of the picture spans `field_of_view`. Give a
+/// model's vertices where they are at hand: its box is framed with its empty corners.
+Camera framing_camera(std::span<const Vec3> points, float azimuth, float elevation,
+                      float field_of_view, float aspect = 1.0f);
+
 Camera framing_camera(std::array<Vec3, 2> bounds, float azimuth, float elevation,
                       float field_of_view, float aspect = 1.0f);
 
