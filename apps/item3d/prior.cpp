@@ -60,6 +60,8 @@ void add_train(CLI::App& app) {
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     command->add_option("--seed", settings.seed, "Of everything random")->capture_default_str();
+    command->add_option("--stop-after", settings.stop_after,
+                        "End after so many pictures, to go on later with --resume");
     command->add_flag("--resume", settings.resume, "Go on from the checkpoint in the work folder");
     command->callback([options] {
         start_command(*options);
@@ -119,12 +121,76 @@ void add_pictures(CLI::App& app) {
     });
 }
 
+struct FolderOptions : CommonOptions {
+    std::string folder;
+};
+
+std::filesystem::path prior_folder(const FolderOptions& options) {
+    return options.folder.empty() ? assets_folder() / "prior"
+                                  : std::filesystem::path(options.folder);
+}
+
+void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
+    const PriorVocabulary vocabulary(prior, subject);
+    std::vector<std::string> kinds;
+    for (const KnownWord& word : vocabulary.words())
+        if (kinds.empty() || kinds.back() != word.kind) kinds.push_back(word.kind);
+    fmt::print("{}\n", prior.value("name", subject));
+    if (prior.contains("train")) {
+        const auto& train = prior.at("train");
+        fmt::print("trained on {} pictures in {}, loss {:.3f}, autoencoder {:.1f} dB\n",
+                   train.value("samples", 0), format_duration(train.value("seconds", 0.0)),
+                   train.value("loss", 0.0), train.value("psnr", 0.0));
+    }
+    if (kinds.empty()) fmt::print("not measured: see `item3d prior measure`\n");
+    for (const std::string& kind : kinds) {
+        fmt::print("\n{}\n", kind);
+        for (const KnownWord& word : vocabulary.words_of(kind)) {
+            std::string spellings;
+            for (const std::string& spelling : word.spellings)
+                if (spelling != word.word) spellings += (spellings.empty() ? "" : ", ") + spelling;
+            fmt::print("  {:12} {:4.0f} % {} {}\n", word.word, 100 * word.accuracy,
+                       word.accuracy < weak_accuracy ? "weak" : "    ", spellings);
+        }
+    }
+}
+
+void add_folder_commands(CLI::App& app) {
+    auto info = std::make_shared<FolderOptions>();
+    CLI::App* command =
+        add_command(app, "info", "List what a prior knows, with its accuracy a word", *info);
+    command->add_option("PRIOR", info->folder, "Its folder; without it, the embedded prior");
+    command->callback([info] {
+        start_command(*info);
+        const auto file = prior_folder(*info) / "prior.json";
+        const auto prior = nlohmann::json::parse(read_text(file), nullptr, false);
+        if (!prior.is_object()) throw InputError(file.string(), "is not a JSON object");
+        if (info->json)
+            print_json(prior);
+        else
+            print_vocabulary(prior, file.string());
+    });
+    auto measure = std::make_shared<FolderOptions>();
+    command =
+        add_command(app, "measure", "Measure a prior on held-out shapes, word by word", *measure);
+    command->add_option("PRIOR", measure->folder, "Its folder")->required();
+    command->callback([measure] {
+        start_command(*measure);
+        const auto prior = write_measurement(measure->folder, at::get_num_threads());
+        if (measure->json)
+            print_json(prior);
+        else
+            print_vocabulary(prior, measure->folder);
+    });
+}
+
 }  // namespace
 
 void add_prior_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("prior", "Train and inspect the embedded prior");
     command->require_subcommand(1);
     add_train(*command);
+    add_folder_commands(*command);
     add_pictures(*command);
 }
 

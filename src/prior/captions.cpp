@@ -1,11 +1,11 @@
 #include "item3d/prior/captions.h"
 
+#include "item3d/models/clip_tokenizer.h"
+#include "item3d/prior/shapes.h"
+
 #include <algorithm>
 #include <map>
 #include <sstream>
-
-#include "item3d/models/clip_tokenizer.h"
-#include "item3d/prior/shapes.h"
 
 namespace item3d {
 namespace {
@@ -41,10 +41,16 @@ std::string mend_articles(const std::string& text) {
 std::string make_caption(Random& random, const std::vector<std::string>& nouns,
                          const std::vector<std::string>& material_phrases,
                          const std::vector<std::string>& light_phrases) {
-    static const std::vector<std::string> frames{"a ",            "a ",          "a ",
-                                                 "a ",            "a ",          "a photo of a ",
-                                                 "a photo of a ", "a 3d render of a ",
-                                                 "an image of a ", "a picture of a "};
+    static const std::vector<std::string> frames{"a ",
+                                                 "a ",
+                                                 "a ",
+                                                 "a ",
+                                                 "a ",
+                                                 "a photo of a ",
+                                                 "a photo of a ",
+                                                 "a 3d render of a ",
+                                                 "an image of a ",
+                                                 "a picture of a "};
     // A second noun is rarer than the first.
     std::string noun = nouns.size() > 1 && random.chance(.25) ? pick(random, nouns) : nouns[0];
     if (random.chance(.12)) noun = "object";
@@ -61,10 +67,9 @@ std::string plain_caption(const ProceduralMaterial& material, const std::string&
 }
 
 std::vector<WordCount> caption_vocabulary(std::uint64_t seed, int draws) {
-    static const std::vector<std::string> lights{"", " in a studio", " under studio light",
-                                                 " in bright light", " at sunset", " at night",
-                                                 " in the dark", " on an overcast day", " at noon",
-                                                 " in the sun"};
+    static const std::vector<std::string> lights{
+        "",          " in a studio", " under studio light", " in bright light", " at sunset",
+        " at night", " in the dark", " on an overcast day", " at noon",         " in the sun"};
     std::map<std::string, std::int64_t> counts;
     const auto& classes = shape_classes();
     for (int i = 0; i < draws; ++i) {
@@ -73,10 +78,12 @@ std::vector<WordCount> caption_vocabulary(std::uint64_t seed, int draws) {
         if (shape.held_out) continue;
         const ProceduralMaterial material = make_material(random);
         const std::string caption = make_caption(random, shape.nouns, material.phrases, lights);
-        for (const std::string& word : ClipTokenizer::split_words(caption)) ++counts[word];
+        for (const std::string& word : ClipTokenizer::split_words(caption))
+            ++counts[word];
     }
     std::vector<WordCount> result;
-    for (const auto& [word, count] : counts) result.push_back({word, count});
+    for (const auto& [word, count] : counts)
+        result.push_back({word, count});
     std::stable_sort(result.begin(), result.end(),
                      [](const WordCount& a, const WordCount& b) { return a.count > b.count; });
     return result;

@@ -1,16 +1,17 @@
 // Template captions of the training pictures.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "item3d/core/random.h"
 #include "item3d/prior/materials.h"
+
+#include <string>
+#include <vector>
 
 namespace item3d {
 
 /// "a photo of a wooden mug at sunset": picks a frame, a phrase of the material, a noun, and a
-/// phrase of the light (one of `light_phrases`, which may be ""). One caption in eight says "object".
+/// phrase of the light (one of `light_phrases`, which may be ""). One caption in eight says
+/// "object".
 std::string make_caption(Random& random, const std::vector<std::string>& nouns,
                          const std::vector<std::string>& material_phrases,
                          const std::vector<std::string>& light_phrases);

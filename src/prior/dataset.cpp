@@ -1,11 +1,11 @@
 #include "item3d/prior/dataset.h"
 
-#include <algorithm>
-
 #include "item3d/core/error.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/shapes.h"
 #include "item3d/render/shade.h"
+
+#include <algorithm>
 
 namespace item3d {
 namespace {
@@ -23,7 +23,8 @@ Background random_background(Random& random, const std::string& light) {
     if (random.chance(.85)) {
         // Greys, mostly light ones: what the editor renders against.
         color = Vec3(random.chance(.75) ? draw(.5, 1) : draw(.02, .5));
-        for (int c = 0; c < 3; ++c) color[c] += static_cast<float>(random.normal(0, .015));
+        for (int c = 0; c < 3; ++c)
+            color[c] += static_cast<float>(random.normal(0, .015));
     } else {
         color = Vec3{draw(.1, .95), draw(.1, .95), draw(.1, .95)};
     }
@@ -50,12 +51,13 @@ torch::Tensor to_image(const View& view, const torch::Tensor& encoded, const Bac
         sum[at] += Vec3(color[3 * i], color[3 * i + 1], color[3 * i + 2]) * .25f;
     }
     for (int y = 0; y < picture_size; ++y) {
-        const Vec3 behind = glm::mix(background.top, background.bottom,
-                                     static_cast<float>(y) / (picture_size - 1));
+        const Vec3 behind =
+            glm::mix(background.top, background.bottom, static_cast<float>(y) / (picture_size - 1));
         for (int x = 0; x < picture_size; ++x) {
             const auto at = static_cast<std::size_t>(y * picture_size + x);
             const Vec3 value = sum[at] + behind * (1 - cover[at]);
-            for (std::size_t c = 0; c < 3; ++c) out[3 * at + c] = value[static_cast<int>(c)];
+            for (std::size_t c = 0; c < 3; ++c)
+                out[3 * at + c] = value[static_cast<int>(c)];
         }
     }
     return image;
@@ -71,20 +73,23 @@ ExampleSource::ExampleSource(std::vector<View> views, std::vector<TrainingLight>
 
 Example ExampleSource::draw(std::int64_t index) const {
     Random random(seed_, static_cast<std::uint64_t>(index));
-    const auto view = static_cast<std::size_t>(random.index(static_cast<std::int64_t>(views_.size())));
-    return draw(random, views_[view], {});
+    const auto view =
+        static_cast<std::size_t>(random.index(static_cast<std::int64_t>(views_.size())));
+    return draw_example(random, views_[view], lights_);
 }
 
-Example ExampleSource::draw(Random& random, const View& view, const ExampleWish& wish) const {
+Example draw_example(Random& random, const View& view, const std::vector<TrainingLight>& lights,
+                     const ExampleWish& wish) {
+    ITEM3D_CHECK(wish.light || !lights.empty(), "an example needs a light");
     const torch::NoGradGuard no_grad;
     const ProceduralMaterial material = make_material(random, wish.material);
-    const TrainingLight& light =
-        wish.light ? *wish.light
-                   : lights_[static_cast<std::size_t>(
-                         random.index(static_cast<std::int64_t>(lights_.size())))];
+    const TrainingLight& light = wish.light ? *wish.light
+                                            : lights[static_cast<std::size_t>(random.index(
+                                                  static_cast<std::int64_t>(lights.size())))];
     const float occlusion_weight =
         random.chance(.5) ? 0.0f : static_cast<float>(random.uniform(.3, .8));
-    const auto exposure = static_cast<float>(std::exp(random.normal(0, wish.plain_background ? 0 : .12)));
+    const auto exposure =
+        static_cast<float>(std::exp(random.normal(0, wish.plain_background ? 0 : .12)));
     const bool mirrored = random.chance(.5);
 
     const auto count = static_cast<std::int64_t>(view.count());

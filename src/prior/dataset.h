@@ -1,26 +1,27 @@
 // Training pairs: a random material and light on a random view, with its caption.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include <torch/torch.h>
-
 #include "item3d/prior/lights.h"
 #include "item3d/prior/materials.h"
 #include "item3d/prior/views.h"
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace item3d {
 
 /// A picture with its caption and what is on it.
 struct Example {
-    torch::Tensor image;    ///< [picture_size, picture_size, 3] float32, sRGB in [0, 1]
-    torch::Tensor depth;    ///< [1, latent_size, latent_size] fp16
-    torch::Tensor covered;  ///< [picture_size, picture_size] float32, part of the pixel that is object
+    torch::Tensor image;  ///< [picture_size, picture_size, 3] float32, sRGB in [0, 1]
+    torch::Tensor depth;  ///< [1, latent_size, latent_size] fp16
+    torch::Tensor
+        covered;  ///< [picture_size, picture_size] float32, part of the pixel that is object
     std::string caption;
-    std::string material;   ///< ProceduralMaterial::kind
-    std::string light;      ///< TrainingLight::kind
+    std::string material;  ///< ProceduralMaterial::kind
+    std::string light;     ///< TrainingLight::kind
 };
 
 /// What an example should show; what is not said is drawn at random.
@@ -30,6 +31,10 @@ struct ExampleWish {
     bool plain_background = false;  ///< an even light grey
 };
 
+/// Draws an example of that view: its material and, unless the wish names one, its light.
+Example draw_example(Random& random, const View& view, const std::vector<TrainingLight>& lights,
+                     const ExampleWish& wish = {});
+
 /// Draws examples from views and lights; safe to use from several threads.
 class ExampleSource {
   public:
@@ -37,11 +42,8 @@ class ExampleSource {
 
     /// The example of that index depends on the seed and the index alone.
     Example draw(std::int64_t index) const;
-    /// As above with a given view and wishes.
-    Example draw(Random& random, const View& view, const ExampleWish& wish) const;
 
     const std::vector<View>& views() const { return views_; }
-    const std::vector<TrainingLight>& lights() const { return lights_; }
 
   private:
     std::vector<View> views_;

@@ -32,7 +32,8 @@ nlohmann::json model_index() {
 
 void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencoder,
                         const ClipTokenizer& tokenizer) {
-    for (const char* part : {"tokenizer", "vae", "scheduler"}) make_output_folder(folder / part);
+    for (const char* part : {"tokenizer", "vae", "scheduler"})
+        make_output_folder(folder / part);
     tokenizer.save(folder / "tokenizer");
     save_autoencoder(folder / "vae", autoencoder);
     write_json(folder / "scheduler" / "scheduler_config.json",
@@ -40,9 +41,10 @@ void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencod
     write_json(folder / "model_index.json", model_index());
 }
 
-void export_diffusion(const fs::path& folder, const UNet2DCondition& unet, const ClipTextModel& text,
-                      const nlohmann::json& train) {
-    for (const char* part : {"unet", "text_encoder"}) make_output_folder(folder / part);
+void export_diffusion(const fs::path& folder, const UNet2DCondition& unet,
+                      const ClipTextModel& text, const nlohmann::json& train) {
+    for (const char* part : {"unet", "text_encoder"})
+        make_output_folder(folder / part);
     save_unet(folder / "unet", unet);
     save_clip_text(folder / "text_encoder", text);
 

@@ -1,14 +1,14 @@
 // The prior as a folder in the diffusers layout, weights in fp16.
 #pragma once
 
-#include <filesystem>
-
-#include <nlohmann/json.hpp>
-
 #include "item3d/models/autoencoder.h"
 #include "item3d/models/clip_text.h"
 #include "item3d/models/clip_tokenizer.h"
 #include "item3d/models/unet.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
 
 namespace item3d {
 

@@ -1,9 +1,9 @@
 #include "item3d/prior/lathe.h"
 
+#include "item3d/core/error.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "item3d/core/error.h"
 
 namespace item3d {
 namespace {

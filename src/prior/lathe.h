@@ -1,16 +1,16 @@
 // Solids of revolution around the y axis from a few radii.
 #pragma once
 
+#include "item3d/core/math.h"
+
 #include <array>
 #include <vector>
-
-#include "item3d/core/math.h"
 
 namespace item3d {
 
 struct LatheOptions {
-    float wall = 0.0f;        ///< thickness of the wall; 0: solid
-    float steepness = 0.6f;   ///< at most 1; scales radial distance so that slopes stay a bound
+    float wall = 0.0f;       ///< thickness of the wall; 0: solid
+    float steepness = 0.6f;  ///< at most 1; scales radial distance so that slopes stay a bound
 };
 
 /// Radii at heights, joined by a monotone cubic (Fritsch and Carlson 1980), so that no bulge

@@ -1,13 +1,13 @@
 #include "item3d/prior/lights.h"
 
-#include <array>
-#include <atomic>
-#include <mutex>
-
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/prior/workers.h"
 #include "item3d/scene/environment.h"
+
+#include <array>
+#include <atomic>
+#include <mutex>
 
 namespace item3d {
 namespace {
@@ -40,8 +40,8 @@ SoftBox random_box(Random& random, float low, float high, float strength, const 
     box.half_height = box.half_width * draw(random, .5, 2);
     box.round = random.chance(.3);
     // The same power through a small box is brighter.
-    box.radiance = tint * strength * draw(random, .4, 1) /
-                   std::pow(box.half_width * box.half_height, .7f);
+    box.radiance =
+        tint * strength * draw(random, .4, 1) / std::pow(box.half_width * box.half_height, .7f);
     return box;
 }
 
@@ -79,7 +79,8 @@ Image random_room(Random& random, float contrast) {
                 const float edge = glm::clamp((1.15f - inside) / .3f, 0.0f, 1.0f);
                 radiance = glm::mix(radiance, box.radiance, edge);
             }
-            for (int c = 0; c < 3; ++c) map.at(x, y, c) = radiance[c];
+            for (int c = 0; c < 3; ++c)
+                map.at(x, y, c) = radiance[c];
         }
     }
     return map;
@@ -94,13 +95,14 @@ void normalise(EnvironmentLight& light, float brightest) {
     const auto luminance = light.diffuse.mean(-1).max().item<float>();
     const float factor = brightest / std::max(luminance, 1e-6f);
     light.diffuse = light.diffuse * factor;
-    for (torch::Tensor& level : light.specular) level = level * factor;
+    for (torch::Tensor& level : light.specular)
+        level = level * factor;
 }
 
 }  // namespace
 
 const std::vector<std::string>& light_kinds() {
-    static const std::vector<std::string> kinds{"studio",   "sunset", "night",
+    static const std::vector<std::string> kinds{"studio", "sunset",   "night",
                                                 "bright", "overcast", "noon"};
     return kinds;
 }

@@ -1,11 +1,11 @@
 // The lights of the training pictures, prefiltered once, with the words that describe them.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "item3d/core/random.h"
 #include "item3d/render/environment_light.h"
+
+#include <string>
+#include <vector>
 
 namespace item3d {
 

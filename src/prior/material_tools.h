@@ -1,23 +1,29 @@
 // What materials.cpp and patterns.cpp share.
 #pragma once
 
+#include "item3d/prior/materials.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "item3d/prior/materials.h"
 
 namespace item3d::paint {
 
 inline float draw(Random& random, double low, double high) {
     return static_cast<float>(random.uniform(low, high));
 }
-inline Vec3 mix(const Vec3& a, const Vec3& b, float weight) { return a + (b - a) * weight; }
+inline Vec3 mix(const Vec3& a, const Vec3& b, float weight) {
+    return a + (b - a) * weight;
+}
 inline float smooth_step(float x, float low, float high) {
     const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
     return t * t * (3 - 2 * t);
 }
-inline float fraction(float x) { return x - std::floor(x); }
-inline Vec3 limit(const Vec3& color) { return glm::clamp(color, Vec3(0.0f), Vec3(1.0f)); }
+inline float fraction(float x) {
+    return x - std::floor(x);
+}
+inline Vec3 limit(const Vec3& color) {
+    return glm::clamp(color, Vec3(0.0f), Vec3(1.0f));
+}
 
 /// A colour somewhat like the given one: brighter or darker, and each channel a little.
 inline Vec3 vary(Random& random, const Vec3& color, double spread = .12) {

@@ -1,19 +1,21 @@
 #include "item3d/prior/materials.h"
 
-#include <array>
-
 #include "item3d/core/error.h"
 #include "item3d/prior/material_tools.h"
 #include "item3d/prior/noise.h"
+
+#include <array>
 
 namespace item3d {
 
 const std::vector<NamedColor>& plain_colors() {
     static const std::vector<NamedColor> colors{
-        {"red", {.7f, .02f, .02f}},     {"green", {.03f, .42f, .05f}},  {"blue", {.02f, .08f, .65f}},
-        {"yellow", {.85f, .65f, .02f}}, {"orange", {.85f, .25f, .01f}}, {"purple", {.28f, .03f, .5f}},
-        {"pink", {.85f, .3f, .45f}},    {"white", {.85f, .85f, .85f}},  {"black", {.012f, .012f, .012f}},
-        {"gray", {.22f, .22f, .22f}},   {"brown", {.16f, .06f, .02f}},  {"cyan", {.02f, .6f, .65f}}};
+        {"red", {.7f, .02f, .02f}},       {"green", {.03f, .42f, .05f}},
+        {"blue", {.02f, .08f, .65f}},     {"yellow", {.85f, .65f, .02f}},
+        {"orange", {.85f, .25f, .01f}},   {"purple", {.28f, .03f, .5f}},
+        {"pink", {.85f, .3f, .45f}},      {"white", {.85f, .85f, .85f}},
+        {"black", {.012f, .012f, .012f}}, {"gray", {.22f, .22f, .22f}},
+        {"brown", {.16f, .06f, .02f}},    {"cyan", {.02f, .6f, .65f}}};
     return colors;
 }
 
@@ -39,13 +41,16 @@ Vec3 color_named(const std::string& name) {
 std::pair<std::string, std::string> two_colors(Random& random, const MaterialWish& wish) {
     const auto& colors = plain_colors();
     const auto any = [&] {
-        return colors[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(colors.size())))].name;
+        return colors[static_cast<std::size_t>(
+                          random.index(static_cast<std::int64_t>(colors.size())))]
+            .name;
     };
     // White is every pattern's favourite partner; it also keeps the two apart.
     std::string first = any(), second = random.chance(.3) ? "white" : any();
     if (!wish.color.empty()) first = wish.color;
     if (!wish.second_color.empty()) second = wish.second_color;
-    while (second == first) second = any();
+    while (second == first)
+        second = any();
     return {first, second};
 }
 
@@ -98,11 +103,12 @@ ProceduralMaterial metal(Random& random, const MaterialWish& wish) {
     const Vec3 color = vary(random, color_named(name), .05);
     const float roughness = draw(random, .1, .38);
     const std::string word = name == "gold" ? "golden" : name;
-    std::vector<std::string> phrases{word + " {o}",        word + " {o}",         name + " {o}",
+    std::vector<std::string> phrases{word + " {o}", word + " {o}", name + " {o}",
                                      "{o} made of " + name, "shiny " + word + " {o}"};
     if (name == "silver") phrases.push_back("metal {o}");
-    return {"metal", name, phrases,
-            [=](const Vec3&, const Vec3&) { return MaterialValue{color, roughness, 1}; }};
+    return {"metal", name, phrases, [=](const Vec3&, const Vec3&) {
+                return MaterialValue{color, roughness, 1};
+            }};
 }
 
 ProceduralMaterial rust(Random& random) {
@@ -150,12 +156,16 @@ ProceduralMaterial marble(Random& random) {
     const CosineNoise veins(random, 3, 3);
     const float sharpness = draw(random, 4, 7);
     const bool white = random.chance(.75);
-    const Vec3 body = white ? vary(random, {.8f, .79f, .77f}, .04) : vary(random, {.03f, .03f, .035f});
+    const Vec3 body =
+        white ? vary(random, {.8f, .79f, .77f}, .04) : vary(random, {.03f, .03f, .035f});
     const Vec3 vein = white ? Vec3(.16f, .16f, .18f) : Vec3(.6f, .58f, .55f);
     const float roughness = draw(random, .12, .3);
     std::vector<std::string> phrases{"marble {o}", "marble {o}", "{o} made of marble"};
-    if (white) phrases.push_back("white marble {o}");
-    else phrases = {"black marble {o}", "black marble {o}", "{o} made of black marble", "marble {o}"};
+    if (white)
+        phrases.push_back("white marble {o}");
+    else
+        phrases = {"black marble {o}", "black marble {o}", "{o} made of black marble",
+                   "marble {o}"};
     return {"marble", "", phrases, [=](const Vec3& p, const Vec3&) {
                 const float w = .85f * std::exp(-std::abs(veins(p)) * sharpness);
                 return MaterialValue{mix(body, vein, w), roughness, 0};
@@ -188,10 +198,7 @@ ProceduralMaterial grass(Random& random) {
 ProceduralMaterial snow(Random& random) {
     const Vec3 below = vary(random, color_named(two_colors(random, {}).first));
     const CosineNoise edge(random, 6, 2);
-    return {"snow",
-            "",
-            {"{o} covered in snow", "snowy {o}"},
-            [=](const Vec3& p, const Vec3& n) {
+    return {"snow", "", {"{o} covered in snow", "snowy {o}"}, [=](const Vec3& p, const Vec3& n) {
                 const float w = smooth_step(n.y + .35f * edge(p), -.35f, .1f);
                 return MaterialValue{mix(below, {.88f, .9f, .94f}, w), .5f + .4f * w, 0};
             }};
@@ -199,13 +206,11 @@ ProceduralMaterial snow(Random& random) {
 
 ProceduralMaterial ice(Random& random) {
     const CosineNoise frost(random, 5, 3);
-    return {"ice",
-            "",
-            {"{o} made of ice", "ice {o}", "icy {o}"},
-            [=](const Vec3& p, const Vec3&) {
-                const float w = smooth_step(frost(p), -1, 1);
-                return MaterialValue{mix({.45f, .68f, .82f}, {.8f, .92f, .97f}, w), .08f + .15f * w, 0};
-            }};
+    return {
+        "ice", "", {"{o} made of ice", "ice {o}", "icy {o}"}, [=](const Vec3& p, const Vec3&) {
+            const float w = smooth_step(frost(p), -1, 1);
+            return MaterialValue{mix({.45f, .68f, .82f}, {.8f, .92f, .97f}, w), .08f + .15f * w, 0};
+        }};
 }
 
 ProceduralMaterial leather(Random& random) {
@@ -259,7 +264,8 @@ constexpr std::array<Kind, 17> kinds{{{"plain", .26, plain},
 const std::vector<std::string>& material_kinds() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all;
-        for (const paint::Kind& kind : paint::kinds) all.emplace_back(kind.name);
+        for (const paint::Kind& kind : paint::kinds)
+            all.emplace_back(kind.name);
         return all;
     }();
     return names;
@@ -267,7 +273,8 @@ const std::vector<std::string>& material_kinds() {
 
 ProceduralMaterial make_material(Random& random, const MaterialWish& wish) {
     double total = 0;
-    for (const paint::Kind& kind : paint::kinds) total += kind.share;
+    for (const paint::Kind& kind : paint::kinds)
+        total += kind.share;
     double at = random.uniform() * total;
     const paint::Kind* chosen = nullptr;
     for (const paint::Kind& kind : paint::kinds) {

@@ -1,12 +1,12 @@
 // Random procedural materials with the words that describe them.
 #pragma once
 
+#include "item3d/core/math.h"
+#include "item3d/core/random.h"
+
 #include <functional>
 #include <string>
 #include <vector>
-
-#include "item3d/core/math.h"
-#include "item3d/core/random.h"
 
 namespace item3d {
 

@@ -7,7 +7,7 @@ namespace {
 inline float cosine_of_turns(float turns) {
     const float shifted = turns + (turns < 0 ? -.5f : .5f);
     const float t = turns - static_cast<float>(static_cast<int>(shifted));  // [-1/2, 1/2]
-    const float x = .25f - (t < 0 ? -t : t);                                // cos(2 pi t) = sin(2 pi x)
+    const float x = .25f - (t < 0 ? -t : t);  // cos(2 pi t) = sin(2 pi x)
     const float x2 = x * x;
     return x * (6.2831853f + x2 * (-41.338f + x2 * (81.34f - 71.6f * x2)));
 }
@@ -33,7 +33,8 @@ CosineNoise::CosineNoise(Random& random, float frequency, int octaves, const Vec
         amplitude *= .5f;
         frequency *= 2.1f;
     }
-    for (Octave& octave : octaves_) octave.amplitude /= std::sqrt(energy);
+    for (Octave& octave : octaves_)
+        octave.amplitude /= std::sqrt(energy);
 }
 
 float CosineNoise::operator()(const Vec3& p) const {
@@ -45,7 +46,8 @@ float CosineNoise::operator()(const Vec3& p) const {
                                       octave.phase[k]);
         }
         float octave_sum = 0;
-        for (const float value : wave) octave_sum += value;
+        for (const float value : wave)
+            octave_sum += value;
         sum += octave.amplitude * octave_sum;
     }
     return sum;

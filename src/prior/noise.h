@@ -1,11 +1,11 @@
 // A cheap band-limited random field: sums of cosines of random wave vectors, close to N(0, 1).
 #pragma once
 
-#include <array>
-#include <vector>
-
 #include "item3d/core/math.h"
 #include "item3d/core/random.h"
+
+#include <array>
+#include <vector>
 
 namespace item3d {
 

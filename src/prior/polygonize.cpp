@@ -1,10 +1,10 @@
 #include "item3d/prior/polygonize.h"
 
+#include "item3d/core/error.h"
+
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include "item3d/core/error.h"
 
 namespace item3d {
 namespace {
@@ -15,12 +15,15 @@ constexpr int block = 8;
 class Grid {
   public:
     Grid(const SignedDistance& distance, int resolution, float extent)
-        : corners_(resolution + 1), cell_(2 * extent / static_cast<float>(resolution)), extent_(extent) {
+        : corners_(resolution + 1),
+          cell_(2 * extent / static_cast<float>(resolution)),
+          extent_(extent) {
         values_.assign(static_cast<std::size_t>(corners_) * corners_ * corners_,
                        std::numeric_limits<float>::max());
         for (int z = 0; z < corners_; z += block)
             for (int y = 0; y < corners_; y += block)
-                for (int x = 0; x < corners_; x += block) fill_block(distance, x, y, z);
+                for (int x = 0; x < corners_; x += block)
+                    fill_block(distance, x, y, z);
     }
 
     int corners() const { return corners_; }
@@ -79,16 +82,19 @@ bool cell_vertex(const Grid& grid, int x, int y, int z, Vec3& vertex) {
 Vec3 gradient(const SignedDistance& distance, const Vec3& p) {
     // Four taps of a tetrahedron: half the cost of central differences.
     constexpr float h = .004f;
-    const std::array<Vec3, 4> taps{Vec3(1, -1, -1), Vec3(-1, -1, 1), Vec3(-1, 1, -1), Vec3(1, 1, 1)};
+    const std::array<Vec3, 4> taps{Vec3(1, -1, -1), Vec3(-1, -1, 1), Vec3(-1, 1, -1),
+                                   Vec3(1, 1, 1)};
     Vec3 sum(0.0f);
-    for (const Vec3& tap : taps) sum += tap * distance(p + h * tap);
+    for (const Vec3& tap : taps)
+        sum += tap * distance(p + h * tap);
     const float length = glm::length(sum);
     return length > 1e-12f ? sum / length : Vec3(0, 1, 0);
 }
 
 void add_quad(std::vector<std::uint32_t>& indices, std::array<std::uint32_t, 4> q, bool flip) {
     if (flip) std::swap(q[1], q[3]);
-    for (const std::size_t corner : {0, 1, 2, 0, 2, 3}) indices.push_back(q[corner]);
+    for (const std::size_t corner : {0, 1, 2, 0, 2, 3})
+        indices.push_back(q[corner]);
 }
 
 }  // namespace
@@ -97,7 +103,8 @@ Polygonized polygonize(const SignedDistance& distance, int resolution, float ext
     const Grid grid(distance, resolution, extent);
     constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     const int corners = grid.corners();
-    std::vector<std::uint32_t> vertex_of(static_cast<std::size_t>(corners) * corners * corners, none);
+    std::vector<std::uint32_t> vertex_of(static_cast<std::size_t>(corners) * corners * corners,
+                                         none);
     Polygonized result;
     Primitive& mesh = result.primitive;
     for (int z = 0; z + 1 < corners; ++z) {
@@ -122,25 +129,28 @@ Polygonized polygonize(const SignedDistance& distance, int resolution, float ext
                     return vertex_of[grid.index(x - dx, y - dy, z - dz)];
                 };
                 if (inside != (grid.at(x + 1, y, z) < 0))
-                    add_quad(mesh.indices, {cell(0, 0, 0), cell(0, 1, 0), cell(0, 1, 1), cell(0, 0, 1)},
-                             !inside);
+                    add_quad(mesh.indices,
+                             {cell(0, 0, 0), cell(0, 1, 0), cell(0, 1, 1), cell(0, 0, 1)}, !inside);
                 if (inside != (grid.at(x, y + 1, z) < 0))
-                    add_quad(mesh.indices, {cell(0, 0, 0), cell(0, 0, 1), cell(1, 0, 1), cell(1, 0, 0)},
-                             !inside);
+                    add_quad(mesh.indices,
+                             {cell(0, 0, 0), cell(0, 0, 1), cell(1, 0, 1), cell(1, 0, 0)}, !inside);
                 if (inside != (grid.at(x, y, z + 1) < 0))
-                    add_quad(mesh.indices, {cell(0, 0, 0), cell(1, 0, 0), cell(1, 1, 0), cell(0, 1, 0)},
-                             !inside);
+                    add_quad(mesh.indices,
+                             {cell(0, 0, 0), cell(1, 0, 0), cell(1, 1, 0), cell(0, 1, 0)}, !inside);
             }
         }
     }
 
     Vec3 low = mesh.positions[0], high = mesh.positions[0];
-    for (const Vec3& p : mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
+    for (const Vec3& p : mesh.positions)
+        low = glm::min(low, p), high = glm::max(high, p);
     result.center = (low + high) * .5f;
     float farthest = 0;
-    for (const Vec3& p : mesh.positions) farthest = std::max(farthest, glm::length(p - result.center));
+    for (const Vec3& p : mesh.positions)
+        farthest = std::max(farthest, glm::length(p - result.center));
     result.scale = farthest;
-    for (Vec3& p : mesh.positions) p = (p - result.center) / farthest;
+    for (Vec3& p : mesh.positions)
+        p = (p - result.center) / farthest;
     return result;
 }
 

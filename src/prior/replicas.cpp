@@ -1,12 +1,12 @@
 #include "item3d/prior/replicas.h"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
+#include "item3d/core/error.h"
 
 #include <ATen/autocast_mode.h>
 
-#include "item3d/core/error.h"
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 namespace item3d {
 namespace {
@@ -58,7 +58,8 @@ ReplicaGroup::ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas,
       barrier_(static_cast<std::ptrdiff_t>(replicas_.size())) {
     ITEM3D_CHECK(!replicas_.empty(), "a group needs a replica");
     const torch::Tensor& values = replicas_[0]->values;
-    for (auto& replica : replicas_) replica->values.copy_(values);
+    for (auto& replica : replicas_)
+        replica->values.copy_(values);
     first_moment_ = torch::zeros_like(values);
     second_moment_ = torch::zeros_like(values);
     average_ = values.clone();
@@ -85,7 +86,8 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
     auto* sum = replicas_[0]->gradients.data_ptr<float>();
     for (std::int64_t other = 1; other < ranks; ++other) {
         const auto* from = replicas_[static_cast<std::size_t>(other)]->gradients.data_ptr<float>();
-        for (std::int64_t i = begin; i < end; ++i) sum[i] += from[i];
+        for (std::int64_t i = begin; i < end; ++i)
+            sum[i] += from[i];
     }
     const float share = 1.0f / static_cast<float>(ranks);
     double squares = 0;
@@ -97,7 +99,8 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
     wait();
 
     double all_squares = 0;
-    for (const double each : square_sums_) all_squares += each;
+    for (const double each : square_sums_)
+        all_squares += each;
     const auto norm = static_cast<float>(std::sqrt(all_squares));
     const float clip = norm > options_.clip_norm ? options_.clip_norm / norm : 1.0f;
     const auto time = static_cast<double>(steps_ + 1);
@@ -111,7 +114,8 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
         const float gradient = sum[i] * clip;
         m[i] = options_.beta1 * m[i] + (1 - options_.beta1) * gradient;
         v[i] = options_.beta2 * v[i] + (1 - options_.beta2) * gradient * gradient;
-        const float change = m[i] * correction1 / (std::sqrt(v[i] * correction2) + options_.epsilon);
+        const float change =
+            m[i] * correction1 / (std::sqrt(v[i] * correction2) + options_.epsilon);
         values[i] -= request.learning_rate * (change + options_.weight_decay * values[i]);
         average[i] += (1 - request.ema_decay) * (values[i] - average[i]);
         sum[i] = 0;
@@ -147,7 +151,8 @@ void ReplicaGroup::load_state(const std::vector<std::pair<std::string, torch::Te
         if (name == "first_moment") first_moment_.copy_(tensor);
         if (name == "second_moment") second_moment_.copy_(tensor);
         if (name == "values")
-            for (auto& replica : replicas_) replica->values.copy_(tensor);
+            for (auto& replica : replicas_)
+                replica->values.copy_(tensor);
     }
 }
 

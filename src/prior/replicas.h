@@ -2,14 +2,14 @@
 // gradients are averaged in a fixed order, so that results do not depend on timing.
 #pragma once
 
+#include <torch/torch.h>
+
 #include <atomic>
 #include <barrier>
 #include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
-
-#include <torch/torch.h>
 
 namespace item3d {
 
@@ -54,11 +54,13 @@ class ReplicaGroup {
         float gradient_norm;  ///< before clipping
         bool stop;
     };
-    /// To be called by every rank, on its own thread, after its backward pass: averages the gradients,
-    /// clips, steps all replicas alike, and clears the gradients. Throws std::runtime_error when
-    /// another rank has failed. Between two calls rank 0 may read everything but gradients.
+    /// To be called by every rank, on its own thread, after its backward pass: averages the
+    /// gradients, clips, steps all replicas alike, and clears the gradients. Throws
+    /// std::runtime_error when another rank has failed. Between two calls rank 0 may read
+    /// everything but gradients.
     Result step(int rank, const Request& request);
-    /// To be called by a rank that leaves early through an exception, so that the others do not wait.
+    /// To be called by a rank that leaves early through an exception, so that the others do not
+    /// wait.
     void fail();
 
     std::int64_t steps() const { return steps_; }

@@ -1,10 +1,10 @@
 #include "item3d/prior/shapes.h"
 
-#include <map>
-
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
 #include "item3d/prior/lathe.h"
+
+#include <map>
 
 namespace item3d {
 namespace {
@@ -131,8 +131,8 @@ SignedDistance mushroom(Draw& u) {
 
 SignedDistance apple(Draw& u) {
     const float w = u(.68, .78);
-    const Lathe body({-.68f, -.66f, -.3f, .2f, .55f, .62f},
-                     {.15f, .3f, w * .88f, w, w * .6f, .02f}, {0, .45f});
+    const Lathe body({-.68f, -.66f, -.3f, .2f, .55f, .62f}, {.15f, .3f, w * .88f, w, w * .6f, .02f},
+                     {0, .45f});
     return [=](const Vec3& p) {
         return merge({body.distance(p), capsule(p, {0, .5f, 0}, {.06f, .85f, 0}, .04f)});
     };
@@ -141,9 +141,9 @@ SignedDistance apple(Draw& u) {
 SignedDistance pear(Draw& u) {
     const float wide = u(.5, .6), narrow = u(.2, .28);
     return [=](const Vec3& p) {
-        return merge({smooth_merge(.35f, {sphere(p, {0, -.3f, 0}, wide),
-                                          sphere(p, {0, .38f, 0}, narrow)}),
-                      capsule(p, {0, .5f, 0}, {.07f, .85f, 0}, .035f)});
+        return merge(
+            {smooth_merge(.35f, {sphere(p, {0, -.3f, 0}, wide), sphere(p, {0, .38f, 0}, narrow)}),
+             capsule(p, {0, .5f, 0}, {.07f, .85f, 0}, .035f)});
     };
 }
 
@@ -152,8 +152,8 @@ SignedDistance snowman(Draw& u) {
     const float y = -.85f + a, y2 = y + a + b * .7f, y3 = y2 + b + c * .6f;
     const bool arms = u.pick(2) == 1, hat = u.pick(2) == 1;
     return [=](const Vec3& p) {
-        float d = smooth_merge(.05f, {sphere(p, {0, y, 0}, a), sphere(p, {0, y2, 0}, b),
-                                      sphere(p, {0, y3, 0}, c)});
+        float d = smooth_merge(
+            .05f, {sphere(p, {0, y, 0}, a), sphere(p, {0, y2, 0}, b), sphere(p, {0, y3, 0}, c)});
         d = merge({d, capsule(p, {0, y3, c}, {0, y3, c + .16f}, .045f, .015f)});
         if (arms) {
             const Vec3 q = fold(p, true, false);
@@ -173,15 +173,14 @@ SignedDistance house(Draw& u) {
     const bool chimney = u.pick(2) == 1;
     const float slope = roof / (depth + overhang), scale = 1 / std::hypot(1.0f, slope);
     return [=](const Vec3& p) {
-        const float tiles =
-            std::max(std::max((p.y - eaves - roof + std::abs(p.z) * slope) * scale,
-                              eaves - .02f - p.y),
-                     std::abs(p.x) - w - overhang);
+        const float tiles = std::max(
+            std::max((p.y - eaves - roof + std::abs(p.z) * slope) * scale, eaves - .02f - p.y),
+            std::abs(p.x) - w - overhang);
         float d = merge({box(p, {0, -.35f, 0}, {w, h, depth}, .01f), tiles,
                          box(p, {w * .1f, -.35f - h * .35f, depth}, {.1f, h * .6f, .03f})});
         if (chimney) {
-            d = merge({d, box(p, {w * .5f, eaves + roof * .6f, -depth * .4f},
-                              {.08f, roof * .5f, .08f})});
+            d = merge(
+                {d, box(p, {w * .5f, eaves + roof * .6f, -depth * .4f}, {.08f, roof * .5f, .08f})});
         }
         return d;
     };
@@ -190,11 +189,11 @@ SignedDistance house(Draw& u) {
 SignedDistance fish(Draw& u) {
     const float l = u(.6, .72), h = u(.3, .42), w = u(.15, .25), tail = u(.25, .4);
     return [=](const Vec3& p) {
-        return smooth_merge(.08f, {ellipsoid(p, {.1f, 0, 0}, {l, h, w}),
-                                   ellipsoid(p, {-l - .08f, 0, 0}, {.22f, tail, .05f}),
-                                   ellipsoid(p, {0, h, 0}, {.28f, .16f, .045f}),
-                                   ellipsoid(fold(p, false, true), {.15f, -.1f, w},
-                                             {.15f, .06f, .12f})});
+        return smooth_merge(.08f,
+                            {ellipsoid(p, {.1f, 0, 0}, {l, h, w}),
+                             ellipsoid(p, {-l - .08f, 0, 0}, {.22f, tail, .05f}),
+                             ellipsoid(p, {0, h, 0}, {.28f, .16f, .045f}),
+                             ellipsoid(fold(p, false, true), {.15f, -.1f, w}, {.15f, .06f, .12f})});
     };
 }
 
@@ -212,18 +211,18 @@ SignedDistance cow(Draw& u) {
     const float l = u(.48, .58), h = u(.26, .33), leg = u(.07, .1), muzzle = u(.17, .22);
     return [=](const Vec3& p) {
         const Vec3 q = fold(p, false, true);
-        const float legs = merge(
-            {capsule(q, {l * .7f, -.1f, h * .55f}, {l * .75f, -.68f, h * .6f}, leg),
-             capsule(q, {-l * .7f, -.1f, h * .55f}, {-l * .75f, -.68f, h * .6f}, leg)});
+        const float legs =
+            merge({capsule(q, {l * .7f, -.1f, h * .55f}, {l * .75f, -.68f, h * .6f}, leg),
+                   capsule(q, {-l * .7f, -.1f, h * .55f}, {-l * .75f, -.68f, h * .6f}, leg)});
         const float head = smooth_merge(
             .1f, {ellipsoid(p, {l + .2f, .33f, 0}, {muzzle * 1.2f, muzzle, muzzle * .9f}),
                   sphere(p, {l + .38f, .27f, 0}, muzzle * .6f)});
-        return smooth_merge(
-            .08f, {ellipsoid(p, {0, .05f, 0}, {l * 1.25f, h, h * .95f}), legs, head,
-                   capsule(p, {l * .9f, .15f, 0}, {l + .15f, .3f, 0}, muzzle * .7f),
-                   ellipsoid(q, {l + .12f, .47f, muzzle * .95f}, {.04f, .06f, .14f}),
-                   capsule(q, {l + .14f, .5f, .08f}, {l + .14f, .66f, .14f}, .035f),
-                   capsule(p, {-l * 1.2f, .15f, 0}, {-l * 1.35f, -.25f, 0}, .035f)});
+        return smooth_merge(.08f,
+                            {ellipsoid(p, {0, .05f, 0}, {l * 1.25f, h, h * .95f}), legs, head,
+                             capsule(p, {l * .9f, .15f, 0}, {l + .15f, .3f, 0}, muzzle * .7f),
+                             ellipsoid(q, {l + .12f, .47f, muzzle * .95f}, {.04f, .06f, .14f}),
+                             capsule(q, {l + .14f, .5f, .08f}, {l + .14f, .66f, .14f}, .035f),
+                             capsule(p, {-l * 1.2f, .15f, 0}, {-l * 1.35f, -.25f, 0}, .035f)});
     };
 }
 
@@ -231,7 +230,8 @@ SignedDistance teapot(Draw& u) {
     const float w = u(.48, .55);
     const Lathe lid({.2f, .27f, .36f}, {w * .6f, w * .5f, .08f}, {0, .4f});
     return [=](const Vec3& p) {
-        const float handle = std::max(torus(p, {-w - .02f, -.05f, 0}, .24f, .05f, 2), p.x + w * .7f);
+        const float handle =
+            std::max(torus(p, {-w - .02f, -.05f, 0}, .24f, .05f, 2), p.x + w * .7f);
         return smooth_merge(
             .04f, {ellipsoid(p, {0, -.1f, 0}, {w, w * .85f, w}),
                    merge({sphere(p, {0, w * .85f + .02f, 0}, .08f), lid.distance(p)}),
@@ -275,11 +275,11 @@ using Maker = SignedDistance (*)(Draw&);
 
 const std::map<std::string, Maker>& makers() {
     static const std::map<std::string, Maker> table_of_makers{
-        {"mug", mug},     {"vase", vase},       {"bowl", bowl},       {"bottle", bottle},
-        {"ball", ball},   {"cube", cube},       {"donut", donut},     {"chair", chair},
+        {"mug", mug},     {"vase", vase},       {"bowl", bowl},         {"bottle", bottle},
+        {"ball", ball},   {"cube", cube},       {"donut", donut},       {"chair", chair},
         {"table", table}, {"lamp", lamp},       {"mushroom", mushroom}, {"apple", apple},
-        {"pear", pear},   {"snowman", snowman}, {"house", house},     {"fish", fish},
-        {"duck", duck},   {"cow", cow},         {"teapot", teapot},   {"blob", blob}};
+        {"pear", pear},   {"snowman", snowman}, {"house", house},       {"fish", fish},
+        {"duck", duck},   {"cow", cow},         {"teapot", teapot},     {"blob", blob}};
     return table_of_makers;
 }
 
@@ -287,13 +287,13 @@ const std::map<std::string, Maker>& makers() {
 
 const std::vector<ShapeClass>& shape_classes() {
     static const std::vector<ShapeClass> classes{
-        {"mug", {"mug", "cup"}},   {"vase", {"vase"}},        {"bowl", {"bowl"}},
-        {"bottle", {"bottle"}},    {"ball", {"ball", "sphere"}}, {"cube", {"cube", "box"}},
-        {"donut", {"donut"}},      {"chair", {"chair"}},      {"table", {"table"}},
-        {"lamp", {"lamp"}},        {"mushroom", {"mushroom"}}, {"apple", {"apple"}},
-        {"pear", {"pear"}},        {"snowman", {"snowman"}},  {"house", {"house"}},
-        {"fish", {"fish"}},        {"duck", {"duck"}},        {"cow", {"cow"}},
-        {"blob", {"object"}},      {"teapot", {"teapot"}, true}};
+        {"mug", {"mug", "cup"}}, {"vase", {"vase"}},           {"bowl", {"bowl"}},
+        {"bottle", {"bottle"}},  {"ball", {"ball", "sphere"}}, {"cube", {"cube", "box"}},
+        {"donut", {"donut"}},    {"chair", {"chair"}},         {"table", {"table"}},
+        {"lamp", {"lamp"}},      {"mushroom", {"mushroom"}},   {"apple", {"apple"}},
+        {"pear", {"pear"}},      {"snowman", {"snowman"}},     {"house", {"house"}},
+        {"fish", {"fish"}},      {"duck", {"duck"}},           {"cow", {"cow"}},
+        {"blob", {"object"}},    {"teapot", {"teapot"}, true}};
     return classes;
 }
 
@@ -301,7 +301,8 @@ SignedDistance make_shape(const std::string& shape_class, int variant) {
     const auto maker = makers().find(shape_class);
     ITEM3D_CHECK(maker != makers().end(), "no shape class is called " + shape_class);
     std::uint64_t name = 0;
-    for (const char letter : shape_class) name = mix_bits(name ^ static_cast<unsigned char>(letter));
+    for (const char letter : shape_class)
+        name = mix_bits(name ^ static_cast<unsigned char>(letter));
     Draw u(Random(name, static_cast<std::uint64_t>(variant)));
     const SignedDistance shape = maker->second(u);
     // A little taller or flatter, thicker or thinner than its class.

@@ -1,10 +1,10 @@
 // The procedural objects that the embedded prior learns from.
 #pragma once
 
+#include "item3d/prior/signed_distance.h"
+
 #include <string>
 #include <vector>
-
-#include "item3d/prior/signed_distance.h"
 
 namespace item3d {
 

@@ -1,14 +1,14 @@
 // Signed distances of simple solids and their unions, after Quilez's catalogue
-// (https://iquilezles.org/articles/distfunctions). Negative inside. Most are exact; ellipsoids, cones
-// and lathed profiles are bounds that are close to the distance near the surface.
+// (https://iquilezles.org/articles/distfunctions). Negative inside. Most are exact; ellipsoids,
+// cones and lathed profiles are bounds that are close to the distance near the surface.
 #pragma once
+
+#include "item3d/core/math.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <initializer_list>
-
-#include "item3d/core/math.h"
 
 namespace item3d {
 
@@ -69,7 +69,9 @@ inline float torus(const Vec3& p, const Vec3& center, float ring, float tube, in
     return std::hypot(std::hypot(u, v) - ring, q[axis]) - tube;
 }
 
-inline float merge(std::initializer_list<float> parts) { return std::min(parts); }
+inline float merge(std::initializer_list<float> parts) {
+    return std::min(parts);
+}
 
 /// Union with fillets of size k (polynomial smooth minimum).
 inline float smooth_merge(float k, std::initializer_list<float> parts) {

@@ -1,9 +1,9 @@
 #include "item3d/prior/tokenizer_training.h"
 
-#include <map>
-
 #include "item3d/core/error.h"
 #include "item3d/models/text_normalization.h"
+
+#include <map>
 
 namespace item3d {
 namespace {
@@ -50,7 +50,8 @@ ClipTokenizer train_tokenizer(const std::vector<WordCount>& words, int max_lengt
     for (const WordCount& word : words) {
         ITEM3D_CHECK(!word.word.empty(), "an empty word has no token");
         Spelling spelling{{}, word.count};
-        for (const char letter : word.word) spelling.symbols.emplace_back(1, letter);
+        for (const char letter : word.word)
+            spelling.symbols.emplace_back(1, letter);
         spelling.symbols.back() += "</w>";
         spellings.push_back(std::move(spelling));
     }
@@ -60,18 +61,21 @@ ClipTokenizer train_tokenizer(const std::vector<WordCount>& words, int max_lengt
     for (const bool first : {true, false})
         for (int byte = 0; byte < 256; ++byte)
             if (printable(byte) == first) tokens.push_back(bytes[static_cast<std::size_t>(byte)]);
-    for (std::size_t i = 0; i < 256; ++i) tokens.push_back(tokens[i] + "</w>");
+    for (std::size_t i = 0; i < 256; ++i)
+        tokens.push_back(tokens[i] + "</w>");
     ClipTokenizer::Merges merges;
     for (Pair pair = commonest_pair(spellings); !pair.first.empty();
          pair = commonest_pair(spellings)) {
-        for (Spelling& word : spellings) merge_pair(pair, word);
+        for (Spelling& word : spellings)
+            merge_pair(pair, word);
         tokens.push_back(pair.first + pair.second);
         merges.push_back(std::move(pair));
     }
     tokens.emplace_back("<|startoftext|>");
     tokens.emplace_back("<|endoftext|>");
     ClipTokenizer::Vocabulary vocabulary;
-    for (std::size_t id = 0; id < tokens.size(); ++id) vocabulary[tokens[id]] = static_cast<int>(id);
+    for (std::size_t id = 0; id < tokens.size(); ++id)
+        vocabulary[tokens[id]] = static_cast<int>(id);
     ClipTokenizer::Options options;
     options.model_max_length = max_length;
     return ClipTokenizer(std::move(vocabulary), std::move(merges), options);

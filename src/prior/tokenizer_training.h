@@ -1,12 +1,12 @@
 // Byte-pair encoding (Sennrich et al. 2016) trained on a closed vocabulary, for CLIP's tokenizer.
 #pragma once
 
+#include "item3d/models/clip_tokenizer.h"
+#include "item3d/prior/captions.h"
+
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "item3d/models/clip_tokenizer.h"
-#include "item3d/prior/captions.h"
 
 namespace item3d {
 

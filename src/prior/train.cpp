@@ -1,18 +1,20 @@
 #include "item3d/prior/train.h"
 
-#include <atomic>
-#include <mutex>
-
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/models/safetensors.h"
 #include "item3d/prior/captions.h"
+#include "item3d/prior/classifier.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/replicas.h"
 #include "item3d/prior/tokenizer_training.h"
 #include "item3d/prior/workers.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
 
 namespace item3d {
 namespace {
@@ -20,8 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Streams of the seed for each use.
-enum Stream : std::uint64_t { vocabulary_stream = 11, light_stream, view_stream, example_stream,
-                              held_out_stream };
+enum Stream : std::uint64_t {
+    vocabulary_stream = 11,
+    light_stream,
+    view_stream,
+    example_stream,
+    held_out_stream
+};
 
 std::uint64_t seed_of(const TrainSettings& settings, Stream stream) {
     return mix_bits(settings.seed * 1000 + stream);
@@ -35,9 +42,9 @@ void stop_if_interrupted(const TrainSettings& settings) {
 
 ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLight> lights,
                           bool held_out) {
-    std::vector<View> views =
-        make_view_pool(held_out, settings.shape_variants, settings.views_each,
-                       seed_of(settings, held_out ? held_out_stream : view_stream), settings.replicas);
+    std::vector<View> views = make_view_pool(
+        held_out, settings.shape_variants, settings.views_each,
+        seed_of(settings, held_out ? held_out_stream : view_stream), settings.replicas);
     stop_if_interrupted(settings);
     return ExampleSource(std::move(views), std::move(lights),
                          seed_of(settings, held_out ? held_out_stream : example_stream));
@@ -91,7 +98,9 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
             latents = autoencoder.encode(pictures);
         }
         latents = latents.to(torch::kFloat32) * autoencoder.scaling_factor();
-        const auto rows = [&](torch::Tensor& all) { return all.slice(0, job * block, (job + 1) * block); };
+        const auto rows = [&](torch::Tensor& all) {
+            return all.slice(0, job * block, (job + 1) * block);
+        };
         rows(data.latents).copy_(latents);
         rows(data.depth).copy_(torch::stack(depths));
         rows(data.tokens).copy_(tokenizer.encode_batch(captions, text_length));
@@ -156,28 +165,30 @@ Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) 
     if (!settings.resume || !fs::exists(pictures_file)) {
         const ExampleSource held_out = make_source(settings, lights, true);
         const PictureData seen = draw_pictures(source, settings.autoencoder_pictures, settings);
-        const PictureData unseen =
-            draw_pictures(held_out, std::min<std::int64_t>(512, settings.autoencoder_pictures), settings);
+        const PictureData unseen = draw_pictures(
+            held_out, std::min<std::int64_t>(512, settings.autoencoder_pictures), settings);
         save_safetensors(pictures_file, {{"images", seen.images},
                                          {"covered", seen.covered},
                                          {"held_out_images", unseen.images},
                                          {"held_out_covered", unseen.covered}});
     }
     const SafeTensors file = SafeTensors::open(pictures_file);
-    const TrainedAutoencoder autoencoder =
-        train_autoencoder({file.tensor("images"), file.tensor("covered")},
-                          {file.tensor("held_out_images"), file.tensor("held_out_covered")}, settings);
-    note(fmt::format("autoencoder: held-out PSNR {:.2f} dB, on objects {:.2f} dB, scaling factor {:.4f}",
-                     autoencoder.psnr, autoencoder.object_psnr, autoencoder.model->scaling_factor()));
+    const TrainedAutoencoder autoencoder = train_autoencoder(
+        {file.tensor("images"), file.tensor("covered")},
+        {file.tensor("held_out_images"), file.tensor("held_out_covered")}, settings);
+    note(fmt::format(
+        "autoencoder: held-out PSNR {:.2f} dB, on objects {:.2f} dB, scaling factor {:.4f}",
+        autoencoder.psnr, autoencoder.object_psnr, autoencoder.model->scaling_factor()));
     export_autoencoder(settings.output, *autoencoder.model, tokenizer);
     Prepared prepared;
     prepared.record = {{"psnr", autoencoder.psnr}, {"object_psnr", autoencoder.object_psnr}};
     write_atomically(settings.work / "autoencoder.json", prepared.record.dump(2) + "\n");
     prepared.data = draw_latents(source, *autoencoder.model, tokenizer, settings);
-    save_safetensors(settings.work / "data.safetensors", {{"latents", prepared.data.latents},
-                                                          {"depth", prepared.data.depth},
-                                                          {"tokens", prepared.data.tokens},
-                                                          {"empty_tokens", prepared.data.empty_tokens}});
+    save_safetensors(settings.work / "data.safetensors",
+                     {{"latents", prepared.data.latents},
+                      {"depth", prepared.data.depth},
+                      {"tokens", prepared.data.tokens},
+                      {"empty_tokens", prepared.data.empty_tokens}});
     return prepared;
 }
 
@@ -187,13 +198,34 @@ void train_prior(const TrainSettings& settings) {
     keep_freed_memory();
     make_output_folder(settings.output);
     open_work_folder(settings);
-    const ClipTokenizer tokenizer = train_tokenizer(
-        caption_vocabulary(seed_of(settings, vocabulary_stream)), text_length);
+    const ClipTokenizer tokenizer =
+        train_tokenizer(caption_vocabulary(seed_of(settings, vocabulary_stream)), text_length);
     const bool prepared_before = settings.resume && fs::exists(settings.work / "data.safetensors");
-    const Prepared prepared = prepared_before ? read_prepared(settings) : prepare(settings, tokenizer);
+    const Prepared prepared =
+        prepared_before ? read_prepared(settings) : prepare(settings, tokenizer);
     const ClipTextConfig text = prior_text_config(static_cast<int>(tokenizer.size()),
                                                   tokenizer.bos_id(), tokenizer.eos_id());
-    train_diffusion(prepared.data, settings, text, prepared.record);
+    train_diffusion(prepared.data, settings, {prior_unet_config(), text}, prepared.record);
+    write_measurement(settings.output, settings.replicas);
+}
+
+nlohmann::json write_measurement(const fs::path& folder, int threads) {
+    const Pipeline pipeline = Pipeline::load(folder);
+    MeasureOptions options;
+    options.threads = threads;
+    const nlohmann::json measured = measure_prior(pipeline, options);
+    nlohmann::json prior = nlohmann::json::object();
+    if (fs::exists(folder / "prior.json"))
+        prior = nlohmann::json::parse(read_text(folder / "prior.json"), nullptr, false);
+    if (!prior.is_object()) prior = nlohmann::json::object();
+    prior.update(measured);
+    std::vector<std::string> words;
+    for (const WordCount& word : caption_vocabulary(1))
+        words.push_back(word.word);
+    std::sort(words.begin(), words.end());
+    prior["words"] = words;
+    write_atomically(folder / "prior.json", prior.dump(2) + "\n");
+    return prior;
 }
 
 }  // namespace item3d

@@ -1,45 +1,46 @@
 // Training the embedded prior from nothing: data, tokenizer, autoencoder, text encoder and U-Net.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <string>
-
-#include <nlohmann/json.hpp>
-#include <torch/torch.h>
-
 #include "item3d/models/autoencoder.h"
 #include "item3d/models/clip_text.h"
 #include "item3d/models/unet.h"
 #include "item3d/prior/dataset.h"
 
+#include <nlohmann/json.hpp>
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
 namespace item3d {
 
 struct TrainSettings {
-    std::filesystem::path output;       ///< the diffusers folder
-    std::filesystem::path work;         ///< data, checkpoints; may be deleted afterwards
-    std::int64_t samples = 600000;      ///< pictures that the U-Net sees, repetitions counted
-    std::int64_t data_samples = 120000; ///< different pictures
+    std::filesystem::path output;        ///< the diffusers folder
+    std::filesystem::path work;          ///< data, checkpoints; may be deleted afterwards
+    std::int64_t samples = 600000;       ///< pictures that the U-Net sees, repetitions counted
+    std::int64_t data_samples = 120000;  ///< different pictures
     std::int64_t autoencoder_samples = 48000;
     std::int64_t autoencoder_pictures = 12000;
     int shape_variants = 30;
     int views_each = 8;
     int lights = 320;
     int replicas = 2;
-    int batch = 32;                     ///< pictures a step and replica
+    int batch = 32;  ///< pictures a step and replica
     float learning_rate = 1e-3f;
     std::uint64_t seed = 1;
     bool resume = false;
+    std::int64_t stop_after = 0;  ///< ends like an interrupt after so many pictures; 0: never
     double checkpoint_seconds = 120;
     double export_seconds = 600;
 };
 
 /// What the U-Net learns from, encoded. N rows.
 struct LatentData {
-    torch::Tensor latents;  ///< [N, 4, 16, 16] fp16, scaled
-    torch::Tensor depth;    ///< [N, 1, 16, 16] fp16
-    torch::Tensor tokens;   ///< [N, 20] int16
+    torch::Tensor latents;       ///< [N, 4, 16, 16] fp16, scaled
+    torch::Tensor depth;         ///< [N, 1, 16, 16] fp16
+    torch::Tensor tokens;        ///< [N, 20] int16
     torch::Tensor empty_tokens;  ///< [20] int16, the empty prompt
 };
 
@@ -70,12 +71,22 @@ struct TrainedAutoencoder {
 TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureData& held_out,
                                      const TrainSettings& settings);
 
+/// What the networks that learn together look like.
+struct DiffusionConfig {
+    UNet2DConditionConfig unet;
+    ClipTextConfig text;
+};
+
 /// Trains text encoder and U-Net together. Exports now and then. Throws Interrupted after writing a
 /// checkpoint. Returns {"samples", "loss", "seconds", ...}.
 nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& settings,
-                               const ClipTextConfig& text_config, const nlohmann::json& so_far);
+                               const DiffusionConfig& networks, const nlohmann::json& so_far);
 
-/// The whole training; fills settings.output.
+/// The whole training; fills settings.output and measures it.
 void train_prior(const TrainSettings& settings);
+
+/// Measures the prior in `folder` (classifier.h) and puts the result, with the list of all words of
+/// its captions, into its prior.json. Returns what that then holds.
+nlohmann::json write_measurement(const std::filesystem::path& folder, int threads);
 
 }  // namespace item3d

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -9,6 +7,8 @@
 #include "item3d/prior/replicas.h"
 #include "item3d/prior/train.h"
 #include "item3d/prior/workers.h"
+
+#include <cmath>
 
 namespace item3d {
 namespace {
@@ -25,8 +25,11 @@ struct Batch {
 
 Batch gather(const PictureData& data, const torch::Tensor& rows) {
     Batch result;
-    result.images =
-        data.images.index_select(0, rows).permute({0, 3, 1, 2}).to(torch::kFloat32).div(127.5).sub(1);
+    result.images = data.images.index_select(0, rows)
+                        .permute({0, 3, 1, 2})
+                        .to(torch::kFloat32)
+                        .div(127.5)
+                        .sub(1);
     // The object is what edits look at; a plain background is easy anyway.
     result.weights =
         data.covered.index_select(0, rows).unsqueeze(1).to(torch::kFloat32).mul(1.3 / 255).add(.45);
@@ -127,7 +130,8 @@ TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureD
                 Random random(settings.seed, 0xae0000 + static_cast<std::uint64_t>(rank),
                               static_cast<std::uint64_t>(step) * 64);
                 std::vector<std::int64_t> rows;
-                for (int i = 0; i < batch; ++i) rows.push_back(random.index(pictures.images.size(0)));
+                for (int i = 0; i < batch; ++i)
+                    rows.push_back(random.index(pictures.images.size(0)));
                 auto generator = at::detail::createCPUGenerator(random.bits());
                 const torch::Tensor noise =
                     torch::randn({batch, 4, latent_size, latent_size}, generator);
@@ -143,7 +147,8 @@ TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureD
                 if (rank == 0) {
                     const double now = loss.item<double>();
                     mean_loss = step == 0 ? now : mean_loss + .02 * (now - mean_loss);
-                    progress.update((step + 1) * step_samples, fmt::format("loss {:.4f}", mean_loss));
+                    progress.update((step + 1) * step_samples,
+                                    fmt::format("loss {:.4f}", mean_loss));
                 }
                 if (result.stop) break;
             }
@@ -154,11 +159,13 @@ TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureD
     });
     progress.finish();
     if (interrupted())
-        throw Interrupted("the autoencoder was not finished; the same command with --resume trains it again");
+        throw Interrupted(
+            "the autoencoder was not finished; the same command with --resume trains it again");
 
     group.replica(0).use_values(group.average());
     NamedTensors tensors;
-    for (auto& [name, tensor] : module_tensors(*models[0])) tensors.emplace_back(name, tensor.contiguous());
+    for (auto& [name, tensor] : module_tensors(*models[0]))
+        tensors.emplace_back(name, tensor.contiguous());
     save_safetensors(file, tensors);
     auto model = make_model(settings.seed);
     load_parameters(*model, Weights::open_file(file));

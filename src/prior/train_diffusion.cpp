@@ -1,7 +1,3 @@
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -14,6 +10,10 @@
 #include "item3d/prior/train.h"
 #include "item3d/prior/workers.h"
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
 namespace item3d {
 namespace {
 
@@ -25,14 +25,15 @@ struct Networks {
     ClipTextModel text{nullptr};
 };
 
-Networks make_networks(const TrainSettings& settings, const ClipTextConfig& text_config) {
+Networks make_networks(const TrainSettings& settings, const DiffusionConfig& config) {
     torch::manual_seed(static_cast<std::int64_t>(settings.seed) + 1);
-    Networks networks{UNet2DCondition(prior_unet_config()), ClipTextModel(text_config)};
+    Networks networks{UNet2DCondition(config.unet), ClipTextModel(config.text)};
     // A small vocabulary learns sooner when its words start far apart.
     const torch::NoGradGuard no_grad;
     for (auto& item : networks.text->named_parameters()) {
         if (item.key().find("token_embedding") != std::string::npos) item.value().normal_(0, .3);
-        if (item.key().find("position_embedding") != std::string::npos) item.value().normal_(0, .05);
+        if (item.key().find("position_embedding") != std::string::npos)
+            item.value().normal_(0, .05);
     }
     return networks;
 }
@@ -46,7 +47,8 @@ class Shuffle {
         if (epoch != epoch_) {
             epoch_ = epoch;
             order_.resize(static_cast<std::size_t>(count_));
-            for (std::int64_t i = 0; i < count_; ++i) order_[static_cast<std::size_t>(i)] = i;
+            for (std::int64_t i = 0; i < count_; ++i)
+                order_[static_cast<std::size_t>(i)] = i;
             Random random(seed_, 0x5f0000 + static_cast<std::uint64_t>(epoch));
             for (std::int64_t i = count_ - 1; i > 0; --i)
                 std::swap(order_[static_cast<std::size_t>(i)],
@@ -64,11 +66,12 @@ class Shuffle {
 
 /// v-prediction loss on the pictures of one replica's batch. Everything random depends on
 /// (seed, step, rank) alone.
-torch::Tensor diffusion_loss(Networks& networks, const LatentData& data, const DdimScheduler& schedule,
-                             const std::vector<std::int64_t>& rows, std::uint64_t seed,
-                             std::int64_t step, int rank) {
+torch::Tensor diffusion_loss(Networks& networks, const LatentData& data,
+                             const DdimScheduler& schedule, const std::vector<std::int64_t>& rows,
+                             std::uint64_t seed, std::int64_t step, int rank) {
     const auto count = static_cast<std::int64_t>(rows.size());
-    Random random(seed, 0xd1ff00 + static_cast<std::uint64_t>(rank), static_cast<std::uint64_t>(step) * 4096);
+    Random random(seed, 0xd1ff00 + static_cast<std::uint64_t>(rank),
+                  static_cast<std::uint64_t>(step) * 4096);
     const torch::Tensor index = torch::tensor(rows);
     const torch::Tensor latents = data.latents.index_select(0, index).to(torch::kFloat32);
     torch::Tensor depth = data.depth.index_select(0, index).to(torch::kFloat32);
@@ -84,8 +87,9 @@ torch::Tensor diffusion_loss(Networks& networks, const LatentData& data, const D
     const torch::Tensor timesteps = torch::tensor(times);
     auto generator = at::detail::createCPUGenerator(random.bits());
     const torch::Tensor noise = torch::randn(latents.sizes(), generator);
-    const torch::Tensor input = torch::cat({schedule.add_noise(latents, noise, timesteps), depth}, 1)
-                                    .contiguous(torch::MemoryFormat::ChannelsLast);
+    const torch::Tensor input =
+        torch::cat({schedule.add_noise(latents, noise, timesteps), depth}, 1)
+            .contiguous(torch::MemoryFormat::ChannelsLast);
     torch::Tensor prediction;
     {
         const Autocast autocast;
@@ -106,18 +110,20 @@ struct Record {
 
 class Trainer {
   public:
-    Trainer(const LatentData& data, const TrainSettings& settings, const ClipTextConfig& text_config,
+    Trainer(const LatentData& data, const TrainSettings& settings, const DiffusionConfig& config,
             const nlohmann::json& so_far)
         : data_(data), settings_(settings), so_far_(so_far) {
         std::vector<std::unique_ptr<FlatModel>> flat;
         for (int rank = 0; rank < settings_.replicas; ++rank) {
-            networks_.push_back(make_networks(settings_, text_config));
-            flat.push_back(std::make_unique<FlatModel>(std::vector<std::shared_ptr<torch::nn::Module>>{
-                networks_.back().unet.ptr(), networks_.back().text.ptr()}));
+            networks_.push_back(make_networks(settings_, config));
+            flat.push_back(
+                std::make_unique<FlatModel>(std::vector<std::shared_ptr<torch::nn::Module>>{
+                    networks_.back().unet.ptr(), networks_.back().text.ptr()}));
         }
-        exported_ = make_networks(settings_, text_config);
-        exported_flat_ = std::make_unique<FlatModel>(std::vector<std::shared_ptr<torch::nn::Module>>{
-            exported_.unet.ptr(), exported_.text.ptr()});
+        exported_ = make_networks(settings_, config);
+        exported_flat_ =
+            std::make_unique<FlatModel>(std::vector<std::shared_ptr<torch::nn::Module>>{
+                exported_.unet.ptr(), exported_.text.ptr()});
         group_ = std::make_unique<ReplicaGroup>(std::move(flat), AdamOptions{});
         if (settings_.resume && std::filesystem::exists(checkpoint_file())) load_checkpoint();
     }
@@ -147,7 +153,9 @@ class Trainer {
     }
 
   private:
-    std::filesystem::path checkpoint_file() const { return settings_.work / "checkpoint.safetensors"; }
+    std::filesystem::path checkpoint_file() const {
+        return settings_.work / "checkpoint.safetensors";
+    }
 
     void train(int rank, Progress& progress, double seconds_before) {
         Networks& networks = networks_[static_cast<std::size_t>(rank)];
@@ -163,25 +171,30 @@ class Trainer {
             loss.backward();
             const auto rate = static_cast<float>(settings_.learning_rate *
                                                  learning_rate_part(seen, settings_.samples));
-            const double decay = std::pow(
-                std::min(.999, static_cast<double>(1 + step) / static_cast<double>(10 + step)), 1.0);
-            const auto result =
-                group_->step(rank, {rate, static_cast<float>(decay), interrupted()});
+            const double decay =
+                std::min(.999, static_cast<double>(1 + step) / static_cast<double>(10 + step));
+            const auto result = group_->step(
+                rank, {rate, static_cast<float>(decay), should_stop(seen + step_samples)});
             seen += step_samples;
             if (rank == 0) {
                 record_.seen = seen;
                 record_.seconds = seconds_before + seconds_since(started_);
                 const double now = loss.item<double>();
-                record_.loss += (now - record_.loss) * std::max(.01, 1.0 / static_cast<double>(step + 1));
+                record_.loss +=
+                    (now - record_.loss) * std::max(.01, 1.0 / static_cast<double>(step + 1));
                 progress.update(std::min(seen, settings_.samples),
-                                fmt::format("loss {:.4f}  gradient {:.2f}  rate {:.1e}", record_.loss,
-                                            result.gradient_norm, rate));
+                                fmt::format("loss {:.4f}  gradient {:.2f}  rate {:.1e}",
+                                            record_.loss, result.gradient_norm, rate));
                 // The other ranks cannot step before this one: what is read here stands still.
                 if (seconds_since(saved_) > settings_.checkpoint_seconds) save_checkpoint();
                 if (seconds_since(exported_at_) > settings_.export_seconds) write_export();
             }
             if (result.stop) break;
         }
+    }
+
+    bool should_stop(std::int64_t seen) const {
+        return interrupted() || (settings_.stop_after > 0 && seen >= settings_.stop_after);
     }
 
     static double seconds_since(Clock::time_point start) {
@@ -283,8 +296,8 @@ ClipTextConfig prior_text_config(int vocabulary, int start_of_text, int end_of_t
 }
 
 nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& settings,
-                               const ClipTextConfig& text_config, const nlohmann::json& so_far) {
-    return Trainer(data, settings, text_config, so_far).run();
+                               const DiffusionConfig& networks, const nlohmann::json& so_far) {
+    return Trainer(data, settings, networks, so_far).run();
 }
 
 }  // namespace item3d

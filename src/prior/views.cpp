@@ -1,10 +1,5 @@
 #include "item3d/prior/views.h"
 
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <mutex>
-
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/models/pipeline.h"
@@ -13,6 +8,11 @@
 #include "item3d/prior/workers.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/scene/camera.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
 
 namespace item3d {
 namespace {
@@ -28,7 +28,8 @@ Camera random_camera(Random& random, const std::vector<Vec3>& positions) {
     float distance = 0;
     // One vertex in seven is enough to find the outline.
     for (std::size_t i = 0; i < positions.size(); i += 7) {
-        const Vec3 p = Vec3(to_camera * Vec4(positions[i], 1));  // origin is 1 in front: z = -1 + ..
+        const Vec3 p =
+            Vec3(to_camera * Vec4(positions[i], 1));  // origin is 1 in front: z = -1 + ..
         const float reach = std::max(std::abs(p.x), std::abs(p.y)) / (tangent * fill);
         distance = std::max(distance, p.z + 1 + reach);
     }
@@ -79,10 +80,12 @@ std::vector<View> make_views(const std::string& shape_class, int variant, int co
     const auto index = static_cast<int>(known - classes.begin());
     Random random(seed, static_cast<std::uint64_t>(index * 1000 + variant));
     std::vector<Camera> cameras;
-    for (int i = 0; i < count; ++i) cameras.push_back(random_camera(random, mesh.primitive.positions));
+    for (int i = 0; i < count; ++i)
+        cameras.push_back(random_camera(random, mesh.primitive.positions));
     const Raster raster = rasterize(geometry, cameras, view_size, view_size);
     const Surface surface = interpolate_surface(geometry, raster, cameras);
-    const torch::Tensor depth = depth_condition(raster.depth, view_size / latent_size);  // [N, 1, h, w]
+    const torch::Tensor depth =
+        depth_condition(raster.depth, view_size / latent_size);  // [N, 1, h, w]
 
     std::vector<View> views(cameras.size());
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -129,21 +132,25 @@ std::vector<View> make_view_pool(bool held_out, int variants, int views_each, st
     for (const ShapeClass& each : shape_classes()) {
         const int first = held_out && !each.held_out ? training_variants : 0;
         const int end = held_out ? shape_variants : each.held_out ? 0 : training_variants;
-        for (int i = first; i < std::min(end, first + variants); ++i) jobs.push_back({each.name, i});
+        for (int i = first; i < std::min(end, first + variants); ++i)
+            jobs.push_back({each.name, i});
     }
     std::vector<std::vector<View>> made(jobs.size());
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
-    Progress progress(held_out ? "held-out shapes" : "shapes", static_cast<std::int64_t>(jobs.size()));
+    Progress progress(held_out ? "held-out shapes" : "shapes",
+                      static_cast<std::int64_t>(jobs.size()));
     run_workers(static_cast<std::int64_t>(jobs.size()), threads, [&](std::int64_t i) {
         const Job& job = jobs[static_cast<std::size_t>(i)];
-        made[static_cast<std::size_t>(i)] = make_views(job.shape_class, job.variant, views_each, seed);
+        made[static_cast<std::size_t>(i)] =
+            make_views(job.shape_class, job.variant, views_each, seed);
         const std::lock_guard lock(mutex);
         progress.update(++done);
     });
     std::vector<View> pool;
     for (std::vector<View>& views : made)
-        for (View& view : views) pool.push_back(std::move(view));
+        for (View& view : views)
+            pool.push_back(std::move(view));
     return pool;
 }
 

@@ -1,15 +1,15 @@
 // Procedural shapes seen from random cameras: G-buffers, rendered once and shaded many times.
 #pragma once
 
+#include "item3d/core/math.h"
+#include "item3d/core/random.h"
+
+#include <torch/torch.h>
+
 #include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <torch/torch.h>
-
-#include "item3d/core/math.h"
-#include "item3d/core/random.h"
 
 namespace item3d {
 
@@ -23,12 +23,13 @@ inline constexpr int latent_size = 16;
 struct View {
     int shape_class = 0;  ///< index into shape_classes()
     int variant = 0;
-    Vec3 camera{0.0f};                  ///< position
-    std::vector<std::uint16_t> pixel;   ///< [P] y * view_size + x
-    std::vector<std::int16_t> position; ///< [P * 3] in units of 1 / 32767
-    std::vector<std::int16_t> normal;   ///< [P * 3] likewise, unit, towards the viewer
-    std::vector<std::uint8_t> occlusion;///< [P] 255: open
-    torch::Tensor depth;  ///< [1, latent_size, latent_size] fp16, depth_condition of models/pipeline.h
+    Vec3 camera{0.0f};                    ///< position
+    std::vector<std::uint16_t> pixel;     ///< [P] y * view_size + x
+    std::vector<std::int16_t> position;   ///< [P * 3] in units of 1 / 32767
+    std::vector<std::int16_t> normal;     ///< [P * 3] likewise, unit, towards the viewer
+    std::vector<std::uint8_t> occlusion;  ///< [P] 255: open
+    torch::Tensor
+        depth;  ///< [1, latent_size, latent_size] fp16, depth_condition of models/pipeline.h
 
     std::size_t count() const { return pixel.size(); }
     Vec3 position_at(std::size_t i) const {

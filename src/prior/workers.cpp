@@ -1,16 +1,16 @@
 #include "item3d/prior/workers.h"
 
-#include <atomic>
-#include <exception>
-#include <mutex>
-#include <thread>
-#include <vector>
+#include "item3d/core/progress.h"
 
 #include <malloc.h>
 #include <omp.h>
 #include <torch/torch.h>
 
-#include "item3d/core/progress.h"
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
 
 namespace item3d {
 
@@ -31,7 +31,8 @@ void run_ranks(int threads, const std::function<void(int)>& body) {
             }
         });
     }
-    for (std::thread& thread : running) thread.join();
+    for (std::thread& thread : running)
+        thread.join();
     at::set_num_threads(torch_threads);
     if (first) std::rethrow_exception(first);
 }
@@ -41,7 +42,8 @@ void run_workers(std::int64_t count, int threads, const std::function<void(std::
     run_ranks(threads, [&](int) {
         torch::NoGradGuard no_grad;
         try {
-            for (std::int64_t i = next++; i < count && !interrupted(); i = next++) work(i);
+            for (std::int64_t i = next++; i < count && !interrupted(); i = next++)
+                work(i);
         } catch (...) {
             next = count;
             throw;

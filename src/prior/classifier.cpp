@@ -1,0 +1,231 @@
+#include "item3d/prior/classifier.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+#include "item3d/prior/captions.h"
+#include "item3d/prior/shapes.h"
+#include "item3d/prior/workers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+
+namespace item3d {
+namespace {
+
+std::vector<VocabularyEntry> make_vocabulary() {
+    std::vector<VocabularyEntry> all;
+    for (const NamedColor& color : plain_colors()) {
+        std::vector<std::string> spellings{color.name};
+        if (color.name == "gray") spellings.emplace_back("grey");
+        all.push_back({"colors",
+                       color.name,
+                       spellings,
+                       "a " + color.name + " {o}",
+                       {"plain", color.name, ""},
+                       "",
+                       ""});
+    }
+    const auto material = [&](const std::string& word, const std::vector<std::string>& spellings,
+                              const std::string& caption, const MaterialWish& wish) {
+        all.push_back({"materials", word, spellings, caption, wish, "", ""});
+    };
+    material("gold", {"gold", "golden"}, "a golden {o}", {"metal", "gold", ""});
+    material("silver", {"silver", "metal"}, "a silver {o}", {"metal", "silver", ""});
+    material("copper", {"copper"}, "a copper {o}", {"metal", "copper", ""});
+    material("bronze", {"bronze"}, "a bronze {o}", {"metal", "bronze", ""});
+    material("wood", {"wood", "wooden"}, "a wooden {o}", {"wood", "", ""});
+    material("marble", {"marble"}, "a marble {o}", {"marble", "", ""});
+    material("stone", {"stone", "rock"}, "a stone {o}", {"stone", "", ""});
+    material("brick", {"brick", "bricks"}, "a brick {o}", {"brick", "", ""});
+    material("grass", {"grass", "grassy", "mossy"}, "a {o} covered in grass", {"grass", "", ""});
+    material("snow", {"snow", "snowy"}, "a {o} covered in snow", {"snow", "", ""});
+    material("ice", {"ice", "icy"}, "a {o} made of ice", {"ice", "", ""});
+    material("leather", {"leather"}, "a leather {o}", {"leather", "", ""});
+    material("rust", {"rusty"}, "a rusty {o}", {"rust", "", ""});
+    const auto pattern = [&](const std::string& word, const std::vector<std::string>& spellings,
+                             const std::string& caption, const std::string& kind) {
+        all.push_back({"patterns", word, spellings, caption, {kind, "", ""}, "", ""});
+    };
+    pattern("striped", {"striped", "stripes"}, "a striped {o}", "striped");
+    pattern("checkered", {"checkered", "checkerboard"}, "a checkered {o}", "checkered");
+    pattern("polka dot", {"polka", "dot", "dots"}, "a polka dot {o}", "dots");
+    pattern("zebra", {"zebra"}, "a zebra {o}", "zebra");
+    pattern("leopard", {"leopard"}, "a leopard print {o}", "leopard");
+    pattern("flames", {"flame", "flames"}, "a {o} with a flame pattern", "flames");
+    const auto light = [&](const std::string& kind, const std::string& phrase) {
+        all.push_back({"lights", kind, {kind}, "a {c} {o} " + phrase, {}, kind, ""});
+    };
+    light("studio", "in a studio");
+    light("sunset", "at sunset");
+    light("night", "at night");
+    light("bright", "in bright light");
+    light("overcast", "on an overcast day");
+    light("noon", "at noon");
+    for (const ShapeClass& shape : shape_classes())
+        if (!shape.held_out && shape.name != "blob")
+            all.push_back({"objects", shape.name, shape.nouns, "a {c} {o}", {}, "", shape.name});
+    return all;
+}
+
+void replace(std::string& text, const std::string& what, const std::string& by) {
+    const auto at = text.find(what);
+    if (at != std::string::npos) text.replace(at, what.size(), by);
+}
+
+/// The part of pictures of each word that were told right, and what it was most often taken for.
+struct Outcome {
+    int right = 0;
+    std::map<std::string, int> wrong;
+};
+
+class Measurement {
+  public:
+    Measurement(const Pipeline& pipeline, const MeasureOptions& options)
+        : pipeline_(pipeline),
+          options_(options),
+          views_(make_view_pool(true, shape_variants, 6, mix_bits(options.seed), options.threads)) {
+        for (const std::string& kind : light_kinds()) {
+            Random random(options.seed, 77 + lights_.size());
+            lights_[kind] = make_training_light(random, kind);
+        }
+        Random random(options.seed, 76);
+        lights_["plain"] = make_training_light(random, "plain");
+    }
+
+    /// All words of one kind against each other.
+    std::vector<Outcome> measure(const std::vector<VocabularyEntry>& entries, Progress& progress,
+                                 std::int64_t& done) {
+        std::vector<Outcome> outcomes(entries.size());
+        const auto jobs = static_cast<std::int64_t>(entries.size()) * options_.pictures;
+        std::mutex mutex;
+        run_workers(jobs, options_.threads, [&](std::int64_t job) {
+            const auto truth = static_cast<std::size_t>(job / options_.pictures);
+            const std::size_t answer = classify(entries, truth, job);
+            const std::lock_guard lock(mutex);
+            if (answer == truth)
+                ++outcomes[truth].right;
+            else
+                ++outcomes[truth].wrong[entries[answer].word];
+            progress.update(++done);
+        });
+        return outcomes;
+    }
+
+  private:
+    const View& pick_view(Random& random, const std::string& shape_class) const {
+        for (;;) {
+            const View& view = views_[static_cast<std::size_t>(
+                random.index(static_cast<std::int64_t>(views_.size())))];
+            if (shape_class.empty() ||
+                shape_classes()[static_cast<std::size_t>(view.shape_class)].name == shape_class)
+                return view;
+        }
+    }
+
+    std::size_t classify(const std::vector<VocabularyEntry>& entries, std::size_t truth,
+                         std::int64_t job) const {
+        const VocabularyEntry& entry = entries[truth];
+        Random random(options_.seed,
+                      mix_bits(std::uint64_t{1} + truth) + static_cast<std::uint64_t>(job));
+        const View& view = pick_view(random, entry.shape_class);
+        ExampleWish wish;
+        wish.plain_background = true;
+        wish.light = &lights_.at(entry.light.empty() ? "plain" : entry.light);
+        wish.material = entry.material;
+        const auto& colors = plain_colors();
+        const std::string color =
+            colors[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(colors.size())))]
+                .name;
+        if (wish.material.kind.empty()) wish.material = {"plain", color, ""};
+        const ShapeClass& shape = shape_classes()[static_cast<std::size_t>(view.shape_class)];
+        const std::string noun = shape.held_out ? "object" : shape.nouns[0];
+
+        std::vector<std::string> captions;
+        for (const VocabularyEntry& other : entries) {
+            std::string caption = other.caption;
+            replace(caption, "{o}", other.shape_class.empty() ? noun : other.word);
+            replace(caption, "{c}", color);
+            captions.push_back(mend_articles(caption));
+        }
+        const Example example = draw_example(random, view, {}, wish);
+        const auto rows = static_cast<std::int64_t>(captions.size());
+        const torch::Tensor image = example.image.permute({2, 0, 1}).unsqueeze(0) * 2 - 1;
+        const torch::Tensor latents = pipeline_.encode_image(image).expand({rows, -1, -1, -1});
+        const torch::Tensor text = pipeline_.encode_text(captions);
+        torch::Tensor condition;
+        // With the depth the noun hardly matters: objects are told by the picture alone.
+        if (pipeline_.condition_channels() == 1) {
+            condition = example.depth.to(torch::kFloat32).unsqueeze(0);
+            if (!entry.shape_class.empty()) condition = torch::zeros_like(condition);
+        }
+        torch::Tensor loss = torch::zeros({rows});
+        auto generator = at::detail::createCPUGenerator(random.bits());
+        for (const std::int64_t t : {150, 300, 450, 600, 750, 880}) {
+            const auto noise =
+                torch::randn({1, latents.size(1), latents.size(2), latents.size(3)}, generator)
+                    .expand_as(latents);
+            const torch::Tensor times = torch::full({rows}, t, torch::kInt64);
+            const torch::Tensor noisy = pipeline_.scheduler.add_noise(latents, noise, times);
+            const torch::Tensor guess = pipeline_.predict_noise(noisy, times, text, condition);
+            // Each timestep counts alike: its losses differ by orders of magnitude otherwise.
+            const torch::Tensor error = (guess - noise).square().mean({1, 2, 3});
+            loss += error / error.mean();
+        }
+        return static_cast<std::size_t>(loss.argmin().item<std::int64_t>());
+    }
+
+    const Pipeline& pipeline_;
+    MeasureOptions options_;
+    std::vector<View> views_;
+    std::map<std::string, TrainingLight> lights_;
+};
+
+}  // namespace
+
+const std::vector<VocabularyEntry>& prior_vocabulary() {
+    static const std::vector<VocabularyEntry> entries = make_vocabulary();
+    return entries;
+}
+
+nlohmann::json measure_prior(const Pipeline& pipeline, const MeasureOptions& options) {
+    const auto& all = prior_vocabulary();
+    std::vector<std::string> kinds;
+    for (const VocabularyEntry& entry : all)
+        if (kinds.empty() || kinds.back() != entry.kind) kinds.push_back(entry.kind);
+    Measurement measurement(pipeline, options);
+    Progress progress("measure", static_cast<std::int64_t>(all.size()) * options.pictures);
+    std::int64_t done = 0;
+    double right = 0;
+    nlohmann::json vocabulary = nlohmann::json::object();
+    for (const std::string& kind : kinds) {
+        std::vector<VocabularyEntry> entries;
+        for (const VocabularyEntry& entry : all)
+            if (entry.kind == kind) entries.push_back(entry);
+        const std::vector<Outcome> outcomes = measurement.measure(entries, progress, done);
+        if (interrupted()) throw Interrupted("nothing was written");
+        nlohmann::json list = nlohmann::json::array();
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            const double accuracy = static_cast<double>(outcomes[i].right) / options.pictures;
+            right += accuracy;
+            nlohmann::json word{{"word", entries[i].word},
+                                {"spellings", entries[i].spellings},
+                                {"caption", entries[i].caption},
+                                {"accuracy", std::round(accuracy * 1000) / 1000}};
+            const auto worst =
+                std::max_element(outcomes[i].wrong.begin(), outcomes[i].wrong.end(),
+                                 [](const auto& a, const auto& b) { return a.second < b.second; });
+            if (worst != outcomes[i].wrong.end()) word["most_confused_with"] = worst->first;
+            for (const auto* colors : {&plain_colors(), &metal_colors()})
+                for (const NamedColor& color : *colors)
+                    if (color.name == entries[i].word && (kind == "colors" || kind == "materials"))
+                        word["base_color"] = {color.linear.x, color.linear.y, color.linear.z};
+            list.push_back(word);
+        }
+        vocabulary[kind] = list;
+    }
+    return {{"vocabulary", vocabulary}, {"accuracy", right / static_cast<double>(all.size())}};
+}
+
+}  // namespace item3d

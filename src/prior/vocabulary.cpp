@@ -1,0 +1,115 @@
+#include "item3d/prior/vocabulary.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace item3d {
+namespace {
+
+void add_once(std::vector<std::string>& words, const std::string& word) {
+    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+}
+
+std::string listed(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words)
+        text += (text.empty() ? "\"" : ", \"") + word + "\"";
+    return text;
+}
+
+KnownWord read_word(const std::string& kind, const nlohmann::json& entry) {
+    KnownWord known;
+    known.kind = kind;
+    known.word = entry.at("word").get<std::string>();
+    known.spellings = entry.value("spellings", std::vector<std::string>{known.word});
+    known.accuracy = entry.value("accuracy", 0.0);
+    if (entry.contains("base_color")) {
+        const auto color = entry.at("base_color").get<std::vector<float>>();
+        if (color.size() == 3) known.base_color = Vec3(color[0], color[1], color[2]);
+    }
+    return known;
+}
+
+}  // namespace
+
+std::vector<std::string> prompt_words(const std::string& prompt) {
+    std::vector<std::string> words;
+    int before = 0;  // 0: between words, 1: in letters, 2: in digits
+    for (const char character : prompt) {
+        const auto byte = static_cast<unsigned char>(character);
+        // Bytes of other scripts count as letters, so that such words are seen as unknown.
+        const int now = std::isdigit(byte) ? 2 : std::isalpha(byte) || byte >= 0x80 ? 1 : 0;
+        if (now != 0 && now != before) words.emplace_back();
+        if (now != 0) words.back() += static_cast<char>(std::tolower(byte));
+        before = now;
+    }
+    return words;
+}
+
+PriorVocabulary::PriorVocabulary(const nlohmann::json& prior_json, const std::string& subject) {
+    try {
+        all_words_ = prior_json.value("words", std::vector<std::string>{});
+        std::sort(all_words_.begin(), all_words_.end());
+        if (!prior_json.contains("vocabulary")) return;
+        for (const auto& [kind, entries] : prior_json.at("vocabulary").items())
+            for (const auto& entry : entries)
+                words_.push_back(read_word(kind, entry));
+    } catch (const nlohmann::json::exception& error) {
+        throw InputError(subject, std::string("is not a prior's description: ") + error.what(),
+                         "make it again with `item3d prior measure`");
+    }
+}
+
+PriorVocabulary PriorVocabulary::load(const std::filesystem::path& folder) {
+    const auto file = folder / "prior.json";
+    if (!std::filesystem::exists(file)) return {};
+    const auto json = nlohmann::json::parse(read_text(file), nullptr, false);
+    if (!json.is_object())
+        throw InputError(file.string(), "is not a JSON object",
+                         "make it again with `item3d prior measure`");
+    return PriorVocabulary(json, file.string());
+}
+
+std::vector<KnownWord> PriorVocabulary::words_of(const std::string& kind) const {
+    std::vector<KnownWord> result;
+    for (const KnownWord& word : words_)
+        if (word.kind == kind) result.push_back(word);
+    return result;
+}
+
+std::vector<std::string> PriorVocabulary::unknown_words(const std::string& prompt) const {
+    std::vector<std::string> result;
+    if (open()) return result;
+    for (const std::string& word : prompt_words(prompt))
+        if (!std::binary_search(all_words_.begin(), all_words_.end(), word)) add_once(result, word);
+    return result;
+}
+
+std::vector<std::string> PriorVocabulary::weak_words(const std::string& prompt) const {
+    std::vector<std::string> result;
+    for (const std::string& word : prompt_words(prompt)) {
+        // A word of several meanings is as good as its best.
+        double best = -1;
+        for (const KnownWord& known : words_)
+            if (std::find(known.spellings.begin(), known.spellings.end(), word) !=
+                known.spellings.end())
+                best = std::max(best, known.accuracy);
+        if (best >= 0 && best < weak_accuracy) add_once(result, word);
+    }
+    return result;
+}
+
+std::string PriorVocabulary::warning(const std::string& prompt) const {
+    const auto unknown = unknown_words(prompt), weak = weak_words(prompt);
+    if (unknown.empty() && weak.empty()) return "";
+    std::string text = "the prior ";
+    if (!unknown.empty()) text += "does not know " + listed(unknown);
+    if (!unknown.empty() && !weak.empty()) text += " and ";
+    if (!weak.empty()) text += "knows " + listed(weak) + " badly";
+    return text + " (item3d prior info lists its words)";
+}
+
+}  // namespace item3d

@@ -1,0 +1,56 @@
+// What a prior knows, from the prior.json beside its weights, and what it says about a prompt.
+#pragma once
+
+#include "item3d/core/math.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// Words measured below this part of right answers are warned about.
+inline constexpr double weak_accuracy = 0.8;
+
+struct KnownWord {
+    std::string kind;  ///< "colors", "materials", "patterns", "lights" or "objects"
+    std::string word;  ///< "gold"
+    std::vector<std::string> spellings;  ///< words of prompts that mean it: "gold", "golden"
+    double accuracy = 0;                 ///< of the diffusion classifier on held-out shapes, 0 .. 1
+    std::optional<Vec3> base_color;      ///< linear RGB, for colours and metals
+};
+
+/// The content of a prior.json. Priors without one (a Stable Diffusion folder) know everything as
+/// far as we can tell: no word of theirs is unknown or weak.
+class PriorVocabulary {
+  public:
+    PriorVocabulary() = default;
+    explicit PriorVocabulary(const nlohmann::json& prior_json, const std::string& subject);
+    /// Reads FOLDER/prior.json; an empty vocabulary when there is none. Throws InputError when it
+    /// can't be understood.
+    static PriorVocabulary load(const std::filesystem::path& folder);
+
+    /// True when nothing is known about what the prior knows.
+    bool open() const { return all_words_.empty(); }
+    const std::vector<KnownWord>& words() const { return words_; }
+    std::vector<KnownWord> words_of(const std::string& kind) const;
+
+    /// Words of the prompt, in its order and each once, that the prior was never trained on.
+    std::vector<std::string> unknown_words(const std::string& prompt) const;
+    /// Words that it was trained on but tells from others too seldom (below weak_accuracy).
+    std::vector<std::string> weak_words(const std::string& prompt) const;
+    /// One line for the user that names both, or nothing.
+    std::string warning(const std::string& prompt) const;
+
+  private:
+    std::vector<KnownWord> words_;
+    std::vector<std::string> all_words_;  ///< sorted; every word of training captions
+};
+
+/// Lower-case words of a prompt: runs of letters, and runs of digits.
+std::vector<std::string> prompt_words(const std::string& prompt);
+
+}  // namespace item3d

@@ -1,0 +1,104 @@
+// Procedural shapes: distances, triangles and views.
+#include "item3d/prior/lathe.h"
+#include "item3d/prior/polygonize.h"
+#include "item3d/prior/shapes.h"
+#include "item3d/prior/views.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace item3d {
+namespace {
+
+TEST(PriorShapes, InterpolationStaysBetweenItsPoints) {
+    const std::vector<float> x{0, 1, 2, 4}, y{1, 3, 3, 2};
+    for (std::size_t i = 0; i < x.size(); ++i)
+        EXPECT_NEAR(interpolate_monotone(x, y, x[i]), y[i], 1e-6);
+    for (float at = 1; at <= 2; at += .1f)
+        EXPECT_NEAR(interpolate_monotone(x, y, at), 3, 1e-6);
+    for (float at = 2; at <= 4; at += .1f) {
+        EXPECT_LE(interpolate_monotone(x, y, at), 3 + 1e-6);
+        EXPECT_GE(interpolate_monotone(x, y, at), 2 - 1e-6);
+    }
+}
+
+TEST(PriorShapes, SphereBecomesAClosedSurfaceFacingOutwards) {
+    const auto ball = [](const Vec3& p) { return sdf::sphere(p, {.1f, 0, -.2f}, .6f); };
+    const Polygonized mesh = polygonize(ball, 40);
+    EXPECT_NEAR(mesh.scale, .6f, .02f);
+    EXPECT_NEAR(glm::length(mesh.center - Vec3(.1f, 0, -.2f)), 0, .02f);
+    const Primitive& primitive = mesh.primitive;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    double area = 0;
+    for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
+        const std::uint32_t corner[3] = {primitive.indices[i], primitive.indices[i + 1],
+                                         primitive.indices[i + 2]};
+        for (int k = 0; k < 3; ++k)
+            ++edges[{corner[k], corner[(k + 1) % 3]}];
+        const Vec3 a = primitive.positions[corner[0]];
+        const Vec3 cross =
+            glm::cross(primitive.positions[corner[1]] - a, primitive.positions[corner[2]] - a);
+        EXPECT_GT(glm::dot(cross, a), 0);
+        area += .5 * glm::length(cross);
+    }
+    // A closed surface has every directed edge once, and its opposite too.
+    for (const auto& [edge, count] : edges) {
+        EXPECT_EQ(count, 1);
+        EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
+    }
+    EXPECT_NEAR(area, 4 * pi, .2);
+    for (std::size_t i = 0; i < primitive.positions.size(); ++i)
+        EXPECT_GT(glm::dot(primitive.normals[i], glm::normalize(primitive.positions[i])), .99f);
+}
+
+TEST(PriorShapes, EveryClassFitsTheGridAndVaries) {
+    for (const ShapeClass& shape : shape_classes()) {
+        const SignedDistance first = make_shape(shape.name, 0), second = make_shape(shape.name, 31);
+        const SignedDistance again = make_shape(shape.name, 0);
+        Random random(5);
+        double difference = 0;
+        for (int i = 0; i < 200; ++i) {
+            const Vec3 p{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+            EXPECT_EQ(first(p), again(p));
+            difference += std::abs(first(p) - second(p));
+        }
+        EXPECT_GT(difference, .01) << shape.name;
+        // Nothing of the shape may be cut off by the grid's faces.
+        for (int i = 0; i < 400; ++i) {
+            Vec3 p{random.uniform(-1.3, 1.3), random.uniform(-1.3, 1.3), random.uniform(-1.3, 1.3)};
+            p[i % 3] = i % 2 ? 1.3f : -1.3f;
+            EXPECT_GT(first(p), 0) << shape.name;
+        }
+        const Polygonized mesh = polygonize(first, 48);
+        float farthest = 0;
+        for (const Vec3& p : mesh.primitive.positions)
+            farthest = std::max(farthest, glm::length(p));
+        EXPECT_NEAR(farthest, 1, 1e-4) << shape.name;
+    }
+}
+
+TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
+    const std::vector<View> views = make_views("ball", 3, 3, 9, 48);
+    ASSERT_EQ(views.size(), 3u);
+    for (const View& view : views) {
+        int low = view_size, high = 0;
+        for (std::size_t i = 0; i < view.count(); ++i) {
+            low = std::min<int>(low, view.pixel[i] % view_size);
+            high = std::max<int>(high, view.pixel[i] % view_size);
+            const Vec3 p = view.position_at(i), n = view.normal_at(i);
+            EXPECT_LT(glm::length(p), 1.01f);
+            EXPECT_GT(glm::dot(n, view.camera - p), -1e-3f);
+        }
+        const double part = static_cast<double>(high - low + 1) / view_size;
+        EXPECT_GT(part, .5);
+        EXPECT_LT(part, 1);
+        const torch::Tensor depth = view.depth.to(torch::kFloat32);
+        EXPECT_EQ(depth.sizes(), (std::vector<std::int64_t>{1, latent_size, latent_size}));
+        EXPECT_NEAR(depth.max().item<float>(), 1, .15);
+        EXPECT_EQ(depth.min().item<float>(), -1);
+    }
+}
+
+}  // namespace
+}  // namespace item3d

@@ -1,0 +1,193 @@
+// Replicas, checkpoints and the learning rate, on networks small enough for a test.
+#include "item3d/core/error.h"
+#include "item3d/models/safetensors.h"
+#include "item3d/prior/replicas.h"
+#include "item3d/prior/train.h"
+#include "item3d/prior/workers.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Network : torch::nn::Module {
+    torch::nn::Conv2d convolution{nullptr};
+    torch::nn::Linear linear{nullptr};
+    Network() {
+        torch::manual_seed(3);
+        convolution = register_module("convolution", torch::nn::Conv2d(2, 3, 3));
+        linear = register_module("linear", torch::nn::Linear(12, 1));
+    }
+    torch::Tensor loss(const torch::Tensor& x) {
+        return linear(torch::tanh(convolution(x)).flatten(1)).square().mean();
+    }
+};
+
+/// Trains `ranks` replicas for some steps on equal parts of the same batches.
+torch::Tensor train_toy(int ranks, int steps) {
+    std::vector<std::shared_ptr<Network>> networks;
+    std::vector<std::unique_ptr<FlatModel>> flat;
+    for (int rank = 0; rank < ranks; ++rank) {
+        networks.push_back(std::make_shared<Network>());
+        flat.push_back(std::make_unique<FlatModel>(
+            std::vector<std::shared_ptr<torch::nn::Module>>{networks.back()}));
+    }
+    torch::manual_seed(9);
+    const torch::Tensor batch = torch::randn({8, 2, 4, 4});
+    ReplicaGroup group(std::move(flat), AdamOptions{});
+    run_ranks(ranks, [&](int rank) {
+        const auto part = 8 / ranks;
+        for (int step = 0; step < steps; ++step) {
+            networks[static_cast<std::size_t>(rank)]
+                ->loss(batch.slice(0, rank * part, (rank + 1) * part))
+                .backward();
+            group.step(rank, {.learning_rate = 1e-2f, .ema_decay = .9f});
+        }
+    });
+    for (int rank = 1; rank < ranks; ++rank)
+        EXPECT_TRUE(torch::equal(group.replica(0).values, group.replica(rank).values));
+    EXPECT_EQ(group.steps(), steps);
+    return group.replica(0).values.clone();
+}
+
+TEST(PriorReplicas, AveragedGradientsAreThoseOfTheWholeBatch) {
+    const torch::Tensor one = train_toy(1, 5), two = train_toy(2, 5), four = train_toy(4, 5);
+    EXPECT_LT((one - two).abs().max().item<float>(), 1e-5);
+    EXPECT_LT((one - four).abs().max().item<float>(), 1e-5);
+    EXPECT_TRUE(torch::equal(two, train_toy(2, 5)));  // no trace of timing
+}
+
+TEST(PriorReplicas, StepIsAdamW) {
+    auto ours = std::make_shared<Network>(), reference = std::make_shared<Network>();
+    std::vector<std::unique_ptr<FlatModel>> flat;
+    flat.push_back(
+        std::make_unique<FlatModel>(std::vector<std::shared_ptr<torch::nn::Module>>{ours}));
+    ReplicaGroup group(std::move(flat), AdamOptions{.clip_norm = .05f});
+    torch::optim::AdamW adam(reference->parameters(),
+                             torch::optim::AdamWOptions(1e-2).betas({.9, .99}).weight_decay(.01));
+    const torch::Tensor batch = torch::randn({4, 2, 4, 4});
+    for (int step = 0; step < 4; ++step) {
+        ours->loss(batch).backward();
+        group.step(0, {.learning_rate = 1e-2f});
+        adam.zero_grad();
+        reference->loss(batch).backward();
+        torch::nn::utils::clip_grad_norm_(reference->parameters(), .05);
+        adam.step();
+    }
+    for (const auto& item : reference->named_parameters())
+        EXPECT_LT((item.value() - ours->named_parameters()[item.key()]).abs().max().item<float>(),
+                  1e-5)
+            << item.key();
+}
+
+TEST(PriorReplicas, AFailingRankDoesNotLeaveTheOthersWaiting) {
+    std::vector<std::unique_ptr<FlatModel>> flat;
+    for (int rank = 0; rank < 2; ++rank)
+        flat.push_back(std::make_unique<FlatModel>(
+            std::vector<std::shared_ptr<torch::nn::Module>>{std::make_shared<Network>()}));
+    ReplicaGroup group(std::move(flat), AdamOptions{});
+    EXPECT_THROW(run_ranks(2,
+                           [&](int rank) {
+                               try {
+                                   group.step(rank, {});
+                                   if (rank == 1) throw std::logic_error("broken");
+                                   for (;;)
+                                       group.step(rank, {});
+                               } catch (...) {
+                                   group.fail();
+                                   throw;
+                               }
+                           }),
+                 std::exception);
+}
+
+class PriorTraining : public ::testing::Test {
+  protected:
+    PriorTraining() {
+        torch::manual_seed(1);
+        data_.latents = torch::randn({24, 4, 16, 16}).to(torch::kHalf);
+        data_.depth = torch::randn({24, 1, 16, 16}).to(torch::kHalf);
+        data_.tokens = torch::randint(0, 30, {24, text_length}).to(torch::kInt16);
+        data_.empty_tokens = torch::full({text_length}, 31).to(torch::kInt16);
+        networks_.unet = prior_unet_config();
+        networks_.unet.block_out_channels = {16, 16, 16};
+        networks_.unet.attention_head_dim = {1, 1, 1};
+        networks_.unet.cross_attention_dim.assign(3, 32);
+        networks_.unet.norm_num_groups = 8;
+        networks_.text = prior_text_config(32, 30, 31);
+        networks_.text.hidden_size = 32;
+        networks_.text.intermediate_size = 32;
+        networks_.text.num_hidden_layers = 1;
+        networks_.text.num_attention_heads = 1;
+    }
+    ~PriorTraining() override { fs::remove_all(root_); }
+
+    TrainSettings settings(const char* name) const {
+        TrainSettings result;
+        result.output = root_ / name;
+        result.work = root_ / name / "work";
+        result.samples = 48;
+        result.batch = 4;
+        fs::create_directories(result.work);
+        return result;
+    }
+    NamedTensors checkpoint(const TrainSettings& settings) const {
+        return SafeTensors::open(settings.work / "checkpoint.safetensors").tensors();
+    }
+
+    LatentData data_;
+    DiffusionConfig networks_;
+    fs::path root_ = fs::temp_directory_path() / ("item3d_training_" + std::to_string(::getpid()));
+};
+
+TEST_F(PriorTraining, ResumedTrainingEndsWithTheSameWeights) {
+    const TrainSettings whole = settings("whole");
+    const auto summary = train_diffusion(data_, whole, networks_, {{"psnr", 30}});
+    EXPECT_EQ(summary.at("samples"), 48);
+    EXPECT_EQ(summary.at("psnr"), 30);
+
+    TrainSettings parts = settings("parts");
+    parts.stop_after = 16;
+    EXPECT_THROW(train_diffusion(data_, parts, networks_, {}), Interrupted);
+    parts.resume = true;
+    parts.stop_after = 24;
+    EXPECT_THROW(train_diffusion(data_, parts, networks_, {}), Interrupted);
+    parts.stop_after = 0;
+    train_diffusion(data_, parts, networks_, {});
+
+    const NamedTensors expected = checkpoint(whole), found = checkpoint(parts);
+    ASSERT_EQ(expected.size(), found.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        if (expected[i].first == "record") continue;  // holds seconds
+        EXPECT_TRUE(torch::equal(expected[i].second, found[i].second)) << expected[i].first;
+    }
+    for (const char* file : {"unet/config.json", "unet/diffusion_pytorch_model.safetensors",
+                             "text_encoder/model.safetensors", "prior.json"})
+        EXPECT_TRUE(fs::exists(parts.output / file)) << file;
+}
+
+TEST_F(PriorTraining, CheckpointOfAnotherNetworkIsRefused) {
+    TrainSettings first = settings("first");
+    first.samples = 8;
+    train_diffusion(data_, first, networks_, {});
+    first.resume = true;
+    networks_.text.vocab_size = 40;
+    EXPECT_THROW(train_diffusion(data_, first, networks_, {}), InputError);
+}
+
+TEST(PriorLearningRate, RisesStaysAndFalls) {
+    EXPECT_LT(learning_rate_part(0, 600000), .05);
+    EXPECT_DOUBLE_EQ(learning_rate_part(10000, 600000), 1);
+    // A longer training goes on where a shorter one still had its plateau.
+    EXPECT_DOUBLE_EQ(learning_rate_part(300000, 600000), learning_rate_part(300000, 900000));
+    EXPECT_NEAR(learning_rate_part(510000, 600000), .5, 1e-9);
+    EXPECT_NEAR(learning_rate_part(600000, 600000), .02, 1e-9);
+}
+
+}  // namespace
+}  // namespace item3d
