@@ -9,7 +9,7 @@ namespace item3d {
 namespace {
 
 constexpr int table_size = 256;
-constexpr int rule_size = 16;
+constexpr int rule_size = 8;
 constexpr int azimuths = 16;
 
 struct Rule {
@@ -45,14 +45,14 @@ torch::Tensor compute_table() {
     for (int i = 0; i < azimuths; ++i)
         cosines[static_cast<std::size_t>(i)] =
             static_cast<float>(std::cos(M_PI * (i + 0.5) / azimuths));
+    const kernels::BsdfRule quadrature{cosines.data(), azimuths, rule.points.data(),
+                                       rule.weights.data(), rule_size};
     torch::Tensor table = torch::empty({table_size, table_size, 2}, torch::kFloat32);
     float* out = table.data_ptr<float>();
     parallel_for("bsdf_table", table_size * table_size, [&](std::int64_t i) {
         const float roughness = (static_cast<float>(i / table_size) + 0.5f) / table_size;
         const float n_dot_v = (static_cast<float>(i % table_size) + 0.5f) / table_size;
-        const Vec2 value =
-            kernels::bsdf_scale_bias(n_dot_v, roughness, cosines.data(), azimuths,
-                                     rule.points.data(), rule.weights.data(), rule_size);
+        const Vec2 value = kernels::bsdf_scale_bias(n_dot_v, roughness, quadrature);
         out[2 * i] = value.x;
         out[2 * i + 1] = value.y;
     });

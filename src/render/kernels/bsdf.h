@@ -8,50 +8,77 @@
 
 namespace item3d::kernels {
 
+/// The rule of quadrature: `azimuths` equal steps over half a turn, where the integrand is periodic
+/// and even, and `size` abscissae and weights on [0, 1] along the cap.
+struct BsdfRule {
+    const float* azimuth_cosines;
+    int azimuths;
+    const float* points;
+    const float* weights;
+    int size;
+};
+
 /// Scale and bias of F0 for one n.v and perceptual roughness. Visible normals are sampled as caps
-/// of the hemisphere (Dupuy and Benyoub 2023), which leaves the smooth weight G2/G1, on a product
-/// grid: the midpoint rule in azimuth, where the integrand is periodic and even, and `rule_points`
-/// abscissae and weights on [0, 1] along the cap.
+/// of the hemisphere (Dupuy and Benyoub 2023), which leaves the smooth weight G2/G1. A cap's height
+/// u is replaced by u = tanh^2(x), which spreads out both of its ends, and each azimuth is
+/// integrated up to where the reflected direction sets.
 ITEM3D_HOST_DEVICE inline Vec2 bsdf_scale_bias(float n_dot_v, float roughness,
-                                               const float* azimuth_cosines, int azimuths,
-                                               const float* rule_points, const float* rule_weights,
-                                               int rule_size) {
-    const float alpha = roughness * roughness;
+                                               const BsdfRule& rule) {
+    const float alpha = roughness * roughness, alpha2 = alpha * alpha;
     const Vec3 v(std::sqrt(1 - n_dot_v * n_dot_v), 0.0f, n_dot_v);
     const Vec3 stretched = glm::normalize(Vec3(alpha * v.x, 0.0f, v.z));
-    const float alpha2 = alpha * alpha;
-    const auto lambda_1 = [alpha2](float cosine) {  // 1 + Lambda, times 2
+    const auto masking = [alpha2](float cosine) {  // 2 (1 + Lambda)
         const float squared = cosine * cosine;
         return 1 + std::sqrt(1 + alpha2 * (1 - squared) / squared);
     };
-    const float masking_v = lambda_1(n_dot_v);
-    float scale = 0, bias = 0;
-    for (int j = 0; j < rule_size; ++j) {
-        const float z = (1 - rule_points[j]) * (1 + stretched.z) - stretched.z;
-        const float radius = std::sqrt(z * z < 1 ? 1 - z * z : 0.0f);
-        float row_scale = 0, row_bias = 0;
-        for (int i = 0; i < azimuths; ++i) {
-            const float cosine = azimuth_cosines[i];
-            const float x = radius * cosine + stretched.x;
-            const float y2 = radius * radius * (1 - cosine * cosine);
-            const float hz = z + stretched.z;
-            // h = (alpha x, alpha y, hz), normalised; only its x and z matter.
-            const float inverse = 1 / std::sqrt(alpha2 * (x * x + y2) + hz * hz);
-            const float v_dot_h = (v.x * alpha * x + v.z * hz) * inverse;
-            const float l_z = 2 * v_dot_h * hz * inverse - v.z;
+    const float masking_v = masking(n_dot_v);
+    Vec2 total(0.0f);
+    for (int i = 0; i < rule.azimuths; ++i) {
+        const float cosine = rule.azimuth_cosines[i], sine2 = 1 - cosine * cosine;
+        // The half vector (alpha x, alpha y, z) of a cap's height, not normalised; y squared.
+        const auto half_vector = [&](float height) {
+            const float radius2 = height * height < 1 ? 1 - height * height : 0.0f;
+            return Vec3(std::sqrt(radius2) * cosine + stretched.x, radius2 * sine2,
+                        height + stretched.z);
+        };
+        const auto rises = [&](float height) {
+            const Vec3 h = half_vector(height);
+            return 2 * (v.x * alpha * h.x + v.z * h.z) * h.z >
+                   v.z * (alpha2 * (h.x * h.x + h.y) + h.z * h.z);
+        };
+        float lowest = -stretched.z;
+        if (!rises(lowest)) {
+            float high = 1;
+            for (int step = 0; step < 10; ++step) {
+                const float middle = 0.5f * (lowest + high);
+                if (rises(middle))
+                    high = middle;
+                else
+                    lowest = middle;
+            }
+            lowest = high;
+        }
+        const float span = 1 + stretched.z;
+        const float last = 1 - (lowest + stretched.z) / span;
+        const float x_end = std::atanh(std::sqrt(last < 1 - 1e-6f ? last : 1 - 1e-6f));
+        for (int j = 0; j < rule.size; ++j) {
+            const float e = std::exp(-2 * x_end * rule.points[j]);
+            const float t = (1 - e) / (1 + e), u = t * t;
+            const Vec3 h = half_vector((1 - u) * span - stretched.z);
+            const float inverse = 1 / std::sqrt(alpha2 * (h.x * h.x + h.y) + h.z * h.z);
+            const float v_dot_h = (v.x * alpha * h.x + v.z * h.z) * inverse;
+            const float l_z = 2 * v_dot_h * h.z * inverse - v.z;
             if (!(l_z > 0) || !(v_dot_h > 0)) continue;
-            // 1 + Lambda_v + Lambda_l = (2 (1 + Lambda_v) + 2 (1 + Lambda_l)) / 2 - 1
-            const float weight = masking_v / (masking_v + lambda_1(l_z) - 2);
-            const float grazing = 1 - v_dot_h;
+            // G2/G1 = (1 + Lambda_v) / (1 + Lambda_v + Lambda_l); du = 2 t (1 - u) dx
+            const float weight = rule.weights[j] * x_end * 2 * t * (1 - u) * masking_v /
+                                 (masking_v + masking(l_z) - 2);
+            const float grazing = v_dot_h < 1 ? 1 - v_dot_h : 0.0f;
             const float squared = grazing * grazing;
             const float fresnel = squared * squared * grazing;
-            row_scale += weight * (1 - fresnel);
-            row_bias += weight * fresnel;
+            total += weight * Vec2(1 - fresnel, fresnel);
         }
-        scale += rule_weights[j] * row_scale;
-        bias += rule_weights[j] * row_bias;
     }
-    return Vec2(scale, bias) / static_cast<float>(azimuths);
+    return total / static_cast<float>(rule.azimuths);
 }
 
 }  // namespace item3d::kernels

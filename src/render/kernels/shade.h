@@ -129,10 +129,26 @@ ITEM3D_HOST_DEVICE inline SpecularLevels specular_levels(const ShadeParameters& 
     return {low, low + 1, (roughness - steps[low]) * slope, slope};
 }
 
+/// Rough lobes lean from the mirror direction towards the normal (Lagarde and de Rousiers 2014,
+/// "Moving Frostbite to PBR", section 4.9.3). value: how much of the mirror direction is left.
+struct DominantDirection {
+    float value;
+    float slope;  ///< d value / d roughness
+};
+
+ITEM3D_HOST_DEVICE inline DominantDirection dominant_direction(float roughness) {
+    const float alpha = roughness * roughness;
+    const float smoothness = alpha < 1 ? 1 - alpha : 0.0f;
+    const float root = std::sqrt(smoothness);
+    return {smoothness * (root + alpha),
+            alpha < 1 ? (smoothness - alpha - 1.5f * root) * 2 * roughness : 0.0f};
+}
+
 /// All that forward and backward share.
 struct ShadingPoint {
     ShadingFrame frame;
-    Vec3 view, reflected, base_color, f0;
+    Vec3 view, mirrored, reflected, base_color, f0;
+    DominantDirection dominant;
     float occlusion, roughness, metallic, n_dot_v;
     bool view_clamped;
     CubeTaps diffuse_taps, low_taps, high_taps;
@@ -156,7 +172,9 @@ ITEM3D_HOST_DEVICE inline ShadingPoint shading_point(const ShadeParameters& p, s
     const float cosine = glm::dot(s.frame.normal, s.view);
     s.view_clamped = cosine < smallest_n_dot_v;
     s.n_dot_v = s.view_clamped ? smallest_n_dot_v : cosine;
-    s.reflected = 2 * cosine * s.frame.normal - s.view;
+    s.mirrored = 2 * cosine * s.frame.normal - s.view;
+    s.dominant = dominant_direction(s.roughness);
+    s.reflected = s.frame.normal + s.dominant.value * (s.mirrored - s.frame.normal);
 
     s.diffuse_taps = cube_taps(s.frame.normal, p.diffuse_size);
     s.irradiance = cube_value(p.diffuse, s.diffuse_taps);
@@ -210,14 +228,6 @@ ITEM3D_HOST_DEVICE inline void shade_backward(const ShadeParameters& p, std::int
     if (p.base_color_gradient != nullptr)
         store3(p.base_color_gradient + 3 * i,
                (1 - s.metallic) * g * s.irradiance + s.metallic * by_f0);
-    if (p.orm_gradient != nullptr) {
-        p.orm_gradient[3 * i] = sum(out * (s.diffuse_part + s.specular_part));
-        p.orm_gradient[3 * i + 1] = by_scale * s.bsdf.scale_by_roughness +
-                                    by_bias * s.bsdf.bias_by_roughness +
-                                    s.levels.slope * sum(by_specular * (s.high - s.low));
-        p.orm_gradient[3 * i + 2] = sum(by_f0 * (s.base_color - Vec3(dielectric_f0))) -
-                                    sum(g * s.base_color * s.irradiance);
-    }
     const Vec3 by_low = (1 - s.levels.fraction) * by_specular;
     const Vec3 by_high = s.levels.fraction * by_specular;
     const bool two_levels = s.levels.high != s.levels.low;
@@ -227,18 +237,28 @@ ITEM3D_HOST_DEVICE inline void shade_backward(const ShadeParameters& p, std::int
     if (two_levels && light.specular[s.levels.high] != nullptr)
         cube_add_gradient(light.specular[s.levels.high], s.high_taps, by_high);
 
-    if (p.normal_gradient == nullptr && p.normal_map_gradient == nullptr) return;
-    const ShadingFrame& f = s.frame;
     Vec3 by_reflected = cube_direction_gradient(p.specular[s.levels.low], s.low_taps, by_low);
     if (two_levels)
         by_reflected += cube_direction_gradient(p.specular[s.levels.high], s.high_taps, by_high);
+    const Vec3 by_mirrored = s.dominant.value * by_reflected;
+    if (p.orm_gradient != nullptr) {
+        p.orm_gradient[3 * i] = sum(out * (s.diffuse_part + s.specular_part));
+        p.orm_gradient[3 * i + 1] =
+            by_scale * s.bsdf.scale_by_roughness + by_bias * s.bsdf.bias_by_roughness +
+            s.levels.slope * sum(by_specular * (s.high - s.low)) +
+            s.dominant.slope * glm::dot(by_reflected, s.mirrored - s.frame.normal);
+        p.orm_gradient[3 * i + 2] = sum(by_f0 * (s.base_color - Vec3(dielectric_f0))) -
+                                    sum(g * s.base_color * s.irradiance);
+    }
+    if (p.normal_gradient == nullptr && p.normal_map_gradient == nullptr) return;
+    const ShadingFrame& f = s.frame;
     const float by_n_dot_v =
         s.view_clamped ? 0.0f : by_scale * s.bsdf.scale_by_view + by_bias * s.bsdf.bias_by_view;
-    // reflected = 2 (n.v) n - v
-    Vec3 by_normal =
-        cube_direction_gradient(p.diffuse, s.diffuse_taps, by_irradiance) + by_n_dot_v * s.view +
-        2.0f *
-            (glm::dot(f.normal, s.view) * by_reflected + glm::dot(by_reflected, f.normal) * s.view);
+    // mirrored = 2 (n.v) n - v
+    Vec3 by_normal = cube_direction_gradient(p.diffuse, s.diffuse_taps, by_irradiance) +
+                     by_n_dot_v * s.view + (by_reflected - by_mirrored) +
+                     2.0f * (glm::dot(f.normal, s.view) * by_mirrored +
+                             glm::dot(by_mirrored, f.normal) * s.view);
     if (p.normal_map == nullptr) {
         store3(p.normal_gradient + 3 * i, by_normal);
         return;

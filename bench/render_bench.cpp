@@ -1,0 +1,161 @@
+// How long the renderer's operations take. The mesh is a sphere of about as many triangles as a
+// scanned object; ITEM3D_BENCH_MODEL names a model to use instead.
+
+#include "item3d/render/textured.h"
+#include "item3d/scene/io/load.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace item3d {
+namespace {
+
+Model sphere(int latitudes, int longitudes) {
+    Primitive primitive;
+    for (int i = 0; i <= latitudes; ++i) {
+        for (int j = 0; j <= longitudes; ++j) {
+            const float u = static_cast<float>(j) / static_cast<float>(longitudes);
+            const float v = static_cast<float>(i) / static_cast<float>(latitudes);
+            const Vec3 p(std::sin(pi * v) * std::sin(2 * pi * u), std::cos(pi * v),
+                         std::sin(pi * v) * std::cos(2 * pi * u));
+            primitive.positions.push_back(p);
+            primitive.normals.push_back(p);
+            primitive.uvs.push_back(Vec2(u, v));
+        }
+    }
+    for (int i = 0; i < latitudes; ++i) {
+        for (int j = 0; j < longitudes; ++j) {
+            const auto a = static_cast<std::uint32_t>(i * (longitudes + 1) + j);
+            const auto b = a + static_cast<std::uint32_t>(longitudes + 1);
+            for (const std::uint32_t index : {a, b, b + 1, a, b + 1, a + 1})
+                primitive.indices.push_back(index);
+        }
+    }
+    Model model;
+    model.materials.emplace_back();
+    model.primitives.push_back(std::move(primitive));
+    return model;
+}
+
+struct Scene {
+    Geometry geometry;
+    std::vector<Camera> cameras;
+    EnvironmentLight light;
+};
+
+const Scene& scene() {
+    static const Scene made = [] {
+        const char* path = std::getenv("ITEM3D_BENCH_MODEL");
+        const Model model = path != nullptr ? load_model(path) : sphere(54, 54);
+        torch::manual_seed(0);
+        return Scene{Geometry::from_model(model), turntable(model.bounds(), 1, 0.3f, 0.6f),
+                     prefilter(torch::rand({6, 64, 64, 3}))};
+    }();
+    return made;
+}
+
+MaterialSample material(std::int64_t count) {
+    MaterialSample sample;
+    sample.base_color = torch::rand({count, 3});
+    sample.orm = torch::rand({count, 3});
+    sample.normal = torch::rand({count, 3}) + 0.5f;
+    sample.normal = sample.normal / sample.normal.norm(2, 1, true);
+    return sample;
+}
+
+void rasterize_view(benchmark::State& state) {
+    const int size = static_cast<int>(state.range(0));
+    for (auto _ : state)
+        benchmark::DoNotOptimize(rasterize(scene().geometry, scene().cameras, size, size));
+}
+BENCHMARK(rasterize_view)->Arg(64)->Arg(128)->Arg(512)->Unit(benchmark::kMillisecond);
+
+void rasterize_million_triangles(benchmark::State& state) {
+    static const Model model = sphere(708, 708);
+    static const Geometry geometry = Geometry::from_model(model);
+    const int size = static_cast<int>(state.range(0));
+    const auto cameras = turntable(model.bounds(), 1, 0.3f, 0.6f);
+    for (auto _ : state)
+        benchmark::DoNotOptimize(rasterize(geometry, cameras, size, size));
+}
+BENCHMARK(rasterize_million_triangles)->Arg(64)->Arg(512)->Unit(benchmark::kMillisecond);
+
+void interpolate_view(benchmark::State& state) {
+    const int size = static_cast<int>(state.range(0));
+    const Raster raster = rasterize(scene().geometry, scene().cameras, size, size);
+    for (auto _ : state)
+        benchmark::DoNotOptimize(interpolate_surface(scene().geometry, raster, scene().cameras));
+}
+BENCHMARK(interpolate_view)->Arg(64)->Arg(512)->Unit(benchmark::kMillisecond);
+
+void shade_forward(benchmark::State& state) {
+    const int size = static_cast<int>(state.range(0));
+    const Surface surface = interpolate_surface(
+        scene().geometry, rasterize(scene().geometry, scene().cameras, size, size),
+        scene().cameras);
+    const MaterialSample sample = material(surface.count());
+    for (auto _ : state)
+        benchmark::DoNotOptimize(shade(surface, sample, scene().light));
+}
+BENCHMARK(shade_forward)->Arg(64)->Arg(128)->Arg(512)->Unit(benchmark::kMillisecond);
+
+/// With gradients of all material inputs; second argument: of the light as well.
+void shade_forward_and_backward(benchmark::State& state) {
+    const int size = static_cast<int>(state.range(0));
+    const Surface surface = interpolate_surface(
+        scene().geometry, rasterize(scene().geometry, scene().cameras, size, size),
+        scene().cameras);
+    MaterialSample sample = material(surface.count());
+    for (torch::Tensor* tensor : {&sample.base_color, &sample.orm, &sample.normal})
+        tensor->set_requires_grad(true);
+    EnvironmentLight light = scene().light;
+    if (state.range(1) != 0)
+        for (torch::Tensor& level : light.specular)
+            level = level.detach().clone().set_requires_grad(true);
+    for (auto _ : state)
+        shade(surface, sample, light).sum().backward();
+}
+BENCHMARK(shade_forward_and_backward)
+    ->Args({64, 0})
+    ->Args({128, 0})
+    ->Args({512, 0})
+    ->Args({64, 1})
+    ->Args({512, 1})
+    ->Unit(benchmark::kMillisecond);
+
+void antialias_view(benchmark::State& state) {
+    const int size = static_cast<int>(state.range(0));
+    const Raster raster = rasterize(scene().geometry, scene().cameras, size, size);
+    const torch::Tensor image = torch::rand({1, size, size, 3});
+    for (auto _ : state)
+        benchmark::DoNotOptimize(antialias(image, raster, scene().geometry));
+}
+BENCHMARK(antialias_view)->Arg(64)->Arg(512)->Unit(benchmark::kMillisecond);
+
+void prefilter_cube(benchmark::State& state) {
+    const std::int64_t size = state.range(0);
+    torch::manual_seed(0);
+    torch::Tensor cube = torch::rand({6, size, size, 3}).set_requires_grad(state.range(1) != 0);
+    for (auto _ : state) {
+        const EnvironmentLight light = prefilter(cube);
+        if (state.range(1) == 0) continue;
+        torch::Tensor sum = light.diffuse.sum();
+        for (const torch::Tensor& level : light.specular)
+            sum = sum + level.sum();
+        sum.backward();
+    }
+}
+BENCHMARK(prefilter_cube)
+    ->Args({64, 0})
+    ->Args({64, 1})
+    ->Args({128, 0})
+    ->Args({256, 0})
+    ->Args({512, 0})
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace item3d
+
+BENCHMARK_MAIN();
