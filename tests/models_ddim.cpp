@@ -98,5 +98,18 @@ TEST(DdimConfig, ReadsOtherSchedulersAndSurvivesWriting) {
     EXPECT_THROW(DdimConfig::from_json({{"num_train_timesteps", 1000000000}}), InputError);
 }
 
+TEST(DdimConfig, TakesInfinitiesAsPythonWritesThem) {
+    const testing::TemporaryFolder folder;
+    const auto path = folder.path() / "scheduler_config.json";
+    testing::write_file(
+        path, R"({"lambda_min_clipped": -Infinity, "note": "NaN \" Infinity", "x": NaN})");
+    EXPECT_EQ(DdimScheduler::load(folder.path()).config().num_train_timesteps, 1000);
+    EXPECT_EQ(Config::read(path).text("note", ""), "NaN \" Infinity");
+    testing::write_file(path, R"({"beta_start": NaN})");
+    EXPECT_THROW(DdimScheduler::load(folder.path()), InputError);
+    testing::write_file(path, R"({"beta_start": Infinite)");
+    EXPECT_THROW(DdimScheduler::load(folder.path()), InputError);
+}
+
 }  // namespace
 }  // namespace item3d

@@ -4,7 +4,7 @@
 #include "item3d/core/files.h"
 
 #include <cmath>
-#include <cstdlib>
+#include <cstring>
 #include <utility>
 
 namespace item3d {
@@ -22,6 +22,32 @@ bool read_integer(const nlohmann::json& value, int& result) {
     return true;
 }
 
+/// Python writes infinities and NaN as bare words, which JSON has not; published configs hold some.
+/// They become strings, so that only a key that is asked for complains.
+std::string quote_python_numbers(const std::string& text) {
+    std::string result;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size();) {
+        if (in_string && text[i] == '\\') {
+            result += text.substr(i, 2);
+            i += 2;
+            continue;
+        }
+        if (text[i] == '"') in_string = !in_string;
+        std::size_t length = 0;
+        for (const char* word : {"-Infinity", "Infinity", "NaN"})
+            if (!in_string && length == 0 && text.compare(i, std::strlen(word), word) == 0)
+                length = std::strlen(word);
+        if (length > 0) {
+            result += '"' + text.substr(i, length) + '"';
+            i += length;
+        } else {
+            result += text[i++];
+        }
+    }
+    return result;
+}
+
 }  // namespace
 
 Config::Config(nlohmann::json values, std::string subject)
@@ -30,7 +56,10 @@ Config::Config(nlohmann::json values, std::string subject)
 }
 
 Config Config::read(const std::filesystem::path& path) {
-    nlohmann::json values = nlohmann::json::parse(read_text(path), nullptr, false);
+    const std::string text = read_text(path);
+    nlohmann::json values = nlohmann::json::parse(text, nullptr, false);
+    if (values.is_discarded())
+        values = nlohmann::json::parse(quote_python_numbers(text), nullptr, false);
     if (values.is_discarded()) throw InputError(path.string(), "is not valid JSON");
     return Config(std::move(values), path.string());
 }

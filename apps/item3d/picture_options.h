@@ -1,0 +1,43 @@
+// Picture options that several commands read alike, and the view that they take when told none.
+#pragma once
+
+#include "item3d/core/error.h"
+#include "item3d/core/math.h"
+
+#include <charconv>
+#include <string>
+
+namespace item3d {
+
+/// A three-quarter view from a little above, through a lens that is neither wide nor long.
+inline constexpr float default_azimuth = 35 * pi / 180;
+inline constexpr float default_elevation = 18 * pi / 180;
+inline constexpr float default_field_of_view = 30 * pi / 180;
+
+struct PictureSize {
+    int width = 0;
+    int height = 0;
+};
+
+/// "WxH", or one number for a square. Throws UsageError that names `option`.
+inline PictureSize parse_size(const std::string& text, const std::string& option = "--size") {
+    constexpr int largest_side = 16384;
+    PictureSize size;
+    const char* end = text.data() + text.size();
+    const auto width = std::from_chars(text.data(), end, size.width);
+    auto last = width;
+    if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
+        last = std::from_chars(width.ptr + 1, end, size.height);
+    } else {
+        size.height = size.width;
+    }
+    const auto fits = [](int side) { return side >= 1 && side <= largest_side; };
+    if (width.ec != std::errc() || last.ec != std::errc() || last.ptr != end || !fits(size.width) ||
+        !fits(size.height)) {
+        throw UsageError(option + " " + text + ": expected WxH with sides from 1 to " +
+                         std::to_string(largest_side) + ", as in 512x512");
+    }
+    return size;
+}
+
+}  // namespace item3d
