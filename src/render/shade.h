@@ -29,8 +29,8 @@ struct ShadeOptions {
 /// normal and the light's tensors:
 ///   base_color (1 - metallic) irradiance(n) occlusion + specular(r, roughness) (F0 A + B)
 ///   occlusion
-/// with F0 = lerp(0.04, base_color, metallic); emissive is added; r leans towards n as roughness grows. Roughness below the chain's first
-/// (0.08) looks like it.
+/// with F0 = lerp(0.04, base_color, metallic); emissive is added; r leans towards n as roughness
+/// grows. Roughness below the chain's first (0.08) looks like it.
 torch::Tensor shade(const Surface& surface, const MaterialSample& material,
                     const EnvironmentLight& light, const ShadeOptions& options = {});
 

@@ -67,7 +67,7 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
     crossing.direction = near_here ? 1 : -1;
 
     constexpr float tolerance = 1.0f / 16;
-    constexpr int most_steps = 64;
+    constexpr int most_steps = 256;
     const std::int64_t view = pixel / (static_cast<std::int64_t>(p.width) * p.height);
     const float* clip = p.positions_clip + 4 * view * p.vertices;
     std::int64_t t = near_here ? here : there;

@@ -60,7 +60,7 @@ ITEM3D_HOST_DEVICE inline Vec2 bsdf_scale_bias(float n_dot_v, float roughness,
         }
         const float span = 1 + stretched.z;
         const float last = 1 - (lowest + stretched.z) / span;
-        const float x_end = std::atanh(std::sqrt(last < 1 - 1e-6f ? last : 1 - 1e-6f));
+        const float x_end = std::atanh(std::sqrt(last < 1 - 1e-5f ? last : 1 - 1e-5f));
         for (int j = 0; j < rule.size; ++j) {
             const float e = std::exp(-2 * x_end * rule.points[j]);
             const float t = (1 - e) / (1 + e), u = t * t;

@@ -4,6 +4,7 @@
 #include "item3d/core/host_device.h"
 #include "item3d/core/math.h"
 
+#include <cmath>
 #include <cstdint>
 
 namespace item3d::kernels {

@@ -131,8 +131,8 @@ struct TriangleEdges {
 
 /// Draws one triangle of one view into rows [row_begin, row_end). Must be called in ascending order
 /// of triangles for each pixel: at equal depth the first one stays.
-inline void rasterize_triangle(const RasterParameters& p, std::int64_t view, std::int64_t t,
-                               int row_begin, int row_end) {
+ITEM3D_HOST_DEVICE inline void rasterize_triangle(const RasterParameters& p, std::int64_t view,
+                                                  std::int64_t t, int row_begin, int row_end) {
     const PixelBox box = p.boxes[view * p.triangle_count + t];
     const int y0 = box.y0 > row_begin ? box.y0 : row_begin;
     const int y1 = box.y1 < row_end ? box.y1 : row_end;

@@ -14,17 +14,17 @@
 
 namespace item3d::kernels {
 
-/// k(c) = max(0, profile(c) - floor) for c = n.l > cut, else 0; profile is the clamped cosine, or
-/// GGX times it.
+/// k(c) = max(0, profile(c) - floor) of c = n.l, where profile is the cosine, or GGX times it, and
+/// grows with c.
 struct ZonalKernel {
-    bool cosine;      ///< k(c) = c
+    bool cosine;      ///< profile(c) = c
     float alpha2_1;   ///< GGX: alpha^2 - 1
-    float floor;      ///< profile(cut), so that the kernel ends without a step
-    float cut;        ///< in [0, 1)
-    float cut_angle;  ///< acos(cut)
+    float floor;      ///< profile at the cone's edge, so that the kernel ends without a step
+    float cut_angle;  ///< half angle of the cone outside which k = 0, at most pi / 2
 
+    template <bool Cosine>
     ITEM3D_HOST_DEVICE float profile(float c) const {
-        if (cosine) return c;
+        if constexpr (Cosine) return c;
         const float d = 0.5f * (1 + c) * alpha2_1 + 1;
         return c / (d * d);
     }
@@ -32,48 +32,107 @@ struct ZonalKernel {
 
 struct ZonalParameters {
     ZonalKernel kernel;
-    const float* source;   ///< [4, 6, S, S] planes
-    int source_size;       ///< S
-    float* out;            ///< [6, R, R, 4]: sums over the source of k times each plane
-    int out_size;          ///< R
-    const float* centres;  ///< [S] texel_centre(i, S)
+    const float* source;           ///< [4, 6, S, S] planes
+    int source_size;               ///< S
+    float* out;                    ///< [6, R, R, 4]: sums over the source of k times each plane
+    int out_size;                  ///< R
+    const float* centres;          ///< [S] texel_centre(i, S)
+    const float* inverse_lengths;  ///< [S, S] of the texels\' directions on a face
 };
 
-/// Half-open range of texels of a face whose coordinate along `axis` can be within the cone.
-/// along, normal: the cone axis' components; sine: of the cone's half angle (below 90 degrees).
+/// Half-open range of texels of a face whose coordinate can be within a cone. along, normal: the
+/// cone axis' components along that coordinate and the face's normal; sine: of the cone's half
+/// angle.
 struct TexelRange {
     int begin, end;
 };
 ITEM3D_HOST_DEVICE inline TexelRange cone_range(float along, float normal, float sine, int size) {
-    const float length = std::sqrt(along * along + normal * normal);
-    if (length <= sine * 1.0001f) return {0, size};
-    const float centre = std::atan2(along, normal), reach = std::asin(sine / length);
-    const float quarter = 0.25f * pi;
-    float low = centre - reach, high = centre + reach;
-    if (low > quarter || high < -quarter) return {0, 0};
-    low = low < -quarter ? -quarter : low;
-    high = high > quarter ? quarter : high;
-    int begin = static_cast<int>(std::floor((std::tan(low) + 1) * 0.5f * size - 0.51f));
-    int end = static_cast<int>(std::ceil((std::tan(high) + 1) * 0.5f * size - 0.49f)) + 1;
+    const float length2 = along * along + normal * normal;
+    if (length2 <= sine * sine * 1.0001f) return {0, size};
+    // The axis in the plane of both, turned by the angle that the cone covers there to both sides.
+    const float turn_sine = sine / std::sqrt(length2);
+    const float turn_cosine = std::sqrt(1 - turn_sine * turn_sine);
+    const float low_normal = normal * turn_cosine + along * turn_sine;
+    const float low_along = along * turn_cosine - normal * turn_sine;
+    const float high_normal = normal * turn_cosine - along * turn_sine;
+    const float high_along = along * turn_cosine + normal * turn_sine;
+    float low = -1, high = 1;
+    if (low_normal > 0)
+        low = low_along / low_normal;
+    else if (along >= 0)
+        return {0, 0};
+    if (high_normal > 0)
+        high = high_along / high_normal;
+    else if (along <= 0)
+        return {0, 0};
+    if (low > 1 || high < -1) return {0, 0};
+    low = low < -1 ? -1.0f : low;
+    high = high > 1 ? 1.0f : high;
+    int begin = static_cast<int>(std::floor((low + 1) * 0.5f * size - 0.51f));
+    int end = static_cast<int>(std::ceil((high + 1) * 0.5f * size - 0.49f)) + 1;
     begin = begin < 0 ? 0 : begin;
     end = end > size ? size : end;
     return {begin, end};
 }
 
-/// index: texel of the output.
-inline void zonal_gather(const ZonalParameters& p, std::int64_t index) {
+inline constexpr int zonal_lanes = 8;
+
+/// Sums over every eighth texel, so that rows need no sum across lanes.
+struct ZonalSums {
+    float lane[4][zonal_lanes] = {};
+};
+
+/// One row of texels of a face. The planes' and the tables' rows have a multiple of eight texels;
+/// those outside the cone add nothing, so a range may be rounded out to whole groups of lanes.
+struct ZonalRow {
+    const float* centres;
+    const float* inverse_lengths;
+    const float* planes[4];
+    float along, rest;  ///< n.l = (along * centre + rest) * inverse_length
+    int begin, end;
+};
+template <bool Cosine>
+[[gnu::always_inline]] ITEM3D_HOST_DEVICE inline void zonal_row(const ZonalKernel& kernel_,
+                                                                const ZonalRow& row,
+                                                                ZonalSums& sums) {
+    // Copies: the compiler makes vectors of the lanes only if nothing there can be aliased.
+    const ZonalKernel kernel = kernel_;
+    const float along = row.along, rest = row.rest;
+    for (int i = row.begin / zonal_lanes * zonal_lanes; i < row.end; i += zonal_lanes) {
+        const float* centres = row.centres + i;
+        const float* inverse_lengths = row.inverse_lengths + i;
+        float k[zonal_lanes];
+#pragma omp simd
+        for (int lane = 0; lane < zonal_lanes; ++lane) {
+            const float c = (along * centres[lane] + rest) * inverse_lengths[lane];
+            const float value = kernel.profile<Cosine>(c) - kernel.floor;
+            k[lane] = value > 0 ? value : 0.0f;
+        }
+        for (int plane = 0; plane < 4; ++plane) {
+            const float* values = row.planes[plane] + i;
+#pragma omp simd
+            for (int lane = 0; lane < zonal_lanes; ++lane)
+                sums.lane[plane][lane] += k[lane] * values[lane];
+        }
+    }
+}
+
+/// index: texel of the output. `add_row` is zonal_row, or a version of it for the processor at
+/// hand.
+template <typename AddRow>
+ITEM3D_HOST_DEVICE inline void zonal_gather(const ZonalParameters& p, std::int64_t index,
+                                            const AddRow& add_row) {
     const int out_face = static_cast<int>(index / (p.out_size * p.out_size));
     const int out_row = static_cast<int>(index / p.out_size % p.out_size);
     const int out_column = static_cast<int>(index % p.out_size);
     const Vec3 n = glm::normalize(cube_direction(out_face, texel_centre(out_column, p.out_size),
                                                  texel_centre(out_row, p.out_size)));
     const std::int64_t size = p.source_size, plane = 6 * size * size;
-    const ZonalKernel kernel = p.kernel;
-    const float sine = std::sin(kernel.cut_angle);
+    const float sine = std::sin(p.kernel.cut_angle);
     // The corners of a face are 54.7 degrees off its centre.
-    const float farthest = kernel.cut_angle + 0.9554f;
+    const float farthest = p.kernel.cut_angle + 0.9554f;
     const float face_cut = farthest < pi ? std::cos(farthest) : -1.0f;
-    float sums[4] = {0, 0, 0, 0};
+    ZonalSums sums;
     for (int face = 0; face < 6; ++face) {
         const CubeFrame frame = cube_frame(face);
         const float normal = glm::dot(frame.normal, n);
@@ -82,33 +141,25 @@ inline void zonal_gather(const ZonalParameters& p, std::int64_t index) {
         const TexelRange rows = cone_range(along_t, normal, sine, p.source_size);
         if (rows.begin >= rows.end) continue;
         const TexelRange columns = cone_range(along_s, normal, sine, p.source_size);
+        ZonalRow line;
+        line.centres = p.centres;
+        line.along = along_s;
+        line.begin = columns.begin;
+        line.end = columns.end;
         for (int row = rows.begin; row < rows.end; ++row) {
-            const float t = p.centres[row];
-            const float rest = along_t * t + normal, squared = 1 + t * t;
-            const float* red = p.source + (face * size + row) * size;
-            const float* green = red + plane;
-            const float* blue = green + plane;
-            const float* solid_angle = blue + plane;
-            float r = 0, g = 0, b = 0, w = 0;
-#pragma omp simd reduction(+ : r, g, b, w)
-            for (int column = columns.begin; column < columns.end; ++column) {
-                const float s = p.centres[column];
-                const float c = (along_s * s + rest) / std::sqrt(squared + s * s);
-                float k = kernel.profile(c) - kernel.floor;
-                k = c > kernel.cut && k > 0 ? k : 0.0f;
-                r += k * red[column];
-                g += k * green[column];
-                b += k * blue[column];
-                w += k * solid_angle[column];
-            }
-            sums[0] += r;
-            sums[1] += g;
-            sums[2] += b;
-            sums[3] += w;
+            line.inverse_lengths = p.inverse_lengths + row * size;
+            line.rest = along_t * p.centres[row] + normal;
+            for (int c = 0; c < 4; ++c)
+                line.planes[c] = p.source + c * plane + (face * size + row) * size;
+            add_row(p.kernel, line, sums);
         }
     }
-    for (int c = 0; c < 4; ++c)
-        p.out[4 * index + c] = sums[c];
+    for (int c = 0; c < 4; ++c) {
+        float sum = 0;
+        for (int lane = 0; lane < zonal_lanes; ++lane)
+            sum += sums.lane[c][lane];
+        p.out[4 * index + c] = sum;
+    }
 }
 
 }  // namespace item3d::kernels
