@@ -215,6 +215,71 @@ TEST(SaveModel, KeepsTexturesThatWereNotEditedWhereTheyWere) {
     EXPECT_TRUE(after["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_1"));
 }
 
+// What is not known is kept, and textures inside extensions follow their coordinates.
+TEST(SaveModel, KeepsExtensionsExtrasAndVariants) {
+    const fs::path folder = fresh_folder("extensions");
+    save_model(folder / "a.gltf", load_model(data_folder() / "gltf" / "full_pbr.glb"));
+    auto json = read_gltf_file(folder / "a.gltf").json;
+    json["extensionsUsed"] = {"VENDOR_thing", "KHR_materials_clearcoat", "KHR_materials_variants"};
+    json["extras"] = {{"big", 9007199254740993}, {"small", 0.1}, {"text", "\u00e9"}};
+    json["nodes"][0]["extensions"]["VENDOR_thing"] = {{"a", {1, 2.5, nullptr}}};
+    json["materials"][0]["extensions"]["KHR_materials_clearcoat"] = {
+        {"clearcoatTexture", {{"index", 0}}},
+        {"clearcoatNormalTexture", {{"index", 0}, {"texCoord", 0}}}};
+    write_atomically(folder / "a.gltf", std::string_view(json.dump()));
+
+    const Model model = load_model(folder / "a.gltf");
+    ModelEdit edit;
+    edit.primitives[0] = exploded(model.primitives[0]);
+    edit.materials[0] = whole_edit(0);
+    save_model(folder / "b.glb", model, edit);
+    const auto after = read_gltf_file(folder / "b.glb").json;
+    EXPECT_EQ(after["extras"].dump(), json["extras"].dump());
+    EXPECT_EQ(after["nodes"], json["nodes"]);
+    EXPECT_EQ(after["extensionsUsed"], json["extensionsUsed"]);
+    const auto& clearcoat = after["materials"][0]["extensions"]["KHR_materials_clearcoat"];
+    EXPECT_EQ(clearcoat["clearcoatTexture"]["texCoord"], 1);
+    EXPECT_EQ(clearcoat["clearcoatNormalTexture"]["texCoord"], 1);
+
+    // With variants other materials look at set 0, so the new coordinates go behind it.
+    json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "v"}}};
+    json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
+        {{"material", 0}, {"variants", {0}}}};
+    write_atomically(folder / "a.gltf", std::string_view(json.dump()));
+    save_model(folder / "c.glb", load_model(folder / "a.gltf"), edit);
+    const auto varied = read_gltf_file(folder / "c.glb").json;
+    const auto& material = varied["materials"][0];
+    EXPECT_EQ(material["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"], 1);
+    EXPECT_FALSE(
+        material["extensions"]["KHR_materials_clearcoat"]["clearcoatTexture"].contains("texCoord"));
+    EXPECT_EQ(varied["meshes"][0]["primitives"][0]["extensions"],
+              json["meshes"][0]["primitives"][0]["extensions"]);
+    EXPECT_EQ(load_model(folder / "c.glb").primitives[0].uvs, edit.primitives[0].uvs);
+}
+
+// Files of the older specular-glossiness kind become metallic-roughness where they are edited.
+TEST(SaveModel, ReplacesSpecularGlossiness) {
+    const fs::path folder = fresh_folder("glossiness");
+    save_model(folder / "a.gltf", load_model(data_folder() / "gltf" / "vertex_colors_u8.glb"));
+    auto json = read_gltf_file(folder / "a.gltf").json;
+    json["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
+    json["materials"][0].erase("pbrMetallicRoughness");
+    json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {
+        {"diffuseFactor", {0.2, 0.4, 0.6, 1.0}}, {"glossinessFactor", 0.75}};
+    write_atomically(folder / "a.gltf", std::string_view(json.dump()));
+    const Model model = load_model(folder / "a.gltf");
+    EXPECT_NEAR(model.materials[0].base_color_factor.y, 0.4f, 1e-6f);
+    EXPECT_NEAR(model.materials[0].roughness_factor, 0.25f, 1e-6f);
+    EXPECT_EQ(model.materials[0].metallic_factor, 0.0f);
+    ModelEdit edit;
+    edit.materials[0].base_color = checkered_image(4, 4, 3);
+    save_model(folder / "b.glb", model, edit);
+    const Material material = load_model(folder / "b.glb").materials[0];
+    EXPECT_EQ(material.metallic_factor, 0.0f);
+    EXPECT_NEAR(material.roughness_factor, 0.25f, 1e-6f);
+    EXPECT_GE(material.base_color_texture, 0);
+}
+
 TEST(SaveModel, KeepsTheTextureTransformWhenTheLayoutStays) {
     const fs::path folder = fresh_folder("transform");
     const Model model = load_model(data_folder() / "gltf" / "texcoord1_transform.glb");
