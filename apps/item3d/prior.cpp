@@ -1,9 +1,11 @@
 // item3d prior: train the embedded prior, and look at what it is trained on.
 #include "command.h"
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/train.h"
+#include "item3d/prior/vocabulary.h"
 #include "item3d/scene/io/save.h"
 
 namespace item3d {
