@@ -3,10 +3,11 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/progress.h"
 #include "item3d/models/pipeline.h"
+#include "item3d/prior/vocabulary.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/render/shade.h"
-#include "item3d/scene/camera.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 #include "picture_options.h"
@@ -48,8 +49,7 @@ void apply_prior_defaults(const fs::path& prior, GenerateOptions& options) {
 torch::Tensor depth_of(const std::string& file, PictureSize size, const Pipeline& pipeline) {
     const Model model = load_model(file);
     const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-    const Camera camera = framing_camera(model.bounds(), default_azimuth, default_elevation,
-                                         default_field_of_view, aspect);
+    const Camera camera = default_view(model, aspect);
     const Raster raster = rasterize(Geometry::from_model(model, pipeline.device()), {camera},
                                     size.width, size.height);
     return depth_condition(raster.depth, pipeline.downscale());
@@ -77,6 +77,8 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
     const fs::path prior =
         command.prior.empty() ? assets_folder() / "prior" : fs::path(command.prior);
     const Pipeline pipeline = Pipeline::load(prior, device);
+    const std::string warning = PriorVocabulary::load(prior).warning(command.generate.prompt);
+    if (!warning.empty()) warn(warning);
 
     GenerateOptions options = command.generate;
     apply_prior_defaults(prior, options);

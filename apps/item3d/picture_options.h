@@ -3,9 +3,12 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/math.h"
+#include "item3d/scene/camera.h"
+#include "item3d/scene/model.h"
 
 #include <charconv>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -13,6 +16,15 @@ namespace item3d {
 inline constexpr float default_azimuth = 35 * pi / 180;
 inline constexpr float default_elevation = 18 * pi / 180;
 inline constexpr float default_field_of_view = 30 * pi / 180;
+
+/// The whole model from there, as large as it fits. aspect: width / height.
+inline Camera default_view(const Model& model, float aspect) {
+    std::vector<Vec3> points;
+    for (const Primitive& primitive : model.primitives)
+        points.insert(points.end(), primitive.positions.begin(), primitive.positions.end());
+    return framing_camera(points, default_azimuth, default_elevation, default_field_of_view,
+                          aspect);
+}
 
 struct PictureSize {
     int width = 0;

@@ -11,9 +11,9 @@
 #include "item3d/scene/environment.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
+#include "picture_options.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -26,12 +26,6 @@ namespace item3d {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A three-quarter view from a little above, through a lens that is neither wide nor long.
-constexpr float default_azimuth = 35 * pi / 180;
-constexpr float default_elevation = 18 * pi / 180;
-constexpr float default_field_of_view = 30 * pi / 180;
-constexpr int largest_side = 16384;
 
 struct RenderCommand : CommonOptions {
     std::string model;
@@ -46,30 +40,6 @@ struct RenderCommand : CommonOptions {
     std::string channel = "shaded";
     std::string background = "none";
 };
-
-struct PictureSize {
-    int width = 0;
-    int height = 0;
-};
-
-PictureSize parse_size(const std::string& text) {
-    PictureSize size;
-    const char* end = text.data() + text.size();
-    const auto width = std::from_chars(text.data(), end, size.width);
-    auto last = width;
-    if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
-        last = std::from_chars(width.ptr + 1, end, size.height);
-    } else {
-        size.height = size.width;
-    }
-    const auto fits = [](int side) { return side >= 1 && side <= largest_side; };
-    if (width.ec != std::errc() || last.ec != std::errc() || last.ptr != end || !fits(size.width) ||
-        !fits(size.height)) {
-        throw UsageError(fmt::format(
-            "--size {}: expected WxH with sides from 1 to {}, as in 512x512", text, largest_side));
-    }
-    return size;
-}
 
 std::string lower_extension(const fs::path& path) {
     std::string extension = path.extension().string();
@@ -124,12 +94,7 @@ std::vector<Camera> choose_cameras(const RenderCommand& options, const Model& mo
             camera.field_of_view_x = horizontal_field_of_view(default_field_of_view, aspect);
         }
     } else {
-        std::vector<Vec3> points;
-        for (const Primitive& primitive : model.primitives) {
-            points.insert(points.end(), primitive.positions.begin(), primitive.positions.end());
-        }
-        cameras = {framing_camera(points, default_azimuth, default_elevation, default_field_of_view,
-                                  aspect)};
+        cameras = {default_view(model, aspect)};
         cameras.front().name = "view_000";
     }
     return cameras;
