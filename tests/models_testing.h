@@ -13,6 +13,12 @@
 
 namespace item3d::testing {
 
+/// The networks here are so small that more threads would only wait for one another.
+inline const bool one_thread = [] {
+    torch::set_num_threads(1);
+    return true;
+}();
+
 inline std::filesystem::path fixture(const std::string& name) {
     return std::filesystem::path(ITEM3D_TEST_DATA) / "models" / name;
 }
