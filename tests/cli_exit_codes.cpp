@@ -104,10 +104,11 @@ TEST_F(Program, WhatCannotBeReadIsThreeAndNamed) {
 TEST_F(Program, WhatCannotBeWrittenIsNamed) {
     expect_error("render " + quoted(cube_) + " -o " + quoted(cube_ / "below" / "p.png"), 3,
                  "below");
-    // A limit on file sizes stands for a full disk.
-    expect_error("render " + quoted(cube_) + " --size 256x256 -o " + quoted(folder_ / "full.png"),
-                 4, "full", "ulimit -f 0; exec 2>&1; ");
-    EXPECT_FALSE(fs::exists(folder_ / "full.png"));
+    // A limit on file sizes (4 KiB, blocks of 512 bytes) stands for a full disk.
+    expect_error("render " + quoted(cube_) + " --size 512x512 --background red -o " +
+                     quoted(folder_ / "full.exr"),
+                 4, "full.exr", "ulimit -f 8; ");
+    EXPECT_FALSE(fs::exists(folder_ / "full.exr"));
 }
 
 TEST_F(Program, QuietIsQuiet) {

@@ -31,9 +31,10 @@ fs::path temporary_beside(const fs::path& path) {
                      "choose a folder that you may write to");
 }
 
-void write_all(const fs::path& path, std::span<const std::uint8_t> bytes) {
+/// `shown` stands for the path in messages: a temporary name tells nobody anything.
+void write_all(const fs::path& path, std::span<const std::uint8_t> bytes, const fs::path& shown) {
     const int file = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
-    if (file < 0) throw_write_error(path, errno);
+    if (file < 0) throw_write_error(shown, errno);
     std::size_t done = 0;
     while (done < bytes.size()) {
         const ssize_t wrote = ::write(file, bytes.data() + done, bytes.size() - done);
@@ -41,21 +42,21 @@ void write_all(const fs::path& path, std::span<const std::uint8_t> bytes) {
         if (wrote < 0) {
             const int error = errno;
             ::close(file);
-            throw_write_error(path, error);
+            throw_write_error(shown, error);
         }
         done += static_cast<std::size_t>(wrote);
     }
-    if (::close(file) != 0) throw_write_error(path, errno);
+    if (::close(file) != 0) throw_write_error(shown, errno);
 }
 
 /// Errors that the system found only after write() had returned show here.
-void sync_file(const fs::path& path) {
+void sync_file(const fs::path& path, const fs::path& shown) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) throw_write_error(path, errno);
+    if (file < 0) throw_write_error(shown, errno);
     const bool synced = ::fsync(file) == 0 || errno == EINVAL;
     const int error = errno;
     ::close(file);
-    if (!synced) throw_write_error(path, error);
+    if (!synced) throw_write_error(shown, error);
 }
 
 }  // namespace
@@ -86,7 +87,7 @@ std::string read_text(const fs::path& path) {
 }
 
 void write_atomically(const fs::path& path, std::span<const std::uint8_t> bytes) {
-    write_atomically(path, [&](const fs::path& temporary) { write_all(temporary, bytes); });
+    write_atomically(path, [&](const fs::path& temporary) { write_all(temporary, bytes, path); });
 }
 
 void write_atomically(const fs::path& path, std::string_view text) {
@@ -98,7 +99,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     const fs::path temporary = temporary_beside(path);
     try {
         write(temporary);
-        sync_file(temporary);
+        sync_file(temporary, path);
         std::error_code code;
         fs::rename(temporary, path, code);
         if (code) throw_write_error(path, code.value());
@@ -119,7 +120,7 @@ void make_output_folder(const fs::path& folder) {
                          "choose another -o");
     }
     const fs::path probe = folder / (".write-test-" + std::to_string(::getpid()));
-    write_all(probe, {});
+    write_all(probe, {}, folder);
     fs::remove(probe, code);
 }
 
