@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/progress.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/train.h"
 #include "item3d/prior/vocabulary.h"

@@ -21,13 +21,13 @@ nlohmann::json edit_model(const EditRequest& request) {
     const IterationTimes iteration_times = optimize(request, scene, state);
     times.end_stage("optimize");
 
-    const EditedFiles files = bake_and_save(request, scene, state);
+    const EditedModel edited = bake_and_save(request, scene, state);
     times.end_stage("bake");
 
-    const Pictures pictures = render_pictures(request, scene, files);
+    const Pictures pictures = render_pictures(request, scene, edited);
     times.end_stage("report");
 
-    return write_summary(request, scene, state, times, iteration_times, pictures);
+    return write_summary(request, scene, state, times, iteration_times, edited, pictures);
 }
 
 }  // namespace item3d

@@ -17,6 +17,8 @@ struct EditRequest {
     std::filesystem::path output;  ///< folder, made when it is not there
     EditSettings settings;
     bool resume = false;
+    /// Stop as an interrupt would when this many iterations are done; 0: run to the end.
+    int stop_after = 0;
     std::string device = "cpu";
     std::string precision = "auto";  ///< of the networks: auto, fp32, bf16
     std::string command;             ///< as typed, for edit.json and the resume hint

@@ -42,8 +42,10 @@ std::vector<int> select_materials(const Model& model, const std::vector<std::str
 }
 
 MaterialSource::MaterialSource(const Model& model, const TexturedMaterials& textured,
-                               const std::vector<int>& edited_materials, ChannelMask channels)
+                               const FieldSpace& space, const std::vector<int>& edited_materials,
+                               ChannelMask channels)
     : textured_(textured),
+      space_(space),
       is_edited_(torch::zeros({static_cast<std::int64_t>(model.materials.size())}, torch::kBool)),
       orm_is_edited_(torch::tensor({channels.occlusion, channels.roughness, channels.metallic})),
       channels_(channels) {
@@ -58,7 +60,7 @@ MaterialSample MaterialSource::sample(const Surface& surface, NeuralTexture& fie
         const torch::NoGradGuard no_grad;
         return textured_.sample(surface);
     }();
-    const MaterialSample edited = field->forward(surface.position);
+    const MaterialSample edited = field->forward(space_.positions(surface));
     const torch::Tensor here =
         all_edited_ ? torch::ones({1, 1}, torch::kBool)
                     : is_edited_.index_select(0, surface.material).unsqueeze(1);

@@ -7,6 +7,7 @@
 
 #include "item3d/edit/settings.h"
 #include "item3d/field/neural_texture.h"
+#include "item3d/field/surface_points.h"
 #include "item3d/render/textured.h"
 
 namespace item3d {
@@ -29,13 +30,15 @@ std::vector<int> select_materials(const Model& model, const std::vector<std::str
 /// channels that are kept.
 class MaterialSource {
   public:
-    MaterialSource(const Model& model, const TexturedMaterials& textured,
+    /// `textured` and `space` must outlive this.
+    MaterialSource(const Model& model, const TexturedMaterials& textured, const FieldSpace& space,
                    const std::vector<int>& edited_materials, ChannelMask channels);
     /// Differentiable in the field's parameters.
     MaterialSample sample(const Surface& surface, NeuralTexture& field) const;
 
   private:
     const TexturedMaterials& textured_;
+    const FieldSpace& space_;
     torch::Tensor is_edited_;      ///< [materials] bool
     bool all_edited_ = true;
     torch::Tensor orm_is_edited_;  ///< [3] bool

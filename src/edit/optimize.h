@@ -8,6 +8,7 @@
 #include "item3d/edit/edit.h"
 #include "item3d/edit/scene.h"
 #include "item3d/edit/timing.h"
+#include "item3d/field/adam.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/guidance/guidance.h"
 
@@ -17,7 +18,7 @@ namespace item3d {
 struct EditState {
     NeuralTexture fitted{nullptr};  ///< the field as fitted to the input, for the bake's residual
     NeuralTexture field{nullptr};
-    std::unique_ptr<torch::optim::Optimizer> optimizer;
+    Adam optimizer;
     std::unique_ptr<Guidance> guidance;
     std::int64_t iteration = 0;  ///< iterations done
     std::vector<float> direction_length;  ///< a curve of the report, one value an iteration

@@ -6,6 +6,7 @@
 #include "item3d/edit/edit.h"
 #include "item3d/edit/material_source.h"
 #include "item3d/edit/views.h"
+#include "item3d/field/atlas.h"
 #include "item3d/models/pipeline.h"
 #include "item3d/render/geometry.h"
 #include "item3d/render/textured.h"
@@ -19,6 +20,8 @@ struct EditScene {
     BoundingSphere sphere;
     std::vector<int> materials;  ///< edited ones, indices into model.materials
     ChannelMask channels;
+    Atlas atlas;  ///< the UV maps that the result is baked into
+    std::unique_ptr<FieldSpace> space;
     std::unique_ptr<TexturedMaterials> textured;
     std::unique_ptr<MaterialSource> source;
     std::unique_ptr<LightRig> lights;

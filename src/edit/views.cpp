@@ -2,10 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
+#include "item3d/evaluate/color.h"
 #include "item3d/scene/environment.h"
 
 namespace item3d {
@@ -19,6 +19,11 @@ enum Stream : std::uint64_t { camera_stream = 2, background_stream = 3, light_st
 
 Random iteration_random(std::uint64_t seed, Stream stream, std::int64_t iteration) {
     return Random(mix_bits(seed) ^ static_cast<std::uint64_t>(iteration), stream);
+}
+
+Vec3 linear_background(const std::string& text) {
+    const Vec3 encoded = parse_color(text);
+    return Vec3(srgb_to_linear(encoded.x), srgb_to_linear(encoded.y), srgb_to_linear(encoded.z));
 }
 
 }  // namespace
@@ -55,45 +60,15 @@ std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std:
     return cameras;
 }
 
-Vec3 parse_color(const std::string& text) {
-    static const std::vector<std::pair<std::string, Vec3>> names = {
-        {"white", {255, 255, 255}}, {"black", {0, 0, 0}},      {"gray", {128, 128, 128}},
-        {"grey", {128, 128, 128}},  {"red", {255, 0, 0}},      {"green", {0, 128, 0}},
-        {"blue", {0, 0, 255}},      {"yellow", {255, 255, 0}}, {"orange", {255, 165, 0}},
-        {"cyan", {0, 255, 255}},    {"purple", {128, 0, 128}}, {"pink", {255, 192, 203}},
-        {"brown", {150, 75, 0}}};
-    const auto linear = [](Vec3 bytes) {
-        return Vec3(srgb_to_linear(bytes.x / 255), srgb_to_linear(bytes.y / 255),
-                    srgb_to_linear(bytes.z / 255));
-    };
-    for (const auto& [name, bytes] : names) {
-        if (text == name) return linear(bytes);
-    }
-    std::array<int, 3> value{};
-    char rest = 0;
-    const bool parsed =
-        (text.size() == 7 &&
-         std::sscanf(text.c_str(), "#%2x%2x%2x%c", reinterpret_cast<unsigned*>(&value[0]),
-                     reinterpret_cast<unsigned*>(&value[1]), reinterpret_cast<unsigned*>(&value[2]),
-                     &rest) == 3) ||
-        std::sscanf(text.c_str(), "%d,%d,%d%c", &value[0], &value[1], &value[2], &rest) == 3;
-    for (const int channel : value) {
-        if (!parsed || channel < 0 || channel > 255) {
-            throw InputError("--background", "'" + text + "' is not a colour",
-                             "give a name as white, #rrggbb, or r,g,b in 0 to 255");
-        }
-    }
-    return linear(Vec3(value[0], value[1], value[2]));
-}
-
 torch::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
                                  std::int64_t iteration) {
     torch::Tensor colors = torch::empty({count, 3});
+    const Vec3 named = background == "vary" ? Vec3(0) : linear_background(background);
     Random random = iteration_random(seed, background_stream, iteration);
     for (int i = 0; i < count; ++i) {
         const Vec3 color = background == "vary"
                                ? Vec3(srgb_to_linear(static_cast<float>(random.uniform(0.5, 1.0))))
-                               : parse_color(background);
+                               : named;
         for (int c = 0; c < 3; ++c) colors[i][c] = color[c];
     }
     return colors;

@@ -9,6 +9,7 @@
 #include "item3d/edit/settings.h"
 #include "item3d/render/environment_light.h"
 #include "item3d/scene/camera.h"
+#include "item3d/scene/model.h"
 
 namespace item3d {
 
@@ -25,12 +26,10 @@ BoundingSphere bounding_sphere(const Model& model);
 std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std::uint64_t seed,
                                    std::int64_t iteration);
 
-/// Linear RGB backgrounds [count, 3]: the named colour, or another grey each time for "vary".
+/// Linear RGB backgrounds [count, 3]: one colour (see parse_color), or another grey each time for
+/// "vary". Throws InputError.
 torch::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
                                  std::int64_t iteration);
-
-/// "red", "#rrggbb" or "r,g,b" in 0..255 -> linear RGB. Throws InputError.
-Vec3 parse_color(const std::string& text);
 
 /// One light turned to several azimuths, prefiltered once. Shading that stays the same in every
 /// picture could be painted into the base colour; a light that moves cannot.

@@ -31,6 +31,10 @@ torch::Tensor repeat_text(const torch::Tensor& text, std::int64_t rows) {
     return text.expand({rows, text.size(1), text.size(2)});
 }
 
+torch::Tensor twice(const torch::Tensor& rows) {
+    return rows.defined() ? torch::cat({rows, rows}) : rows;
+}
+
 NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input,
                             const GuidanceOptions& options, std::int64_t iteration) {
     ITEM3D_CHECK(input.images.dim() == 4 && input.images.size(1) == 3, "images must be [N, 3, H, W]");
@@ -57,7 +61,10 @@ NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input
                    (1 - result.alphas_cumprod).sqrt() * result.noise;
     if (pipeline.condition_channels() == 1) {
         ITEM3D_CHECK(input.depth.defined(), "this prior's U-Net takes depth, and none was given");
-        result.condition = depth_condition(input.depth, pipeline.downscale());
+        // Depth may be finer than the pictures (drawn at twice their size and averaged).
+        const std::int64_t cells = result.latents.size(2);
+        result.condition =
+            depth_condition(input.depth, static_cast<int>(input.depth.size(1) / cells)).to(device);
     }
     return result;
 }

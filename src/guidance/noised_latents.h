@@ -25,6 +25,9 @@ torch::Tensor timestep_weight(Weighting weighting, const torch::Tensor& alphas_c
 /// [rows, S, D] of one prompt's [1, S, D].
 torch::Tensor repeat_text(const torch::Tensor& text, std::int64_t rows);
 
+/// The rows twice, one after the other; an undefined tensor stays undefined.
+torch::Tensor twice(const torch::Tensor& rows);
+
 double seconds_now();
 float root_mean_square(const torch::Tensor& tensor);
 

@@ -17,32 +17,33 @@ RelativeDirection::RelativeDirection(std::shared_ptr<const Pipeline> pipeline,
     }
 }
 
-RelativeDirection::Predictions RelativeDirection::predict(const NoisedLatents& start) {
-    const std::int64_t rows = start.noisy.size(0);
-    if (learned_source_) {
-        const torch::Tensor source = learned_source_->predict_and_follow(*pipeline_, start);
-        const torch::NoGradGuard no_grad;
-        return {pipeline_->predict_noise(start.noisy, start.timesteps,
-                                         repeat_text(target_text_, rows), start.condition),
-                source};
-    }
+PromptPair predict_pair(const Pipeline& pipeline, const NoisedLatents& start,
+                        const torch::Tensor& target_text, const torch::Tensor& source_text) {
     const torch::NoGradGuard no_grad;
-    const auto twice = [](const torch::Tensor& tensor) {
-        return tensor.defined() ? torch::cat({tensor, tensor}) : tensor;
-    };
-    const torch::Tensor text =
-        torch::cat({repeat_text(target_text_, rows), repeat_text(source_text_, rows)});
-    const auto both =
-        pipeline_
-            ->predict_noise(twice(start.noisy), twice(start.timesteps), text, twice(start.condition))
-            .chunk(2);
+    const std::int64_t rows = start.noisy.size(0);
+    const auto both = pipeline
+                          .predict_noise(twice(start.noisy), twice(start.timesteps),
+                                         torch::cat({repeat_text(target_text, rows),
+                                                     repeat_text(source_text, rows)}),
+                                         twice(start.condition))
+                          .chunk(2);
     return {both[0], both[1]};
+}
+
+PromptPair RelativeDirection::predict(const NoisedLatents& start) {
+    if (!learned_source_) return predict_pair(*pipeline_, start, target_text_, source_text_);
+    const torch::Tensor source = learned_source_->predict_and_follow(*pipeline_, start);
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor target =
+        pipeline_->predict_noise(start.noisy, start.timesteps,
+                                 repeat_text(target_text_, start.noisy.size(0)), start.condition);
+    return {target, source};
 }
 
 GuidanceOutput RelativeDirection::step(const GuidanceInput& input, std::int64_t iteration) {
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
     const double before = seconds_now();
-    const Predictions predictions = predict(start);
+    const PromptPair predictions = predict(start);
 
     const torch::NoGradGuard no_grad;
     const torch::Tensor direction = predictions.target - predictions.source;

@@ -12,6 +12,16 @@
 
 namespace item3d {
 
+/// eps(y_target) and eps(y_source) of the same noised latents, constants.
+struct PromptPair {
+    torch::Tensor target;  ///< [N, C, h, w]
+    torch::Tensor source;  ///< [N, C, h, w]
+};
+
+/// Both in one batch of two rows an image; texts are [1, S, D].
+PromptPair predict_pair(const Pipeline& pipeline, const NoisedLatents& start,
+                        const torch::Tensor& target_text, const torch::Tensor& source_text);
+
 class RelativeDirection : public Guidance {
   public:
     RelativeDirection(std::shared_ptr<const Pipeline> pipeline, const std::string& source_prompt,
@@ -21,11 +31,7 @@ class RelativeDirection : public Guidance {
     void load_state(const NamedTensors& state) override;
 
   private:
-    struct Predictions {
-        torch::Tensor target;
-        torch::Tensor source;
-    };
-    Predictions predict(const NoisedLatents& start);
+    PromptPair predict(const NoisedLatents& start);
 
     std::shared_ptr<const Pipeline> pipeline_;
     GuidanceOptions options_;

@@ -17,9 +17,6 @@ GuidanceOutput ScoreDistillation::step(const GuidanceInput& input, std::int64_t 
 
     const torch::NoGradGuard no_grad;
     const double before = seconds_now();
-    const auto twice = [](const torch::Tensor& tensor) {
-        return tensor.defined() ? torch::cat({tensor, tensor}) : tensor;
-    };
     const torch::Tensor text = text_.repeat_interleave(rows, 0);
     const auto predictions =
         pipeline_

@@ -16,7 +16,7 @@ namespace {
 
 std::vector<VocabularyEntry> make_vocabulary() {
     std::vector<VocabularyEntry> all;
-    for (const NamedColor& color : plain_colors()) {
+    for (const PlainColor& color : plain_colors()) {
         std::vector<std::string> spellings{color.name};
         if (color.name == "gray") spellings.emplace_back("grey");
         all.push_back({"colors",
@@ -218,7 +218,7 @@ nlohmann::json measure_prior(const Pipeline& pipeline, const MeasureOptions& opt
                                  [](const auto& a, const auto& b) { return a.second < b.second; });
             if (worst != outcomes[i].wrong.end()) word["most_confused_with"] = worst->first;
             for (const auto* colors : {&plain_colors(), &metal_colors()})
-                for (const NamedColor& color : *colors)
+                for (const PlainColor& color : *colors)
                     if (color.name == entries[i].word && (kind == "colors" || kind == "materials"))
                         word["base_color"] = {color.linear.x, color.linear.y, color.linear.z};
             list.push_back(word);

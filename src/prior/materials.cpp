@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-const std::vector<NamedColor>& plain_colors() {
-    static const std::vector<NamedColor> colors{
+const std::vector<PlainColor>& plain_colors() {
+    static const std::vector<PlainColor> colors{
         {"red", {.7f, .02f, .02f}},       {"green", {.03f, .42f, .05f}},
         {"blue", {.02f, .08f, .65f}},     {"yellow", {.85f, .65f, .02f}},
         {"orange", {.85f, .25f, .01f}},   {"purple", {.28f, .03f, .5f}},
@@ -19,8 +19,8 @@ const std::vector<NamedColor>& plain_colors() {
     return colors;
 }
 
-const std::vector<NamedColor>& metal_colors() {
-    static const std::vector<NamedColor> colors{{"gold", {1.f, .63f, .18f}},
+const std::vector<PlainColor>& metal_colors() {
+    static const std::vector<PlainColor> colors{{"gold", {1.f, .63f, .18f}},
                                                 {"silver", {.92f, .91f, .88f}},
                                                 {"copper", {.92f, .42f, .26f}},
                                                 {"bronze", {.5f, .3f, .11f}}};
@@ -30,9 +30,9 @@ const std::vector<NamedColor>& metal_colors() {
 namespace paint {
 
 Vec3 color_named(const std::string& name) {
-    for (const NamedColor& color : plain_colors())
+    for (const PlainColor& color : plain_colors())
         if (color.name == name) return color.linear;
-    for (const NamedColor& color : metal_colors())
+    for (const PlainColor& color : metal_colors())
         if (color.name == name) return color.linear;
     ITEM3D_CHECK(false, "no colour is called " + name);
     return {};

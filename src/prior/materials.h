@@ -10,14 +10,14 @@
 
 namespace item3d {
 
-struct NamedColor {
+struct PlainColor {
     std::string name;
     Vec3 linear;  ///< base colour, linear RGB
 };
 /// The twelve plain colours: "red" ... "cyan".
-const std::vector<NamedColor>& plain_colors();
+const std::vector<PlainColor>& plain_colors();
 /// Base colours (normal reflectance) of "gold", "silver", "copper", "bronze".
-const std::vector<NamedColor>& metal_colors();
+const std::vector<PlainColor>& metal_colors();
 
 struct MaterialValue {
     Vec3 base_color;  ///< linear

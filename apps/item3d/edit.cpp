@@ -1,0 +1,124 @@
+// item3d edit: a model and two sentences in, an edited model out.
+#include "command.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/progress.h"
+#include "item3d/edit/edit.h"
+#include "item3d/prior/vocabulary.h"
+
+#include "item3d/core/format.h"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+struct EditCommandOptions : CommonOptions {
+    EditRequest request;
+    std::string from;
+    std::string to;
+    /// Settings given on the command line; what is absent comes from the prior.
+    nlohmann::json overrides = nlohmann::json::object();
+};
+
+/// An option that overrides one setting when it is given, and leaves it to the prior when not.
+template <typename T>
+CLI::Option* setting(CLI::App& command, EditCommandOptions& options, const std::string& flag,
+                     const std::string& key, const std::string& help) {
+    return command.add_option_function<T>(
+        flag, [&options, key](const T& value) { options.overrides[key] = value; }, help);
+}
+
+void add_settings(CLI::App& command, EditCommandOptions& options) {
+    setting<std::string>(command, options, "--guidance", "guidance",
+                         "rdl (relative direction, the default) or sds (score distillation)");
+    setting<std::string>(command, options, "--adjust", "adjust",
+                         "learned (the source follows the render, the default) or off");
+    setting<float>(command, options, "--anchor", "anchor",
+                   "Pull towards the target's own score, added to rdl; 0: none, 1: strong");
+    setting<float>(command, options, "--cfg", "cfg", "Weight of classifier-free guidance");
+    setting<int>(command, options, "--iterations", "iterations", "Steps of the optimisation");
+    setting<int>(command, options, "--batch", "batch", "Views in each step");
+    setting<int>(command, options, "--resolution", "resolution",
+                 "Edge in pixels of the pictures that the prior sees");
+    setting<float>(command, options, "--learning-rate", "learning_rate", "Of the neural texture");
+    setting<std::vector<float>>(command, options, "--timesteps", "timesteps",
+                                "MIN,MAX noise levels, as parts of the schedule (0.02,0.98)")
+        ->delimiter(',')
+        ->expected(2);
+    setting<std::string>(command, options, "--weighting", "weighting",
+                         "omega(t): early, late, dreamfusion or uniform");
+    setting<std::string>(command, options, "--light", "light",
+                         "studio, noon, sunset, overcast, night, or an .hdr or .exr file");
+    setting<std::string>(command, options, "--background", "background",
+                         "A colour, or vary: another grey each step");
+    setting<int>(command, options, "--texture-size", "texture_size",
+                 "Edge of the textures that are written; 0: as the input's");
+    setting<std::vector<std::string>>(
+        command, options, "--keep", "keep",
+        "Channels not to touch: base_color, occlusion, roughness, metallic, normal; or nothing")
+        ->delimiter(',');
+    setting<std::vector<std::string>>(command, options, "--material", "material",
+                                      "Edit only the materials of these names")
+        ->delimiter(',');
+    setting<std::uint64_t>(command, options, "--seed", "seed", "Another seed, another result");
+}
+
+void warn_of_words(const EditRequest& request, const EditSettings& settings) {
+    const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
+    for (const std::string& prompt : {settings.from, settings.to}) {
+        const std::string warning = vocabulary.warning(prompt);
+        if (!warning.empty()) warn(warning);
+    }
+}
+
+void run_edit(EditCommandOptions& options) {
+    EditRequest& request = options.request;
+    start_command(options);
+    request.device = options.device;
+    if (request.prior.empty()) request.prior = assets_folder() / "prior";
+    options.overrides["from"] = options.from;
+    options.overrides["to"] = options.to;
+    if (options.overrides.value("keep", nlohmann::json()) == nlohmann::json::array({"nothing"})) {
+        options.overrides["keep"] = nlohmann::json::array();
+    }
+    request.settings = resolve_settings(request.prior, options.overrides);
+    warn_of_words(request, request.settings);
+
+    const nlohmann::json summary = edit_model(request);
+    if (options.json) {
+        print_json(summary);
+    } else {
+        fmt::print("{}\n", (request.output / "report.html").string());
+    }
+}
+
+}  // namespace
+
+void add_edit_command(CLI::App& app) {
+    auto options = std::make_shared<EditCommandOptions>();
+    CLI::App* command =
+        add_command(app, "edit", "Edit the look of a textured model from two sentences", *options);
+    EditRequest& request = options->request;
+    command->add_option("MODEL", request.model, "A .glb, .gltf or .obj file")->required();
+    command->add_option("--from", options->from, "What the model looks like now")->required();
+    command->add_option("--to", options->to, "What it shall look like")->required();
+    command->add_option("-o,--output", request.output, "Folder for everything that is made")
+        ->required();
+    command->add_option("--prior", request.prior,
+                        "Diffusion model in the diffusers layout; without it, the embedded one");
+    command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
+    command->add_option("--precision", request.precision, "Of the networks: auto, fp32 or bf16")
+        ->capture_default_str();
+    add_settings(*command, *options);
+    command->callback([options] {
+        options->request.command = command_line();
+        run_edit(*options);
+    });
+}
+
+}  // namespace item3d

@@ -1,0 +1,242 @@
+// Edits of real meshes that the prior never saw, judged by numbers and by a page to look at.
+//
+//   edit_suite -o DIR --mesh cow=spot.obj --mesh object=teapot.obj [--prior DIR] [--only colors]
+//
+// The demo mug is always among the meshes. Colour edits go from one plain colour to another and count
+// as right when the surface's mean base colour is nearest, in CIELAB, to the named target among the
+// prior's colours. Material edits are for looking at, with metallic before and after. Stripe edits
+// compare the adjusted direction with plain RDL and SDS by the luminance detail that they keep.
+#include "suite_models.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/progress.h"
+#include "item3d/edit/edit.h"
+#include "item3d/edit/surface_means.h"
+#include "item3d/evaluate/color.h"
+#include "item3d/evaluate/html.h"
+#include "item3d/prior/vocabulary.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/scene/io/save.h"
+
+#include <CLI/CLI.hpp>
+#include "item3d/core/format.h"
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+using nlohmann::json;
+
+struct SuiteCase {
+    std::string group;   ///< "colors", "materials" or "stripes"
+    std::string mesh;    ///< its noun
+    std::string source;  ///< colour, or "red and white striped"
+    std::string target;  ///< colour, "golden", "covered in grass", ...
+    std::string method = "learned";  ///< "learned", "off" or "sds"
+};
+
+struct SuiteOptions {
+    std::filesystem::path output;
+    std::filesystem::path prior;
+    std::map<std::string, std::filesystem::path> meshes;
+    std::string only;
+    std::uint64_t seed = 0;
+};
+
+std::string with_article(const std::string& words) {
+    const bool vowel = std::string("aeiou").find(words.front()) != std::string::npos;
+    return (vowel ? "an " : "a ") + words;
+}
+
+/// "a golden mug", but "a mug covered in grass".
+std::string prompt_of(const std::string& look, const std::string& noun) {
+    return look.starts_with("covered") ? with_article(noun) + " " + look
+                                       : with_article(look + " " + noun);
+}
+
+std::vector<SuiteCase> make_cases(const std::vector<std::string>& nouns) {
+    const std::vector<std::vector<std::pair<std::string, std::string>>> colors = {
+        {{"white", "red"}, {"red", "blue"}, {"blue", "yellow"}, {"yellow", "black"}},
+        {{"white", "green"}, {"green", "purple"}, {"purple", "orange"}, {"orange", "white"}},
+        {{"gray", "pink"}, {"pink", "brown"}, {"brown", "cyan"}, {"cyan", "gray"}}};
+    const std::vector<std::vector<std::pair<std::string, std::string>>> materials = {
+        {{"red", "golden"}, {"blue", "marble"}},
+        {{"brown", "silver"}, {"white", "stone"}},
+        {{"white", "wooden"}, {"gray", "covered in grass"}}};
+    std::vector<SuiteCase> cases;
+    for (std::size_t i = 0; i < nouns.size(); ++i) {
+        for (const auto& [from, to] : colors[i % colors.size()]) {
+            cases.push_back({"colors", nouns[i], from, to});
+        }
+        for (const auto& [from, to] : materials[i % materials.size()]) {
+            cases.push_back({"materials", nouns[i], from, to});
+        }
+    }
+    for (const auto& [noun, from, to] :
+         {std::tuple{"mug", "red and white striped", "blue and white striped"},
+          std::tuple{"cow", "green and white striped", "purple and white striped"}}) {
+        if (std::find(nouns.begin(), nouns.end(), noun) == nouns.end()) continue;
+        for (const char* method : {"learned", "off", "sds"}) {
+            cases.push_back({"stripes", noun, from, to, method});
+        }
+    }
+    return cases;
+}
+
+/// The first word of a look that is one of the prior's colours; linear base colour.
+Vec3 color_of(const PriorVocabulary& vocabulary, const std::string& word) {
+    for (const KnownWord& known : vocabulary.words()) {
+        if (known.kind == "colors" && known.word == word && known.base_color) return *known.base_color;
+    }
+    throw InputError("prior.json", "has no base colour for '" + word + "'",
+                     "run item3d prior measure on the prior");
+}
+
+std::vector<NamedColor> named_colors(const PriorVocabulary& vocabulary) {
+    std::vector<NamedColor> colors;
+    for (const KnownWord& known : vocabulary.words_of("colors")) {
+        if (!known.base_color) continue;
+        const Vec3 c = *known.base_color;
+        colors.push_back(
+            {known.word, Vec3(linear_to_srgb(c.x), linear_to_srgb(c.y), linear_to_srgb(c.z))});
+    }
+    return colors;
+}
+
+Model source_model(const SuiteCase& test, const Model& mesh, const PriorVocabulary& vocabulary) {
+    if (test.group != "stripes") return plain_model(mesh, color_of(vocabulary, test.source));
+    const std::string first = test.source.substr(0, test.source.find(' '));
+    return striped_model(mesh, color_of(vocabulary, first), color_of(vocabulary, "white"), 1, 5);
+}
+
+json run_case(const SuiteCase& test, const SuiteOptions& options, const PriorVocabulary& vocabulary,
+              const std::filesystem::path& folder) {
+    make_output_folder(folder);
+    const Model mesh = load_model(options.meshes.at(test.mesh));
+    EditRequest request;
+    request.model = folder / "source.glb";
+    save_model(request.model, source_model(test, mesh, vocabulary));
+    request.prior = options.prior;
+    request.output = folder;
+    json overrides = {{"from", prompt_of(test.source, test.mesh)},
+                      {"to", prompt_of(test.target, test.mesh)},
+                      {"seed", options.seed}};
+    if (test.method == "sds") overrides["guidance"] = "sds";
+    if (test.method == "off") overrides["adjust"] = "off";
+    request.settings = resolve_settings(options.prior, overrides);
+    request.command = fmt::format("item3d edit {} --from '{}' --to '{}'", request.model.string(),
+                                  request.settings.from, request.settings.to);
+    const json summary = edit_model(request);
+
+    json result = {{"group", test.group},   {"mesh", test.mesh},
+                   {"from", summary["from"]}, {"to", summary["to"]},
+                   {"method", test.method}, {"scores", summary["scores"]},
+                   {"seconds", summary["seconds"]["total"]},
+                   {"peak_memory_bytes", summary["peak_memory_bytes"]}};
+    if (test.group == "colors") {
+        const json mean = summary["scores"]["after"]["base_color_linear"];
+        const auto colors = named_colors(vocabulary);
+        const std::size_t nearest = nearest_color(
+            Vec3(mean[0].get<float>(), mean[1].get<float>(), mean[2].get<float>()), colors);
+        result["nearest"] = colors[nearest].name;
+        result["right"] = colors[nearest].name == test.target;
+    }
+    return result;
+}
+
+std::string verdict(const json& result) {
+    const json& scores = result["scores"];
+    if (result["group"] == "colors") {
+        return fmt::format("{}: {}", result["right"].get<bool>() ? "right" : "wrong",
+                           result["nearest"].get<std::string>());
+    }
+    if (result["group"] == "materials") {
+        return fmt::format("metallic {:.2f}", scores["after"]["metallic"].get<double>());
+    }
+    return fmt::format("{}, detail kept {:.2f}", result["method"].get<std::string>(),
+                       scores["detail_kept"].get<double>());
+}
+
+std::string page_of(const std::vector<json>& results, const SuiteOptions& options) {
+    std::map<std::string, std::vector<std::string>> figures;
+    for (const json& result : results) {
+        const auto folder = options.output / result["folder"].get<std::string>();
+        const std::string caption = fmt::format("{} -> {} ({})", result["from"].get<std::string>(),
+                                                result["to"].get<std::string>(), verdict(result));
+        auto& group = figures[result["group"].get<std::string>()];
+        group.push_back(html_figure({"", read_bytes(folder / "before.png")}));
+        group.push_back(html_figure({caption, read_bytes(folder / "after.png")}));
+    }
+    std::string body;
+    for (const auto& [title, group] : figures) {
+        body += html_section(title, html_gallery(group, 420));
+    }
+    return html_page("Edit suite", body);
+}
+
+json totals(const std::vector<json>& results) {
+    int colors = 0;
+    int right = 0;
+    for (const json& result : results) {
+        if (result["group"] != "colors") continue;
+        ++colors;
+        right += result["right"].get<bool>() ? 1 : 0;
+    }
+    return {{"color_edits", colors}, {"color_edits_right", right}, {"edits", results.size()}};
+}
+
+void run_suite(const SuiteOptions& options) {
+    const PriorVocabulary vocabulary = PriorVocabulary::load(options.prior);
+    std::vector<std::string> nouns;
+    for (const auto& [noun, path] : options.meshes) nouns.push_back(noun);
+    std::vector<json> results;
+    for (const SuiteCase& test : make_cases(nouns)) {
+        if (!options.only.empty() && test.group != options.only) continue;
+        const std::string name = fmt::format("{:02}-{}-{}", results.size(), test.group, test.mesh);
+        json result = run_case(test, options, vocabulary, options.output / name);
+        result["folder"] = name;
+        note(fmt::format("{} -> {}: {}", result["from"].get<std::string>(),
+                         result["to"].get<std::string>(), verdict(result)));
+        results.push_back(result);
+    }
+    const json summary = {{"totals", totals(results)}, {"seed", options.seed}, {"edits", results}};
+    write_atomically(options.output / "suite.json", summary.dump(2) + "\n");
+    write_atomically(options.output / "suite.html", page_of(results, options));
+    fmt::print("{}\n", summary["totals"].dump());
+}
+
+}  // namespace
+}  // namespace item3d
+
+int main(int argc, char** argv) {
+    item3d::SuiteOptions options;
+    std::vector<std::string> meshes;
+    CLI::App app("Runs the edits that item3d is judged by.");
+    app.add_option("-o,--output", options.output, "Folder for all results")->required();
+    app.add_option("--prior", options.prior, "Prior; without it, the embedded one");
+    app.add_option("--mesh", meshes, "NOUN=FILE; the demo mug is always there");
+    app.add_option("--only", options.only, "colors, materials or stripes");
+    app.add_option("--seed", options.seed, "Seed of the edits");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        const auto assets = item3d::assets_folder();
+        if (options.prior.empty()) options.prior = assets / "prior";
+        options.meshes["mug"] = assets / "demo" / "mug.glb";
+        for (const std::string& mesh : meshes) {
+            const auto split = mesh.find('=');
+            if (split == std::string::npos) throw item3d::UsageError("--mesh takes NOUN=FILE");
+            options.meshes[mesh.substr(0, split)] = mesh.substr(split + 1);
+        }
+        item3d::run_suite(options);
+    } catch (const item3d::Error& error) {
+        fmt::print(stderr, "edit_suite: error: {}\n", error.what());
+        return static_cast<int>(error.code());
+    }
+    return 0;
+}

@@ -1,0 +1,18 @@
+// The models that the edit suite starts from: real meshes in plain colours and in stripes.
+#pragma once
+
+#include <filesystem>
+
+#include "item3d/core/math.h"
+#include "item3d/scene/model.h"
+
+namespace item3d {
+
+/// The mesh with one material of this base colour (linear), roughness 0.5, no metal, no textures.
+Model plain_model(const Model& mesh, Vec3 base_color);
+
+/// The mesh painted with stripes of two base colours (linear) through its own UV map; they run
+/// around the model (along y) or along x, `count` pairs over its size. The mesh must have UVs.
+Model striped_model(const Model& mesh, Vec3 first, Vec3 second, int axis, int count);
+
+}  // namespace item3d

@@ -1,0 +1,59 @@
+#include "item3d/core/progress.h"
+#include "item3d/edit/checkpoint_state.h"
+#include "item3d/edit/optimize.h"
+#include "item3d/field/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace item3d {
+namespace {
+
+// AdamW's settings of the published code (betas 0.9 and 0.99), without weight decay: decay would
+// pull an untouched texture towards grey.
+AdamOptions adam_options(const EditSettings& settings) {
+    AdamOptions options;
+    options.learning_rate = settings.learning_rate;
+    return options;
+}
+
+int finest_texture(const EditScene& scene, int texture_size) {
+    int finest = 0;
+    for (const int material : scene.materials) {
+        const auto [width, height] = atlas_size(scene.model, material, texture_size);
+        finest = std::max({finest, width, height});
+    }
+    return finest;
+}
+
+}  // namespace
+
+EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
+    const EditSettings& settings = request.settings;
+    EditState state;
+    state.field = NeuralTexture(
+        suggest_field_options(scene.geometry, *scene.space,
+                              finest_texture(scene, settings.texture_size), settings.seed));
+    state.guidance = make_guidance(scene.prior, settings.from, settings.to, guidance_options(settings));
+    state.optimizer.add_group({state.field->table()}, adam_options(settings));
+    state.optimizer.add_group(state.field->network_parameters(), adam_options(settings));
+    state.fitted = snapshot(state.field);
+
+    if (request.resume) {
+        if (load_state(request, state)) {
+            note(fmt::format("resuming after iteration {} of {}", state.iteration,
+                             settings.iterations));
+            return state;
+        }
+        note("nothing to resume in " + request.output.string() + ": beginning anew");
+    }
+    FitOptions options;
+    options.seed = settings.seed;
+    fit_to_materials(state.field, scene.geometry, *scene.space, *scene.textured, options);
+    state.fitted = snapshot(state.field);
+    save_state(request, state);
+    return state;
+}
+
+}  // namespace item3d

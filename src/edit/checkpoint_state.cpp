@@ -1,0 +1,131 @@
+#include "item3d/edit/checkpoint_state.h"
+
+#include <fmt/format.h>
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/random.h"
+#include "item3d/edit/checkpoint.h"
+
+namespace item3d {
+namespace {
+
+std::filesystem::path checkpoint_path(const EditRequest& request) {
+    return request.output / "checkpoint.safetensors";
+}
+
+std::string hash_of_file(const std::filesystem::path& path) {
+    std::uint64_t hash = 0;
+    for (const std::uint8_t byte : read_bytes(path)) hash = mix_bits(hash ^ byte);
+    return fmt::format("{:016x}", hash);
+}
+
+nlohmann::json identity_of(const EditRequest& request) {
+    nlohmann::json identity = request.settings;
+    identity["model"] = hash_of_file(request.model);
+    identity["precision"] = request.precision;
+    return identity;
+}
+
+void require_same_identity(const EditRequest& request, const std::string& saved_text) {
+    const auto saved = nlohmann::json::parse(saved_text, nullptr, false);
+    const nlohmann::json now = identity_of(request);
+    for (const auto& [key, value] : now.items()) {
+        const nlohmann::json before = saved.is_object() ? saved.value(key, nlohmann::json()) : nullptr;
+        if (before == value) continue;
+        throw InputError(checkpoint_path(request).string(),
+                         key == "model" ? "belongs to another model file"
+                                        : fmt::format("was made with {} = {}, this command has {}",
+                                                      key, before.dump(), value.dump()),
+                         "use the same command, or leave out --resume to begin anew");
+    }
+}
+
+void append_parameters(NamedTensors& tensors, const std::string& prefix, const NeuralTexture& field) {
+    for (const auto& item : field->named_parameters()) {
+        tensors.emplace_back(prefix + item.key(), item.value().detach());
+    }
+}
+
+class StateReader {
+  public:
+    StateReader(std::string subject, const NamedTensors& tensors) : subject_(std::move(subject)) {
+        for (const auto& [name, tensor] : tensors) tensors_[name] = tensor;
+    }
+    torch::Tensor get(const std::string& name) const {
+        const auto found = tensors_.find(name);
+        if (found == tensors_.end()) {
+            throw InputError(subject_, "has no tensor " + name, "leave out --resume to begin anew");
+        }
+        return found->second;
+    }
+    void parameters(const std::string& prefix, NeuralTexture& field) const {
+        const torch::NoGradGuard no_grad;
+        for (const auto& item : field->named_parameters()) {
+            torch::Tensor parameter = item.value();
+            const torch::Tensor saved = get(prefix + item.key());
+            if (saved.sizes() != parameter.sizes()) {
+                throw InputError(subject_, "tensor " + prefix + item.key() + " has another shape",
+                                 "leave out --resume to begin anew");
+            }
+            parameter.copy_(saved);
+        }
+    }
+    std::map<std::string, torch::Tensor> with_prefix(const std::string& prefix) const {
+        std::map<std::string, torch::Tensor> found;
+        for (const auto& [name, tensor] : tensors_) {
+            if (name.starts_with(prefix)) found[name.substr(prefix.size())] = tensor;
+        }
+        return found;
+    }
+
+  private:
+    std::string subject_;
+    std::map<std::string, torch::Tensor> tensors_;
+};
+
+std::vector<float> to_floats(const torch::Tensor& tensor) {
+    const torch::Tensor flat = tensor.contiguous();
+    return {flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel()};
+}
+
+}  // namespace
+
+void save_state(const EditRequest& request, const EditState& state) {
+    Checkpoint checkpoint;
+    checkpoint.identity = identity_of(request).dump();
+    checkpoint.iteration = state.iteration;
+    append_parameters(checkpoint.tensors, "fitted.", state.fitted);
+    append_parameters(checkpoint.tensors, "field.", state.field);
+    for (const auto& [name, tensor] : state.optimizer.state()) {
+        checkpoint.tensors.emplace_back("optimizer." + name, tensor);
+    }
+    for (const auto& [name, tensor] : state.guidance->state()) {
+        checkpoint.tensors.emplace_back("guidance." + name, tensor);
+    }
+    checkpoint.tensors.emplace_back("curve.direction_length", torch::tensor(state.direction_length));
+    checkpoint.tensors.emplace_back("curve.adjustment_loss", torch::tensor(state.adjustment_loss));
+    save_checkpoint(checkpoint_path(request), checkpoint);
+}
+
+bool load_state(const EditRequest& request, EditState& state) {
+    const auto checkpoint = load_checkpoint(checkpoint_path(request));
+    if (!checkpoint) return false;
+    require_same_identity(request, checkpoint->identity);
+
+    const StateReader reader(checkpoint_path(request).string(), checkpoint->tensors);
+    reader.parameters("fitted.", state.fitted);
+    reader.parameters("field.", state.field);
+    state.optimizer.load_state(reader.with_prefix("optimizer."));
+    NamedTensors guidance;
+    for (const auto& [name, tensor] : reader.with_prefix("guidance.")) {
+        guidance.emplace_back(name, tensor);
+    }
+    state.guidance->load_state(guidance);
+    state.direction_length = to_floats(reader.get("curve.direction_length"));
+    state.adjustment_loss = to_floats(reader.get("curve.adjustment_loss"));
+    state.iteration = checkpoint->iteration;
+    return true;
+}
+
+}  // namespace item3d

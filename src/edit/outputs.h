@@ -1,0 +1,43 @@
+// What an edit leaves in its folder.
+#pragma once
+
+#include <vector>
+
+#include "item3d/edit/edit.h"
+#include "item3d/edit/optimize.h"
+#include "item3d/edit/scene.h"
+#include "item3d/edit/surface_means.h"
+#include "item3d/edit/timing.h"
+#include "item3d/evaluate/report.h"
+
+namespace item3d {
+
+/// model.glb as it was written and read back: pictures and scores are of this, not of the field.
+struct EditedModel {
+    Model model;
+    std::vector<TexturePair> textures;
+};
+
+/// Writes model.glb and textures/.
+EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state);
+
+struct Pictures {
+    std::vector<ReportImage> before;
+    std::vector<ReportImage> after;
+    ReportImage turntable;
+    SurfaceMeans means_before;
+    SurfaceMeans means_after;
+    double detail_kept = 0;  ///< correlation of luminance detail before and after, see detail.h
+};
+
+/// Draws the same views of both models; writes before.png, after.png and turntable.webp.
+Pictures render_pictures(const EditRequest& request, const EditScene& scene,
+                         const EditedModel& edited);
+
+/// Writes report.html and edit.json; returns the latter's content.
+nlohmann::json write_summary(const EditRequest& request, const EditScene& scene,
+                             const EditState& state, const StageTimes& times,
+                             const IterationTimes& iteration_times, const EditedModel& edited,
+                             const Pictures& pictures);
+
+}  // namespace item3d

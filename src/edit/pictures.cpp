@@ -1,0 +1,101 @@
+#include "item3d/edit/outputs.h"
+
+#include "item3d/core/files.h"
+#include "item3d/evaluate/animation.h"
+#include "item3d/evaluate/contact_sheet.h"
+#include "item3d/evaluate/detail.h"
+#include "item3d/evaluate/picture.h"
+#include "item3d/scene/environment.h"
+#include "item3d/scene/io/save.h"
+
+namespace item3d {
+namespace {
+
+constexpr int view_count = 6;
+constexpr int view_pixels = 384;
+constexpr int turntable_frames = 30;
+constexpr int turntable_pixels = 288;
+constexpr float elevation = 0.32f;
+constexpr float field_of_view = 0.6f;
+const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
+
+/// [N, H, W, 4] linear, premultiplied.
+torch::Tensor draw(const Model& model, const EnvironmentLight& light,
+                   const std::vector<Camera>& cameras, int pixels) {
+    const torch::NoGradGuard no_grad;
+    RenderOptions options;
+    options.width = pixels;
+    options.height = pixels;
+    const Geometry geometry = Geometry::from_model(model);
+    const TexturedMaterials materials(model);
+    std::vector<torch::Tensor> pictures;  // one view at a time keeps memory low
+    for (const Camera& camera : cameras) {
+        pictures.push_back(render(geometry, materials, light, {camera}, options));
+    }
+    return torch::cat(pictures);
+}
+
+std::vector<Image> to_pictures(const torch::Tensor& linear) {
+    std::vector<Image> pictures;
+    for (const torch::Tensor& picture : linear.unbind(0)) {
+        pictures.push_back(to_display(to_image(picture)));
+    }
+    return pictures;
+}
+
+void save_sheet(const std::filesystem::path& path, const std::vector<Image>& pictures,
+                const std::string& title) {
+    std::vector<Tile> tiles;
+    for (const Image& picture : pictures) tiles.push_back({picture, ""});
+    ContactSheetOptions options;
+    options.columns = 3;
+    options.title = title;
+    save_image(path, contact_sheet(tiles, options));
+}
+
+std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
+    std::vector<ReportImage> images;
+    for (const Image& picture : pictures) images.push_back({"", encode_webp(picture)});
+    return images;
+}
+
+double detail_kept(const torch::Tensor& before, const torch::Tensor& after) {
+    const auto planes = [](const torch::Tensor& linear) {
+        return linear_to_srgb(linear.narrow(3, 0, 3).clamp(0, 1)).permute({0, 3, 1, 2}).contiguous();
+    };
+    return detail_correlation(planes(before), planes(after), before.select(3, 3));
+}
+
+}  // namespace
+
+Pictures render_pictures(const EditRequest& request, const EditScene& scene,
+                         const EditedModel& edited) {
+    const EnvironmentLight light = prefilter(load_light(request.settings.light), 256);
+    const auto cameras = turntable(scene.model.bounds(), view_count, elevation, field_of_view);
+    const torch::Tensor before = draw(scene.model, light, cameras, view_pixels);
+    const torch::Tensor after = draw(edited.model, light, cameras, view_pixels);
+
+    Pictures pictures;
+    const auto before_pictures = to_pictures(before);
+    const auto after_pictures = to_pictures(after);
+    save_sheet(request.output / "before.png", before_pictures, request.settings.from);
+    save_sheet(request.output / "after.png", after_pictures, request.settings.to);
+    pictures.before = to_report(before_pictures);
+    pictures.after = to_report(after_pictures);
+
+    std::vector<Image> frames;
+    for (const Camera& camera :
+         turntable(scene.model.bounds(), turntable_frames, elevation, field_of_view)) {
+        const torch::Tensor frame = draw(edited.model, light, {camera}, turntable_pixels);
+        frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
+    }
+    pictures.turntable = {request.settings.to, encode_animation(frames)};
+    write_atomically(request.output / "turntable.webp", pictures.turntable.bytes);
+
+    pictures.means_before = surface_means(scene.model, scene.materials);
+    pictures.means_after = surface_means(edited.model, scene.materials);
+    pictures.detail_kept = detail_kept(before, after);
+    return pictures;
+}
+
+}  // namespace item3d

@@ -1,0 +1,25 @@
+// A picture of the edit so far, refreshed in the output folder while it runs.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "item3d/edit/scene.h"
+
+namespace item3d {
+
+class Preview {
+  public:
+    Preview(std::filesystem::path path, const EditScene& scene);
+    /// Draws the field from three sides and replaces the picture. A preview that cannot be written
+    /// is not worth stopping an edit for: it warns once and gives up.
+    void update(NeuralTexture& field);
+
+  private:
+    std::filesystem::path path_;
+    const EditScene& scene_;
+    std::vector<Camera> cameras_;
+    bool enabled_ = true;
+};
+
+}  // namespace item3d

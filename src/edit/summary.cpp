@@ -1,0 +1,160 @@
+#include "item3d/edit/outputs.h"
+
+#include "item3d/core/files.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/version.h"
+
+#include <fmt/format.h>
+#include <torch/torch.h>
+
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+using nlohmann::json;
+
+json means_json(const SurfaceMeans& means) {
+    return {{"base_color_linear", {means.base_color.x, means.base_color.y, means.base_color.z}},
+            {"roughness", means.roughness},
+            {"metallic", means.metallic}};
+}
+
+std::string hex_color(const Vec3& linear) {
+    const auto byte = [](float value) {
+        return static_cast<int>(std::lround(255.0f * linear_to_srgb(std::clamp(value, 0.0f, 1.0f))));
+    };
+    return fmt::format("#{:02x}{:02x}{:02x}", byte(linear.x), byte(linear.y), byte(linear.z));
+}
+
+json seconds_json(const StageTimes& times) {
+    json seconds = json::object();
+    for (const auto& [stage, value] : times.stages()) seconds[stage] = value;
+    seconds["total"] = times.total();
+    return seconds;
+}
+
+json iteration_json(const IterationTimes& times) {
+    const auto count = static_cast<double>(std::max<std::int64_t>(1, times.iterations));
+    return {{"render", times.render / count},
+            {"encode", times.encode / count},
+            {"unet", times.unet / count},
+            {"backward", times.backward / count},
+            {"step", times.step / count}};
+}
+
+json summary_json(const EditRequest& request, const EditScene& scene, const StageTimes& times,
+                  const IterationTimes& iteration_times, const Pictures& pictures) {
+    const EditSettings& settings = request.settings;
+    json remade = json::object();
+    for (const auto& [material, reason] : scene.atlas.remade) {
+        remade[scene.model.materials[static_cast<std::size_t>(material)].name] = reason;
+    }
+    json summary = {{"version", version()},
+                    {"command", request.command},
+                    {"model", request.model.string()},
+                    {"from", settings.from},
+                    {"to", settings.to},
+                    {"prior", request.prior.string()},
+                    {"guidance", settings.guidance},
+                    {"seed", settings.seed},
+                    {"device", "cpu"},
+                    {"precision", scene.precision == torch::kBFloat16 ? "bf16" : "fp32"},
+                    {"threads", at::get_num_threads()},
+                    {"iterations", settings.iterations},
+                    {"settings", settings},
+                    {"new_uv_maps", remade},
+                    {"scores",
+                     {{"detail_kept", pictures.detail_kept},
+                      {"before", means_json(pictures.means_before)},
+                      {"after", means_json(pictures.means_after)}}},
+                    {"seconds", seconds_json(times)},
+                    {"seconds_per_iteration", iteration_json(iteration_times)},
+                    {"peak_memory_bytes", peak_memory_bytes()}};
+    return summary;
+}
+
+std::vector<Score> scores_of(const Pictures& pictures) {
+    const SurfaceMeans& before = pictures.means_before;
+    const SurfaceMeans& after = pictures.means_after;
+    return {{"Mean base colour", hex_color(after.base_color),
+             "was " + hex_color(before.base_color)},
+            {"Metallic", fmt::format("{:.2f}", after.metallic),
+             fmt::format("was {:.2f}; 1 is bare metal", before.metallic)},
+            {"Roughness", fmt::format("{:.2f}", after.roughness),
+             fmt::format("was {:.2f}; 0 is a mirror", before.roughness)},
+            {"Detail kept", fmt::format("{:.2f}", pictures.detail_kept),
+             "correlation of luminance detail before and after; 1 keeps every line"}};
+}
+
+Curve curve_of(const std::string& name, const std::vector<float>& values) {
+    return {name, std::vector<double>(values.begin(), values.end()), 1, 1};
+}
+
+std::vector<Chart> charts_of(const EditSettings& settings, const EditState& state) {
+    if (state.direction_length.empty()) return {};
+    std::vector<Chart> charts;
+    charts.push_back({settings.guidance == "sds" ? "Length of the score" : "Length of the direction",
+                      "iteration",
+                      {curve_of("direction", state.direction_length)},
+                      true});
+    if (settings.guidance == "rdl" && settings.adjust == "learned") {
+        charts.push_back({"Denoising loss of the source that follows the render",
+                          "iteration",
+                          {curve_of("loss", state.adjustment_loss)},
+                          true});
+    }
+    return charts;
+}
+
+TableRows settings_table(const json& summary) {
+    TableRows rows;
+    for (const auto& [key, value] : summary["settings"].items()) {
+        rows.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
+    }
+    for (const char* key : {"prior", "device", "precision", "threads"}) {
+        rows.emplace_back(key, summary[key].is_string() ? summary[key].get<std::string>()
+                                                        : summary[key].dump());
+    }
+    rows.emplace_back("peak memory",
+                      fmt::format("{:.0f} MB", summary["peak_memory_bytes"].get<double>() / 1e6));
+    return rows;
+}
+
+}  // namespace
+
+json write_summary(const EditRequest& request, const EditScene& scene, const EditState& state,
+                   const StageTimes& times, const IterationTimes& iteration_times,
+                   const EditedModel& edited, const Pictures& pictures) {
+    const json summary = summary_json(request, scene, times, iteration_times, pictures);
+
+    EditReport report;
+    report.model = request.model.filename().string();
+    report.from = request.settings.from;
+    report.to = request.settings.to;
+    report.before = pictures.before;
+    report.after = pictures.after;
+    report.turntable = pictures.turntable;
+    report.textures = edited.textures;
+    report.scores = scores_of(pictures);
+    report.charts = charts_of(request.settings, state);
+    report.settings = settings_table(summary);
+    report.seconds = times.stages();
+    for (const auto& [material, reason] : scene.atlas.remade) {
+        report.warnings.push_back(
+            "Material " + scene.model.materials[static_cast<std::size_t>(material)].name +
+            " has a new UV map: " + reason);
+    }
+    report.files = {{"model.glb", "model.glb"},
+                    {"edit.json", "edit.json"},
+                    {"turntable.webp", "turntable.webp"},
+                    {"before.png", "before.png"},
+                    {"after.png", "after.png"}};
+    report.command = request.command;
+    report.version = version();
+    write_atomically(request.output / "report.html", edit_report_html(report));
+    write_atomically(request.output / "edit.json", summary.dump(2) + "\n");
+    return summary;
+}
+
+}  // namespace item3d

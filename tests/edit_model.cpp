@@ -1,0 +1,212 @@
+// The whole path on a small model with a prior of random weights: what it leaves, that it resumes to
+// the same bytes, and that it keeps what it must not touch.
+#include "item3d/edit/edit.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/edit/checkpoint.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/scene/io/save.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+class EditTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() /
+                  (std::string("item3d-edit-") +
+                   testing::UnitTest::GetInstance()->current_test_info()->name() + "-" +
+                   std::to_string(::getpid()));
+        fs::create_directories(folder_);
+        write_cube(folder_ / "cube.glb");
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    /// A cube whose six sides have places of their own in a checkered 64 x 64 texture.
+    static void write_cube(const fs::path& path) {
+        Model model;
+        Primitive cube;
+        for (int side = 0; side < 6; ++side) {
+            const int axis = side / 2;
+            const float sign = side % 2 == 0 ? 1.0f : -1.0f;
+            for (int corner = 0; corner < 4; ++corner) {
+                const float a = corner == 1 || corner == 2 ? 1.0f : -1.0f;
+                const float b = corner >= 2 ? 1.0f : -1.0f;
+                Vec3 position;
+                position[axis] = sign;
+                position[(axis + 1) % 3] = a * sign;
+                position[(axis + 2) % 3] = b;
+                Vec3 normal(0.0f);
+                normal[axis] = sign;
+                cube.positions.push_back(0.5f * position);
+                cube.normals.push_back(normal);
+                cube.uvs.emplace_back((static_cast<float>(side % 3) + 0.5f + 0.4f * a) / 3.0f,
+                                      (static_cast<float>(side / 3) + 0.5f + 0.4f * b) / 2.0f);
+            }
+            const auto first = static_cast<std::uint32_t>(4 * side);
+            for (const std::uint32_t index : {0u, 1u, 2u, 0u, 2u, 3u}) {
+                cube.indices.push_back(first + index);
+            }
+        }
+        model.primitives = {cube};
+        Image image(64, 64, 3);
+        for (int y = 0; y < 64; ++y) {
+            for (int x = 0; x < 64; ++x) {
+                image.at(x, y, 0) = (x / 8 + y / 8) % 2 == 0 ? 0.8f : 0.2f;
+                image.at(x, y, 1) = static_cast<float>(x) / 64.0f;
+                image.at(x, y, 2) = 0.3f;
+            }
+        }
+        model.textures.push_back({"checks", image, 8, Wrap::repeat, Wrap::repeat});
+        Material material;
+        material.name = "paint";
+        material.base_color_texture = 0;
+        material.metallic_factor = 0.0f;
+        model.materials = {material};
+        save_model(path, model);
+    }
+
+    EditRequest request(const std::string& output, int iterations) const {
+        EditRequest request;
+        request.model = folder_ / "cube.glb";
+        request.prior = fs::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd";
+        request.output = folder_ / output;
+        request.settings.from = "a red cube";
+        request.settings.to = "a blue cube";
+        request.settings.iterations = iterations;
+        request.settings.batch = 1;
+        request.settings.resolution = 32;
+        request.precision = "fp32";
+        request.command = "item3d edit";
+        return request;
+    }
+
+    Image base_color_of(const fs::path& path) const {
+        const Model model = load_model(path);
+        return model.textures.at(static_cast<std::size_t>(model.materials.at(0).base_color_texture))
+            .image;
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(EditTest, leaves_every_promised_file_and_a_full_summary) {
+    const EditRequest edit = request("out", 3);
+    const nlohmann::json summary = edit_model(edit);
+    for (const char* name : {"model.glb", "before.png", "after.png", "turntable.webp", "report.html",
+                             "edit.json", "checkpoint.safetensors", "textures/paint_base_color.png"}) {
+        EXPECT_TRUE(fs::is_regular_file(edit.output / name)) << name;
+    }
+    for (const char* key : {"version", "command", "from", "to", "prior", "guidance", "seed", "device",
+                            "precision", "threads", "iterations", "seconds", "seconds_per_iteration",
+                            "peak_memory_bytes"}) {
+        EXPECT_TRUE(summary.contains(key)) << key;
+    }
+    for (const char* stage : {"load", "fit", "optimize", "bake", "report", "total"}) {
+        EXPECT_TRUE(summary["seconds"].contains(stage)) << stage;
+    }
+    EXPECT_EQ(nlohmann::json::parse(read_text(edit.output / "edit.json")), summary);
+}
+
+TEST_F(EditTest, zero_iterations_return_the_texture) {
+    const EditRequest edit = request("out", 0);
+    edit_model(edit);
+    const Image before = base_color_of(edit.model);
+    const Image after = base_color_of(edit.output / "model.glb");
+    ASSERT_EQ(before.width, after.width);
+    double error = 0;
+    for (std::size_t i = 0; i < before.pixels.size(); ++i) {
+        error = std::max<double>(error, std::abs(before.pixels[i] - after.pixels[i]));
+    }
+    EXPECT_LT(error, 0.5 / 255);
+}
+
+TEST_F(EditTest, iterations_change_the_texture_and_depend_on_the_seed) {
+    EditRequest edit = request("a", 8);
+    edit_model(edit);
+    const Bytes first = read_bytes(edit.output / "model.glb");
+    edit.output = folder_ / "b";
+    edit_model(edit);
+    EXPECT_EQ(first, read_bytes(edit.output / "model.glb"));
+    edit.output = folder_ / "c";
+    edit.settings.seed = 1;
+    edit_model(edit);
+    EXPECT_NE(first, read_bytes(edit.output / "model.glb"));
+    EXPECT_NE(base_color_of(edit.model).pixels, base_color_of(edit.output / "model.glb").pixels);
+}
+
+TEST_F(EditTest, resumes_to_the_same_bytes_after_two_interrupts) {
+    EditRequest edit = request("whole", 9);
+    edit_model(edit);
+    const Bytes whole = read_bytes(edit.output / "model.glb");
+
+    edit.output = folder_ / "parts";
+    for (const int stop : {3, 6}) {
+        edit.stop_after = stop;
+        EXPECT_THROW(edit_model(edit), Interrupted);
+        EXPECT_FALSE(fs::exists(edit.output / "model.glb"));
+        edit.resume = true;
+    }
+    edit.stop_after = 0;
+    edit_model(edit);
+    EXPECT_EQ(whole, read_bytes(edit.output / "model.glb"));
+}
+
+TEST_F(EditTest, a_checkpoint_of_other_settings_is_refused) {
+    EditRequest edit = request("out", 2);
+    edit_model(edit);
+    edit.resume = true;
+    edit.settings.to = "a green cube";
+    EXPECT_THROW(edit_model(edit), InputError);
+}
+
+TEST_F(EditTest, a_broken_checkpoint_is_refused) {
+    EditRequest edit = request("out", 2);
+    fs::create_directories(edit.output);
+    write_atomically(edit.output / "checkpoint.safetensors", std::string_view("not one"));
+    edit.resume = true;
+    EXPECT_THROW(edit_model(edit), InputError);
+}
+
+TEST_F(EditTest, kept_base_color_stays_as_it_is) {
+    EditRequest edit = request("out", 6);
+    edit.settings.keep = {"base_color", "occlusion", "normal"};
+    edit_model(edit);
+    EXPECT_EQ(base_color_of(edit.model).pixels, base_color_of(edit.output / "model.glb").pixels);
+}
+
+TEST_F(EditTest, unknown_material_and_unwritable_output_are_refused) {
+    EditRequest edit = request("out", 1);
+    edit.settings.material = {"glass"};
+    EXPECT_THROW(edit_model(edit), InputError);
+    edit = request("out", 1);
+    edit.output = folder_ / "cube.glb" / "out";
+    EXPECT_THROW(edit_model(edit), InputError);
+}
+
+TEST(EditSettings, prior_defaults_and_overrides_are_merged_and_checked) {
+    const fs::path folder = fs::temp_directory_path() / ("item3d-prior-" + std::to_string(::getpid()));
+    fs::create_directories(folder);
+    write_atomically(folder / "prior.json",
+                     std::string_view(R"({"defaults": {"iterations": 150, "resolution": 64}})"));
+    const EditSettings settings = resolve_settings(folder, {{"iterations", 20}});
+    EXPECT_EQ(settings.iterations, 20);
+    EXPECT_EQ(settings.resolution, 64);
+    EXPECT_THROW(resolve_settings(folder, {{"timesteps", {0.9, 0.1}}}), InputError);
+    EXPECT_THROW(resolve_settings(folder, {{"keep", {"colour"}}}), InputError);
+    EXPECT_THROW(resolve_settings(folder, {{"batch", 0}}), InputError);
+    write_atomically(folder / "prior.json", std::string_view("[1"));
+    EXPECT_THROW(resolve_settings(folder, {}), InputError);
+    fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace item3d

@@ -1,0 +1,142 @@
+#include "item3d/guidance/rdl.h"
+
+#include "item3d/core/error.h"
+#include "item3d/guidance/noised_latents.h"
+#include "item3d/models/safetensors.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace item3d {
+namespace {
+
+const std::filesystem::path pipeline_folder =
+    std::filesystem::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd";
+const std::filesystem::path step_file =
+    std::filesystem::path(ITEM3D_TEST_DATA) / "guidance" / "rdl_step.safetensors";
+
+constexpr double tolerance = 5e-5;  // goldens' advice for rdl_step, of max(1, largest value)
+
+double relative_error(const torch::Tensor& value, const torch::Tensor& expected) {
+    const double scale = std::max(1.0, expected.abs().max().item<double>());
+    return (value - expected).abs().max().item<double>() / scale;
+}
+
+std::shared_ptr<const Pipeline> load_pipeline() {
+    return std::make_shared<Pipeline>(Pipeline::load(pipeline_folder));
+}
+
+/// The recorded step's latents, noise and timesteps, as noise_latents would give them.
+NoisedLatents recorded_start(const Pipeline& pipeline, const SafeTensors& file) {
+    NoisedLatents start;
+    start.latents = file.tensor("out.latents");
+    start.noise = file.tensor("in.noise");
+    start.timesteps = file.tensor("in.t");
+    start.alphas_cumprod = pipeline.scheduler.alphas_at(start.timesteps);
+    start.noisy = pipeline.scheduler.add_noise(start.latents, start.noise, start.timesteps);
+    return start;
+}
+
+GuidanceInput random_input(std::uint64_t seed) {
+    torch::manual_seed(seed);
+    GuidanceInput input;
+    input.images = torch::rand({2, 3, 32, 32}).requires_grad_(true);
+    return input;
+}
+
+}  // namespace
+
+TEST(RelativeDirection, two_rows_equal_the_four_row_form_with_its_source_branch_put_right) {
+    const auto pipeline = load_pipeline();
+    const SafeTensors file = SafeTensors::open(step_file);
+    const NoisedLatents start = recorded_start(*pipeline, file);
+    const float w = 7.5f;
+    const torch::Tensor text =
+        pipeline->encode_text({"a Mallard, front view", "a toy duck, front view"});
+    const PromptPair pair =
+        predict_pair(*pipeline, start, text.narrow(0, 0, 1), text.narrow(0, 1, 1));
+
+    EXPECT_LT(relative_error(pair.target, file.tensor("out.eps_target_cond")), tolerance);
+    EXPECT_LT(relative_error(pair.source, file.tensor("out.eps_source_cond")), tolerance);
+    const torch::Tensor four_rows =
+        file.tensor("out.eps_target") - file.tensor("out.eps_source_base_uncond");
+    EXPECT_LT(relative_error(w * (pair.target - pair.source), four_rows), 1e-4);
+    for (const auto& [weighting, name] :
+         {std::pair{Weighting::early, "early"}, std::pair{Weighting::late, "late"}}) {
+        const torch::Tensor gradient =
+            timestep_weight(weighting, start.alphas_cumprod) * w * (pair.target - pair.source);
+        EXPECT_LT(relative_error(gradient, file.tensor(std::string("out.grad_latents_uncond_") + name)),
+                  1e-4);
+    }
+}
+
+TEST(RelativeDirection, differs_from_the_published_source_branch) {
+    const SafeTensors file = SafeTensors::open(step_file);
+    const torch::Tensor right = file.tensor("out.grad_latents_uncond_early");
+    const torch::Tensor published = file.tensor("out.grad_latents_text_early");
+    EXPECT_GT(relative_error(published, right), 100 * tolerance);
+}
+
+TEST(Guidance, same_seed_and_iteration_give_the_same_gradient) {
+    const auto pipeline = load_pipeline();
+    for (const char* method : {"rdl", "sds"}) {
+        GuidanceOptions options;
+        options.method = method;
+        options.seed = 7;
+        const auto first = make_guidance(pipeline, "a red mug", "a blue mug", options);
+        const auto second = make_guidance(pipeline, "a red mug", "a blue mug", options);
+        const GuidanceInput input = random_input(3);
+        const auto a = first->step(input, 5).latents_gradient;
+        const auto b = second->step(input, 5).latents_gradient;
+        const auto other = second->step(input, 6).latents_gradient;
+        EXPECT_TRUE(torch::equal(a, b)) << method;
+        EXPECT_FALSE(torch::allclose(a, other)) << method;
+    }
+}
+
+TEST(Guidance, the_same_two_prompts_have_no_direction) {
+    GuidanceOptions options;
+    options.adjust = "off";
+    const auto guidance = make_guidance(load_pipeline(), "a mug", "a mug", options);
+    EXPECT_LT(guidance->step(random_input(1), 0).latents_gradient.abs().max().item<float>(), 1e-4f);
+}
+
+TEST(Guidance, latents_carry_gradients_to_the_images) {
+    const auto guidance = make_guidance(load_pipeline(), "a red mug", "a blue mug", {});
+    const GuidanceInput input = random_input(2);
+    const GuidanceOutput output = guidance->step(input, 0);
+    output.latents.backward(output.latents_gradient);
+    EXPECT_GT(input.images.grad().abs().max().item<float>(), 0.0f);
+    EXPECT_FALSE(output.latents_gradient.requires_grad());
+}
+
+TEST(LearnedSource, lowers_the_denoising_loss_and_survives_a_checkpoint) {
+    const auto pipeline = load_pipeline();
+    GuidanceOptions options;
+    const auto guidance = make_guidance(pipeline, "a red mug", "a blue mug", options);
+    const GuidanceInput input = random_input(4);
+    const float before = guidance->step(input, 0).adjustment_loss;
+    float after = 0;
+    for (int i = 0; i < 30; ++i) after = guidance->step(input, 0).adjustment_loss;
+    EXPECT_LT(after, before);
+
+    const auto resumed = make_guidance(pipeline, "a red mug", "a blue mug", options);
+    NamedTensors copy;
+    for (const auto& [name, tensor] : guidance->state()) copy.emplace_back(name, tensor.clone());
+    resumed->load_state(copy);
+    EXPECT_TRUE(torch::equal(guidance->step(input, 1).latents_gradient,
+                             resumed->step(input, 1).latents_gradient));
+}
+
+TEST(Guidance, empty_prompts_and_unknown_names_are_refused) {
+    const auto pipeline = load_pipeline();
+    EXPECT_THROW(make_guidance(pipeline, " ", "a mug", {}), InputError);
+    EXPECT_THROW(make_guidance(pipeline, "a mug", "", {}), InputError);
+    GuidanceOptions options;
+    options.method = "magic";
+    EXPECT_THROW(make_guidance(pipeline, "a mug", "a cup", options), InputError);
+    EXPECT_THROW(parse_weighting("heavy"), InputError);
+}
+
+}  // namespace item3d
