@@ -113,8 +113,9 @@ TEST(BadFiles, NeverLeaveTheirFolder) {
     const std::string cube = read_text(data_folder() / "bad" / "two_corner_face.obj");
     write_atomically(folder / "secret.mtl", std::string_view("newmtl a\nKd 1 0 0\n"));
     fs::create_symlink(folder / "secret.mtl", folder / "inner" / "link.mtl");
-    for (const std::string library :
-         {"../secret.mtl", (folder / "secret.mtl").string().c_str(), "link.mtl"}) {
+    const std::vector<std::string> libraries = {"../secret.mtl", (folder / "secret.mtl").string(),
+                                                "link.mtl"};
+    for (const std::string& library : libraries) {
         write_atomically(folder / "inner" / "a.obj",
                          std::string_view("mtllib " + library + "\nusemtl a\n" + cube));
         const Model model = load_model(folder / "inner" / "a.obj");
@@ -151,6 +152,23 @@ TEST(BadFiles, ManyNodesOfOneMeshAreBounded) {
     file.json["accessors"][0]["count"] = 100000000;
     write_atomically(folder / "a.gltf", std::string_view(file.json.dump()));
     EXPECT_THROW(load_model(folder / "a.gltf"), InputError);
+}
+
+// The library would take the two gigabytes that this attribute claims.
+TEST(BadFiles, OpenExrAttributesMustFitTheFile) {
+    const fs::path folder = fresh_folder("attributes");
+    Bytes bytes = read_bytes(data_folder() / "images" / "float_zips.exr");
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::size_t at = text.find(std::string_view("type\0string\0", 12));
+    ASSERT_NE(at, std::string_view::npos);
+    bytes[at + 12 + 3] = 0x7f;
+    write_atomically(folder / "a.exr", std::span<const std::uint8_t>(bytes));
+    try {
+        load_image(folder / "a.exr");
+        ADD_FAILURE();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("header"), std::string::npos) << error.what();
+    }
 }
 
 TEST(BadFiles, DeepJsonIsRefused) {

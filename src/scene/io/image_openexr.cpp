@@ -71,6 +71,44 @@ struct Window {
           height(static_cast<std::int64_t>(box.max.y) - box.min.y + 1) {}
 };
 
+// The library takes memory for attributes by the sizes that they declare, before it reads them.
+void check_attributes(std::span<const std::uint8_t> bytes, bool several_parts,
+                      const std::string& subject) {
+    std::size_t at = 8;
+    const auto fail = [&]() {
+        throw InputError(subject, "the OpenEXR header is damaged or cut short", "export it again");
+    };
+    const auto read_name = [&] {
+        const std::size_t begin = at;
+        while (at < bytes.size() && bytes[at] != 0)
+            ++at;
+        if (at == bytes.size()) fail();
+        ++at;
+        return std::string_view(reinterpret_cast<const char*>(bytes.data()) + begin,
+                                at - 1 - begin);
+    };
+    const auto read_size = [&](std::size_t limit) {
+        std::int32_t size = -1;
+        if (bytes.size() - at >= 4) std::memcpy(&size, bytes.data() + at, 4);
+        at += 4;
+        if (size < 0 || at > limit || static_cast<std::size_t>(size) > limit - at) fail();
+        return static_cast<std::size_t>(size);
+    };
+    for (bool is_first = true;; is_first = false) {
+        std::string_view name = read_name();
+        if (name.empty() && !is_first) return;  // the end of the list of headers
+        for (; !name.empty(); name = read_name()) {
+            const bool is_list = read_name() == "stringvector";
+            const std::size_t size = read_size(bytes.size());
+            const std::size_t end = at + size;
+            while (is_list && at < end)
+                at += read_size(end);
+            at = end;
+        }
+        if (!several_parts) return;
+    }
+}
+
 // InputFile allocates tables by what the header says: look at the header alone first.
 void check_headers(std::span<const std::uint8_t> bytes, const std::string& subject) {
     MemoryInput stream(bytes, subject);
@@ -79,6 +117,7 @@ void check_headers(std::span<const std::uint8_t> bytes, const std::string& subje
     std::uint32_t version;
     std::memcpy(&version, words + 4, 4);
     const bool several_parts = Imf::isMultiPart(static_cast<int>(version));
+    check_attributes(bytes, several_parts, subject);
     do {
         Imf::Header header;
         int header_version = static_cast<int>(version);
