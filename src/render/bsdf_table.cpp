@@ -9,7 +9,7 @@ namespace item3d {
 namespace {
 
 constexpr int table_size = 256;
-constexpr int rule_size = 8;
+constexpr int rule_size = 10;
 constexpr int azimuths = 16;
 
 struct Rule {
