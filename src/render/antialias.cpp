@@ -50,7 +50,7 @@ torch::Tensor find_crossings(const AntialiasParameters& p, std::int64_t views) {
                     found.push_back(crossing);
             }
         },
-        8);
+        std::max(1, 16384 / p.width));
     std::size_t count = 0;
     for (const auto& row : by_row)
         count += row.size();

@@ -15,6 +15,7 @@ using torch::autograd::tensor_list;
 torch::Tensor covered_pixels(const torch::Tensor& triangle) {
     const std::int64_t rows = triangle.size(0) * triangle.size(1), width = triangle.size(2);
     const std::int32_t* ids = triangle.const_data_ptr<std::int32_t>();
+    const std::int64_t rows_a_block = std::max<std::int64_t>(1, 65536 / width);
     std::vector<std::int64_t> start(static_cast<std::size_t>(rows + 1), 0);
     parallel_for(
         "count_covered", rows,
@@ -24,7 +25,7 @@ torch::Tensor covered_pixels(const torch::Tensor& triangle) {
                 count += ids[row * width + x] >= 0;
             start[static_cast<std::size_t>(row + 1)] = count;
         },
-        64);
+        rows_a_block);
     for (std::size_t row = 1; row < start.size(); ++row)
         start[row] += start[row - 1];
     torch::Tensor pixel = torch::empty({start.back()}, torch::kInt64);
@@ -36,7 +37,7 @@ torch::Tensor covered_pixels(const torch::Tensor& triangle) {
             for (std::int64_t i = row * width; i < (row + 1) * width; ++i)
                 if (ids[i] >= 0) out[next++] = i;
         },
-        64);
+        rows_a_block);
     return pixel;
 }
 
@@ -71,8 +72,9 @@ struct Interpolate : torch::autograd::Function<Interpolate> {
         kernels::InterpolateParameters p =
             interpolate_parameters(input, attributes, positions_clip);
         p.values = values.data_ptr<float>();
-        parallel_for("interpolate", input.pixel.size(0),
-                     [=](std::int64_t i) { kernels::interpolate_forward(p, i); });
+        parallel_for(
+            "interpolate", input.pixel.size(0),
+            [=](std::int64_t i) { kernels::interpolate_forward(p, i); }, 8192);
         context->save_for_backward({attributes, positions_clip, input.triangles, input.barycentrics,
                                     input.triangle, input.pixel});
         return values;
@@ -173,8 +175,9 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
         surface.view.data_ptr<float>(),
         surface.material.data_ptr<std::int64_t>(),
         surface.primitive.data_ptr<std::int64_t>()};
-    parallel_for("interpolate_surface", count,
-                 [=](std::int64_t i) { kernels::interpolate_surface_point(parameters, i); });
+    parallel_for(
+        "interpolate_surface", count,
+        [=](std::int64_t i) { kernels::interpolate_surface_point(parameters, i); }, 8192);
 
     const bool moves = positions.requires_grad() || raster.positions_clip.requires_grad();
     if (torch::GradMode::is_enabled() && (moves || normals.requires_grad())) {

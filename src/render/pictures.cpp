@@ -31,14 +31,14 @@ struct Scatter : torch::autograd::Function<Scatter> {
                 for (std::int64_t c = 0; c < channels; ++c)
                     picture[i * channels + c] = behind[i * stride + c];
             },
-            4096);
+            65536);
         parallel_for(
             "scatter", values.size(0),
             [=](std::int64_t i) {
                 for (std::int64_t c = 0; c < channels; ++c)
                     picture[index[i] * channels + c] = in_front[i * channels + c];
             },
-            4096);
+            65536);
         context->save_for_backward({pixel});
         context->saved_data["uniform"] = background.size(0) == 1 && pixels != 1;
         return out;

@@ -23,7 +23,7 @@ struct ProjectVertices : torch::autograd::Function<ProjectVertices> {
                                                     positions_clip.data_ptr<float>(), vertices};
         parallel_for(
             "project_vertices", views * vertices,
-            [=](std::int64_t i) { kernels::project_vertex(parameters, i); }, 4096);
+            [=](std::int64_t i) { kernels::project_vertex(parameters, i); }, 32768);
         context->save_for_backward({world_to_clip});
         return positions_clip;
     }
@@ -87,11 +87,14 @@ Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, i
         behind.defined() ? behind.const_data_ptr<float>() : nullptr};
     parallel_for(
         "bound_triangles", views * triangle_count,
-        [=](std::int64_t i) { kernels::bound_triangle(parameters, i); }, 4096);
+        [=](std::int64_t i) { kernels::bound_triangle(parameters, i); }, 32768);
 
-    // Bands of rows are independent of each other, so their number changes no result.
-    const std::int64_t bands =
-        std::clamp<std::int64_t>(4 * omp_get_max_threads() / views, 1, std::max(1, height / 16));
+    // Bands of rows are independent of each other, so their number changes no result. Pictures that
+    // take less than a millisecond are not worth waking other threads for.
+    const bool small = views * width * height < 32768 && views * triangle_count < 32768;
+    const std::int64_t bands = small ? 1
+                                     : std::clamp<std::int64_t>(4 * omp_get_max_threads() / views,
+                                                                1, std::max(1, height / 16));
     parallel_for(
         "rasterize", views * bands,
         [=](std::int64_t i) {
@@ -104,7 +107,7 @@ Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, i
                  pixel < (view * height + row_end) * width; ++pixel)
                 kernels::finish_depth(parameters, pixel);
         },
-        1);
+        small ? views : 1);
     return raster;
 }
 

@@ -38,8 +38,9 @@ struct SampleTexture : torch::autograd::Function<SampleTexture> {
         torch::Tensor values = torch::empty({uv.size(0), texture.size(2)}, torch::kFloat32);
         float* out = values.data_ptr<float>();
         const TextureParameters p = texture_parameters(texture, uv, wrap_u, wrap_v);
-        parallel_for("sample_texture", uv.size(0),
-                     [=](std::int64_t i) { kernels::texture_forward(p, i, out); });
+        parallel_for(
+            "sample_texture", uv.size(0),
+            [=](std::int64_t i) { kernels::texture_forward(p, i, out); }, 8192);
         context->save_for_backward({texture, uv});
         context->saved_data["wrap_u"] = wrap_u;
         context->saved_data["wrap_v"] = wrap_v;

@@ -23,7 +23,7 @@ torch::Tensor scatter_sum(const char* name, std::int64_t count, std::int64_t ele
             for (std::int64_t i = count * chunk / chunks; i < count * (chunk + 1) / chunks; ++i)
                 add(i, data + chunk * elements);
         },
-        1);
+        count < 4096 ? chunks : 1);
     return buffers.sum(0);
 }
 

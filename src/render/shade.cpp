@@ -58,8 +58,9 @@ struct Shade : torch::autograd::Function<Shade> {
         torch::Tensor radiance = torch::empty_like(inputs[0]);
         ShadeParameters p = shade_parameters(inputs, settings);
         p.radiance = radiance.data_ptr<float>();
-        parallel_for("shade", inputs[0].size(0),
-                     [&p](std::int64_t i) { kernels::shade_forward(p, i); });
+        parallel_for(
+            "shade", inputs[0].size(0), [&p](std::int64_t i) { kernels::shade_forward(p, i); },
+            2048);
 
         tensor_list saved = inputs;
         saved.push_back(settings.tangent);
@@ -105,8 +106,9 @@ struct Shade : torch::autograd::Function<Shade> {
             light_elements += inputs[i].numel();
         }
         if (light_elements == 0) {
-            parallel_for("shade backward", count,
-                         [&p](std::int64_t i) { kernels::shade_backward(p, i, {}); });
+            parallel_for(
+                "shade backward", count,
+                [&p](std::int64_t i) { kernels::shade_backward(p, i, {}); }, 1024);
             return results;
         }
         const torch::Tensor light_gradient = scatter_sum(
