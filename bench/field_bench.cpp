@@ -77,7 +77,7 @@ void adam_step(benchmark::State& state) {
 
 void sizes(benchmark::internal::Benchmark* benchmark) {
     for (const int count : {1500, 6000, 20000}) {
-        benchmark->Args({count, 8, 4});
+        benchmark->Args({count, 6, 4});
         benchmark->Args({count, 16, 2});
     }
     benchmark->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -42,7 +42,7 @@ TEST(UvRaster, CoversEachTexelOnceAlongSharedEdges) {
     }
     int overlaps = 0;
     const UvRaster raster = rasterize_uv(
-        triangles, 61, 47, [&](std::size_t, std::int32_t, std::int32_t) { ++overlaps; });
+        triangles, 61, 47, [&](std::size_t, std::int32_t, std::int32_t) { return ++overlaps > 0; });
     EXPECT_EQ(overlaps, 0);
     EXPECT_EQ(std::count(raster.triangle.begin(), raster.triangle.end(), -1), 0);
     for (int y = 0; y < 47; ++y) {
@@ -87,6 +87,27 @@ TEST_F(AtlasTest, NamesTheProblemOfOneThatCannot) {
 
     model = make_model(make_quad(Vec2(0.3f), Vec2(0.3f)));
     EXPECT_NE(find_uv_problem(model, {0}).find("no texels"), std::string::npos);
+}
+
+TEST_F(AtlasTest, KeepsAMapThatCrossesTheBorderOfARepeatingTexture) {
+    // Shifted by a third: the part beyond 1 shows the texels that are free on the other side.
+    Model model = make_model(make_quad(Vec2(0.33f, 0.0f), Vec2(1.23f, 1.0f)));
+    EXPECT_EQ(find_uv_problem(model, {0}), "");
+    const Atlas atlas = make_atlas(model, FieldSpace(model, {0}), {0});
+    const UvRaster raster = rasterize_uv(atlas.triangles, 100, 100);
+    EXPECT_GE(raster.at(10, 50), 0);
+    EXPECT_EQ(raster.at(28, 50), -1);
+    EXPECT_GE(raster.at(90, 50), 0);
+    // u = 0.105 repeats at 1.105, which lies at x = 2 * 0.775 / 0.9 - 1.
+    const std::size_t t = static_cast<std::size_t>(raster.at(10, 50));
+    const Vec2 b = uv_barycentrics(atlas.triangles[t], Vec2(0.105f, 0.505f));
+    const Primitive& quad = model.primitives[0];
+    const auto corner = [&](std::size_t c) { return quad.positions[quad.indices[3 * t + c]]; };
+    const Vec3 place = corner(0) * b.x + corner(1) * b.y + corner(2) * (1.0f - b.x - b.y);
+    EXPECT_NEAR(place.x, 2.0f * 0.775f / 0.9f - 1.0f, 1e-3f);
+
+    model.textures[0].wrap_u = Wrap::clamp_to_edge;
+    EXPECT_NE(find_uv_problem(model, {0}).find("leaves the unit square"), std::string::npos);
 }
 
 TEST_F(AtlasTest, SeesOverlapsOfTwoPrimitivesAndOfMirroredHalves) {

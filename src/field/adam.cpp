@@ -63,15 +63,14 @@ std::size_t Adam::add_group(std::vector<torch::Tensor> parameters, const AdamOpt
 
 void Adam::step() {
     const torch::NoGradGuard no_grad;
+    ++most_updates_;
     for (Group& group : groups_) {
-        // Most rows were updated equally often, so powers are taken once for each count.
+        // Rows were updated differently often, but few counts are many rows': powers are taken once
+        // for each count that there can be.
         std::vector<AdamRates> rates;
-        const auto grow_rates = [&](int updates) {
-            while (static_cast<int>(rates.size()) <= updates) {
-                rates.push_back(
-                    make_rates(group.options, std::max(1, static_cast<int>(rates.size()))));
-            }
-        };
+        for (int updates = 0; updates <= most_updates_; ++updates) {
+            rates.push_back(make_rates(group.options, std::max(1, updates)));
+        }
         for (Slot& slot : group.slots) {
             torch::Tensor gradient = slot.parameter.grad();
             if (!gradient.defined()) continue;
@@ -95,16 +94,11 @@ void Adam::step() {
             float* momentum = slot.momentum.data_ptr<float>();
             float* variance = slot.variance.data_ptr<float>();
             std::int32_t* updates = slot.updates.data_ptr<std::int32_t>();
-            int most = 0;
-            for (std::int64_t i = 0; i < rows; ++i) {
-                most = std::max(most, ++updates[index ? index[i] : i]);
-            }
-            grow_rates(most);
             parallel_for(
                 "adam_step", rows,
                 [&](std::int64_t i) {
                     const std::int64_t row = index ? index[i] : i;
-                    const AdamRates& rate = rates[static_cast<std::size_t>(updates[row])];
+                    const AdamRates& rate = rates[static_cast<std::size_t>(++updates[row])];
                     for (std::int64_t c = 0; c < width; ++c) {
                         const std::int64_t at = row * width + c;
                         adam_update(parameter[at], momentum[at], variance[at], g[i * width + c],
@@ -145,6 +139,9 @@ void Adam::load_state(const std::map<std::string, torch::Tensor>& state) {
                      "optimiser state " + name + " has the wrong shape");
         torch::Tensor target = own;
         target.copy_(found->second);
+        if (target.scalar_type() == torch::kInt32 && target.numel() > 0) {
+            most_updates_ = std::max(most_updates_, target.max().item<int>());
+        }
     }
 }
 

@@ -52,6 +52,7 @@ class Adam {
         AdamOptions options;
     };
     std::vector<Group> groups_;
+    int most_updates_ = 0;  ///< of any row
 };
 
 }  // namespace item3d

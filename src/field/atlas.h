@@ -25,10 +25,10 @@ struct Atlas {
     bool is_own(int material) const { return remade.count(material) == 0; }
 };
 
-/// Why the UVs of primitives that share a texture can't be baked into, in words ("has no UV map",
-/// "its UV map overlaps itself (12 % of the used texels)", ...); empty when they can. Triangles
-/// that lie on each other in space as well as in UV space, such as both sides of a leaf, do not
-/// count as overlapping.
+/// Why the UVs of primitives that share a texture can't be baked into, in words ("it has no UV
+/// map", "its UV map overlaps itself", ...); empty when they can. UVs beyond [0, 1] are no problem
+/// by themselves where the texture repeats: what counts is whether each texel shows one place. Nor
+/// do triangles overlap that lie on each other in space as well, such as both sides of a leaf.
 std::string find_uv_problem(const Model& model, const std::vector<int>& primitives);
 
 /// Width and height of the picture that a material is baked to: longest edge `texture_size`, or as

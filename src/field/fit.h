@@ -8,7 +8,7 @@
 namespace item3d {
 
 struct FitOptions {
-    int steps = 300;
+    int steps = 200;
     std::int64_t batch = 8192;  ///< surface points a step
     double table_learning_rate = 0.02;
     double network_learning_rate = 0.005;

@@ -157,16 +157,23 @@ torch::Tensor encode_table_backward(const HashGrid& grid, const float* points, s
             });
             float* level_values = value_data + first_row[l] * F;
             std::uint32_t entries[8];
+            float* value[8];
             float weights[8];
+            HashGridCell last;
             for (std::int64_t p = 0; p < count; ++p) {
                 const HashGridCell cell = locate(level, point_at(points, p));
-                corner_entries(level, cell, entries);
+                if (p == 0 || !cell.is_same_cell(last)) {
+                    corner_entries(level, cell, entries);
+                    for (int c = 0; c < 8; ++c) {
+                        value[c] = level_values + std::size_t{touched[l].rank(entries[c])} * F;
+                    }
+                    last = cell;
+                }
                 corner_weights(cell, weights);
                 const float* g = grad + p * width + i * F;
                 for (int c = 0; c < 8; ++c) {
-                    float* value = level_values + std::size_t{touched[l].rank(entries[c])} * F;
                     for (int f = 0; f < F; ++f)
-                        value[f] += weights[c] * g[f];
+                        value[c][f] += weights[c] * g[f];
                 }
             }
         },

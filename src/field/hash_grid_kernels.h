@@ -27,6 +27,11 @@ struct HashGridCell {
     int x = 0, y = 0, z = 0;
     Vec3 fraction{0.0f};
     Vec3 slope{0.0f};  ///< d fraction / d point; 0 along axes on which the point was clamped
+
+    /// Whether another point's corners are these too.
+    ITEM3D_HOST_DEVICE bool is_same_cell(const HashGridCell& other) const {
+        return x == other.x && y == other.y && z == other.z;
+    }
 };
 
 ITEM3D_HOST_DEVICE inline void locate_axis(float p, int resolution, int& cell, float& fraction,

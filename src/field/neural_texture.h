@@ -27,7 +27,7 @@ struct MaterialRanges {
 /// Eight levels of four features cost half the look-ups of Instant-NGP's sixteen of two, at the
 /// same width and measured quality.
 struct NeuralTextureOptions {
-    int levels = 8;
+    int levels = 6;
     int features = 4;
     int log2_table_size = 17;
     int base_resolution = 16;  ///< cells along the longest edge of the bounds

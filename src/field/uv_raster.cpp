@@ -7,6 +7,9 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t subtexels = 256;
+/// UVs' rounding may move a triangle this far off a texel's centre; less than half a texel of the
+/// largest picture.
+constexpr float snapping = 5e-5f;
 
 struct Point {
     std::int64_t x, y;
@@ -21,6 +24,11 @@ std::int64_t edge(Point a, Point b, Point p) {
 std::int64_t edge_bias(Point a, Point b) {
     const bool owns = b.y > a.y || (b.y == a.y && b.x < a.x);
     return owns ? 0 : -1;
+}
+
+int wrap(int texel, int count) {
+    const int rest = texel % count;
+    return rest < 0 ? rest + count : rest;
 }
 
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
@@ -53,28 +61,26 @@ UvRaster rasterize_uv(std::span<const UvTriangle> triangles, int width, int heig
                                       edge_bias(p[2], p[0])};
         const auto [low_x, high_x] = std::minmax({p[0].x, p[1].x, p[2].x});
         const auto [low_y, high_y] = std::minmax({p[0].y, p[1].y, p[2].y});
-        const auto first_texel = [](std::int64_t low) {
-            return static_cast<int>(std::max<std::int64_t>(0, floor_divide(low, subtexels)));
+        if (high_x - low_x > (width + 1) * subtexels || high_y - low_y > (height + 1) * subtexels) {
+            continue;
+        }
+        const auto texel_at = [](std::int64_t position) {
+            return static_cast<int>(floor_divide(position, subtexels));
         };
-        const auto last_texel = [](std::int64_t high, int count) {
-            return static_cast<int>(
-                std::min<std::int64_t>(count - 1, floor_divide(high, subtexels)));
-        };
-        const int last_x = last_texel(high_x, width);
-        const int last_y = last_texel(high_y, height);
-        for (int y = first_texel(low_y); y <= last_y; ++y) {
-            for (int x = first_texel(low_x); x <= last_x; ++x) {
+        for (int y = texel_at(low_y); y <= texel_at(high_y); ++y) {
+            for (int x = texel_at(low_x); x <= texel_at(high_x); ++x) {
                 const Point center{x * subtexels + subtexels / 2, y * subtexels + subtexels / 2};
                 if (edge(p[0], p[1], center) + bias[0] < 0) continue;
                 if (edge(p[1], p[2], center) + bias[1] < 0) continue;
                 if (edge(p[2], p[0], center) + bias[2] < 0) continue;
                 const std::size_t texel =
-                    static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                    static_cast<std::size_t>(x);
+                    static_cast<std::size_t>(wrap(y, height)) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(wrap(x, width));
                 if (raster.triangle[texel] < 0) {
                     raster.triangle[texel] = static_cast<std::int32_t>(t);
-                } else if (on_overlap) {
-                    on_overlap(texel, raster.triangle[texel], static_cast<std::int32_t>(t));
+                } else if (on_overlap && !on_overlap(texel, raster.triangle[texel],
+                                                     static_cast<std::int32_t>(t))) {
+                    return raster;
                 }
             }
         }
@@ -86,6 +92,9 @@ Vec2 uv_barycentrics(const UvTriangle& triangle, Vec2 uv) {
     const auto cross = [](Vec2 a, Vec2 b) {
         return static_cast<double>(a.x) * b.y - static_cast<double>(a.y) * b.x;
     };
+    // The repetition of the texel that lies in the triangle's box.
+    const Vec2 low = glm::min(triangle[0], glm::min(triangle[1], triangle[2]));
+    uv += glm::ceil(low - Vec2(snapping) - uv);
     const Vec2 a = triangle[0] - triangle[2];
     const Vec2 b = triangle[1] - triangle[2];
     const Vec2 p = uv - triangle[2];

@@ -26,13 +26,16 @@ struct UvRaster {
 };
 
 /// Samples at texel centres. UVs are snapped to 1/256 texel and edges belong to one side, so two
-/// triangles that share an edge never both cover a texel. Both windings count. on_overlap(texel
-/// index, triangle that has it, triangle that covers it too) may be empty.
-using OverlapFunction = std::function<void(std::size_t, std::int32_t, std::int32_t)>;
+/// triangles that share an edge never both cover a texel. Both windings count. Textures repeat:
+/// what leaves [0, 1] comes in on the other side. Triangles more than a texture wide are left out.
+/// on_overlap(texel index, triangle that has it, triangle that covers it too) may be empty; it
+/// returns whether to go on.
+using OverlapFunction = std::function<bool(std::size_t, std::int32_t, std::int32_t)>;
 UvRaster rasterize_uv(std::span<const UvTriangle> triangles, int width, int height,
                       const OverlapFunction& on_overlap = {});
 
-/// Weights of the corners 0 and 1 at a point, moved into the triangle when it lies just outside.
+/// Weights of the corners 0 and 1 at a texel's centre in [0, 1]^2, as the repeating texture shows
+/// it in the triangle; moved into the triangle when it lies just outside.
 Vec2 uv_barycentrics(const UvTriangle& triangle, Vec2 uv);
 
 }  // namespace item3d
