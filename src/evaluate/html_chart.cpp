@@ -1,5 +1,5 @@
-#include "item3d/evaluate/html.h"
 #include "item3d/core/format.h"
+#include "item3d/evaluate/html.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "item3d/evaluate/report.h"
+
 #include "item3d/core/format.h"
 
 #include <algorithm>
