@@ -2,14 +2,14 @@
 //
 //   edit_suite -o DIR --mesh cow=spot.obj --mesh object=teapot.obj [--prior DIR] [--only colors]
 //
-// The demo mug is always among the meshes. Colour edits go from one plain colour to another and count
-// as right when the surface's mean base colour is nearest, in CIELAB, to the named target among the
-// prior's colours. Material edits are for looking at, with metallic before and after. Stripe edits
-// compare the adjusted direction with plain RDL and SDS by the luminance detail that they keep.
-#include "suite_models.h"
-
+// The demo mug is always among the meshes. Colour edits go from one plain colour to another and
+// count as right when the surface's mean base colour is nearest, in CIELAB, to the named target
+// among the prior's colours. Material edits are for looking at, with metallic before and after.
+// Stripe edits compare the adjusted direction with plain RDL and SDS by the luminance detail that
+// they keep.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/edit.h"
 #include "item3d/edit/surface_means.h"
@@ -18,9 +18,9 @@
 #include "item3d/prior/vocabulary.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
+#include "suite_models.h"
 
 #include <CLI/CLI.hpp>
-#include "item3d/core/format.h"
 #include <nlohmann/json.hpp>
 
 #include <map>
@@ -34,10 +34,10 @@ namespace {
 using nlohmann::json;
 
 struct SuiteCase {
-    std::string group;   ///< "colors", "materials" or "stripes"
-    std::string mesh;    ///< its noun
-    std::string source;  ///< colour, or "red and white striped"
-    std::string target;  ///< colour, "golden", "covered in grass", ...
+    std::string group;               ///< "colors", "materials" or "stripes"
+    std::string mesh;                ///< its noun
+    std::string source;              ///< colour, or "red and white striped"
+    std::string target;              ///< colour, "golden", "covered in grass", ...
     std::string method = "learned";  ///< "learned", "off" or "sds"
 };
 
@@ -92,7 +92,8 @@ std::vector<SuiteCase> make_cases(const std::vector<std::string>& nouns) {
 /// The first word of a look that is one of the prior's colours; linear base colour.
 Vec3 color_of(const PriorVocabulary& vocabulary, const std::string& word) {
     for (const KnownWord& known : vocabulary.words()) {
-        if (known.kind == "colors" && known.word == word && known.base_color) return *known.base_color;
+        if (known.kind == "colors" && known.word == word && known.base_color)
+            return *known.base_color;
     }
     throw InputError("prior.json", "has no base colour for '" + word + "'",
                      "run item3d prior measure on the prior");
@@ -134,9 +135,12 @@ json run_case(const SuiteCase& test, const SuiteOptions& options, const PriorVoc
                                   request.settings.from, request.settings.to);
     const json summary = edit_model(request);
 
-    json result = {{"group", test.group},   {"mesh", test.mesh},
-                   {"from", summary["from"]}, {"to", summary["to"]},
-                   {"method", test.method}, {"scores", summary["scores"]},
+    json result = {{"group", test.group},
+                   {"mesh", test.mesh},
+                   {"from", summary["from"]},
+                   {"to", summary["to"]},
+                   {"method", test.method},
+                   {"scores", summary["scores"]},
                    {"seconds", summary["seconds"]["total"]},
                    {"peak_memory_bytes", summary["peak_memory_bytes"]}};
     if (test.group == "colors") {
@@ -194,7 +198,8 @@ json totals(const std::vector<json>& results) {
 void run_suite(const SuiteOptions& options) {
     const PriorVocabulary vocabulary = PriorVocabulary::load(options.prior);
     std::vector<std::string> nouns;
-    for (const auto& [noun, path] : options.meshes) nouns.push_back(noun);
+    for (const auto& [noun, path] : options.meshes)
+        nouns.push_back(noun);
     std::vector<json> results;
     for (const SuiteCase& test : make_cases(nouns)) {
         if (!options.only.empty() && test.group != options.only) continue;

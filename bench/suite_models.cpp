@@ -1,10 +1,10 @@
 #include "suite_models.h"
 
-#include <cmath>
-
 #include "item3d/core/error.h"
 #include "item3d/field/fill.h"
 #include "item3d/field/uv_raster.h"
+
+#include <cmath>
 
 namespace item3d {
 namespace {
@@ -55,7 +55,8 @@ void paint_primitive(const Primitive& primitive, Image& image, std::vector<std::
                 weight.y * primitive.positions[primitive.indices[first + 1]] +
                 (1 - weight.x - weight.y) * primitive.positions[primitive.indices[first + 2]];
             const Vec3 color = paint(position);
-            for (int c = 0; c < 3; ++c) image.at(x, y, c) = color[c];
+            for (int c = 0; c < 3; ++c)
+                image.at(x, y, c) = color[c];
             covered[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                     static_cast<std::size_t>(x)] = 1;
         }

@@ -1,10 +1,10 @@
 // The models that the edit suite starts from: real meshes in plain colours and in stripes.
 #pragma once
 
-#include <filesystem>
-
 #include "item3d/core/math.h"
 #include "item3d/scene/model.h"
+
+#include <filesystem>
 
 namespace item3d {
 

@@ -1,10 +1,9 @@
-// The whole path on a small model with a prior of random weights: what it leaves, that it resumes to
-// the same bytes, and that it keeps what it must not touch.
-#include "item3d/edit/edit.h"
-
+// The whole path on a small model with a prior of random weights: what it leaves, that it resumes
+// to the same bytes, and that it keeps what it must not touch.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/edit/checkpoint.h"
+#include "item3d/edit/edit.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 
@@ -101,13 +100,14 @@ class EditTest : public testing::Test {
 TEST_F(EditTest, leaves_every_promised_file_and_a_full_summary) {
     const EditRequest edit = request("out", 3);
     const nlohmann::json summary = edit_model(edit);
-    for (const char* name : {"model.glb", "before.png", "after.png", "turntable.webp", "report.html",
-                             "edit.json", "checkpoint.safetensors", "textures/paint_base_color.png"}) {
+    for (const char* name :
+         {"model.glb", "before.png", "after.png", "turntable.webp", "report.html", "edit.json",
+          "checkpoint.safetensors", "textures/paint_base_color.png"}) {
         EXPECT_TRUE(fs::is_regular_file(edit.output / name)) << name;
     }
-    for (const char* key : {"version", "command", "from", "to", "prior", "guidance", "seed", "device",
-                            "precision", "threads", "iterations", "seconds", "seconds_per_iteration",
-                            "peak_memory_bytes"}) {
+    for (const char* key :
+         {"version", "command", "from", "to", "prior", "guidance", "seed", "device", "precision",
+          "threads", "iterations", "seconds", "seconds_per_iteration", "peak_memory_bytes"}) {
         EXPECT_TRUE(summary.contains(key)) << key;
     }
     for (const char* stage : {"load", "fit", "optimize", "bake", "report", "total"}) {
@@ -193,7 +193,8 @@ TEST_F(EditTest, unknown_material_and_unwritable_output_are_refused) {
 }
 
 TEST(EditSettings, prior_defaults_and_overrides_are_merged_and_checked) {
-    const fs::path folder = fs::temp_directory_path() / ("item3d-prior-" + std::to_string(::getpid()));
+    const fs::path folder =
+        fs::temp_directory_path() / ("item3d-prior-" + std::to_string(::getpid()));
     fs::create_directories(folder);
     write_atomically(folder / "prior.json",
                      std::string_view(R"({"defaults": {"iterations": 150, "resolution": 64}})"));

@@ -1,7 +1,6 @@
-#include "item3d/guidance/rdl.h"
-
 #include "item3d/core/error.h"
 #include "item3d/guidance/noised_latents.h"
+#include "item3d/guidance/rdl.h"
 #include "item3d/models/safetensors.h"
 
 #include <gtest/gtest.h>
@@ -66,8 +65,9 @@ TEST(RelativeDirection, two_rows_equal_the_four_row_form_with_its_source_branch_
          {std::pair{Weighting::early, "early"}, std::pair{Weighting::late, "late"}}) {
         const torch::Tensor gradient =
             timestep_weight(weighting, start.alphas_cumprod) * w * (pair.target - pair.source);
-        EXPECT_LT(relative_error(gradient, file.tensor(std::string("out.grad_latents_uncond_") + name)),
-                  1e-4);
+        EXPECT_LT(
+            relative_error(gradient, file.tensor(std::string("out.grad_latents_uncond_") + name)),
+            1e-4);
     }
 }
 
@@ -118,12 +118,14 @@ TEST(LearnedSource, lowers_the_denoising_loss_and_survives_a_checkpoint) {
     const GuidanceInput input = random_input(4);
     const float before = guidance->step(input, 0).adjustment_loss;
     float after = 0;
-    for (int i = 0; i < 30; ++i) after = guidance->step(input, 0).adjustment_loss;
+    for (int i = 0; i < 30; ++i)
+        after = guidance->step(input, 0).adjustment_loss;
     EXPECT_LT(after, before);
 
     const auto resumed = make_guidance(pipeline, "a red mug", "a blue mug", options);
     NamedTensors copy;
-    for (const auto& [name, tensor] : guidance->state()) copy.emplace_back(name, tensor.clone());
+    for (const auto& [name, tensor] : guidance->state())
+        copy.emplace_back(name, tensor.clone());
     resumed->load_state(copy);
     EXPECT_TRUE(torch::equal(guidance->step(input, 1).latents_gradient,
                              resumed->step(input, 1).latents_gradient));

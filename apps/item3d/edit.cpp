@@ -1,13 +1,12 @@
 // item3d edit: a model and two sentences in, an edited model out.
-#include "command.h"
+#include "item3d/edit/edit.h"
 
+#include "command.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/core/progress.h"
-#include "item3d/edit/edit.h"
-#include "item3d/prior/vocabulary.h"
-
 #include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/prior/vocabulary.h"
 
 #include <cstdio>
 #include <memory>

@@ -1,6 +1,5 @@
-#include "item3d/edit/outputs.h"
-
 #include "item3d/core/files.h"
+#include "item3d/edit/outputs.h"
 #include "item3d/field/bake.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
@@ -39,7 +38,8 @@ void save_texture(const EditRequest& request, const EditScene& scene, const std:
     const auto folder = request.output / "textures";
     const auto path = folder / (material + "_" + suffix + ".png");
     save_image(path, *image, bits);
-    pairs.push_back({title, source_thumbnail(scene.model, source_texture, folder / "source.tmp.png"),
+    pairs.push_back({title,
+                     source_thumbnail(scene.model, source_texture, folder / "source.tmp.png"),
                      read_bytes(path)});
 }
 

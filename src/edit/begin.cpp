@@ -1,9 +1,8 @@
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/checkpoint_state.h"
 #include "item3d/edit/optimize.h"
 #include "item3d/field/fit.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -32,10 +31,10 @@ int finest_texture(const EditScene& scene, int texture_size) {
 EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     const EditSettings& settings = request.settings;
     EditState state;
-    state.field = NeuralTexture(
-        suggest_field_options(scene.geometry, *scene.space,
-                              finest_texture(scene, settings.texture_size), settings.seed));
-    state.guidance = make_guidance(scene.prior, settings.from, settings.to, guidance_options(settings));
+    state.field = NeuralTexture(suggest_field_options(
+        scene.geometry, *scene.space, finest_texture(scene, settings.texture_size), settings.seed));
+    state.guidance =
+        make_guidance(scene.prior, settings.from, settings.to, guidance_options(settings));
     state.optimizer.add_group({state.field->table()}, adam_options(settings));
     state.optimizer.add_group(state.field->network_parameters(), adam_options(settings));
     state.fitted = snapshot(state.field);

@@ -5,9 +5,9 @@
 namespace item3d {
 
 void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-    save_safetensors(path, checkpoint.tensors,
-                     {{"identity", checkpoint.identity},
-                      {"iteration", std::to_string(checkpoint.iteration)}});
+    save_safetensors(
+        path, checkpoint.tensors,
+        {{"identity", checkpoint.identity}, {"iteration", std::to_string(checkpoint.iteration)}});
 }
 
 std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path) {

@@ -1,11 +1,11 @@
 // The state of an unfinished edit: one safetensors file, replaced atomically.
 #pragma once
 
+#include "item3d/models/safetensors.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
-
-#include "item3d/models/safetensors.h"
 
 namespace item3d {
 

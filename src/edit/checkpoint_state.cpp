@@ -1,9 +1,8 @@
 #include "item3d/edit/checkpoint_state.h"
 
-#include <fmt/format.h>
-
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
 #include "item3d/core/random.h"
 #include "item3d/edit/checkpoint.h"
 
@@ -16,7 +15,8 @@ std::filesystem::path checkpoint_path(const EditRequest& request) {
 
 std::string hash_of_file(const std::filesystem::path& path) {
     std::uint64_t hash = 0;
-    for (const std::uint8_t byte : read_bytes(path)) hash = mix_bits(hash ^ byte);
+    for (const std::uint8_t byte : read_bytes(path))
+        hash = mix_bits(hash ^ byte);
     return fmt::format("{:016x}", hash);
 }
 
@@ -31,7 +31,8 @@ void require_same_identity(const EditRequest& request, const std::string& saved_
     const auto saved = nlohmann::json::parse(saved_text, nullptr, false);
     const nlohmann::json now = identity_of(request);
     for (const auto& [key, value] : now.items()) {
-        const nlohmann::json before = saved.is_object() ? saved.value(key, nlohmann::json()) : nullptr;
+        const nlohmann::json before =
+            saved.is_object() ? saved.value(key, nlohmann::json()) : nullptr;
         if (before == value) continue;
         throw InputError(checkpoint_path(request).string(),
                          key == "model" ? "belongs to another model file"
@@ -41,7 +42,8 @@ void require_same_identity(const EditRequest& request, const std::string& saved_
     }
 }
 
-void append_parameters(NamedTensors& tensors, const std::string& prefix, const NeuralTexture& field) {
+void append_parameters(NamedTensors& tensors, const std::string& prefix,
+                       const NeuralTexture& field) {
     for (const auto& item : field->named_parameters()) {
         tensors.emplace_back(prefix + item.key(), item.value().detach());
     }
@@ -50,7 +52,8 @@ void append_parameters(NamedTensors& tensors, const std::string& prefix, const N
 class StateReader {
   public:
     StateReader(std::string subject, const NamedTensors& tensors) : subject_(std::move(subject)) {
-        for (const auto& [name, tensor] : tensors) tensors_[name] = tensor;
+        for (const auto& [name, tensor] : tensors)
+            tensors_[name] = tensor;
     }
     torch::Tensor get(const std::string& name) const {
         const auto found = tensors_.find(name);
@@ -103,7 +106,8 @@ void save_state(const EditRequest& request, const EditState& state) {
     for (const auto& [name, tensor] : state.guidance->state()) {
         checkpoint.tensors.emplace_back("guidance." + name, tensor);
     }
-    checkpoint.tensors.emplace_back("curve.direction_length", torch::tensor(state.direction_length));
+    checkpoint.tensors.emplace_back("curve.direction_length",
+                                    torch::tensor(state.direction_length));
     checkpoint.tensors.emplace_back("curve.adjustment_loss", torch::tensor(state.adjustment_loss));
     save_checkpoint(checkpoint_path(request), checkpoint);
 }

@@ -1,13 +1,13 @@
-// item3d's main path: load model -> fit field -> loop { cameras -> render -> guidance -> backward ->
-// step } -> bake -> write.
+// item3d's main path: load model -> fit field -> loop { cameras -> render -> guidance -> backward
+// -> step } -> bake -> write.
 #pragma once
 
-#include <filesystem>
-#include <string>
+#include "item3d/edit/settings.h"
 
 #include <nlohmann/json.hpp>
 
-#include "item3d/edit/settings.h"
+#include <filesystem>
+#include <string>
 
 namespace item3d {
 
@@ -24,8 +24,8 @@ struct EditRequest {
     std::string command;             ///< as typed, for edit.json and the resume hint
 };
 
-/// Runs an edit and writes everything that docs/formats.md lists into the output folder. Returns the
-/// content of edit.json. Throws InputError, ResourceError, and Interrupted (with the checkpoint
+/// Runs an edit and writes everything that docs/formats.md lists into the output folder. Returns
+/// the content of edit.json. Throws InputError, ResourceError, and Interrupted (with the checkpoint
 /// written) as core/error.h says.
 nlohmann::json edit_model(const EditRequest& request);
 

@@ -1,11 +1,9 @@
 #include "item3d/edit/material_source.h"
 
-#include <algorithm>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
+
+#include <algorithm>
 
 namespace item3d {
 
@@ -34,7 +32,8 @@ std::vector<int> select_materials(const Model& model, const std::vector<std::str
         });
         if (found) continue;
         std::vector<std::string> known;
-        for (const Material& material : model.materials) known.push_back(material.name);
+        for (const Material& material : model.materials)
+            known.push_back(material.name);
         throw InputError("--material", fmt::format("'{}' is not a material of this model", name),
                          fmt::format("it has {}", fmt::join(known, ", ")));
     }
@@ -49,7 +48,8 @@ MaterialSource::MaterialSource(const Model& model, const TexturedMaterials& text
       is_edited_(torch::zeros({static_cast<std::int64_t>(model.materials.size())}, torch::kBool)),
       orm_is_edited_(torch::tensor({channels.occlusion, channels.roughness, channels.metallic})),
       channels_(channels) {
-    for (const int index : edited_materials) is_edited_[index] = true;
+    for (const int index : edited_materials)
+        is_edited_[index] = true;
     for (const Primitive& primitive : model.primitives) {
         all_edited_ = all_edited_ && is_edited_[primitive.material].item<bool>();
     }
@@ -61,13 +61,15 @@ MaterialSample MaterialSource::sample(const Surface& surface, NeuralTexture& fie
         return textured_.sample(surface);
     }();
     const MaterialSample edited = field->forward(space_.positions(surface));
-    const torch::Tensor here =
-        all_edited_ ? torch::ones({1, 1}, torch::kBool)
-                    : is_edited_.index_select(0, surface.material).unsqueeze(1);
-    if (channels_.base_color) own.base_color = torch::where(here, edited.base_color, own.base_color);
+    const torch::Tensor here = all_edited_
+                                   ? torch::ones({1, 1}, torch::kBool)
+                                   : is_edited_.index_select(0, surface.material).unsqueeze(1);
+    if (channels_.base_color)
+        own.base_color = torch::where(here, edited.base_color, own.base_color);
     own.orm = torch::where(here & orm_is_edited_, edited.orm, own.orm);
     if (channels_.normal) {
-        own.normal = own.normal.defined() ? torch::where(here, edited.normal, own.normal) : edited.normal;
+        own.normal =
+            own.normal.defined() ? torch::where(here, edited.normal, own.normal) : edited.normal;
     }
     return own;
 }

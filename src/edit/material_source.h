@@ -1,14 +1,14 @@
 // Which surface points the edit changes, and what they are made of.
 #pragma once
 
-#include <vector>
-
-#include <torch/torch.h>
-
 #include "item3d/edit/settings.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/field/surface_points.h"
 #include "item3d/render/textured.h"
+
+#include <torch/torch.h>
+
+#include <vector>
 
 namespace item3d {
 
@@ -39,7 +39,7 @@ class MaterialSource {
   private:
     const TexturedMaterials& textured_;
     const FieldSpace& space_;
-    torch::Tensor is_edited_;      ///< [materials] bool
+    torch::Tensor is_edited_;  ///< [materials] bool
     bool all_edited_ = true;
     torch::Tensor orm_is_edited_;  ///< [3] bool
     ChannelMask channels_;

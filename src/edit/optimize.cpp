@@ -1,15 +1,14 @@
 #include "item3d/edit/optimize.h"
 
-#include <chrono>
-#include <cmath>
-
-#include <fmt/format.h>
-
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/checkpoint_state.h"
 #include "item3d/edit/preview.h"
 #include "item3d/guidance/noised_latents.h"
+
+#include <chrono>
+#include <cmath>
 
 namespace item3d {
 namespace {
@@ -23,7 +22,9 @@ constexpr float final_learning_rate = 0.1f;  ///< as a part of the first
 
 /// Small pictures are drawn at twice their size and averaged, as the embedded prior's training
 /// pictures were; large ones get their edges from antialias().
-int supersampling(int resolution) { return resolution <= 128 ? 2 : 1; }
+int supersampling(int resolution) {
+    return resolution <= 128 ? 2 : 1;
+}
 
 struct View {
     torch::Tensor images;  ///< [N, 3, R, R] sRGB
@@ -34,8 +35,7 @@ View render_view(const EditScene& scene, const EditSettings& settings, NeuralTex
                  std::int64_t iteration) {
     const int scale = supersampling(settings.resolution);
     const int size = settings.resolution * scale;
-    const auto cameras =
-        sample_cameras(scene.sphere, settings.batch, settings.seed, iteration);
+    const auto cameras = sample_cameras(scene.sphere, settings.batch, settings.seed, iteration);
     const EnvironmentLight& light = scene.lights->pick(settings.seed, iteration);
 
     const Raster raster = rasterize(scene.geometry, cameras, size, size);
@@ -110,7 +110,8 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
 
     while (state.iteration < settings.iterations) {
         run_iteration(scene, settings, state, times);
-        progress.update(state.iteration, fmt::format("direction {:.3f}", state.direction_length.back()));
+        progress.update(state.iteration,
+                        fmt::format("direction {:.3f}", state.direction_length.back()));
 
         const bool stop = interrupted() || state.iteration == request.stop_after;
         if (stop && state.iteration < settings.iterations) {

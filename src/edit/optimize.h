@@ -1,16 +1,16 @@
 // The loop: cameras -> render -> guidance -> backward -> step.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "item3d/edit/edit.h"
 #include "item3d/edit/scene.h"
 #include "item3d/edit/timing.h"
 #include "item3d/field/adam.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/guidance/guidance.h"
+
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -20,7 +20,7 @@ struct EditState {
     NeuralTexture field{nullptr};
     Adam optimizer;
     std::unique_ptr<Guidance> guidance;
-    std::int64_t iteration = 0;  ///< iterations done
+    std::int64_t iteration = 0;           ///< iterations done
     std::vector<float> direction_length;  ///< a curve of the report, one value an iteration
     std::vector<float> adjustment_loss;
 };

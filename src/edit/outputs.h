@@ -1,14 +1,14 @@
 // What an edit leaves in its folder.
 #pragma once
 
-#include <vector>
-
 #include "item3d/edit/edit.h"
 #include "item3d/edit/optimize.h"
 #include "item3d/edit/scene.h"
 #include "item3d/edit/surface_means.h"
 #include "item3d/edit/timing.h"
 #include "item3d/evaluate/report.h"
+
+#include <vector>
 
 namespace item3d {
 

@@ -1,6 +1,5 @@
-#include "item3d/edit/outputs.h"
-
 #include "item3d/core/files.h"
+#include "item3d/edit/outputs.h"
 #include "item3d/evaluate/animation.h"
 #include "item3d/evaluate/contact_sheet.h"
 #include "item3d/evaluate/detail.h"
@@ -46,7 +45,8 @@ std::vector<Image> to_pictures(const torch::Tensor& linear) {
 void save_sheet(const std::filesystem::path& path, const std::vector<Image>& pictures,
                 const std::string& title) {
     std::vector<Tile> tiles;
-    for (const Image& picture : pictures) tiles.push_back({picture, ""});
+    for (const Image& picture : pictures)
+        tiles.push_back({picture, ""});
     ContactSheetOptions options;
     options.columns = 3;
     options.title = title;
@@ -55,13 +55,16 @@ void save_sheet(const std::filesystem::path& path, const std::vector<Image>& pic
 
 std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
     std::vector<ReportImage> images;
-    for (const Image& picture : pictures) images.push_back({"", encode_webp(picture)});
+    for (const Image& picture : pictures)
+        images.push_back({"", encode_webp(picture)});
     return images;
 }
 
 double detail_kept(const torch::Tensor& before, const torch::Tensor& after) {
     const auto planes = [](const torch::Tensor& linear) {
-        return linear_to_srgb(linear.narrow(3, 0, 3).clamp(0, 1)).permute({0, 3, 1, 2}).contiguous();
+        return linear_to_srgb(linear.narrow(3, 0, 3).clamp(0, 1))
+            .permute({0, 3, 1, 2})
+            .contiguous();
     };
     return detail_correlation(planes(before), planes(after), before.select(3, 3));
 }

@@ -1,10 +1,10 @@
 // A picture of the edit so far, refreshed in the output folder while it runs.
 #pragma once
 
+#include "item3d/edit/scene.h"
+
 #include <filesystem>
 #include <vector>
-
-#include "item3d/edit/scene.h"
 
 namespace item3d {
 

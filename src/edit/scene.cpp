@@ -36,11 +36,10 @@ EditScene load_scene(const EditRequest& request) {
     scene.geometry = Geometry::from_model(scene.model, device);
     scene.sphere = bounding_sphere(scene.model);
     scene.space = std::make_unique<FieldSpace>(scene.model, scene.materials);
-    scene.atlas =
-        make_atlas(scene.model, *scene.space, scene.materials, settings.texture_size);
+    scene.atlas = make_atlas(scene.model, *scene.space, scene.materials, settings.texture_size);
     scene.textured = std::make_unique<TexturedMaterials>(scene.model, device);
-    scene.source = std::make_unique<MaterialSource>(
-        scene.model, *scene.textured, *scene.space, scene.materials, scene.channels);
+    scene.source = std::make_unique<MaterialSource>(scene.model, *scene.textured, *scene.space,
+                                                    scene.materials, scene.channels);
     scene.lights = std::make_unique<LightRig>(
         settings.light, settings.resolution <= small_picture ? 64 : 256, device);
     scene.precision = choose_precision(request.precision, device);

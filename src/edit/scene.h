@@ -1,8 +1,6 @@
 // Everything that an edit reads and does not change.
 #pragma once
 
-#include <memory>
-
 #include "item3d/edit/edit.h"
 #include "item3d/edit/material_source.h"
 #include "item3d/edit/views.h"
@@ -11,6 +9,8 @@
 #include "item3d/render/geometry.h"
 #include "item3d/render/textured.h"
 #include "item3d/scene/model.h"
+
+#include <memory>
 
 namespace item3d {
 

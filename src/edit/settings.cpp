@@ -1,13 +1,11 @@
 #include "item3d/edit/settings.h"
 
-#include <algorithm>
-#include <array>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
+
+#include <algorithm>
+#include <array>
 
 namespace item3d {
 namespace {

@@ -1,14 +1,14 @@
 // What an edit does, in one value that goes into edit.json, the report, and the checkpoint.
 #pragma once
 
+#include "item3d/guidance/guidance.h"
+
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
-
-#include "item3d/guidance/guidance.h"
 
 namespace item3d {
 
@@ -20,28 +20,28 @@ struct EditSettings {
     std::string guidance = "rdl";
     std::string adjust = "learned";
     float anchor = 0.0f;
-    float cfg = 7.5f;               ///< weight of classifier-free guidance
+    float cfg = 7.5f;  ///< weight of classifier-free guidance
     float adjust_learning_rate = 0.03f;
     int iterations = 600;
-    int batch = 2;                  ///< views an iteration
-    int resolution = 512;           ///< pixels of the square picture that the prior sees
+    int batch = 2;         ///< views an iteration
+    int resolution = 512;  ///< pixels of the square picture that the prior sees
     float learning_rate = 0.01f;
     float metallic_roughness_rate = 1.0f;  ///< factor on the learning of roughness and metallic
     std::vector<float> timesteps = {0.02f, 0.98f};
     std::string weighting = "dreamfusion";
-    std::string light = "studio";   ///< preset or .hdr/.exr file
+    std::string light = "studio";     ///< preset or .hdr/.exr file
     std::string background = "vary";  ///< a colour, or "vary": another grey each iteration
-    int texture_size = 0;           ///< 0: as the input, or 1024 where it has no texture
+    int texture_size = 0;             ///< 0: as the input, or 1024 where it has no texture
     std::vector<std::string> keep = {"occlusion", "normal"};
     std::vector<std::string> material;  ///< names; empty: all
     std::uint64_t seed = 0;
 };
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(EditSettings, from, to, guidance, adjust, anchor, cfg,
-                                                adjust_learning_rate, iterations, batch, resolution,
-                                                learning_rate, metallic_roughness_rate, timesteps,
-                                                weighting, light, background, texture_size, keep,
-                                                material, seed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(EditSettings, from, to, guidance, adjust, anchor,
+                                                cfg, adjust_learning_rate, iterations, batch,
+                                                resolution, learning_rate, metallic_roughness_rate,
+                                                timesteps, weighting, light, background,
+                                                texture_size, keep, material, seed)
 
 /// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- overrides. Throws InputError
 /// when a value is of the wrong type or out of range.

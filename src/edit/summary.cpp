@@ -1,10 +1,9 @@
-#include "item3d/edit/outputs.h"
-
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/version.h"
+#include "item3d/edit/outputs.h"
 
-#include <fmt/format.h>
 #include <torch/torch.h>
 
 #include <cmath>
@@ -22,14 +21,16 @@ json means_json(const SurfaceMeans& means) {
 
 std::string hex_color(const Vec3& linear) {
     const auto byte = [](float value) {
-        return static_cast<int>(std::lround(255.0f * linear_to_srgb(std::clamp(value, 0.0f, 1.0f))));
+        return static_cast<int>(
+            std::lround(255.0f * linear_to_srgb(std::clamp(value, 0.0f, 1.0f))));
     };
     return fmt::format("#{:02x}{:02x}{:02x}", byte(linear.x), byte(linear.y), byte(linear.z));
 }
 
 json seconds_json(const StageTimes& times) {
     json seconds = json::object();
-    for (const auto& [stage, value] : times.stages()) seconds[stage] = value;
+    for (const auto& [stage, value] : times.stages())
+        seconds[stage] = value;
     seconds["total"] = times.total();
     return seconds;
 }
@@ -77,14 +78,14 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Stag
 std::vector<Score> scores_of(const Pictures& pictures) {
     const SurfaceMeans& before = pictures.means_before;
     const SurfaceMeans& after = pictures.means_after;
-    return {{"Mean base colour", hex_color(after.base_color),
-             "was " + hex_color(before.base_color)},
-            {"Metallic", fmt::format("{:.2f}", after.metallic),
-             fmt::format("was {:.2f}; 1 is bare metal", before.metallic)},
-            {"Roughness", fmt::format("{:.2f}", after.roughness),
-             fmt::format("was {:.2f}; 0 is a mirror", before.roughness)},
-            {"Detail kept", fmt::format("{:.2f}", pictures.detail_kept),
-             "correlation of luminance detail before and after; 1 keeps every line"}};
+    return {
+        {"Mean base colour", hex_color(after.base_color), "was " + hex_color(before.base_color)},
+        {"Metallic", fmt::format("{:.2f}", after.metallic),
+         fmt::format("was {:.2f}; 1 is bare metal", before.metallic)},
+        {"Roughness", fmt::format("{:.2f}", after.roughness),
+         fmt::format("was {:.2f}; 0 is a mirror", before.roughness)},
+        {"Detail kept", fmt::format("{:.2f}", pictures.detail_kept),
+         "correlation of luminance detail before and after; 1 keeps every line"}};
 }
 
 Curve curve_of(const std::string& name, const std::vector<float>& values) {
@@ -94,10 +95,11 @@ Curve curve_of(const std::string& name, const std::vector<float>& values) {
 std::vector<Chart> charts_of(const EditSettings& settings, const EditState& state) {
     if (state.direction_length.empty()) return {};
     std::vector<Chart> charts;
-    charts.push_back({settings.guidance == "sds" ? "Length of the score" : "Length of the direction",
-                      "iteration",
-                      {curve_of("direction", state.direction_length)},
-                      true});
+    charts.push_back(
+        {settings.guidance == "sds" ? "Length of the score" : "Length of the direction",
+         "iteration",
+         {curve_of("direction", state.direction_length)},
+         true});
     if (settings.guidance == "rdl" && settings.adjust == "learned") {
         charts.push_back({"Denoising loss of the source that follows the render",
                           "iteration",
@@ -113,8 +115,8 @@ TableRows settings_table(const json& summary) {
         rows.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
     }
     for (const char* key : {"prior", "device", "precision", "threads"}) {
-        rows.emplace_back(key, summary[key].is_string() ? summary[key].get<std::string>()
-                                                        : summary[key].dump());
+        rows.emplace_back(
+            key, summary[key].is_string() ? summary[key].get<std::string>() : summary[key].dump());
     }
     rows.emplace_back("peak memory",
                       fmt::format("{:.0f} MB", summary["peak_memory_bytes"].get<double>() / 1e6));
@@ -141,9 +143,9 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     report.settings = settings_table(summary);
     report.seconds = times.stages();
     for (const auto& [material, reason] : scene.atlas.remade) {
-        report.warnings.push_back(
-            "Material " + scene.model.materials[static_cast<std::size_t>(material)].name +
-            " has a new UV map: " + reason);
+        report.warnings.push_back("Material " +
+                                  scene.model.materials[static_cast<std::size_t>(material)].name +
+                                  " has a new UV map: " + reason);
     }
     report.files = {{"model.glb", "model.glb"},
                     {"edit.json", "edit.json"},

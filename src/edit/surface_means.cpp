@@ -12,8 +12,7 @@ SurfaceMeans surface_means(const Model& model, const std::vector<int>& materials
     const FieldSpace space(model, materials);
     const SurfaceSampler sampler(geometry, space);
     Random random(seed);
-    const MaterialSample sample =
-        TexturedMaterials(model).sample(sampler.sample(20000, random));
+    const MaterialSample sample = TexturedMaterials(model).sample(sampler.sample(20000, random));
     const torch::Tensor color = sample.base_color.mean(0).contiguous();
     const torch::Tensor orm = sample.orm.mean(0).contiguous();
     const float* rgb = color.data_ptr<float>();

@@ -1,12 +1,12 @@
 #include "item3d/edit/views.h"
 
-#include <array>
-#include <cmath>
-
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
 #include "item3d/evaluate/color.h"
 #include "item3d/scene/environment.h"
+
+#include <array>
+#include <cmath>
 
 namespace item3d {
 namespace {
@@ -49,8 +49,9 @@ std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std:
         const auto field_of_view = static_cast<float>(random.uniform(25.7, 45)) * degrees;
         const auto fill = static_cast<float>(random.uniform(0.8, 1.05));
         const float distance = sphere.radius / (fill * std::sin(0.5f * field_of_view));
-        const Vec3 jitter = 0.05f * sphere.radius *
-                            Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        const Vec3 jitter =
+            0.05f * sphere.radius *
+            Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         Camera camera =
             orbit_camera(sphere.center + jitter, distance, azimuth, elevation, field_of_view);
         camera.near_plane = std::max(0.02f * sphere.radius, distance - 1.5f * sphere.radius);
@@ -69,7 +70,8 @@ torch::Tensor sample_backgrounds(const std::string& background, int count, std::
         const Vec3 color = background == "vary"
                                ? Vec3(srgb_to_linear(static_cast<float>(random.uniform(0.5, 1.0))))
                                : named;
-        for (int c = 0; c < 3; ++c) colors[i][c] = color[c];
+        for (int c = 0; c < 3; ++c)
+            colors[i][c] = color[c];
     }
     return colors;
 }

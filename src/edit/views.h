@@ -1,15 +1,15 @@
 // The cameras, lights and backgrounds of an edit: another draw each iteration.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
-#include <torch/torch.h>
-
 #include "item3d/edit/settings.h"
 #include "item3d/render/environment_light.h"
 #include "item3d/scene/camera.h"
 #include "item3d/scene/model.h"
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <vector>
 
 namespace item3d {
 

@@ -1,11 +1,11 @@
 #include "item3d/guidance/guidance.h"
 
-#include <algorithm>
-
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/guidance/rdl.h"
 #include "item3d/guidance/sds.h"
+
+#include <algorithm>
 
 namespace item3d {
 namespace {

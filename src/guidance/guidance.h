@@ -1,15 +1,15 @@
 // Pictures and prompts in, gradient out. Knows images, not meshes.
 #pragma once
 
+#include "item3d/models/pipeline.h"
+#include "item3d/models/safetensors.h"
+
+#include <torch/torch.h>
+
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <torch/torch.h>
-
-#include "item3d/models/pipeline.h"
-#include "item3d/models/safetensors.h"
 
 namespace item3d {
 
@@ -17,12 +17,12 @@ namespace item3d {
 enum class Weighting { early, late, dreamfusion, uniform };
 
 struct GuidanceOptions {
-    std::string method = "rdl";       ///< one of guidance_methods()
-    std::string adjust = "learned";   ///< "off" or "learned"; only rdl has a direction to adjust
-    float guidance_scale = 7.5f;      ///< w of classifier-free guidance
-    float anchor = 0.0f;              ///< lambda of anchored RDL: adds lambda (eps_target - eps)
+    std::string method = "rdl";      ///< one of guidance_methods()
+    std::string adjust = "learned";  ///< "off" or "learned"; only rdl has a direction to adjust
+    float guidance_scale = 7.5f;     ///< w of classifier-free guidance
+    float anchor = 0.0f;             ///< lambda of anchored RDL: adds lambda (eps_target - eps)
     float adjust_learning_rate = 0.03f;
-    float min_timestep = 0.02f;       ///< as a fraction of the training timesteps
+    float min_timestep = 0.02f;  ///< as a fraction of the training timesteps
     float max_timestep = 0.98f;
     Weighting weighting = Weighting::dreamfusion;
     std::uint64_t seed = 0;

@@ -1,8 +1,8 @@
 #include "item3d/guidance/learned_source.h"
 
-#include <cmath>
-
 #include "item3d/core/error.h"
+
+#include <cmath>
 
 namespace item3d {
 namespace {

@@ -1,16 +1,17 @@
 #include "item3d/guidance/noised_latents.h"
 
-#include <chrono>
+#include "item3d/core/error.h"
+#include "item3d/core/random.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 
-#include "item3d/core/error.h"
-#include "item3d/core/random.h"
+#include <chrono>
 
 namespace item3d {
 
 double seconds_now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
 }
 
 float root_mean_square(const torch::Tensor& tensor) {
@@ -19,10 +20,14 @@ float root_mean_square(const torch::Tensor& tensor) {
 
 torch::Tensor timestep_weight(Weighting weighting, const torch::Tensor& alphas_cumprod) {
     switch (weighting) {
-        case Weighting::early: return alphas_cumprod.sqrt() * (1 - alphas_cumprod);
-        case Weighting::late: return 1 / (1 - alphas_cumprod);
-        case Weighting::dreamfusion: return 1 - alphas_cumprod;
-        case Weighting::uniform: return torch::ones_like(alphas_cumprod);
+        case Weighting::early:
+            return alphas_cumprod.sqrt() * (1 - alphas_cumprod);
+        case Weighting::late:
+            return 1 / (1 - alphas_cumprod);
+        case Weighting::dreamfusion:
+            return 1 - alphas_cumprod;
+        case Weighting::uniform:
+            return torch::ones_like(alphas_cumprod);
     }
     ITEM3D_CHECK(false, "unknown weighting");
 }
@@ -37,7 +42,8 @@ torch::Tensor twice(const torch::Tensor& rows) {
 
 NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input,
                             const GuidanceOptions& options, std::int64_t iteration) {
-    ITEM3D_CHECK(input.images.dim() == 4 && input.images.size(1) == 3, "images must be [N, 3, H, W]");
+    ITEM3D_CHECK(input.images.dim() == 4 && input.images.size(1) == 3,
+                 "images must be [N, 3, H, W]");
     NoisedLatents result;
     const double start = seconds_now();
     result.latents = pipeline.encode_image(input.images * 2 - 1);
@@ -46,8 +52,8 @@ NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input
     const torch::Tensor& schedule = pipeline.scheduler.alphas_cumprod();
     const auto training_steps = static_cast<double>(schedule.size(0));
     Random random(options.seed, 1, static_cast<std::uint64_t>(iteration) * 2);
-    const auto timestep = static_cast<std::int64_t>(
-        random.uniform(options.min_timestep * training_steps, options.max_timestep * training_steps));
+    const auto timestep = static_cast<std::int64_t>(random.uniform(
+        options.min_timestep * training_steps, options.max_timestep * training_steps));
     auto generator = at::detail::createCPUGenerator(random.bits());
 
     const torch::NoGradGuard no_grad;
@@ -55,7 +61,8 @@ NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input
     const std::int64_t rows = result.latents.size(0);
     result.timesteps = torch::full({rows}, timestep, torch::kInt64).to(device);
     result.noise = torch::randn(result.latents.sizes(), generator, torch::kFloat32).to(device);
-    result.alphas_cumprod = schedule[timestep].to(device).to(torch::kFloat32).expand({rows, 1, 1, 1});
+    result.alphas_cumprod =
+        schedule[timestep].to(device).to(torch::kFloat32).expand({rows, 1, 1, 1});
     result.weight = timestep_weight(options.weighting, result.alphas_cumprod);
     result.noisy = result.alphas_cumprod.sqrt() * result.latents.detach() +
                    (1 - result.alphas_cumprod).sqrt() * result.noise;

@@ -21,12 +21,13 @@ PromptPair predict_pair(const Pipeline& pipeline, const NoisedLatents& start,
                         const torch::Tensor& target_text, const torch::Tensor& source_text) {
     const torch::NoGradGuard no_grad;
     const std::int64_t rows = start.noisy.size(0);
-    const auto both = pipeline
-                          .predict_noise(twice(start.noisy), twice(start.timesteps),
-                                         torch::cat({repeat_text(target_text, rows),
-                                                     repeat_text(source_text, rows)}),
-                                         twice(start.condition))
-                          .chunk(2);
+    const auto both =
+        pipeline
+            .predict_noise(
+                twice(start.noisy), twice(start.timesteps),
+                torch::cat({repeat_text(target_text, rows), repeat_text(source_text, rows)}),
+                twice(start.condition))
+            .chunk(2);
     return {both[0], both[1]};
 }
 
@@ -48,7 +49,8 @@ GuidanceOutput RelativeDirection::step(const GuidanceInput& input, std::int64_t 
     const torch::NoGradGuard no_grad;
     const torch::Tensor direction = predictions.target - predictions.source;
     torch::Tensor gradient = options_.guidance_scale * direction;
-    if (options_.anchor != 0) gradient = gradient + options_.anchor * (predictions.target - start.noise);
+    if (options_.anchor != 0)
+        gradient = gradient + options_.anchor * (predictions.target - start.noise);
 
     GuidanceOutput output;
     output.latents = start.latents;

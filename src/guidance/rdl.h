@@ -5,10 +5,10 @@
 // anchor (--anchor): a pull to the target's own score that plain RDL (lambda 0) lacks.
 #pragma once
 
-#include <optional>
-
 #include "item3d/guidance/guidance.h"
 #include "item3d/guidance/learned_source.h"
+
+#include <optional>
 
 namespace item3d {
 

@@ -18,10 +18,10 @@ GuidanceOutput ScoreDistillation::step(const GuidanceInput& input, std::int64_t 
     const torch::NoGradGuard no_grad;
     const double before = seconds_now();
     const torch::Tensor text = text_.repeat_interleave(rows, 0);
-    const auto predictions =
-        pipeline_
-            ->predict_noise(twice(start.noisy), twice(start.timesteps), text, twice(start.condition))
-            .chunk(2);
+    const auto predictions = pipeline_
+                                 ->predict_noise(twice(start.noisy), twice(start.timesteps), text,
+                                                 twice(start.condition))
+                                 .chunk(2);
     const torch::Tensor guided =
         predictions[1] + options_.guidance_scale * (predictions[0] - predictions[1]);
     const torch::Tensor direction = guided - start.noise;

@@ -41,6 +41,26 @@ void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencod
     write_json(folder / "model_index.json", model_index());
 }
 
+namespace {
+
+/// Settings of an edit that suit a prior of this size; item3d edit reads them beside the weights.
+nlohmann::json edit_defaults() {
+    return {{"guidance", "rdl"},
+            {"adjust", "learned"},
+            {"cfg", 7.5},
+            {"iterations", 150},
+            {"batch", 1},
+            {"resolution", picture_size},
+            {"learning_rate", 0.01},
+            {"timesteps", {0.02, 0.98}},
+            {"weighting", "dreamfusion"},
+            {"light", "studio"},
+            {"background", "vary"},
+            {"keep", {"occlusion", "normal"}}};
+}
+
+}  // namespace
+
 void export_diffusion(const fs::path& folder, const UNet2DCondition& unet,
                       const ClipTextModel& text, const nlohmann::json& train) {
     for (const char* part : {"unet", "text_encoder"})
@@ -55,6 +75,7 @@ void export_diffusion(const fs::path& folder, const UNet2DCondition& unet,
     prior["name"] = "item3d embedded prior";
     prior["resolution"] = picture_size;
     prior["train"] = train;
+    prior["defaults"] = edit_defaults();
     write_json(folder / "prior.json", prior);
 }
 

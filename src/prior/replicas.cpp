@@ -146,6 +146,9 @@ void ReplicaGroup::load_state(const std::vector<std::pair<std::string, torch::Te
             steps_ = tensor.item<std::int64_t>();
             continue;
         }
+        const bool ours = name == "average" || name == "first_moment" || name == "second_moment" ||
+                          name == "values";
+        if (!ours) continue;  // the caller's own tensors share the checkpoint
         ITEM3D_CHECK(tensor.numel() == average_.numel(), "the state of another model: " + name);
         if (name == "average") average_.copy_(tensor);
         if (name == "first_moment") first_moment_.copy_(tensor);
