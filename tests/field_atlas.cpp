@@ -160,6 +160,19 @@ TEST_F(AtlasTest, NewUvMapsAreValidAndShareOneAtlas) {
     EXPECT_LT(unused, 256 * 256 * 2 / 3);
 }
 
+TEST_F(AtlasTest, UnwrapsTinyAndFarAwayModels) {
+    for (const float scale : {1e-6f, 1.0f}) {
+        Model model = make_model(make_quad());
+        Primitive& quad = model.primitives[0];
+        quad.uvs.clear();
+        const Vec3 offset = scale == 1.0f ? Vec3(5e6f, -3e6f, 1e6f) : Vec3(0.0f);
+        for (Vec3& p : quad.positions)
+            p = p * scale * 4.0f + offset;
+        quad = apply(unwrap({&quad}, 256)[0], quad);
+        EXPECT_EQ(find_uv_problem(model, {0}), "") << scale;
+    }
+}
+
 TEST_F(AtlasTest, InstancesAreUnwrappedOnceAndLieInTheFirstOnesPlace) {
     Model model = make_model(make_sphere());
     model.primitives[0].uvs.clear();
@@ -192,6 +205,8 @@ TEST_F(AtlasTest, SizesFollowTheTextureUnlessOneIsAskedFor) {
     EXPECT_EQ(atlas_size(model, 0, 0), std::make_pair(96, 48));
     EXPECT_EQ(atlas_size(model, 0, 512), std::make_pair(512, 256));
     EXPECT_EQ(atlas_size(model, 0, 100000), std::make_pair(4096, 2048));
+    EXPECT_EQ(atlas_size(model, 0, 0, true), std::make_pair(1024, 1024));
+    EXPECT_EQ(atlas_size(model, 0, 512, true), std::make_pair(512, 512));
     model.materials[0].base_color_texture = -1;
     EXPECT_EQ(atlas_size(model, 0, 0), std::make_pair(1024, 1024));
 }

@@ -11,6 +11,7 @@ namespace item3d {
 namespace {
 
 constexpr int largest_texture = 4096;
+constexpr int default_texture = 1024;
 constexpr int overlap_resolution = 1024;
 /// Below these shares of the surface a flaw costs less than the UV map's loss would.
 constexpr double tolerated_overlap = 0.005;
@@ -125,13 +126,15 @@ std::string find_uv_problem(const Model& model, const std::vector<int>& primitiv
     return "";
 }
 
-std::pair<int, int> atlas_size(const Model& model, int material, int texture_size) {
+std::pair<int, int> atlas_size(const Model& model, int material, int texture_size,
+                               bool has_new_uvs) {
     const int texture = model.materials[static_cast<std::size_t>(material)].base_color_texture;
-    double width = 1024.0, height = 1024.0;
+    double width = default_texture, height = default_texture;
     if (texture >= 0 && !model.textures[static_cast<std::size_t>(texture)].image.empty()) {
         width = model.textures[static_cast<std::size_t>(texture)].image.width;
         height = model.textures[static_cast<std::size_t>(texture)].image.height;
     }
+    if (has_new_uvs) width = height = std::max({width, height, double{default_texture}});
     const double longest = std::max(width, height);
     const double wanted =
         std::min<double>(largest_texture, texture_size > 0 ? texture_size : longest);
@@ -168,7 +171,7 @@ Atlas make_atlas(const Model& model, const FieldSpace& space, const std::vector<
             for (const int index : firsts) {
                 parts.push_back(&model.primitives[static_cast<std::size_t>(index)]);
             }
-            const auto [width, height] = atlas_size(model, material, texture_size);
+            const auto [width, height] = atlas_size(model, material, texture_size, true);
             edits = unwrap(parts, std::max(width, height));
         }
         for (std::size_t k = 0; k < firsts.size(); ++k) {

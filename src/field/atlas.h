@@ -32,8 +32,11 @@ struct Atlas {
 std::string find_uv_problem(const Model& model, const std::vector<int>& primitives);
 
 /// Width and height of the picture that a material is baked to: longest edge `texture_size`, or as
-/// its base colour texture for 0; 1024 x 1024 without one; at most 4096.
-std::pair<int, int> atlas_size(const Model& model, int material, int texture_size);
+/// its base colour texture for 0; 1024 x 1024 without one; at most 4096. With a new UV map it is
+/// square, and for 0 at least 1024: a small texture that was tiled or shared needs more texels when
+/// each place of the surface gets its own.
+std::pair<int, int> atlas_size(const Model& model, int material, int texture_size,
+                               bool has_new_uvs = false);
 
 /// Decides for each material, has xatlas make new UVs where needed, and says so in a note.
 Atlas make_atlas(const Model& model, const FieldSpace& space, const std::vector<int>& materials,

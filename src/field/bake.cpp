@@ -70,8 +70,8 @@ class MaterialBaker {
     /// Without a size from the user each image keeps its own.
     Size slot_size(int own_texture) const {
         const Texture* own = texture(own_texture);
-        if (options_.texture_size > 0 || own == nullptr || own->image.empty()) {
-            return atlas_size(scene_.model, index_, options_.texture_size);
+        if (options_.texture_size > 0 || !is_own_ || own == nullptr || own->image.empty()) {
+            return atlas_size(scene_.model, index_, options_.texture_size, !is_own_);
         }
         const double longest = std::max(own->image.width, own->image.height);
         const double scale = std::min(1.0, 4096.0 / longest);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace item3d {
@@ -30,12 +31,19 @@ std::vector<PrimitiveEdit> unwrap(const std::vector<const Primitive*>& primitive
     double area = 0.0;
     for (const Primitive* primitive : primitives)
         area += surface_area(*primitive);
-    // xatlas treats small triangles as degenerate in absolute terms: work at a size of its liking.
+    // xatlas treats small triangles as degenerate in absolute terms and loses digits far from the
+    // origin: work at a size and place of its liking.
+    Vec3 low(std::numeric_limits<float>::max()), high(-std::numeric_limits<float>::max());
+    for (const Primitive* primitive : primitives) {
+        for (const Vec3& p : primitive->positions)
+            low = glm::min(low, p), high = glm::max(high, p);
+    }
+    const Vec3 center = 0.5f * low + 0.5f * high;
     const float scale = area > 0.0 ? static_cast<float>(std::sqrt(100.0 / area)) : 1.0f;
     for (const Primitive* primitive : primitives) {
         std::vector<Vec3> scaled = primitive->positions;
         for (Vec3& p : scaled)
-            p *= scale;
+            p = (p - center) * scale;
         xatlas::MeshDecl mesh;
         mesh.vertexCount = static_cast<std::uint32_t>(scaled.size());
         mesh.vertexPositionData = scaled.data();
