@@ -276,8 +276,12 @@ class GltfPatch {
         const Accessor source = read_accessor(document_, index);
         Bytes bytes(edit.source_vertices.size() * source.element_size);
         for (std::size_t i = 0; i < edit.source_vertices.size(); ++i) {
-            ITEM3D_CHECK(edit.source_vertices[i] < source.count,
-                         "a PrimitiveEdit names a vertex too many");
+            if (edit.source_vertices[i] >= source.count) {
+                root_of(document_)
+                    .item("accessors", index)
+                    .fail(fmt::format("has {} elements, fewer than its primitive's vertices",
+                                      source.count));
+            }
             std::memcpy(bytes.data() + i * source.element_size,
                         source.bytes.data() + edit.source_vertices[i] * source.element_size,
                         source.element_size);

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 
 namespace item3d {
 namespace {
@@ -71,43 +72,108 @@ struct Window {
           height(static_cast<std::int64_t>(box.max.y) - box.min.y + 1) {}
 };
 
-// The library takes memory for attributes by the sizes that they declare, before it reads them.
-void check_attributes(std::span<const std::uint8_t> bytes, bool several_parts,
-                      const std::string& subject) {
-    std::size_t at = 8;
-    const auto fail = [&]() {
-        throw InputError(subject, "the OpenEXR header is damaged or cut short", "export it again");
-    };
-    const auto read_name = [&] {
-        const std::size_t begin = at;
-        while (at < bytes.size() && bytes[at] != 0)
-            ++at;
-        if (at == bytes.size()) fail();
-        ++at;
-        return std::string_view(reinterpret_cast<const char*>(bytes.data()) + begin,
-                                at - 1 - begin);
-    };
-    const auto read_size = [&](std::size_t limit) {
-        std::int32_t size = -1;
-        if (bytes.size() - at >= 4) std::memcpy(&size, bytes.data() + at, 4);
-        at += 4;
-        if (size < 0 || at > limit || static_cast<std::size_t>(size) > limit - at) fail();
-        return static_cast<std::size_t>(size);
-    };
-    for (bool is_first = true;; is_first = false) {
-        std::string_view name = read_name();
-        if (name.empty() && !is_first) return;  // the end of the list of headers
-        for (; !name.empty(); name = read_name()) {
-            const bool is_list = read_name() == "stringvector";
-            const std::size_t size = read_size(bytes.size());
-            const std::size_t end = at + size;
-            while (is_list && at < end)
-                at += read_size(end);
-            at = end;
+// The library takes memory for attributes by the sizes that they declare before it reads them, and
+// reads some types without regard to that size. So the attributes are walked first: each must lie
+// in the file and be as long as its type says.
+class AttributeWalk {
+  public:
+    AttributeWalk(std::span<const std::uint8_t> bytes, const std::string& subject)
+        : bytes_(bytes), subject_(subject) {}
+
+    void check(bool several_parts) {
+        for (bool is_first = true;; is_first = false) {
+            std::string_view name = read_name();
+            if (name.empty() && !is_first) return;  // the end of the list of headers
+            for (; !name.empty(); name = read_name())
+                check_attribute();
+            if (!several_parts) return;
         }
-        if (!several_parts) return;
     }
-}
+
+  private:
+    [[noreturn]] void fail() const {
+        throw InputError(subject_, "the OpenEXR header is damaged or cut short", "export it again");
+    }
+
+    std::string_view read_name() {
+        const std::size_t begin = at_;
+        while (at_ < bytes_.size() && bytes_[at_] != 0)
+            ++at_;
+        if (at_ == bytes_.size()) fail();
+        ++at_;
+        return {reinterpret_cast<const char*>(bytes_.data()) + begin, at_ - 1 - begin};
+    }
+
+    std::uint32_t read_word() {
+        if (bytes_.size() - at_ < 4) fail();
+        std::uint32_t word;
+        std::memcpy(&word, bytes_.data() + at_, 4);
+        at_ += 4;
+        return word;
+    }
+
+    void check_attribute() {
+        const std::string type(read_name());
+        const std::size_t size = read_word();
+        if (size > bytes_.size() - at_) fail();
+        const std::size_t end = at_ + size;
+        const auto fixed = fixed_sizes().find(type);
+        if (fixed != fixed_sizes().end() && size != fixed->second) fail();
+        if (type == "chlist") {
+            // Names with 16 bytes each, and an empty name.
+            while (!read_name().empty()) {
+                if (at_ > end || end - at_ < 17) fail();
+                at_ += 16;
+            }
+            if (at_ != end) fail();
+        } else if (type == "stringvector") {
+            while (at_ < end) {
+                const std::size_t length = read_word();
+                if (at_ > end || length > end - at_) fail();
+                at_ += length;
+            }
+        } else if (type == "preview") {
+            const std::uint64_t width = read_word();
+            const std::uint64_t height = read_word();
+            if (width > size || height > size || 8 + 4 * width * height != size) fail();
+        }
+        at_ = end;
+    }
+
+    static const std::map<std::string, std::size_t>& fixed_sizes() {
+        static const std::map<std::string, std::size_t> sizes{
+            {"box2f", 16},
+            {"box2i", 16},
+            {"chromaticities", 32},
+            {"compression", 1},
+            {"double", 8},
+            {"envmap", 1},
+            {"deepImageState", 1},
+            {"float", 4},
+            {"int", 4},
+            {"m33d", 72},
+            {"m33f", 36},
+            {"m44d", 128},
+            {"m44f", 64},
+            {"v2d", 16},
+            {"v2f", 8},
+            {"v2i", 8},
+            {"v3d", 24},
+            {"v3f", 12},
+            {"v3i", 12},
+            {"keycode", 28},
+            {"rational", 8},
+            {"tiledesc", 9},
+            {"timecode", 8},
+            {"lineOrder", 1},
+        };
+        return sizes;
+    }
+
+    std::span<const std::uint8_t> bytes_;
+    std::string subject_;
+    std::size_t at_ = 8;
+};
 
 // InputFile allocates tables by what the header says: look at the header alone first.
 void check_headers(std::span<const std::uint8_t> bytes, const std::string& subject) {
@@ -117,7 +183,7 @@ void check_headers(std::span<const std::uint8_t> bytes, const std::string& subje
     std::uint32_t version;
     std::memcpy(&version, words + 4, 4);
     const bool several_parts = Imf::isMultiPart(static_cast<int>(version));
-    check_attributes(bytes, several_parts, subject);
+    AttributeWalk(bytes, subject).check(several_parts);
     do {
         Imf::Header header;
         int header_version = static_cast<int>(version);
