@@ -4,7 +4,7 @@
 #include "item3d/field/neural_texture.h"
 
 #include <benchmark/benchmark.h>
-#include <torch/torch.h>
+#include <torch/types.h>
 
 namespace item3d {
 namespace {

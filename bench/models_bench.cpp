@@ -6,7 +6,8 @@
 
 #include <ATen/autocast_mode.h>
 #include <benchmark/benchmark.h>
-#include <torch/torch.h>
+#include <torch/csrc/autograd/autograd.h>
+#include <torch/types.h>
 
 namespace item3d {
 namespace {

@@ -150,4 +150,83 @@ TEST_F(Program, MalformedFilesAreRefusedOrWarnedAbout) {
     }
 }
 
+/// item3d edit with a prior of random weights that is small enough to run in a test.
+class EditProgram : public Program {
+  protected:
+    static std::string prior() { return ITEM3D_TEST_DATA "/models/pipeline_sd"; }
+    std::string edit(const std::string& rest, const std::string& prior_folder = prior()) const {
+        return "edit " + quoted(cube_) + " --prior '" + prior_folder +
+               "' --resolution 32 --batch 1 --iterations 3 --texture-size 64 " + rest;
+    }
+    std::string to(const std::string& name) const {
+        return " --from 'a red cube' --to 'a blue cube' -o " + quoted(folder_ / name);
+    }
+    /// A copy of the prior, to be broken.
+    fs::path copy_of_prior(const std::string& name) const {
+        fs::copy(prior(), folder_ / name, fs::copy_options::recursive);
+        return folder_ / name;
+    }
+};
+
+TEST_F(EditProgram, WhatItCannotUseIsThreeAndNothingIsLeft) {
+    expect_error(edit("--from '' --to 'a blue cube' -o " + quoted(folder_ / "out")), 3, "--from");
+    expect_error(edit("--from 'a red cube' --to ' ' -o " + quoted(folder_ / "out")), 3, "--to");
+    expect_error(edit(to("cube.obj/out")), 3, "out");
+    expect_error(edit(to("out") + " --material glass"), 3, "glass");
+    expect_error(edit(to("out") + " --keep everything"), 3, "--keep");
+    expect_error(edit(to("out") + " --light /nowhere.hdr"), 3, "/nowhere.hdr");
+    std::ofstream(folder_ / "points.obj") << "v 0 0 0\nv 1 0 0\n";
+    std::ofstream(folder_ / "nan.obj") << "v 0 nan 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+    for (const char* name : {"points.obj", "nan.obj", "missing.obj"}) {
+        expect_error("edit " + quoted(folder_ / name) + " --prior '" + prior() + "'" + to("out"), 3,
+                     name);
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "model.glb"));
+}
+
+TEST_F(EditProgram, BrokenPriorsAreThreeAndNamed) {
+    expect_error(edit(to("out"), "/nowhere/prior"), 3, "/nowhere/prior");
+
+    const fs::path cut = copy_of_prior("cut");
+    const fs::path weights = cut / "unet" / "diffusion_pytorch_model.safetensors";
+    fs::resize_file(weights, fs::file_size(weights) / 2);
+    expect_error(edit(to("out"), cut.string()), 3, "diffusion_pytorch_model.safetensors");
+
+    const fs::path odd = copy_of_prior("odd");
+    const fs::path config = odd / "unet" / "config.json";
+    std::string text = read_file(config);
+    const std::size_t at = text.find("\"cross_attention_dim\": ");
+    ASSERT_NE(at, std::string::npos);
+    text.insert(text.find(':', at) + 2, "1");
+    std::ofstream(config) << text;
+    expect_error(edit(to("out"), odd.string()), 3, "unet");
+
+    const fs::path lost = copy_of_prior("lost");
+    fs::remove(lost / "vae" / "config.json");
+    expect_error(edit(to("out"), lost.string()), 3, "vae");
+}
+
+TEST_F(EditProgram, FullDiskIsFourAndLeavesNoHalfModel) {
+    // 64 KiB a file: too little for the checkpoint, which comes first.
+    expect_error(edit(to("out")), 4, "checkpoint", "ulimit -f 128; ");
+    for (const auto& entry : fs::directory_iterator(folder_ / "out"))
+        ADD_FAILURE() << "left behind: " << entry.path();
+}
+
+TEST_F(EditProgram, KilledEditGoesOnToTheSameBytes) {
+    ASSERT_EQ(run(edit(to("whole"))).code, 0);
+    // Killed as soon as there is something to go on from.
+    const std::string killed = "'" ITEM3D_PROGRAM "' " + edit(to("parts")) +
+                               " >/dev/null 2>&1 & pid=$!; while kill -0 $pid 2>/dev/null && "
+                               "! [ -e " +
+                               quoted(folder_ / "parts" / "checkpoint.safetensors") +
+                               " ]; do sleep 0.02; done; kill -9 $pid; wait $pid";
+    EXPECT_NE(std::system(killed.c_str()), 0);
+    EXPECT_FALSE(fs::exists(folder_ / "parts" / "model.glb"));
+    const Result resumed = run(edit(to("parts") + " --resume"));
+    ASSERT_EQ(resumed.code, 0) << resumed.error;
+    EXPECT_EQ(read_file(folder_ / "whole" / "model.glb"),
+              read_file(folder_ / "parts" / "model.glb"));
+}
+
 }  // namespace

@@ -4,6 +4,8 @@
 #include "item3d/core/files.h"
 #include "item3d/edit/checkpoint.h"
 #include "item3d/edit/edit.h"
+#include "item3d/edit/material_source.h"
+#include "item3d/edit/metals.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 
@@ -190,6 +192,40 @@ TEST_F(EditTest, unknown_material_and_unwritable_output_are_refused) {
     edit = request("out", 1);
     edit.output = folder_ / "cube.glb" / "out";
     EXPECT_THROW(edit_model(edit), InputError);
+}
+
+TEST_F(EditTest, metallic_begins_half_way_where_only_one_prompt_names_a_metal) {
+    const auto metallic_after = [&](const std::string& name, const std::string& to) {
+        EditRequest edit = request(name, 1);
+        edit.settings.to = to;
+        edit.settings.learning_rate = 1e-6f;
+        return edit_model(edit)["scores"]["after"]["metallic"].get<double>();
+    };
+    EXPECT_NEAR(metallic_after("metal", "a golden cube"), 0.5, 0.05);
+    EXPECT_NEAR(metallic_after("paint", "a blue cube"), 0.0, 0.01);
+}
+
+TEST_F(EditTest, metallic_is_left_alone_where_no_metal_is_named) {
+    const auto is_edited = [&](const std::string& to, const std::string& metallic) {
+        EditSettings settings = request("out", 1).settings;
+        settings.to = to;
+        settings.metallic = metallic;
+        return edited_channels(settings).metallic;
+    };
+    EXPECT_FALSE(is_edited("a wooden cube", "auto"));
+    EXPECT_TRUE(is_edited("a wooden cube", "always"));
+    EXPECT_TRUE(is_edited("a copper cube", "auto"));
+}
+
+TEST(Metals, are_found_as_whole_words) {
+    EXPECT_TRUE(names_metal("a Golden mug"));
+    EXPECT_TRUE(names_metal("a mug of gold"));
+    EXPECT_TRUE(names_metal("gold"));
+    EXPECT_FALSE(names_metal("a marigold"));
+    EXPECT_FALSE(names_metal("a goldfish in a tinderbox"));
+    EXPECT_FALSE(names_metal(""));
+    EXPECT_TRUE(crosses_metallic("a steel door", "a wooden door"));
+    EXPECT_FALSE(crosses_metallic("a silver ring", "a golden ring"));
 }
 
 TEST(EditSettings, prior_defaults_and_overrides_are_merged_and_checked) {

@@ -2,6 +2,7 @@
 #include "item3d/field/adam.h"
 
 #include <gtest/gtest.h>
+#include <torch/optim/adam.h>
 
 namespace item3d {
 namespace {

@@ -161,6 +161,23 @@ TEST(Fit, ReachesTheTexturesOnASphere) {
     EXPECT_GT(sphere.result.orm_psnr, 27.0);  // metallic jumps from 0 to 1 along a meridian
 }
 
+TEST(Fit, ShiftsMetallicToAMean) {
+    Fitted sphere(make_model(make_sphere()), 50);
+    const torch::NoGradGuard no_grad;
+    const auto sample = [&] {
+        Random random(3);
+        const Surface surface = SurfaceSampler(sphere.geometry, sphere.space).sample(2000, random);
+        return sphere.field->forward(sphere.space.positions(surface));
+    };
+    const MaterialSample before = sample();
+    for (const float mean : {0.5f, 0.2f, 0.8f}) {
+        shift_metallic(sphere.field, sphere.geometry, sphere.space, mean);
+        EXPECT_NEAR(sample().orm.select(1, 2).mean().item<float>(), mean, 0.02f);
+    }
+    EXPECT_TRUE(torch::equal(sample().base_color, before.base_color));
+    EXPECT_TRUE(torch::equal(sample().orm.select(1, 1), before.orm.select(1, 1)));
+}
+
 TEST(Fit, IsDeterministic) {
     const Fitted one(make_model(make_quad()), 20);
     const Fitted two(make_model(make_quad()), 20);

@@ -131,6 +131,40 @@ TEST(LearnedSource, lowers_the_denoising_loss_and_survives_a_checkpoint) {
                              resumed->step(input, 1).latents_gradient));
 }
 
+TEST(LearnedSource, more_samples_change_its_step_but_not_the_first_prediction) {
+    const auto pipeline = load_pipeline();
+    GuidanceOptions one, four;
+    four.adjust_samples = 4;
+    const auto narrow = make_guidance(pipeline, "a red mug", "a blue mug", one);
+    const auto wide = make_guidance(pipeline, "a red mug", "a blue mug", four);
+    const GuidanceInput input = random_input(4);
+    const auto gradient = [&](Guidance& guidance, int iteration) {
+        return guidance.step(input, iteration).latents_gradient;
+    };
+    EXPECT_LT(relative_error(gradient(*wide, 0), gradient(*narrow, 0)), 1e-4);
+    EXPECT_GT(relative_error(gradient(*wide, 1), gradient(*narrow, 1)), 1e-3);
+}
+
+TEST(NoisedLatents, renoised_rows_spread_over_the_timesteps) {
+    const auto pipeline = load_pipeline();
+    GuidanceOptions options;
+    options.min_timestep = 0.2f;
+    options.max_timestep = 0.6f;
+    const NoisedLatents start = noise_latents(*pipeline, random_input(5), options, 0);
+    const NoisedLatents more = renoise_latents(*pipeline, start, options, 0, 4);
+    const auto steps = static_cast<double>(pipeline->scheduler.alphas_cumprod().size(0));
+    ASSERT_EQ(more.timesteps.size(0), 8);
+    for (std::int64_t i = 0; i < 8; ++i) {
+        const double part = static_cast<double>(more.timesteps[i].item<std::int64_t>()) / steps;
+        const double quarter = 0.2 + 0.1 * static_cast<double>(i % 4);
+        EXPECT_GE(part, quarter - 1.0 / steps);
+        EXPECT_LE(part, quarter + 0.1);
+    }
+    EXPECT_TRUE(torch::equal(more.latents[0], more.latents[3]));
+    EXPECT_FALSE(torch::allclose(more.noise[0], more.noise[1]));
+    EXPECT_FALSE(more.noisy.requires_grad());
+}
+
 TEST(Guidance, empty_prompts_and_unknown_names_are_refused) {
     const auto pipeline = load_pipeline();
     EXPECT_THROW(make_guidance(pipeline, " ", "a mug", {}), InputError);

@@ -3,6 +3,9 @@
 #include "item3d/models/weights.h"
 #include "models_testing.h"
 
+#include <torch/csrc/autograd/autograd.h>
+#include <torch/optim/adam.h>
+
 namespace item3d {
 namespace {
 

@@ -4,6 +4,8 @@
 #include "item3d/models/pipeline.h"
 #include "models_testing.h"
 
+#include <torch/csrc/autograd/autograd.h>
+
 namespace item3d {
 namespace {
 

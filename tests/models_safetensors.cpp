@@ -5,6 +5,8 @@
 #include "item3d/models/weights.h"
 #include "models_testing.h"
 
+#include <torch/nn/modules/linear.h>
+
 #include <cstring>
 
 namespace item3d {

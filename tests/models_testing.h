@@ -3,6 +3,7 @@
 
 #include "item3d/models/safetensors.h"
 
+#include <ATen/Parallel.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -15,7 +16,7 @@ namespace item3d::testing {
 
 /// The networks here are so small that more threads would only wait for one another.
 inline const bool one_thread = [] {
-    torch::set_num_threads(1);
+    at::set_num_threads(1);
     return true;
 }();
 

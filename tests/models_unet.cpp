@@ -6,6 +6,7 @@
 #include "models_testing.h"
 
 #include <ATen/autocast_mode.h>
+#include <torch/csrc/autograd/autograd.h>
 
 namespace item3d {
 namespace {

@@ -88,7 +88,8 @@ TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
             high = std::max<int>(high, view.pixel[i] % view_size);
             const Vec3 p = view.position_at(i), n = view.normal_at(i);
             EXPECT_LT(glm::length(p), 1.01f);
-            EXPECT_GT(glm::dot(n, view.camera - p), -1e-3f);
+            // A smooth normal may turn away a little at the silhouette of a coarse mesh.
+            EXPECT_GT(glm::dot(n, glm::normalize(view.camera - p)), -.05f);
         }
         const double part = static_cast<double>(high - low + 1) / view_size;
         EXPECT_GT(part, .5);

@@ -5,7 +5,7 @@
 #include "item3d/render/shade.h"
 
 #include <gtest/gtest.h>
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <cmath>
 #include <functional>
@@ -79,14 +79,10 @@ inline torch::Tensor unit_rows(const torch::Tensor& rows) {
 inline torch::Tensor smooth_cube(int size, std::uint64_t seed = 3) {
     torch::manual_seed(seed);
     const torch::Tensor coarse = torch::rand({1, 3, 6, 3, 3}) + 0.3f;
-    namespace F = torch::nn::functional;
     std::vector<torch::Tensor> faces;
     for (int face = 0; face < 6; ++face)
         faces.push_back(
-            F::interpolate(coarse.select(2, face), F::InterpolateFuncOptions()
-                                                       .size(std::vector<std::int64_t>{size, size})
-                                                       .mode(torch::kBicubic)
-                                                       .align_corners(true))
+            torch::upsample_bicubic2d(coarse.select(2, face), {size, size}, /*align_corners=*/true)
                 .squeeze(0)
                 .permute({1, 2, 0}));
     return torch::stack(faces).contiguous();

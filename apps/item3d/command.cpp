@@ -3,7 +3,9 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 
+#include <ATen/Parallel.h>
 #include <omp.h>
+#include <torch/cuda.h>
 
 #include <cerrno>
 #include <cstdio>

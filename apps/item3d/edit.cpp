@@ -61,6 +61,8 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
         command, options, "--keep", "keep",
         "Channels not to touch: base_color, occlusion, roughness, metallic, normal; or nothing")
         ->delimiter(',');
+    setting<std::string>(command, options, "--metallic", "metallic",
+                         "auto: edit metallic where a sentence names a metal; always: in any case");
     setting<std::vector<std::string>>(command, options, "--material", "material",
                                       "Edit only the materials of these names")
         ->delimiter(',');

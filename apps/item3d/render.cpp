@@ -103,18 +103,19 @@ std::vector<Camera> choose_cameras(const RenderCommand& options, const Model& mo
 /// World-space normal with the material's normal map applied, [P, 3].
 torch::Tensor shading_normal(const Surface& surface, const MaterialSample& sample) {
     if (!sample.normal.defined()) return surface.normal;
-    namespace F = torch::nn::functional;
-    const auto unit = F::NormalizeFuncOptions().dim(-1);
+    const auto unit = [](const torch::Tensor& v) {
+        return v / v.norm(2, {-1}, /*keepdim=*/true).clamp_min(1e-12);
+    };
     const torch::Tensor& n = surface.normal;
     const torch::Tensor along = surface.tangent.narrow(-1, 0, 3);
-    const torch::Tensor tangent = F::normalize(along - n * (n * along).sum(-1, true), unit);
+    const torch::Tensor tangent = unit(along - n * (n * along).sum(-1, true));
     const torch::Tensor bitangent =
         torch::linalg_cross(n, tangent) * surface.tangent.narrow(-1, 3, 1);
     const torch::Tensor mapped = tangent * sample.normal.narrow(-1, 0, 1) +
                                  bitangent * sample.normal.narrow(-1, 1, 1) +
                                  n * sample.normal.narrow(-1, 2, 1);
     // Where there are no UVs the tangent is zero and the surface's own normal remains.
-    return torch::where(along.square().sum(-1, true) > 0, F::normalize(mapped, unit), n);
+    return torch::where(along.square().sum(-1, true) > 0, unit(mapped), n);
 }
 
 /// Draws what the options ask for: linear values, ready for OpenEXR.

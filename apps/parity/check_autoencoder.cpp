@@ -2,6 +2,8 @@
 #include "item3d/models/autoencoder.h"
 #include "parity.h"
 
+#include <torch/csrc/autograd/autograd.h>
+
 namespace item3d::parity {
 namespace {
 

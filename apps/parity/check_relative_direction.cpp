@@ -6,6 +6,8 @@
 #include "item3d/models/pipeline.h"
 #include "parity.h"
 
+#include <torch/csrc/autograd/autograd.h>
+
 namespace item3d::parity {
 
 void check_relative_direction(Case& golden) {

@@ -1,6 +1,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/checkpoint_state.h"
+#include "item3d/edit/metals.h"
 #include "item3d/edit/optimize.h"
 #include "item3d/field/fit.h"
 
@@ -51,6 +52,10 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     options.seed = settings.seed;
     fit_to_materials(state.field, scene.geometry, *scene.space, *scene.textured, options);
     state.fitted = snapshot(state.field);
+    if (scene.channels.metallic && settings.iterations > 0 &&
+        crosses_metallic(settings.from, settings.to)) {
+        shift_metallic(state.field, scene.geometry, *scene.space, settings.metallic_start);
+    }
     save_state(request, state);
     return state;
 }

@@ -2,17 +2,20 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/edit/metals.h"
 
 #include <algorithm>
 
 namespace item3d {
 
-ChannelMask edited_channels(const std::vector<std::string>& keep) {
+ChannelMask edited_channels(const EditSettings& settings) {
     const auto edited = [&](const char* name) {
-        return std::find(keep.begin(), keep.end(), name) == keep.end();
+        return std::find(settings.keep.begin(), settings.keep.end(), name) == settings.keep.end();
     };
-    return {edited("base_color"), edited("occlusion"), edited("roughness"), edited("metallic"),
-            edited("normal")};
+    const bool metal =
+        settings.metallic == "always" || names_metal(settings.from) || names_metal(settings.to);
+    return {edited("base_color"), edited("occlusion"), edited("roughness"),
+            edited("metallic") && metal, edited("normal")};
 }
 
 std::vector<int> select_materials(const Model& model, const std::vector<std::string>& names) {

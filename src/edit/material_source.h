@@ -6,7 +6,7 @@
 #include "item3d/field/surface_points.h"
 #include "item3d/render/textured.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <vector>
 
@@ -20,7 +20,8 @@ struct ChannelMask {
     bool metallic = true;
     bool normal = true;
 };
-ChannelMask edited_channels(const std::vector<std::string>& keep);
+/// What the settings say to edit: all but `keep`, and metallic only as its own setting allows.
+ChannelMask edited_channels(const EditSettings& settings);
 
 /// Indices into Model::materials of the named ones (all for an empty list), in rising order.
 /// Throws InputError that lists the model's materials when a name is not among them.

@@ -13,8 +13,6 @@
 namespace item3d {
 namespace {
 
-namespace functional = torch::nn::functional;
-
 constexpr double seconds_between_checkpoints = 12;
 constexpr double seconds_between_previews = 5;
 constexpr int warm_up_iterations = 10;

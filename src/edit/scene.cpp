@@ -32,7 +32,7 @@ EditScene load_scene(const EditRequest& request) {
     EditScene scene;
     scene.model = load_model(request.model);
     scene.materials = select_materials(scene.model, settings.material);
-    scene.channels = edited_channels(settings.keep);
+    scene.channels = edited_channels(settings);
     scene.geometry = Geometry::from_model(scene.model, device);
     scene.sphere = bounding_sphere(scene.model);
     scene.space = std::make_unique<FieldSpace>(scene.model, scene.materials);

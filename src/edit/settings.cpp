@@ -32,6 +32,12 @@ void check(const EditSettings& settings) {
     require(settings.resolution >= 16 && settings.resolution <= 2048, "--resolution",
             "must be between 16 and 2048 pixels");
     require(settings.learning_rate > 0, "--learning-rate", "must be above 0");
+    require(settings.metallic == "auto" || settings.metallic == "always", "--metallic",
+            "must be auto or always");
+    require(settings.metallic_start >= 0 && settings.metallic_start <= 1, "metallic_start",
+            "must be between 0 and 1");
+    require(settings.adjust_samples >= 1 && settings.adjust_samples <= 64, "adjust_samples",
+            "must be between 1 and 64");
     require(settings.texture_size >= 0 && settings.texture_size <= 8192, "--texture-size",
             "must be between 1 and 8192, or 0 for the input's own");
     require(settings.timesteps.size() == 2 && settings.timesteps[0] >= 0 &&
@@ -68,6 +74,7 @@ GuidanceOptions guidance_options(const EditSettings& settings) {
     options.guidance_scale = settings.cfg;
     options.anchor = settings.anchor;
     options.adjust_learning_rate = settings.adjust_learning_rate;
+    options.adjust_samples = settings.adjust_samples;
     options.min_timestep = settings.timesteps[0];
     options.max_timestep = settings.timesteps[1];
     options.weighting = parse_weighting(settings.weighting);

@@ -22,11 +22,13 @@ struct EditSettings {
     float anchor = 0.0f;
     float cfg = 7.5f;  ///< weight of classifier-free guidance
     float adjust_learning_rate = 0.03f;
+    int adjust_samples = 1;  ///< noises that each step of the learned source looks at
     int iterations = 600;
     int batch = 2;         ///< views an iteration
     int resolution = 512;  ///< pixels of the square picture that the prior sees
     float learning_rate = 0.01f;
-    float metallic_roughness_rate = 1.0f;  ///< factor on the learning of roughness and metallic
+    std::string metallic = "auto";  ///< auto: edited where a prompt names a metal; or always
+    float metallic_start = 0.5f;    ///< where one prompt names a metal and the other does not
     std::vector<float> timesteps = {0.02f, 0.98f};
     std::string weighting = "dreamfusion";
     std::string light = "studio";     ///< preset or .hdr/.exr file
@@ -38,10 +40,11 @@ struct EditSettings {
 };
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(EditSettings, from, to, guidance, adjust, anchor,
-                                                cfg, adjust_learning_rate, iterations, batch,
-                                                resolution, learning_rate, metallic_roughness_rate,
-                                                timesteps, weighting, light, background,
-                                                texture_size, keep, material, seed)
+                                                cfg, adjust_learning_rate, adjust_samples,
+                                                iterations, batch, resolution, learning_rate,
+                                                metallic, metallic_start, timesteps, weighting,
+                                                light, background, texture_size, keep, material,
+                                                seed)
 
 /// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- overrides. Throws InputError
 /// when a value is of the wrong type or out of range.

@@ -4,7 +4,8 @@
 #include "item3d/core/version.h"
 #include "item3d/edit/outputs.h"
 
-#include <torch/torch.h>
+#include <ATen/Parallel.h>
+#include <torch/types.h>
 
 #include <cmath>
 

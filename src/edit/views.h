@@ -6,7 +6,7 @@
 #include "item3d/scene/camera.h"
 #include "item3d/scene/model.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <cstdint>
 #include <vector>

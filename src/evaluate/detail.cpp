@@ -9,8 +9,6 @@ namespace item3d {
 
 namespace {
 
-namespace F = torch::nn::functional;
-
 constexpr double least_deviation = 1e-3;
 
 /// L* / 100 of [N, 3, H, W] sRGB -> [N, 1, H, W].
@@ -27,10 +25,12 @@ torch::Tensor blur(const torch::Tensor& images, double sigma) {
     const auto radius = static_cast<std::int64_t>(std::ceil(3 * sigma));
     const torch::Tensor offset = torch::arange(-radius, radius + 1, torch::kFloat64);
     const torch::Tensor kernel = torch::exp(-offset.square() / (2 * sigma * sigma));
-    const auto rows = F::Conv2dFuncOptions().padding({0, radius});
-    const auto columns = F::Conv2dFuncOptions().padding({radius, 0});
-    return F::conv2d(F::conv2d(images, kernel.view({1, 1, 1, -1}), rows),
-                     kernel.view({1, 1, -1, 1}), columns);
+    const auto filter = [](const torch::Tensor& input, const torch::Tensor& weight,
+                           torch::IntArrayRef padding) {
+        return torch::conv2d(input, weight, {}, /*stride=*/1, padding);
+    };
+    return filter(filter(images, kernel.view({1, 1, 1, -1}), {0, radius}),
+                  kernel.view({1, 1, -1, 1}), {radius, 0});
 }
 
 /// The detail at the P pixels inside the mask, zero mean.

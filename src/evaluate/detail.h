@@ -1,7 +1,7 @@
 // How much of a surface's pattern an edit kept.
 #pragma once
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 namespace item3d {
 

@@ -1,7 +1,7 @@
 // Adam (Kingma and Ba 2015) for parameters of which a step touches few rows.
 #pragma once
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <cstdint>
 #include <map>

@@ -107,4 +107,23 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
     return result;
 }
 
+void shift_metallic(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
+                    float mean) {
+    const torch::NoGradGuard no_grad;
+    Random random(0, 0x6d6574616c);
+    const torch::Tensor positions =
+        space.positions(SurfaceSampler(geometry, space).sample(4096, random));
+    torch::Tensor bias = field->metallic_bias();
+    const float start = bias.item<float>();
+    // Metallic rises with the bias; a sigmoid is flat beyond these.
+    float low = start - 16.0f;
+    float high = start + 16.0f;
+    for (int step = 0; step < 24; ++step) {
+        const float middle = 0.5f * (low + high);
+        bias.fill_(middle);
+        const float reached = field->forward(positions).orm.select(1, 2).mean().item<float>();
+        (reached < mean ? low : high) = middle;
+    }
+}
+
 }  // namespace item3d

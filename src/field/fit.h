@@ -32,4 +32,9 @@ NeuralTextureOptions suggest_field_options(const Geometry& geometry, const Field
 FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
                            const TexturedMaterials& materials, const FitOptions& options = {});
 
+/// Moves metallic by one constant of the network's output (before its range is applied), so that
+/// its mean over the edited surface becomes `mean`.
+void shift_metallic(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
+                    float mean);
+
 }  // namespace item3d

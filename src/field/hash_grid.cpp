@@ -3,6 +3,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 
+#include <torch/csrc/autograd/custom_function.h>
+
 #include <bit>
 #include <cmath>
 

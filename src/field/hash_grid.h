@@ -3,7 +3,7 @@
 
 #include "item3d/field/hash_grid_kernels.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <vector>
 

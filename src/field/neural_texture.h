@@ -5,7 +5,9 @@
 #include "item3d/field/hash_grid.h"
 #include "item3d/render/shade.h"
 
-#include <torch/torch.h>
+#include <torch/nn/module.h>
+#include <torch/nn/pimpl.h>
+#include <torch/types.h>
 
 #include <array>
 #include <cstdint>
@@ -54,7 +56,12 @@ class NeuralTextureImpl : public torch::nn::Module {
     /// Weights and biases of the network.
     std::vector<torch::Tensor> network_parameters() const;
 
+    /// A view of the one bias that all metallic values share.
+    torch::Tensor metallic_bias() { return biases_.back().detach().select(0, metallic_output); }
+
   private:
+    static constexpr int metallic_output = 5;  ///< after base colour 3, occlusion, roughness
+
     NeuralTextureOptions options_;
     HashGrid grid_;
     torch::Tensor table_;                 ///< [entries, features]

@@ -6,7 +6,7 @@
 #include "item3d/render/rasterize.h"
 #include "item3d/scene/model.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <array>
 #include <vector>

@@ -4,7 +4,7 @@
 #include "item3d/models/pipeline.h"
 #include "item3d/models/safetensors.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <memory>
 #include <string>
@@ -22,6 +22,7 @@ struct GuidanceOptions {
     float guidance_scale = 7.5f;     ///< w of classifier-free guidance
     float anchor = 0.0f;             ///< lambda of anchored RDL: adds lambda (eps_target - eps)
     float adjust_learning_rate = 0.03f;
+    int adjust_samples = 1;      ///< noises that each step of the learned source looks at
     float min_timestep = 0.02f;  ///< as a fraction of the training timesteps
     float max_timestep = 0.98f;
     Weighting weighting = Weighting::dreamfusion;

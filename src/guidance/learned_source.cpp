@@ -2,6 +2,8 @@
 
 #include "item3d/core/error.h"
 
+#include <torch/csrc/autograd/autograd.h>
+
 #include <cmath>
 
 namespace item3d {
@@ -20,14 +22,17 @@ torch::Tensor find(const NamedTensors& state, const std::string& name) {
 
 }  // namespace
 
-LearnedSource::LearnedSource(const torch::Tensor& source, float learning_rate)
-    : learning_rate_(learning_rate),
+LearnedSource::LearnedSource(const torch::Tensor& source, const GuidanceOptions& options)
+    : options_(options),
       embedding_(source.detach().clone().to(torch::kFloat32)),
       first_moment_(torch::zeros_like(embedding_)),
       second_moment_(torch::zeros_like(embedding_)) {}
 
-torch::Tensor LearnedSource::predict_and_follow(const Pipeline& pipeline,
-                                                const NoisedLatents& latents) {
+torch::Tensor LearnedSource::predict_and_follow(const Pipeline& pipeline, const NoisedLatents& own,
+                                                std::int64_t iteration) {
+    const int more = options_.adjust_samples - 1;
+    const NoisedLatents latents =
+        more > 0 ? join_rows(own, renoise_latents(pipeline, own, options_, iteration, more)) : own;
     torch::Tensor embedding = embedding_.detach().requires_grad_(true);
     const torch::Tensor prediction =
         pipeline.predict_noise(latents.noisy, latents.timesteps,
@@ -46,9 +51,9 @@ torch::Tensor LearnedSource::predict_and_follow(const Pipeline& pipeline,
     second_moment_.mul_(beta2).addcmul_(gradient, gradient, 1 - beta2);
     const double correction1 = 1 - std::pow(beta1, static_cast<double>(steps_));
     const double correction2 = 1 - std::pow(beta2, static_cast<double>(steps_));
-    embedding_ = embedding_ - learning_rate_ / correction1 * first_moment_ /
+    embedding_ = embedding_ - options_.adjust_learning_rate / correction1 * first_moment_ /
                                   ((second_moment_ / correction2).sqrt() + epsilon);
-    return prediction.detach();
+    return prediction.detach().narrow(0, 0, own.noisy.size(0));
 }
 
 NamedTensors LearnedSource::state() const {

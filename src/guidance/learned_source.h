@@ -15,10 +15,12 @@ namespace item3d {
 class LearnedSource {
   public:
     /// source: [1, S, D], copied.
-    LearnedSource(const torch::Tensor& source, float learning_rate);
+    LearnedSource(const torch::Tensor& source, const GuidanceOptions& options);
 
-    /// eps(source) for these latents (constant), then one step of the embedding.
-    torch::Tensor predict_and_follow(const Pipeline& pipeline, const NoisedLatents& latents);
+    /// eps(source) for these latents (constant), then one step of the embedding. The step looks at
+    /// options.adjust_samples noises for each of the latents, this iteration's own among them.
+    torch::Tensor predict_and_follow(const Pipeline& pipeline, const NoisedLatents& latents,
+                                     std::int64_t iteration);
     /// Denoising loss of the last call, in the U-Net's own target (eps or v).
     float loss() const { return loss_; }
 
@@ -26,7 +28,7 @@ class LearnedSource {
     void load_state(const NamedTensors& state);
 
   private:
-    float learning_rate_;
+    GuidanceOptions options_;
     torch::Tensor embedding_;
     torch::Tensor first_moment_;
     torch::Tensor second_moment_;

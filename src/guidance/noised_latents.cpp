@@ -76,4 +76,44 @@ NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input
     return result;
 }
 
+NoisedLatents renoise_latents(const Pipeline& pipeline, const NoisedLatents& start,
+                              const GuidanceOptions& options, std::int64_t iteration, int count) {
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor& schedule = pipeline.scheduler.alphas_cumprod();
+    const auto training_steps = static_cast<double>(schedule.size(0));
+    Random random(options.seed, 5, static_cast<std::uint64_t>(iteration) * 2);
+    const double offset = random.uniform();
+    auto generator = at::detail::createCPUGenerator(random.bits());
+
+    const std::int64_t rows = start.latents.size(0);
+    const torch::Device device = start.latents.device();
+    NoisedLatents result;
+    result.latents = start.latents.detach().repeat_interleave(count, 0);
+    result.timesteps = torch::empty({rows * count}, torch::kInt64);
+    for (std::int64_t i = 0; i < rows * count; ++i) {
+        const double place = (static_cast<double>(i % count) + offset) / count;
+        const double part =
+            options.min_timestep + place * (options.max_timestep - options.min_timestep);
+        result.timesteps[i] = static_cast<std::int64_t>(part * training_steps);
+    }
+    result.timesteps = result.timesteps.to(device);
+    result.noise = torch::randn(result.latents.sizes(), generator, torch::kFloat32).to(device);
+    result.alphas_cumprod = pipeline.scheduler.alphas_at(result.timesteps).to(torch::kFloat32);
+    result.noisy = pipeline.scheduler.add_noise(result.latents, result.noise, result.timesteps);
+    if (start.condition.defined()) result.condition = start.condition.repeat_interleave(count, 0);
+    return result;
+}
+
+NoisedLatents join_rows(const NoisedLatents& first, const NoisedLatents& second) {
+    NoisedLatents joined;
+    joined.latents = torch::cat({first.latents.detach(), second.latents.detach()});
+    joined.noise = torch::cat({first.noise, second.noise});
+    joined.noisy = torch::cat({first.noisy, second.noisy});
+    joined.timesteps = torch::cat({first.timesteps, second.timesteps});
+    joined.alphas_cumprod = torch::cat({first.alphas_cumprod, second.alphas_cumprod});
+    if (first.condition.defined())
+        joined.condition = torch::cat({first.condition, second.condition});
+    return joined;
+}
+
 }  // namespace item3d

@@ -20,6 +20,14 @@ struct NoisedLatents {
 NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input,
                             const GuidanceOptions& options, std::int64_t iteration);
 
+/// The latents of `start`, as constants, under `count` other noises for each; their timesteps are
+/// spread evenly over the range of the options. Drawn from (seed, iteration) like the first.
+NoisedLatents renoise_latents(const Pipeline& pipeline, const NoisedLatents& start,
+                              const GuidanceOptions& options, std::int64_t iteration, int count);
+
+/// Rows of both, one after the other; neither has a graph then.
+NoisedLatents join_rows(const NoisedLatents& first, const NoisedLatents& second);
+
 torch::Tensor timestep_weight(Weighting weighting, const torch::Tensor& alphas_cumprod);
 
 /// [rows, S, D] of one prompt's [1, S, D].

@@ -13,7 +13,7 @@ RelativeDirection::RelativeDirection(std::shared_ptr<const Pipeline> pipeline,
     target_text_ = text.narrow(0, 0, 1);
     source_text_ = text.narrow(0, 1, 1);
     if (options_.adjust == "learned") {
-        learned_source_.emplace(source_text_, options_.adjust_learning_rate);
+        learned_source_.emplace(source_text_, options_);
     }
 }
 
@@ -31,9 +31,9 @@ PromptPair predict_pair(const Pipeline& pipeline, const NoisedLatents& start,
     return {both[0], both[1]};
 }
 
-PromptPair RelativeDirection::predict(const NoisedLatents& start) {
+PromptPair RelativeDirection::predict(const NoisedLatents& start, std::int64_t iteration) {
     if (!learned_source_) return predict_pair(*pipeline_, start, target_text_, source_text_);
-    const torch::Tensor source = learned_source_->predict_and_follow(*pipeline_, start);
+    const torch::Tensor source = learned_source_->predict_and_follow(*pipeline_, start, iteration);
     const torch::NoGradGuard no_grad;
     const torch::Tensor target =
         pipeline_->predict_noise(start.noisy, start.timesteps,
@@ -44,7 +44,7 @@ PromptPair RelativeDirection::predict(const NoisedLatents& start) {
 GuidanceOutput RelativeDirection::step(const GuidanceInput& input, std::int64_t iteration) {
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
     const double before = seconds_now();
-    const PromptPair predictions = predict(start);
+    const PromptPair predictions = predict(start, iteration);
 
     const torch::NoGradGuard no_grad;
     const torch::Tensor direction = predictions.target - predictions.source;

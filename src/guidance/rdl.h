@@ -31,7 +31,7 @@ class RelativeDirection : public Guidance {
     void load_state(const NamedTensors& state) override;
 
   private:
-    PromptPair predict(const NoisedLatents& start);
+    PromptPair predict(const NoisedLatents& start, std::int64_t iteration);
 
     std::shared_ptr<const Pipeline> pipeline_;
     GuidanceOptions options_;

@@ -1,7 +1,7 @@
 // Multi-head attention, in the form that is fastest for what it is used for.
 #pragma once
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 namespace item3d {
 

@@ -3,7 +3,9 @@
 
 #include "item3d/models/config.h"
 
-#include <torch/torch.h>
+#include <torch/nn/modules/container/modulelist.h>
+#include <torch/nn/modules/conv.h>
+#include <torch/types.h>
 
 #include <filesystem>
 #include <memory>

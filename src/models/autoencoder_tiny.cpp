@@ -1,6 +1,9 @@
 #include "item3d/core/error.h"
 #include "item3d/models/autoencoder.h"
 
+#include <torch/nn/modules/activation.h>
+#include <torch/nn/modules/linear.h>
+
 #include <algorithm>
 
 namespace item3d {

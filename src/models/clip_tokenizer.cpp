@@ -168,6 +168,7 @@ ClipTokenizer ClipTokenizer::load(const std::filesystem::path& folder,
 void ClipTokenizer::save(const std::filesystem::path& folder) const {
     std::vector<std::pair<int, std::string>> tokens(token_of_.begin(), token_of_.end());
     std::sort(tokens.begin(), tokens.end());
+    make_output_folder(folder);
     nlohmann::ordered_json vocabulary = nlohmann::ordered_json::object();
     for (const auto& [id, token] : tokens)
         vocabulary[token] = id;

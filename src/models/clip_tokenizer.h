@@ -3,7 +3,7 @@
 
 #include "item3d/models/config.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <cstdint>
 #include <filesystem>

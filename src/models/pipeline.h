@@ -7,7 +7,7 @@
 #include "item3d/models/ddim.h"
 #include "item3d/models/unet.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <filesystem>
 #include <memory>

@@ -3,7 +3,7 @@
 // {name: {dtype, shape, data_offsets}}, then the tensors' bytes without holes.
 #pragma once
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <cstdint>
 #include <filesystem>

@@ -4,7 +4,7 @@
 #include "item3d/models/config.h"
 #include "item3d/models/unet_blocks.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <memory>
 #include <string>

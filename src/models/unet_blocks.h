@@ -2,7 +2,11 @@
 // own, so that weights load by name. Feature maps are [N, C, H, W], tokens [N, S, C].
 #pragma once
 
-#include <torch/torch.h>
+#include <torch/nn/modules/container/modulelist.h>
+#include <torch/nn/modules/conv.h>
+#include <torch/nn/modules/linear.h>
+#include <torch/nn/modules/normalization.h>
+#include <torch/types.h>
 
 #include <vector>
 

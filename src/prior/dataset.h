@@ -5,7 +5,7 @@
 #include "item3d/prior/materials.h"
 #include "item3d/prior/views.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <cstdint>
 #include <string>

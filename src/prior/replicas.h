@@ -2,7 +2,8 @@
 // gradients are averaged in a fixed order, so that results do not depend on timing.
 #pragma once
 
-#include <torch/torch.h>
+#include <torch/nn/module.h>
+#include <torch/types.h>
 
 #include <atomic>
 #include <barrier>

@@ -7,7 +7,7 @@
 #include "item3d/prior/dataset.h"
 
 #include <nlohmann/json.hpp>
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <cstdint>
 #include <filesystem>

@@ -13,8 +13,6 @@
 namespace item3d {
 namespace {
 
-namespace F = torch::nn::functional;
-
 constexpr int batch = 8;
 constexpr float highest_rate = 1.5e-3f;
 

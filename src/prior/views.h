@@ -4,7 +4,7 @@
 #include "item3d/core/math.h"
 #include "item3d/core/random.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <array>
 #include <cstdint>

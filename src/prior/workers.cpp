@@ -2,9 +2,10 @@
 
 #include "item3d/core/progress.h"
 
+#include <ATen/Parallel.h>
 #include <malloc.h>
 #include <omp.h>
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <atomic>
 #include <exception>

@@ -6,6 +6,8 @@
 #include "item3d/render/rasterize.h"
 #include "item3d/render/topology.h"
 
+#include <torch/csrc/autograd/custom_function.h>
+
 #include <cstring>
 
 namespace item3d {

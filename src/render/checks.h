@@ -1,7 +1,7 @@
 // Boundary checks of the renderer's operations.
 #pragma once
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <initializer_list>
 

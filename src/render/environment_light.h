@@ -3,7 +3,7 @@
 
 #include "item3d/scene/image.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 namespace item3d {
 

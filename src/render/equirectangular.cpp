@@ -6,6 +6,8 @@
 #include "item3d/render/environment_light.h"
 #include "item3d/render/scatter_sum.h"
 
+#include <torch/csrc/autograd/custom_function.h>
+
 #include <algorithm>
 
 namespace item3d {

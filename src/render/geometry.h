@@ -3,7 +3,7 @@
 
 #include "item3d/scene/model.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 namespace item3d {
 

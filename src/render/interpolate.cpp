@@ -5,6 +5,8 @@
 #include "item3d/render/checks.h"
 #include "item3d/render/rasterize.h"
 
+#include <torch/csrc/autograd/custom_function.h>
+
 namespace item3d {
 namespace {
 

@@ -5,6 +5,8 @@
 #include "item3d/render/checks.h"
 #include "item3d/render/shade.h"
 
+#include <torch/csrc/autograd/custom_function.h>
+
 #include <cstring>
 
 namespace item3d {

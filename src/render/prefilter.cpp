@@ -7,6 +7,8 @@
 #include "item3d/render/kernels/zonal.h"
 #include "item3d/render/shade.h"
 
+#include <torch/csrc/autograd/custom_function.h>
+
 #include <cmath>
 
 namespace item3d {

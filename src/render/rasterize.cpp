@@ -6,6 +6,8 @@
 #include "item3d/render/kernels/project.h"
 #include "item3d/render/kernels/raster.h"
 
+#include <torch/csrc/autograd/custom_function.h>
+
 namespace item3d {
 namespace {
 

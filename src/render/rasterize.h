@@ -5,7 +5,7 @@
 #include "item3d/render/geometry.h"
 #include "item3d/scene/camera.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 namespace item3d {
 

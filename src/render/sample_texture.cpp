@@ -4,6 +4,8 @@
 #include "item3d/render/kernels/texture.h"
 #include "item3d/render/textured.h"
 
+#include <torch/csrc/autograd/custom_function.h>
+
 namespace item3d {
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include "item3d/core/parallel.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 #include <algorithm>
 

@@ -6,6 +6,8 @@
 #include "item3d/render/kernels/shade.h"
 #include "item3d/render/scatter_sum.h"
 
+#include <torch/csrc/autograd/custom_function.h>
+
 namespace item3d {
 namespace {
 

@@ -4,7 +4,7 @@
 #include "item3d/render/environment_light.h"
 #include "item3d/render/rasterize.h"
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 namespace item3d {
 

@@ -1,7 +1,7 @@
 // Which triangles share an edge, whatever seams of UVs or normals lie between them.
 #pragma once
 
-#include <torch/torch.h>
+#include <torch/types.h>
 
 namespace item3d {
 
