@@ -175,6 +175,7 @@ TEST_F(EditProgram, WhatItCannotUseIsThreeAndNothingIsLeft) {
     expect_error(edit(to("out") + " --material glass"), 3, "glass");
     expect_error(edit(to("out") + " --keep everything"), 3, "--keep");
     expect_error(edit(to("out") + " --light /nowhere.hdr"), 3, "/nowhere.hdr");
+    expect_error("generate ' ' -o " + quoted(folder_ / "p.png"), 3, "PROMPT");
     std::ofstream(folder_ / "points.obj") << "v 0 0 0\nv 1 0 0\n";
     std::ofstream(folder_ / "nan.obj") << "v 0 nan 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
     for (const char* name : {"points.obj", "nan.obj", "missing.obj"}) {

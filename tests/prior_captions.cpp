@@ -101,18 +101,20 @@ TEST(PriorVocabulary, NamesUnknownAndWeakWords) {
                 "colors": [{"word": "red", "accuracy": 0.95, "base_color": [0.7, 0.02, 0.02]},
                            {"word": "orange", "accuracy": 0.9}],
                 "materials": [{"word": "gold", "spellings": ["gold", "golden"], "accuracy": 0.85}],
-                "patterns": [{"word": "striped", "accuracy": 0.3}]}})"),
+                "patterns": [{"word": "striped", "accuracy": 0.3}],
+                "objects": [{"word": "mug", "accuracy": 0.2}]}})"),
                                      "test");
     using Words = std::vector<std::string>;
     EXPECT_EQ(vocabulary.unknown_words("A golden Mug"), Words{});
     EXPECT_EQ(vocabulary.unknown_words("a teapot, a teapot with ünlaut"),
               (Words{"teapot", "with", "ünlaut"}));
-    EXPECT_EQ(vocabulary.weak_words("a red striped mug"), Words{"striped"});
-    EXPECT_TRUE(vocabulary.warning("a red mug").empty());
-    EXPECT_NE(vocabulary.warning("a striped teapot").find("\"teapot\""), std::string::npos);
+    EXPECT_EQ(vocabulary.weak_words("a red striped mug", false), (Words{"striped", "mug"}));
+    EXPECT_EQ(vocabulary.weak_words("a red striped mug", true), Words{"striped"});
+    EXPECT_TRUE(vocabulary.warning("a red mug", true).empty());
+    EXPECT_NE(vocabulary.warning("a striped teapot", false).find("\"teapot\""), std::string::npos);
     ASSERT_EQ(vocabulary.words_of("colors").size(), 2u);
     EXPECT_FLOAT_EQ(vocabulary.words_of("colors")[0].base_color->x, .7f);
-    EXPECT_TRUE(PriorVocabulary().warning("anything at all").empty());
+    EXPECT_TRUE(PriorVocabulary().warning("anything at all", true).empty());
     EXPECT_EQ(prompt_words("A 3d-render!"), (Words{"a", "3", "d", "render"}));
 }
 

@@ -72,7 +72,7 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
 void warn_of_words(const EditRequest& request, const EditSettings& settings) {
     const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
     for (const std::string& prompt : {settings.from, settings.to}) {
-        const std::string warning = vocabulary.warning(prompt);
+        const std::string warning = vocabulary.warning(prompt, /*shape_is_given=*/true);
         if (!warning.empty()) warn(warning);
     }
 }

@@ -72,12 +72,13 @@ std::vector<fs::path> choose_files(const fs::path& output, int count) {
 
 void run_generate(const GenerateCommand& command, torch::Device device) {
     if (command.generate.prompt.find_first_not_of(" \t\n") == std::string::npos)
-        throw UsageError("the prompt is empty; say what to draw, as in \"a golden vase\"");
+        throw InputError("PROMPT", "is empty", "say what to draw, as in \"a golden vase\"");
     const std::vector<fs::path> files = choose_files(command.output, command.generate.count);
     const fs::path prior =
         command.prior.empty() ? assets_folder() / "prior" : fs::path(command.prior);
     const Pipeline pipeline = Pipeline::load(prior, device);
-    const std::string warning = PriorVocabulary::load(prior).warning(command.generate.prompt);
+    const std::string warning =
+        PriorVocabulary::load(prior).warning(command.generate.prompt, !command.like.empty());
     if (!warning.empty()) warn(warning);
 
     GenerateOptions options = command.generate;

@@ -78,6 +78,8 @@ void export_diffusion(const fs::path& folder, const UNet2DCondition& unet,
     prior["resolution"] = picture_size;
     prior["train"] = train;
     prior["defaults"] = edit_defaults();
+    // Stronger guidance burns the small prior's colours out.
+    prior["generate"] = {{"steps", 30}, {"guidance_scale", 3.5}};
     write_json(folder / "prior.json", prior);
 }
 

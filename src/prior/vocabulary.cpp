@@ -88,22 +88,25 @@ std::vector<std::string> PriorVocabulary::unknown_words(const std::string& promp
     return result;
 }
 
-std::vector<std::string> PriorVocabulary::weak_words(const std::string& prompt) const {
+std::vector<std::string> PriorVocabulary::weak_words(const std::string& prompt,
+                                                     bool shape_is_given) const {
     std::vector<std::string> result;
     for (const std::string& word : prompt_words(prompt)) {
         // A word of several meanings is as good as its best.
         double best = -1;
-        for (const KnownWord& known : words_)
+        for (const KnownWord& known : words_) {
+            if (shape_is_given && known.kind == "objects") continue;
             if (std::find(known.spellings.begin(), known.spellings.end(), word) !=
                 known.spellings.end())
                 best = std::max(best, known.accuracy);
+        }
         if (best >= 0 && best < weak_accuracy) add_once(result, word);
     }
     return result;
 }
 
-std::string PriorVocabulary::warning(const std::string& prompt) const {
-    const auto unknown = unknown_words(prompt), weak = weak_words(prompt);
+std::string PriorVocabulary::warning(const std::string& prompt, bool shape_is_given) const {
+    const auto unknown = unknown_words(prompt), weak = weak_words(prompt, shape_is_given);
     if (unknown.empty() && weak.empty()) return "";
     std::string text = "the prior ";
     if (!unknown.empty()) text += "does not know " + listed(unknown);

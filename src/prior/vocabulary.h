@@ -40,10 +40,11 @@ class PriorVocabulary {
 
     /// Words of the prompt, in its order and each once, that the prior was never trained on.
     std::vector<std::string> unknown_words(const std::string& prompt) const;
-    /// Words that it was trained on but tells from others too seldom (below weak_accuracy).
-    std::vector<std::string> weak_words(const std::string& prompt) const;
+    /// Words that it was trained on but tells from others too seldom (below weak_accuracy). Where
+    /// the shape is given by a depth, names of objects carry no weight and are left out.
+    std::vector<std::string> weak_words(const std::string& prompt, bool shape_is_given) const;
     /// One line for the user that names both, or nothing.
-    std::string warning(const std::string& prompt) const;
+    std::string warning(const std::string& prompt, bool shape_is_given) const;
 
   private:
     std::vector<KnownWord> words_;
