@@ -59,7 +59,8 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
                  "Edge of the textures that are written; 0: as the input's");
     setting<std::vector<std::string>>(
         command, options, "--keep", "keep",
-        "Channels not to touch: base_color, occlusion, roughness, metallic, normal; or nothing")
+        "Channels not to touch, instead of occlusion,normal: base_color, occlusion, roughness, "
+        "metallic, normal; or nothing")
         ->delimiter(',');
     setting<std::string>(command, options, "--metallic", "metallic",
                          "auto: edit metallic where a sentence names a metal; always: in any case");

@@ -123,22 +123,6 @@ std::string html_table(const TableRows& rows) {
     return "<table class=\"facts\">\n" + body + "</table>\n";
 }
 
-std::string html_grid(const std::vector<std::string>& head,
-                      const std::vector<std::vector<std::string>>& rows) {
-    std::string body = "<thead><tr>";
-    for (const std::string& cell : head) {
-        body += "<th scope=\"col\">" + html_escape(cell) + "</th>";
-    }
-    body += "</tr></thead>\n<tbody>\n";
-    for (const std::vector<std::string>& row : rows) {
-        body += "<tr>";
-        for (const std::string& cell : row)
-            body += "<td>" + html_escape(cell) + "</td>";
-        body += "</tr>\n";
-    }
-    return "<div class=\"wide\"><table class=\"grid\">\n" + body + "</tbody></table></div>\n";
-}
-
 std::string html_timings(const std::vector<std::pair<std::string, double>>& seconds) {
     double sum = 0;
     double longest = 0;

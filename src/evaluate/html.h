@@ -50,9 +50,6 @@ std::string html_comparison(const ReportImage& before, const ReportImage& after,
                             const std::string& caption);
 /// Two columns: what, and its value.
 std::string html_table(const TableRows& rows);
-/// A table with a head line; rows may be shorter than the head.
-std::string html_grid(const std::vector<std::string>& head,
-                      const std::vector<std::vector<std::string>>& rows);
 /// A line chart as inline SVG. Charts without a finite value say so.
 std::string html_chart(const Chart& chart);
 /// Horizontal bars with their share of the sum: seconds by stage.

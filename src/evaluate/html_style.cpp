@@ -83,8 +83,6 @@ th { font-weight: 400; color: var(--soft); }
 .columns { columns: 2 320px; column-gap: 48px; }
 .columns table { display: block; } .columns tbody { display: block; }
 .columns tr { display: grid; grid-template-columns: 11em 1fr; break-inside: avoid; }
-.wide { overflow-x: auto; }
-.grid td { padding-right: 22px; }
 .charts { display: grid; gap: 30px; grid-template-columns: repeat(auto-fit, minmax(min(100%, 430px), 1fr)); }
 .chart svg { display: block; width: 100%; height: auto; overflow: visible; }
 .chart h3 { font-size: 14px; font-weight: 600; margin: 0; }

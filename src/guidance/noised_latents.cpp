@@ -9,6 +9,18 @@
 
 namespace item3d {
 
+namespace {
+
+// Streams of the edit's seed; those of cameras, backgrounds and lights are in edit/views.cpp.
+enum Stream : std::uint64_t { noise_stream = 1, renoise_stream = 5 };
+
+/// Numbers of one iteration; leaves room for two draws.
+Random iteration_random(const GuidanceOptions& options, Stream stream, std::int64_t iteration) {
+    return Random(options.seed, stream, static_cast<std::uint64_t>(iteration) * 2);
+}
+
+}  // namespace
+
 double seconds_now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
@@ -51,7 +63,7 @@ NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input
 
     const torch::Tensor& schedule = pipeline.scheduler.alphas_cumprod();
     const auto training_steps = static_cast<double>(schedule.size(0));
-    Random random(options.seed, 1, static_cast<std::uint64_t>(iteration) * 2);
+    Random random = iteration_random(options, noise_stream, iteration);
     const auto timestep = static_cast<std::int64_t>(random.uniform(
         options.min_timestep * training_steps, options.max_timestep * training_steps));
     auto generator = at::detail::createCPUGenerator(random.bits());
@@ -81,7 +93,7 @@ NoisedLatents renoise_latents(const Pipeline& pipeline, const NoisedLatents& sta
     const torch::NoGradGuard no_grad;
     const torch::Tensor& schedule = pipeline.scheduler.alphas_cumprod();
     const auto training_steps = static_cast<double>(schedule.size(0));
-    Random random(options.seed, 5, static_cast<std::uint64_t>(iteration) * 2);
+    Random random = iteration_random(options, renoise_stream, iteration);
     const double offset = random.uniform();
     auto generator = at::detail::createCPUGenerator(random.bits());
 

@@ -62,10 +62,6 @@ std::string make_caption(Random& random, const std::vector<std::string>& nouns,
     return mend_articles(frame + thing + light);
 }
 
-std::string plain_caption(const ProceduralMaterial& material, const std::string& noun) {
-    return mend_articles("a " + with_noun(material.phrases.front(), noun));
-}
-
 std::vector<WordCount> caption_vocabulary(std::uint64_t seed, int draws) {
     static const std::vector<std::string> lights{
         "",          " in a studio", " under studio light", " in bright light", " at sunset",

@@ -16,9 +16,6 @@ std::string make_caption(Random& random, const std::vector<std::string>& nouns,
                          const std::vector<std::string>& material_phrases,
                          const std::vector<std::string>& light_phrases);
 
-/// "a wooden mug": the material's first phrase with that noun.
-std::string plain_caption(const ProceduralMaterial& material, const std::string& noun);
-
 /// Puts "an" for "a" before vowels.
 std::string mend_articles(const std::string& text);
 
