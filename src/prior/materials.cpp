@@ -130,12 +130,13 @@ ProceduralMaterial wood(Random& random) {
     axis[static_cast<int>(random.index(3))] += 1;
     axis = glm::normalize(axis);
     const Vec3 heart{random.normal(0, .5), random.normal(0, .5), random.normal(0, .5)};
-    const CosineNoise warp(random, 4, 1, {1, .4f, 1}), fiber(random, 30, 1, {1, .15f, 1});
-    const float rings = draw(random, 5, 9);
+    const CosineNoise warp(random, 3, 2, {1, .4f, 1}), fiber(random, 30, 1, {1, .15f, 1});
+    // Rings of four to ten pixels: finer ones are lost in a picture of 64.
+    const float rings = draw(random, 2.4, 5);
     static constexpr std::array<std::array<float, 6>, 3> palettes{
-        {{.42f, .2f, .07f, .2f, .08f, .025f},
-         {.55f, .33f, .14f, .33f, .16f, .05f},
-         {.22f, .09f, .03f, .09f, .035f, .012f}}};
+        {{.45f, .22f, .08f, .16f, .06f, .018f},
+         {.58f, .36f, .16f, .27f, .12f, .035f},
+         {.25f, .11f, .04f, .07f, .025f, .009f}}};
     const auto& k = palettes[static_cast<std::size_t>(random.index(3))];
     const Vec3 light = vary(random, {k[0], k[1], k[2]}), dark = vary(random, {k[3], k[4], k[5]});
     const float roughness = draw(random, .45, .75);
@@ -145,7 +146,7 @@ ProceduralMaterial wood(Random& random) {
             [=](const Vec3& p, const Vec3&) {
                 const float along = glm::dot(p, axis);
                 const Vec3 q = p - along * axis + heart;
-                const float ring = fraction((glm::length(q) + .06f * warp(p)) * rings);
+                const float ring = fraction((glm::length(q) + .1f * warp(p)) * rings);
                 const float late = smooth_step(ring, 0, .85f) * (1 - smooth_step(ring, .85f, 1));
                 const float w = std::clamp(.75f * late + .15f * fiber(p), 0.0f, 1.0f);
                 return MaterialValue{mix(light, dark, w), roughness, 0};
@@ -154,7 +155,7 @@ ProceduralMaterial wood(Random& random) {
 
 ProceduralMaterial marble(Random& random) {
     const CosineNoise veins(random, 3, 3);
-    const float sharpness = draw(random, 4, 7);
+    const float sharpness = draw(random, 2.5, 5);
     const bool white = random.chance(.75);
     const Vec3 body =
         white ? vary(random, {.8f, .79f, .77f}, .04) : vary(random, {.03f, .03f, .035f});
@@ -242,8 +243,8 @@ ProceduralMaterial unwished(Random& random, const MaterialWish&) {
 /// Shares of the training data. Patterns have two fifths: they were learnt last in every trial.
 constexpr std::array<Kind, 17> kinds{{{"plain", .26, plain},
                                       {"metal", .11, metal},
-                                      {"wood", .055, unwished<wood>},
-                                      {"marble", .045, unwished<marble>},
+                                      {"wood", .085, unwished<wood>},
+                                      {"marble", .07, unwished<marble>},
                                       {"stone", .035, unwished<stone>},
                                       {"grass", .035, unwished<grass>},
                                       {"snow", .025, unwished<snow>},
