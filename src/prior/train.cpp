@@ -198,8 +198,13 @@ void train_prior(const TrainSettings& settings) {
     keep_freed_memory();
     make_output_folder(settings.output);
     open_work_folder(settings);
+    // Token numbers are rows of the text encoder: what is gone on with keeps them.
+    const fs::path tokens = settings.output / "tokenizer";
     const ClipTokenizer tokenizer =
-        train_tokenizer(caption_vocabulary(seed_of(settings, vocabulary_stream)), text_length);
+        settings.resume && fs::exists(tokens / "vocab.json")
+            ? ClipTokenizer::load(tokens)
+            : train_tokenizer(caption_vocabulary(seed_of(settings, vocabulary_stream)),
+                              text_length);
     const bool prepared_before = settings.resume && fs::exists(settings.work / "data.safetensors");
     const Prepared prepared =
         prepared_before ? read_prepared(settings) : prepare(settings, tokenizer);

@@ -1,0 +1,133 @@
+// Renders the scenes of a folder of path-traced references and says how far off we are.
+//
+//   reference_report --data DIR -o DIR
+//
+// Leaves report.md (the tables of docs/renderer.md), report.json and the pictures in the output
+// folder.
+#include "reference_report.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/render/shade.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/scene/io/save.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace item3d::reference {
+
+Difference difference(const torch::Tensor& found, const torch::Tensor& expected) {
+    const torch::Tensor error = (found - expected).abs();
+    return {(error.mean() / expected.mean()).item<double>(),
+            (error / expected.abs().clamp_min(1e-4f)).median().item<double>(),
+            (found.sum() / expected.sum()).item<double>()};
+}
+
+torch::Tensor load_reference(const std::filesystem::path& path) {
+    return to_tensor(load_image(path));
+}
+
+void save_tiles(const std::filesystem::path& path,
+                const std::vector<std::vector<torch::Tensor>>& tiles) {
+    std::vector<torch::Tensor> rows;
+    for (const auto& row : tiles)
+        rows.push_back(torch::cat(row, 1));
+    save_image(path, to_image(linear_to_srgb(torch::cat(rows, 0).clamp(0, 1))));
+}
+
+Model unit_sphere() {
+    constexpr int latitudes = 256, longitudes = 512;
+    Primitive sphere;
+    for (int i = 0; i <= latitudes; ++i) {
+        for (int j = 0; j <= longitudes; ++j) {
+            const float theta = pi * static_cast<float>(i) / latitudes;
+            const float phi = 2 * pi * static_cast<float>(j) / longitudes;
+            sphere.positions.emplace_back(std::sin(theta) * std::sin(phi), std::cos(theta),
+                                          std::sin(theta) * std::cos(phi));
+        }
+    }
+    sphere.normals = sphere.positions;
+    for (int i = 0; i < latitudes; ++i) {
+        for (int j = 0; j < longitudes; ++j) {
+            const auto a = static_cast<std::uint32_t>(i * (longitudes + 1) + j);
+            const auto b = a + static_cast<std::uint32_t>(longitudes + 1);
+            for (const std::uint32_t index : {a, b, b + 1, a, b + 1, a + 1})
+                sphere.indices.push_back(index);
+        }
+    }
+    Model model;
+    model.materials.emplace_back();
+    model.primitives.push_back(std::move(sphere));
+    return model;
+}
+
+namespace {
+
+std::string markdown(const Section& section) {
+    std::string out = "## " + section.title + "\n\n" + section.text + "\n\n";
+    const auto line = [](const std::vector<std::string>& cells) {
+        return fmt::format("| {} |\n", fmt::join(cells, " | "));
+    };
+    out += line(section.columns);
+    out += line(std::vector<std::string>(section.columns.size(), "---"));
+    for (const auto& row : section.rows)
+        out += line(row);
+    for (const std::string& picture : section.pictures)
+        out += "\n![" + section.title + "](" + picture + ")\n";
+    return out + "\n";
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("The renderer beside path-traced references");
+    Folders folders;
+    app.add_option("--data", folders.data, "Folder of the references")->required();
+    app.add_option("-o,--output", folders.output, "Folder for report.md, report.json, pictures")
+        ->required();
+    std::string only;
+    app.add_option("--only", only, "Only the sections whose name starts so");
+    CLI11_PARSE(app, argc, argv);
+    make_output_folder(folders.output);
+
+    const std::vector<std::pair<std::string, std::function<Section()>>> all = {
+        {"furnace", [] { return furnace_section(); }},
+        {"bsdf", [&] { return bsdf_section(folders); }},
+        {"irradiance", [&] { return irradiance_section(folders); }},
+        {"spheres", [&] { return sphere_section(folders, "studio"); }},
+        {"spheres", [&] { return sphere_section(folders, "sky_noon"); }},
+        {"geometry", [&] { return geometry_section(folders); }},
+        {"views", [&] { return view_section(folders); }},
+        {"gradient", [&] { return gradient_section(folders); }}};
+    std::vector<std::function<Section()>> sections;
+    for (const auto& [name, section] : all)
+        if (name.starts_with(only)) sections.push_back(section);
+    Progress progress("reference", static_cast<std::int64_t>(sections.size()));
+    std::string page;
+    nlohmann::json numbers = nlohmann::json::object();
+    for (std::size_t i = 0; i < sections.size(); ++i) {
+        const Section section = sections[i]();
+        page += markdown(section);
+        numbers[section.title] = section.numbers;
+        progress.update(static_cast<std::int64_t>(i) + 1);
+    }
+    progress.finish();
+    write_atomically(folders.output / "report.md", page);
+    write_atomically(folders.output / "report.json", numbers.dump(2) + "\n");
+    fmt::print("{}\n", (folders.output / "report.md").string());
+    return 0;
+}
+
+}  // namespace
+}  // namespace item3d::reference
+
+int main(int argc, char** argv) {
+    try {
+        return item3d::reference::run(argc, argv);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "reference_report: error: {}\n", error.what());
+        return 3;
+    }
+}

@@ -1,0 +1,54 @@
+// The renderer beside references that other software made: what each part measures and says.
+#pragma once
+
+#include "item3d/scene/model.h"
+
+#include <nlohmann/json.hpp>
+#include <torch/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace item3d::reference {
+
+/// One table of the page.
+struct Section {
+    std::string title;
+    std::string text;
+    std::vector<std::string> columns;
+    std::vector<std::vector<std::string>> rows;
+    nlohmann::json numbers = nlohmann::json::object();  ///< the same, for programs
+    std::vector<std::string> pictures;                  ///< file names in the output folder
+};
+
+struct Folders {
+    std::filesystem::path data;    ///< of the references
+    std::filesystem::path output;  ///< where pictures go
+};
+
+/// How far `found` is from `expected`, both [P, C].
+struct Difference {
+    double mean;    ///< mean absolute difference over the mean of `expected`
+    double median;  ///< of the relative differences of single values
+    double bias;    ///< sum of `found` over the sum of `expected`
+};
+Difference difference(const torch::Tensor& found, const torch::Tensor& expected);
+
+/// [H, W, C], linear.
+torch::Tensor load_reference(const std::filesystem::path& path);
+
+/// Pictures [H, W, 3], linear, side by side (rows of tiles) as one sRGB PNG.
+void save_tiles(const std::filesystem::path& path, const std::vector<std::vector<torch::Tensor>>&);
+
+Model unit_sphere();
+
+Section sphere_section(const Folders& folders, const std::string& light);
+Section view_section(const Folders& folders);
+Section geometry_section(const Folders& folders);
+Section bsdf_section(const Folders& folders);
+Section furnace_section();
+Section irradiance_section(const Folders& folders);
+Section gradient_section(const Folders& folders);
+
+}  // namespace item3d::reference

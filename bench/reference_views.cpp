@@ -1,0 +1,183 @@
+// A textured model from eight views: what is seen where, and its radiance.
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/render/textured.h"
+#include "item3d/scene/io/load.h"
+#include "reference_report.h"
+
+#include <nlohmann/json.hpp>
+
+namespace item3d::reference {
+namespace {
+
+constexpr int size = 256;
+
+struct Views {
+    Model model;
+    Geometry geometry;
+    std::vector<Camera> cameras;
+    std::filesystem::path folder;
+    std::filesystem::path file(int view, const std::string& what) const {
+        return folder / fmt::format("view_{:02}_{}", view, what);
+    }
+};
+
+Views load_views(const Folders& folders) {
+    Views views;
+    views.folder = folders.data / "views_spot_sky_noon";
+    views.model = load_model(folders.data / "meshes" / "spot" / "spot.obj");
+    for (Primitive& primitive : views.model.primitives)
+        compute_smooth_normals(primitive);  // the references do not use the file's
+    views.geometry = Geometry::from_model(views.model);
+    const auto scene = nlohmann::json::parse(read_text(views.folder / "scene.json"));
+    for (const auto& frame : scene["frames"]) {
+        Camera camera;
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column)
+                camera.camera_to_world[column][row] =
+                    frame["camera_to_world_opengl"][static_cast<std::size_t>(row)]
+                         [static_cast<std::size_t>(column)];
+        camera.field_of_view_x = scene["fov_x_deg"].get<float>() * pi / 180;
+        views.cameras.push_back(camera);
+    }
+    for (Material& material : views.model.materials) {
+        material.metallic_factor = scene["metallic"];
+        material.roughness_factor = scene["roughness"];
+        material.metallic_roughness_texture = material.occlusion_texture = -1;
+    }
+    return views;
+}
+
+/// Pixels whose neighbours all see the same as they do (object or nothing), [H, W] bool.
+torch::Tensor away_from_edges(const torch::Tensor& mask) {
+    const torch::Tensor m = mask.to(torch::kFloat32).reshape({1, 1, size, size});
+    const torch::Tensor most = torch::max_pool2d(m, 3, 1, 1);
+    const torch::Tensor least = -torch::max_pool2d(-m, 3, 1, 1);
+    return (most == least).reshape({size, size});
+}
+
+}  // namespace
+
+Section geometry_section(const Folders& folders) {
+    const Views views = load_views(folders);
+    Section section;
+    section.title = "What is seen where";
+    section.text =
+        "spot from eight views: pixels whose centre sees the model where the reference's does not "
+        "or the reverse, the largest relative difference of depth and the angle between normals "
+        "where both see it, and our antialiased coverage against the reference's (512 samples a "
+        "pixel): largest difference, and the share of edge pixels within 1/16.";
+    section.columns = {"view",         "mask differs at", "depth, largest",
+                       "normal, 99 %", "normal, largest", "coverage, largest",
+                       "within 1/16"};
+    const EnvironmentLight light = prefilter(torch::ones({6, 16, 16, 3}));
+    for (std::size_t v = 0; v < views.cameras.size(); ++v) {
+        const int view = static_cast<int>(v);
+        const std::vector<Camera> camera{views.cameras[v]};
+        const Raster raster = rasterize(views.geometry, camera, size, size);
+        const Surface surface = interpolate_surface(views.geometry, raster, camera);
+        const torch::Tensor seen = raster.triangle[0] >= 0;
+        const torch::Tensor mask = load_reference(views.file(view, "mask.png")).select(2, 0) > 0.5f;
+        const torch::Tensor both = seen.logical_and(mask);
+        const torch::Tensor depth = load_reference(views.file(view, "depth.exr")).select(2, 0);
+        const double depth_error = ((raster.depth[0] - depth).abs() / depth.clamp_min(1e-6f))
+                                       .masked_select(both)
+                                       .max()
+                                       .item<double>();
+        const torch::Tensor normals =
+            scatter(surface.normal, surface, raster, torch::zeros({3}))[0];
+        const torch::Tensor expected =
+            load_reference(views.file(view, "normal.exr")).narrow(2, 0, 3);
+        const torch::Tensor angle = torch::atan2(torch::linalg_cross(normals, expected).norm(2, 2),
+                                                 (normals * expected).sum(2))
+                                        .masked_select(both) *
+                                    (180 / pi);
+        const double angle_99 =
+            std::get<0>(
+                angle.sort())[static_cast<std::int64_t>(0.99 * static_cast<double>(angle.numel()))]
+                .item<double>();
+
+        RenderOptions options;
+        options.width = options.height = size;
+        const torch::Tensor alpha =
+            render(views.geometry, TexturedMaterials(views.model), light, camera, options)[0]
+                .select(2, 3);
+        const torch::Tensor coverage =
+            load_reference(views.file(view, "lambertggx.exr")).select(2, 3);
+        const torch::Tensor coverage_error = (alpha - coverage).abs();
+        const torch::Tensor edge = ((coverage > 0.001f).logical_and(coverage < 0.999f));
+        const double within = (coverage_error.masked_select(edge) <= 1.0f / 16)
+                                  .to(torch::kFloat32)
+                                  .mean()
+                                  .item<double>();
+        const auto differs = (seen != mask).sum().item<std::int64_t>();
+        section.rows.push_back({std::to_string(view),
+                                fmt::format("{} of {}", differs, mask.sum().item<std::int64_t>()),
+                                fmt::format("{:.1e}", depth_error),
+                                fmt::format("{:.2f}°", angle_99),
+                                fmt::format("{:.2f}°", angle.max().item<double>()),
+                                fmt::format("{:.3f}", coverage_error.max().item<double>()),
+                                fmt::format("{:.1f} %", 100 * within)});
+        section.numbers[fmt::format("view_{:02}", view)] = {
+            {"mask_differs", differs},
+            {"depth", depth_error},
+            {"normal_degrees_99", angle_99},
+            {"normal_degrees", angle.max().item<double>()},
+            {"coverage", coverage_error.max().item<double>()},
+            {"coverage_within_sixteenth", within}};
+    }
+    return section;
+}
+
+Section view_section(const Folders& folders) {
+    const Views views = load_views(folders);
+    const EnvironmentLight light = prefilter(load_image(folders.data / "env" / "sky_noon.hdr"));
+    Section section;
+    section.title = "A textured model";
+    section.text =
+        "spot under sky_noon, roughness 0.4, away from silhouettes: mean absolute difference over "
+        "the mean, and our energy over the reference's. The reference is shadowed by the model "
+        "itself; we are not, so crevices and the sun's shadows are brighter here.";
+    section.columns = {"view", "ours to lambert + GGX", "energy", "ours to Disney's",
+                       "Disney's to lambert + GGX"};
+    std::vector<std::vector<torch::Tensor>> tiles(3);
+    for (std::size_t v = 0; v < views.cameras.size(); ++v) {
+        const int view = static_cast<int>(v);
+        RenderOptions options;
+        options.width = options.height = size;
+        options.shade.multiple_scattering = false;
+        const torch::Tensor picture = render(views.geometry, TexturedMaterials(views.model), light,
+                                             {views.cameras[v]}, options)[0];
+        const torch::Tensor traced = load_reference(views.file(view, "lambertggx.exr"));
+        const torch::Tensor disney = load_reference(views.file(view, "principled.exr"));
+        const torch::Tensor mask = load_reference(views.file(view, "mask.png")).select(2, 0) > 0.5f;
+        const torch::Tensor inside = mask.logical_and(away_from_edges(mask)).flatten().nonzero();
+        const auto chosen = [&](const torch::Tensor& image) {
+            return image.reshape({size * size, -1})
+                .index_select(0, inside.flatten())
+                .narrow(1, 0, 3);
+        };
+        const Difference ours = difference(chosen(picture), chosen(traced));
+        const Difference to_disney = difference(chosen(picture), chosen(disney));
+        const Difference models = difference(chosen(disney), chosen(traced));
+        const auto percent = [](double part) { return fmt::format("{:.1f} %", 100 * part); };
+        section.rows.push_back({std::to_string(view), percent(ours.mean),
+                                fmt::format("{:.3f}", ours.bias), percent(to_disney.mean),
+                                percent(models.mean)});
+        section.numbers[fmt::format("view_{:02}", view)] = {{"ours", ours.mean},
+                                                            {"energy", ours.bias},
+                                                            {"ours_to_principled", to_disney.mean},
+                                                            {"models", models.mean}};
+        if (view % 2 == 1) continue;
+        const torch::Tensor a = traced.narrow(2, 0, 3), b = picture.narrow(2, 0, 3);
+        tiles[0].push_back(a);
+        tiles[1].push_back(b);
+        tiles[2].push_back((a - b).abs() * 4);
+    }
+    save_tiles(folders.output / "views.png", tiles);
+    section.pictures = {"views.png"};
+    section.text += " The picture: path traced, ours, four times the difference.";
+    return section;
+}
+
+}  // namespace item3d::reference
