@@ -13,7 +13,8 @@ std::vector<fs::path> some_models() {
     for (const char* name :
          {"gltf/full_pbr.glb", "gltf/percent_uri.gltf", "gltf/quantized.glb",
           "gltf/hierarchy_trs.glb", "gltf/multi_material.glb", "gltf/sparse.gltf",
-          "nasty/multi_material.obj", "nasty/vertex_colors_w.obj"}) {
+          "gltf/draco_edgebreaker.glb", "gltf/meshopt_filters.glb", "nasty/multi_material.obj",
+          "nasty/vertex_colors_w.obj"}) {
         paths.push_back(data_folder() / name);
     }
     return paths;

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,13 @@ inline fs::path fresh_folder(const std::string& name) {
     fs::remove_all(folder);
     fs::create_directories(folder);
     return folder;
+}
+
+/// Without write_atomically's wait for the disk.
+inline void write_quickly(const fs::path& path, const Bytes& bytes) {
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
 }
 
 /// Values are multiples of 1/255, so that 8 bits hold them exactly.

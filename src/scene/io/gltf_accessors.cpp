@@ -151,9 +151,8 @@ float Accessor::value(std::size_t element, std::size_t component) const {
     }
 }
 
-Accessor read_accessor(const SourceDocument& document, std::size_t index) {
-    const GltfObject root = root_of(document);
-    const GltfObject object = root.item("accessors", index);
+Accessor accessor_shape(const SourceDocument& document, std::size_t index) {
+    const GltfObject object = root_of(document).item("accessors", index);
     Accessor accessor;
     accessor.component_type = read_component_type(object);
     accessor.type = object.text("type", "");
@@ -167,8 +166,18 @@ Accessor read_accessor(const SourceDocument& document, std::size_t index) {
     const std::size_t column =
         shape->components / shape->columns * component_size(accessor.component_type);
     accessor.element_size = shape->columns == 1 ? column : shape->columns * ((column + 3) / 4 * 4);
+    return accessor;
+}
 
-    if (const auto view_index = object.index("bufferView", root.list_size("bufferViews"))) {
+Accessor read_accessor(const SourceDocument& document, std::size_t index) {
+    const GltfObject root = root_of(document);
+    const GltfObject object = root.item("accessors", index);
+    Accessor accessor = accessor_shape(document, index);
+    const auto decoded = document.decoded_accessors.find(index);
+    if (decoded != document.decoded_accessors.end()) {
+        accessor.bytes = decoded->second;
+        accessor.count = accessor.bytes.size() / accessor.element_size;
+    } else if (const auto view_index = object.index("bufferView", root.list_size("bufferViews"))) {
         const auto view = buffer_view_bytes(document, *view_index);
         const std::size_t offset = object.integer("byteOffset", 0);
         std::size_t stride = root.item("bufferViews", *view_index).integer("byteStride", 0);

@@ -35,6 +35,9 @@ struct Accessor {
     float value(std::size_t element, std::size_t component) const;
 };
 
+/// All but the bytes. Throws InputError.
+Accessor accessor_shape(const SourceDocument& document, std::size_t index);
+
 /// Everything is checked against the buffers before memory is taken. Throws InputError.
 Accessor read_accessor(const SourceDocument& document, std::size_t index);
 

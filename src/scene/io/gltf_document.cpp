@@ -1,6 +1,7 @@
 #include "item3d/scene/io/gltf_document.h"
 
 #include "item3d/core/error.h"
+#include "item3d/scene/io/gltf_meshopt.h"
 #include "item3d/scene/io/resources.h"
 
 #include <fmt/format.h>
@@ -151,6 +152,7 @@ std::shared_ptr<SourceDocument> parse_gltf(const fs::path& path, const Bytes& by
                          "convert it to glTF 2.0");
     }
     read_buffers(*document, std::move(binary));
+    decode_meshopt_views(*document);
     return document;
 }
 
@@ -261,19 +263,24 @@ GltfObject root_of(const SourceDocument& document) {
     return GltfObject(document, document.json, "");
 }
 
-std::span<const std::uint8_t> buffer_view_bytes(const SourceDocument& document, std::size_t index) {
-    const GltfObject view = root_of(document).item("bufferViews", index);
-    const auto buffer = view.index("buffer", document.buffers.size());
-    if (!buffer) view.fail("buffer is missing");
+std::span<const std::uint8_t> byte_range(const SourceDocument& document, const GltfObject& object) {
+    const auto buffer = object.index("buffer", document.buffers.size());
+    if (!buffer) object.fail("buffer is missing");
     const Bytes& bytes = document.buffers[*buffer];
-    const std::size_t offset = view.integer("byteOffset", 0);
-    const std::size_t length = view.integer("byteLength");
+    const std::size_t offset = object.integer("byteOffset", 0);
+    const std::size_t length = object.integer("byteLength");
     if (offset > bytes.size() || length > bytes.size() - offset) {
-        view.fail(fmt::format("bytes {} to {} leave buffer {} of {} bytes", offset, offset + length,
-                              *buffer, bytes.size()),
-                  "the file is damaged or cut short");
+        object.fail(fmt::format("bytes {} to {} leave buffer {} of {} bytes", offset,
+                                offset + length, *buffer, bytes.size()),
+                    "the file is damaged or cut short");
     }
     return std::span(bytes).subspan(offset, length);
+}
+
+std::span<const std::uint8_t> buffer_view_bytes(const SourceDocument& document, std::size_t index) {
+    const auto decoded = document.decoded_views.find(index);
+    if (decoded != document.decoded_views.end()) return decoded->second;
+    return byte_range(document, root_of(document).item("bufferViews", index));
 }
 
 Bytes read_image_bytes(const SourceDocument& document, std::size_t index) {

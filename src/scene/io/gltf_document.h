@@ -7,8 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,6 +26,15 @@ class SourceDocument {
     Json json;
     /// One for each of json["buffers"]; exactly as in the files, so perhaps longer than byteLength.
     std::vector<Bytes> buffers;
+    /// Compressed data, as it reads: buffer views by index (gltf_meshopt.h), and the packed
+    /// elements of accessors by index (gltf_draco.h).
+    std::map<std::size_t, Bytes> decoded_views;
+    std::map<std::size_t, Bytes> decoded_accessors;
+    /// GltfObject::where() of the primitives that these accessors are of.
+    std::set<std::string> decoded_primitives;
+    /// By (mesh, primitive), where the model's vertices are not the document's: the document's
+    /// vertex that each copies (flat_normals.h).
+    std::map<std::pair<int, int>, std::vector<std::uint32_t>> split_vertices;
     /// buffers[0] is the BIN chunk of a .glb.
     bool has_binary_chunk = false;
     struct Chunk {
@@ -80,7 +92,11 @@ GltfObject root_of(const SourceDocument& document);
 /// The encoded bytes of an image (from its URI, data URI or buffer view). Throws InputError.
 Bytes read_image_bytes(const SourceDocument& document, std::size_t image);
 
-/// The bytes that a buffer view covers. Throws InputError.
+/// The bytes of a buffer that an object with buffer, byteOffset and byteLength names. Throws
+/// InputError.
+std::span<const std::uint8_t> byte_range(const SourceDocument& document, const GltfObject& object);
+
+/// The bytes that a buffer view covers, decompressed. Throws InputError.
 std::span<const std::uint8_t> buffer_view_bytes(const SourceDocument& document, std::size_t view);
 
 }  // namespace item3d

@@ -1,6 +1,7 @@
 #include "item3d/scene/io/gltf_patch.h"
 
 #include "item3d/core/error.h"
+#include "item3d/scene/io/gltf_draco.h"
 
 #include <fmt/format.h>
 
@@ -52,6 +53,7 @@ class GltfPatch {
             if (!edit_.materials.contains(material)) change_material(material);
         }
         change_meshes();
+        if (dropped_draco_) forget_unused_draco(builder_.json());
     }
 
   private:
@@ -153,6 +155,10 @@ class GltfPatch {
             PrimitiveEdit edit = found->second;
             ITEM3D_CHECK(edit.uvs.size() == edit.source_vertices.size(),
                          "a PrimitiveEdit needs one uv for each vertex");
+            if (const auto* split = split_vertices(use.mesh, use.primitive)) {
+                for (std::uint32_t& vertex : edit.source_vertices)
+                    vertex = split->at(vertex);
+            }
             // The file's triangles are wound for the mesh, not for the mirrored node.
             for (std::size_t t = 0; use.is_mirrored && t + 2 < edit.indices.size(); t += 3) {
                 std::swap(edit.indices[t + 1], edit.indices[t + 2]);
@@ -189,7 +195,7 @@ class GltfPatch {
             }
             Json mesh = document_.json["meshes"][static_cast<std::size_t>(key.first)];
             for (const PrimitiveChange& change : changes)
-                apply(change, mesh);
+                apply(change, key.first, mesh);
             auto index = static_cast<std::size_t>(key.first);
             if (made.empty()) {
                 builder_.json()["meshes"][index] = std::move(mesh);
@@ -206,7 +212,26 @@ class GltfPatch {
         builder_.json()["nodes"][static_cast<std::size_t>(node)]["mesh"] = mesh;
     }
 
-    void apply(const PrimitiveChange& change, Json& mesh) {
+    const std::vector<std::uint32_t>* split_vertices(int mesh, int primitive) const {
+        const auto found = document_.split_vertices.find({mesh, primitive});
+        return found == document_.split_vertices.end() ? nullptr : &found->second;
+    }
+
+    // As the document numbers its vertices.
+    std::vector<Vec2> document_uvs(const PrimitiveChange& change, int mesh) const {
+        std::vector<Vec2> uvs = *change.uvs;
+        uvs.resize(change.vertex_count, Vec2(0.0f));
+        const std::vector<std::uint32_t>* split = split_vertices(mesh, change.primitive);
+        if (!split) return uvs;
+        const Json& attributes = source_primitive(mesh, change.primitive)["attributes"];
+        std::vector<Vec2> result(
+            accessor_shape(document_, attributes["POSITION"].get<std::size_t>()).count, Vec2(0.0f));
+        for (std::size_t i = 0; i < split->size(); ++i)
+            result[(*split)[i]] = uvs[i];
+        return result;
+    }
+
+    void apply(const PrimitiveChange& change, int mesh_index, Json& mesh) {
         Json& primitive = mesh["primitives"][static_cast<std::size_t>(change.primitive)];
         const auto edit = edit_.materials.find(change.material);
         if (!primitive.contains("material") && edit != edit_.materials.end()) {
@@ -217,16 +242,17 @@ class GltfPatch {
         if (!plan.has_new_uvs && edit != edit_.materials.end()) {
             plan.new_set = uv_set_of(change.material);
             if (!primitive["attributes"].contains(uv_name(plan.new_set))) {
-                set_uvs(change, plan, primitive["attributes"]);
+                set_uvs(change, mesh_index, plan, primitive["attributes"]);
             }
         }
         if (plan.has_new_uvs) {
-            set_uvs(change, plan, primitive["attributes"]);
+            set_uvs(change, mesh_index, plan, primitive["attributes"]);
             // A tangent frame follows the coordinates of its normal map.
             if (edit != edit_.materials.end() && edit->second.normal)
                 drop_attribute("TANGENT", primitive);
         }
         if (drops_colors(change.material)) drop_colors(primitive);
+        match_draco(source_primitive(mesh_index, change.primitive), primitive);
     }
 
     static void drop_attribute(const char* name, Json& primitive) {
@@ -254,9 +280,10 @@ class GltfPatch {
         attributes["COLOR_0"] = builder_.add_vertices(white, Bytes(4 * count, 255), false);
     }
 
-    void set_uvs(const PrimitiveChange& change, const UvPlan& plan, Json& attributes) {
-        std::vector<Vec2> uvs = change.edit ? change.edit->uvs : *change.uvs;
-        if (!change.edit) uvs.resize(change.vertex_count, Vec2(0.0f));
+    void set_uvs(const PrimitiveChange& change, int mesh_index, const UvPlan& plan,
+                 Json& attributes) {
+        const std::vector<Vec2> uvs =
+            change.edit ? change.edit->uvs : document_uvs(change, mesh_index);
         const std::span<const float> values(reinterpret_cast<const float*>(uvs.data()),
                                             2 * uvs.size());
         const std::size_t accessor = builder_.add_floats(values, 2);
@@ -308,8 +335,10 @@ class GltfPatch {
         primitive["indices"] = builder_.add_indices(edit.indices, edit.source_vertices.size());
         primitive.erase("mode");
         // The plain vertices are new, the compressed copy of the old ones goes.
-        if (!primitive.contains("extensions")) return;
-        primitive["extensions"].erase("KHR_draco_mesh_compression");
+        const std::string draco = draco_extension;
+        if (!primitive.contains("extensions") || !primitive["extensions"].contains(draco)) return;
+        dropped_draco_ = true;
+        primitive["extensions"].erase(draco);
         if (primitive["extensions"].empty()) primitive.erase("extensions");
     }
 
@@ -319,6 +348,7 @@ class GltfPatch {
     GltfBuilder& builder_;
     int default_material_;
     std::map<int, UvPlan> plans_;
+    bool dropped_draco_ = false;
 };
 
 }  // namespace

@@ -43,6 +43,13 @@ void patch_material(const SourceDocument& document, const Json& original, const 
                     const UvPlan& plan, const std::string& name, Json& material,
                     GltfBuilder& builder);
 
+/// Compressed attributes are named twice, in a primitive and in its Draco extension: makes those of
+/// the extension agree with those of the primitive, which was `original` before.
+void match_draco(const Json& original, Json& primitive);
+
+/// Takes the Draco extension off the document's lists when no primitive has it any more.
+void forget_unused_draco(Json& json);
+
 /// Makes every texture of a material that looks at set 0 look at `set`.
 void move_texture_coordinates(Json& material, std::size_t set);
 

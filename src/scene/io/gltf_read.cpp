@@ -2,7 +2,9 @@
 // each node of the default scene, in world space, at rest (default morph weights, nodes as they
 // are).
 #include "item3d/core/error.h"
+#include "item3d/scene/io/flat_normals.h"
 #include "item3d/scene/io/gltf_accessors.h"
+#include "item3d/scene/io/gltf_draco.h"
 #include "item3d/scene/io/gltf_materials.h"
 #include "item3d/scene/io/gltf_nodes.h"
 #include "item3d/scene/io/readers.h"
@@ -20,8 +22,9 @@ namespace {
 
 // Extensions that a file may require and that are read, or that change nothing that is read here.
 constexpr std::string_view known_extensions[] = {
-    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",
-    "KHR_animation_pointer", "KHR_xmp_json_ld",
+    "KHR_mesh_quantization",      "KHR_texture_transform", "KHR_lights_punctual",
+    "KHR_animation_pointer",      "KHR_xmp_json_ld",       "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression",
 };
 
 void check_required_extensions(const SourceDocument& document) {
@@ -36,9 +39,7 @@ void check_required_extensions(const SourceDocument& document) {
             continue;
         }
         std::string hint = "export it without that extension";
-        if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression") {
-            hint = "decompress it first, for instance with 'gltf-transform copy in.glb out.glb'";
-        } else if (name == "KHR_texture_basisu" || name == "EXT_texture_webp") {
+        if (name == "KHR_texture_basisu" || name == "EXT_texture_webp") {
             hint = "convert its textures to PNG first, for instance with 'gltf-transform png'";
         }
         root.fail("requires the glTF extension " + name + ", which cannot be read", hint);
@@ -63,7 +64,6 @@ class GltfReader {
     void add_mesh(std::size_t mesh, std::optional<std::size_t> node);
     void add_primitive(const GltfObject& mesh, const GltfObject& source, Primitive primitive,
                        std::optional<std::size_t> node);
-    void check_compression(const GltfObject& source, const GltfObject& attributes) const;
     Vertices read_vertices(const GltfObject& attributes) const;
     void apply_morph_targets(const GltfObject& source, const std::vector<double>& weights,
                              Vertices& vertices) const;
@@ -330,38 +330,21 @@ void GltfReader::read_triangles(const GltfObject& source, std::size_t mode,
     }
 }
 
-// Compressed vertices may come with plain ones for readers that cannot decompress, or without.
-void GltfReader::check_compression(const GltfObject& source, const GltfObject& attributes) const {
-    const std::string hint =
-        "decompress it first, for instance with 'gltf-transform copy in.glb out.glb'";
-    const GltfObject position = root_.item("accessors", *accessor_of(attributes, "POSITION"));
-    const auto view = position.index("bufferView", root_.list_size("bufferViews"));
-    const auto extensions = source.object("extensions");
-    if (extensions && extensions->has("KHR_draco_mesh_compression") && !view) {
-        source.fail("is compressed with KHR_draco_mesh_compression, which cannot be read", hint);
-    }
-    if (!view) return;
-    const GltfObject view_object = root_.item("bufferViews", *view);
-    const auto buffer = view_object.index("buffer", document_->buffers.size());
-    if (view_object.has("extensions") && buffer && document_->buffers[*buffer].empty()) {
-        source.fail("is compressed with EXT_meshopt_compression, which cannot be read", hint);
-    }
-}
-
 void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
                                Primitive primitive, std::optional<std::size_t> node) {
     const std::size_t mode = source.integer("mode", 4);
     if (mode > 6) source.fail(fmt::format("mode {} is unknown", mode));
     const auto attributes = source.object("attributes");
     if (mode < 4 || !attributes || !attributes->has("POSITION")) return;
-    check_compression(source, *attributes);
+    const GltfObject position = root_.item("accessors", *accessor_of(*attributes, "POSITION"));
+    count_vertices(source, position.integer("count"));
+    if (needs_draco(*document_, source)) decode_draco_primitive(*document_, source);
     const std::size_t materials = root_.list_size("materials");
     const auto material = source.index("material", materials);
     uses_default_material_ = uses_default_material_ || !material;
     primitive.material = static_cast<int>(material.value_or(materials));
 
     Vertices vertices = read_vertices(*attributes);
-    count_vertices(source, vertices.positions.size());
     apply_morph_targets(source, morph_weights(mesh, source, node), vertices);
     std::vector<glm::dmat4> matrices{node ? nodes_.world[*node] : glm::dmat4(1.0)};
     if (node && attributes->has("JOINTS_0")) {
@@ -383,7 +366,11 @@ void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
     read_colors(*attributes, primitive);
     read_triangles(source, mode, primitive);
     if (primitive.indices.empty()) return;
-    if (primitive.normals.empty()) {
+    if (!attributes->has("NORMAL")) {
+        count_vertices(source, primitive.indices.size());
+        document_->split_vertices[{primitive.source_mesh, primitive.source_primitive}] =
+            make_flat(primitive);
+    } else if (primitive.normals.empty()) {
         primitive.normals = smooth_normals(primitive.positions, primitive.indices);
     }
     model_.primitives.push_back(std::move(primitive));

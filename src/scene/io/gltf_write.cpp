@@ -29,13 +29,14 @@ Bytes pack_buffers(const SourceDocument& document, Json& json) {
     Json buffers = Json::array({Json::object()});
     for (std::size_t i = 0; i < document.buffers.size(); ++i) {
         const Bytes& bytes = document.buffers[i];
-        binary.resize((binary.size() + 7) / 8 * 8);
-        offsets.push_back(bytes.empty() ? 0 : binary.size());
         if (bytes.empty()) {
+            offsets.push_back(0);
             new_index.push_back(buffers.size());
             buffers.push_back(json["buffers"][i]);
             continue;
         }
+        binary.resize((binary.size() + 7) / 8 * 8);
+        offsets.push_back(binary.size());
         if (packed.empty()) packed = json["buffers"][i];
         new_index.push_back(0);
         binary.insert(binary.end(), bytes.begin(), bytes.end());
