@@ -5,6 +5,8 @@ find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PkgConfig REQUIRED)
+find_package(draco CONFIG REQUIRED)
+find_package(meshoptimizer CONFIG REQUIRED)
 
 # OpenMP by its flag alone: LibTorch brings a libgomp of its own, and a full path to the compiler's
 # would set two of the same name against each other.

@@ -1,6 +1,7 @@
 # cmake --install BUILD --prefix PREFIX:
 #   bin/item3d, bin/parity   the programs
-#   lib/item3d/              LibTorch's libraries, found by the programs through $ORIGIN/../lib/item3d
+#   lib/item3d/              LibTorch's libraries, found by the programs through $ORIGIN/../lib/item3d,
+#                            and libitem3d_cuda.so (cmake/Cuda.cmake), opened from there
 #   share/item3d/            assets: the embedded prior and the demo model
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets/ DESTINATION share/item3d)
 

@@ -4,6 +4,7 @@
 # where an interrupted run stopped. Works as root and as a user who may use sudo.
 #
 #   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
+#   ITEM3D_CUDA=OFF           do without the CUDA compiler; the kernels are then built for the CPU alone
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
@@ -120,6 +121,25 @@ unpack_site() {
     extract "$cupti" "$into" 'nvidia/cu13/lib/libcupti.so.*'
 }
 
+# The compiler's own files and the headers, libraries and code that it needs: no linker, no profiler.
+unpack_cuda() {
+    local into=$1 archive name
+    local -A files=(
+        [nvidia-cuda-nvcc]='bin/nvcc bin/nvcc.profile bin/cudafe++ bin/fatbinary bin/ptxas include/*'
+        [nvidia-cuda-crt]='include/*'
+        [nvidia-nvvm]='nvvm/bin/cicc nvvm/libdevice/*'
+        [nvidia-cuda-runtime]='include/* lib/libcudart.so.*'
+        [nvidia-nvtx]='include/*')
+    for name in "${!files[@]}"; do
+        local wanted=()
+        read -ra wanted <<<"${files[$name]}"
+        download "$name" "${wheel_options[@]}"
+        extract "$archive" "$into" "${wanted[@]/#/nvidia/cu13/}" '*.dist-info/*License*'
+    done
+    mv "$into"/nvidia/cu13/* "$into"
+    rm -r "$into/nvidia"
+}
+
 unpack_xatlas() {
     local into=$1 archive inner
     download xatlas --no-binary=xatlas
@@ -143,3 +163,7 @@ else
     component site 'torch|nvidia-cuda-runtime|nvidia-cuda-cupti' unpack_site
 fi
 component xatlas xatlas unpack_xatlas
+if [[ ${ITEM3D_CUDA:-ON} != OFF && $(uname -m) == x86_64 ]]; then
+    component cuda 'nvidia-cuda-nvcc|nvidia-cuda-crt|nvidia-nvvm|nvidia-cuda-runtime|nvidia-nvtx' \
+        unpack_cuda
+fi

@@ -1,28 +1,14 @@
 #include "item3d/field/adam.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/host_device.h"
 #include "item3d/core/parallel.h"
+#include "item3d/field/cuda/module.h"
 
 #include <cmath>
+#include <type_traits>
 
 namespace item3d {
 namespace {
-
-/// What one step needs beyond the gradient; rates are already bias corrected.
-struct AdamRates {
-    float beta1, beta2, epsilon;
-    float step_size;       ///< learning_rate / (1 - beta1^t)
-    float variance_scale;  ///< 1 / (1 - beta2^t)
-};
-
-ITEM3D_HOST_DEVICE inline void adam_update(float& parameter, float& momentum, float& variance,
-                                           float gradient, const AdamRates& rates) {
-    momentum = rates.beta1 * momentum + (1.0f - rates.beta1) * gradient;
-    variance = rates.beta2 * variance + (1.0f - rates.beta2) * gradient * gradient;
-    parameter -=
-        rates.step_size * momentum / (std::sqrt(variance * rates.variance_scale) + rates.epsilon);
-}
 
 AdamRates make_rates(const AdamOptions& options, int updates) {
     return {static_cast<float>(options.beta1), static_cast<float>(options.beta2),
@@ -31,8 +17,19 @@ AdamRates make_rates(const AdamOptions& options, int updates) {
             static_cast<float>(1.0 / (1.0 - std::pow(options.beta2, updates)))};
 }
 
-/// Whether a sparse gradient's rows are unique and in rising order.
+/// The rates of each number of updates where a parameter is; for the CPU a view of `rates`.
+torch::Tensor rates_on(std::vector<AdamRates>& rates, torch::Device device) {
+    static_assert(std::is_trivially_copyable_v<AdamRates>);
+    return torch::from_blob(rates.data(),
+                            {static_cast<std::int64_t>(rates.size() * sizeof(AdamRates))},
+                            torch::kUInt8)
+        .to(device);
+}
+
+/// Whether a sparse gradient's rows are unique and in rising order. Not looked at on devices: those
+/// are sorted again when in doubt.
 bool rows_rise(const torch::Tensor& indices) {
+    if (!indices.is_cpu()) return false;
     if (indices.size(0) != 1 || !indices.is_contiguous()) return false;
     const std::int64_t* index = indices.data_ptr<std::int64_t>();
     for (std::int64_t i = 1; i < indices.size(1); ++i) {
@@ -47,14 +44,15 @@ std::size_t Adam::add_group(std::vector<torch::Tensor> parameters, const AdamOpt
     Group group;
     group.options = options;
     for (torch::Tensor& parameter : parameters) {
-        ITEM3D_CHECK(parameter.is_cpu() && parameter.is_contiguous() && parameter.dim() > 0 &&
-                         parameter.scalar_type() == torch::kFloat32,
-                     "Adam updates contiguous float32 tensors on the CPU");
+        ITEM3D_CHECK((parameter.is_cpu() || parameter.is_cuda()) && parameter.is_contiguous() &&
+                         parameter.dim() > 0 && parameter.scalar_type() == torch::kFloat32,
+                     "Adam updates contiguous float32 tensors on the CPU or CUDA");
         Slot slot;
         slot.parameter = parameter;
         slot.momentum = torch::zeros_like(parameter, torch::TensorOptions().requires_grad(false));
         slot.variance = torch::zeros_like(slot.momentum);
-        slot.updates = torch::zeros({parameter.size(0)}, torch::kInt32);
+        slot.updates =
+            torch::zeros({parameter.size(0)}, slot.momentum.options().dtype(torch::kInt32));
         group.slots.push_back(std::move(slot));
     }
     groups_.push_back(std::move(group));
@@ -87,25 +85,22 @@ void Adam::step() {
                 rows = row_index.size(0);
             }
             gradient = gradient.contiguous();
-            const std::int64_t* index =
-                row_index.defined() ? row_index.data_ptr<std::int64_t>() : nullptr;
-            const float* g = gradient.data_ptr<float>();
-            float* parameter = slot.parameter.data_ptr<float>();
-            float* momentum = slot.momentum.data_ptr<float>();
-            float* variance = slot.variance.data_ptr<float>();
-            std::int32_t* updates = slot.updates.data_ptr<std::int32_t>();
-            parallel_for(
-                "adam_step", rows,
-                [&](std::int64_t i) {
-                    const std::int64_t row = index ? index[i] : i;
-                    const AdamRates& rate = rates[static_cast<std::size_t>(++updates[row])];
-                    for (std::int64_t c = 0; c < width; ++c) {
-                        const std::int64_t at = row * width + c;
-                        adam_update(parameter[at], momentum[at], variance[at], g[i * width + c],
-                                    rate);
-                    }
-                },
-                4096);
+            const torch::Device device = slot.parameter.device();
+            const torch::Tensor own_rates = rates_on(rates, device);
+            const AdamParameters p{
+                row_index.defined() ? row_index.const_data_ptr<std::int64_t>() : nullptr,
+                gradient.const_data_ptr<float>(),
+                width,
+                slot.parameter.data_ptr<float>(),
+                slot.momentum.data_ptr<float>(),
+                slot.variance.data_ptr<float>(),
+                slot.updates.data_ptr<std::int32_t>(),
+                static_cast<const AdamRates*>(own_rates.const_data_ptr())};
+            if (device.is_cuda())
+                cuda::run(cuda::field_table().adam_step, p, rows, device);
+            else
+                parallel_for(
+                    "adam_step", rows, [=](std::int64_t i) { adam_step_row(p, i); }, 4096);
         }
     }
 }

@@ -21,7 +21,8 @@ struct AdamOptions {
 /// as usual. One whose gradient is sparse (the hash grid's table, [rows, F]) is updated lazily:
 /// only the rows in the gradient, and bias correction counts the updates of each row, so a row that
 /// is seen for the first time after a thousand steps moves as far as one that is seen in the first.
-/// Runs on the CPU, float32, contiguous parameters. Results do not depend on the number of threads.
+/// float32, contiguous parameters, on the CPU or a CUDA device. Results do not depend on the number
+/// of threads.
 class Adam {
   public:
     /// Returns the group's index. Parameters keep their order; names in state() follow it.

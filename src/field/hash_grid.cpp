@@ -2,9 +2,11 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
+#include "item3d/field/cuda/module.h"
 
 #include <torch/csrc/autograd/custom_function.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -22,7 +24,9 @@ void check_arguments(const HashGrid& grid, const torch::Tensor& points,
                      table.size(1) == grid.features && table.scalar_type() == torch::kFloat32,
                  c10::str("table must be [", grid.entries(), ", ", grid.features, "] float32, is ",
                           table.sizes()));
-    ITEM3D_CHECK(points.is_cpu() && table.is_cpu(), "the hash grid runs on the CPU");
+    ITEM3D_CHECK((points.is_cpu() || points.is_cuda()) && points.device() == table.device(),
+                 "the hash grid's points and table must be on one device, the CPU or CUDA");
+    ITEM3D_CHECK(grid.levels.size() <= most_hash_grid_levels, "levels must be at most 32");
 }
 
 Vec3 point_at(const float* points, std::int64_t i) {
@@ -185,6 +189,38 @@ torch::Tensor encode_table_backward(const HashGrid& grid, const float* points, s
                                          torch::TensorOptions().dtype(torch::kFloat32), true);
 }
 
+HashGridParameters cuda_parameters(const HashGrid& grid, const torch::Tensor& points,
+                                   const torch::Tensor& table) {
+    HashGridParameters p{};
+    std::copy(grid.levels.begin(), grid.levels.end(), p.levels);
+    p.level_count = static_cast<int>(grid.levels.size());
+    p.entry_width = grid.features;
+    p.count = points.size(0);
+    p.points = points.const_data_ptr<float>();
+    p.table = table.const_data_ptr<float>();
+    return p;
+}
+
+/// As encode_table_backward: the sums are taken for the whole table, and the rows that points
+/// touched are then picked.
+torch::Tensor table_backward_on_cuda(const HashGrid& grid, HashGridParameters p,
+                                     torch::Device device) {
+    const torch::Tensor touched =
+        torch::zeros({grid.entries()}, torch::TensorOptions().dtype(torch::kUInt8).device(device));
+    p.touched = touched.data_ptr<std::uint8_t>();
+    const torch::Tensor sums = cuda::sum_on_device(
+        grid.entries() * grid.features, 8 * p.count, device, [&](const Accumulator& accumulator) {
+            p.table_gradient = accumulator;
+            cuda::run(cuda::field_table().hash_grid_table_backward, p, p.level_count * p.count,
+                      device);
+        });
+    const torch::Tensor rows = touched.nonzero().squeeze(1);
+    return at::_sparse_coo_tensor_unsafe(
+        rows.unsqueeze(0), sums.view({grid.entries(), grid.features}).index_select(0, rows),
+        {grid.entries(), grid.features},
+        torch::TensorOptions().dtype(torch::kFloat32).device(device), true);
+}
+
 /// Calls f.operator()<F>() for the grid's number of features.
 template <typename Function>
 auto with_features(int features, const Function& f) {
@@ -207,11 +243,18 @@ class EncodeFunction : public torch::autograd::Function<EncodeFunction> {
                                  const HashGrid& grid) {
         const torch::Tensor p = points.contiguous();
         const torch::Tensor t = table.contiguous();
-        torch::Tensor out = torch::empty({p.size(0), grid.output_width()}, torch::kFloat32);
-        with_features(grid.features, [&]<int F>() {
-            encode_forward<F>(grid, p.data_ptr<float>(), p.size(0), t.data_ptr<float>(),
-                              out.data_ptr<float>());
-        });
+        torch::Tensor out = torch::empty({p.size(0), grid.output_width()}, p.options());
+        if (p.is_cuda()) {
+            HashGridParameters parameters = cuda_parameters(grid, p, t);
+            parameters.features = out.data_ptr<float>();
+            cuda::run(cuda::field_table().hash_grid, parameters, parameters.level_count * p.size(0),
+                      p.device());
+        } else {
+            with_features(grid.features, [&]<int F>() {
+                encode_forward<F>(grid, p.data_ptr<float>(), p.size(0), t.data_ptr<float>(),
+                                  out.data_ptr<float>());
+            });
+        }
         context->save_for_backward({p, t});
         std::vector<std::int64_t> shape{grid.features};
         for (const HashGridLevel& level : grid.levels) {
@@ -238,6 +281,19 @@ class EncodeFunction : public torch::autograd::Function<EncodeFunction> {
                                    static_cast<std::uint32_t>(shape[i + 2]), shape[i + 3] != 0});
         }
         torch::Tensor grad_points, grad_table;
+        if (points.is_cuda()) {
+            HashGridParameters parameters = cuda_parameters(grid, points, table);
+            parameters.feature_gradient = grad.const_data_ptr<float>();
+            if (context->saved_data["needs_points"].toBool()) {
+                grad_points = torch::empty_like(points);
+                parameters.point_gradient = grad_points.data_ptr<float>();
+                cuda::run(cuda::field_table().hash_grid_points_backward, parameters, points.size(0),
+                          points.device());
+            }
+            if (context->saved_data["needs_table"].toBool())
+                grad_table = table_backward_on_cuda(grid, parameters, points.device());
+            return {grad_points, grad_table, torch::Tensor()};
+        }
         with_features(grid.features, [&]<int F>() {
             const float* p = points.data_ptr<float>();
             const float* g = grad.data_ptr<float>();

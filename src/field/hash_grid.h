@@ -24,12 +24,13 @@ struct HashGrid {
 };
 
 /// points [P, 3] float32 in the unit cube (others are clamped to it), table [grid.entries(), F]
-/// float32 -> [P, levels * F], level-major. On the CPU.
+/// float32 -> [P, levels * F], level-major. Both on the CPU or on one CUDA
+/// device.
 ///
 /// Differentiable in both. The table's gradient is a sparse tensor (unique rows in rising order) of
 /// just the entries that the points touched: a step of an edit touches thousands of an table's
-/// million. Sums run in the order of the points within a level, so the result does not depend on
-/// threads.
+/// million. On the CPU sums run in the order of the points within a level, so the result does
+/// not depend on threads; on CUDA only where LibTorch was asked for deterministic algorithms.
 torch::Tensor encode(const HashGrid& grid, const torch::Tensor& points, const torch::Tensor& table);
 
 }  // namespace item3d

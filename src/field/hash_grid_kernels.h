@@ -7,6 +7,7 @@
 // entries by a spatial hash and the network that follows sorts out the collisions.
 #pragma once
 
+#include "item3d/core/accumulate.h"
 #include "item3d/core/host_device.h"
 #include "item3d/core/math.h"
 
@@ -133,6 +134,73 @@ ITEM3D_HOST_DEVICE inline Vec3 encode_level_point_gradient(const HashGridLevel& 
     const float dz = s.x * s.y * (value[4] - value[0]) + t.x * s.y * (value[5] - value[1]) +
                      s.x * t.y * (value[6] - value[2]) + t.x * t.y * (value[7] - value[3]);
     return Vec3(dx, dy, dz) * cell.slope;
+}
+
+inline constexpr int most_hash_grid_levels = 32;
+
+/// A whole grid over P points, for launches that take one index for each level and point.
+struct HashGridParameters {
+    HashGridLevel levels[most_hash_grid_levels];
+    int level_count;      ///< L
+    int entry_width;      ///< F
+    std::int64_t count;   ///< P
+    const float* points;  ///< [P, 3]
+    const float* table;   ///< [entries, F]
+    float* features;      ///< [P, L * F]
+
+    // Backward.
+    const float* feature_gradient;  ///< [P, L * F]
+    float* point_gradient;          ///< [P, 3]
+    Accumulator table_gradient;     ///< [entries, F]
+    std::uint8_t* touched;          ///< [entries], set to 1 where a point reads
+};
+
+ITEM3D_HOST_DEVICE inline Vec3 hash_grid_point(const HashGridParameters& p, std::int64_t i) {
+    return Vec3(p.points[3 * i], p.points[3 * i + 1], p.points[3 * i + 2]);
+}
+
+/// index: level * P + point, so that threads beside each other read one level's table.
+template <int F>
+ITEM3D_HOST_DEVICE inline void hash_grid_forward(const HashGridParameters& p, std::int64_t index) {
+    const std::int64_t l = index / p.count, i = index % p.count;
+    const HashGridLevel& level = p.levels[l];
+    encode_level<F>(level, p.table + static_cast<std::size_t>(level.first) * F,
+                    hash_grid_point(p, i), p.features + (i * p.level_count + l) * F);
+}
+
+/// index: of the point.
+template <int F>
+ITEM3D_HOST_DEVICE inline void hash_grid_points_backward(const HashGridParameters& p,
+                                                         std::int64_t index) {
+    Vec3 sum(0.0f);
+    for (int l = 0; l < p.level_count; ++l) {
+        const HashGridLevel& level = p.levels[l];
+        sum += encode_level_point_gradient<F>(
+            level, p.table + static_cast<std::size_t>(level.first) * F, hash_grid_point(p, index),
+            p.feature_gradient + (index * p.level_count + l) * F);
+    }
+    for (int c = 0; c < 3; ++c)
+        p.point_gradient[3 * index + c] = sum[c];
+}
+
+/// index: level * P + point. Adds what one point gives to its eight entries, and marks them.
+template <int F>
+ITEM3D_HOST_DEVICE inline void hash_grid_table_backward(const HashGridParameters& p,
+                                                        std::int64_t index) {
+    const std::int64_t l = index / p.count, i = index % p.count;
+    const HashGridLevel& level = p.levels[l];
+    const HashGridCell cell = locate(level, hash_grid_point(p, i));
+    std::uint32_t entries[8];
+    float weights[8];
+    corner_entries(level, cell, entries);
+    corner_weights(cell, weights);
+    const float* gradient = p.feature_gradient + (i * p.level_count + l) * F;
+    for (int c = 0; c < 8; ++c) {
+        const std::int64_t entry = static_cast<std::int64_t>(level.first) + entries[c];
+        p.touched[entry] = 1;
+        for (int f = 0; f < F; ++f)
+            p.table_gradient.add(entry * F + f, weights[c] * gradient[f]);
+    }
 }
 
 }  // namespace item3d

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
+#include "item3d/render/cuda/module.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/render/topology.h"
 
@@ -78,13 +79,55 @@ void for_each_crossing(const torch::Tensor& bytes, const F& f) {
     }
 }
 
-/// Pairs are found by all threads and blended by one: pixels belong to several pairs, and sums in
-/// a fixed order give the same bytes again.
+/// On a device each thread gathers what its own pixel takes on.
+torch::Tensor blend_on_cuda(const AntialiasParameters& raster, const torch::Tensor& image) {
+    torch::Tensor result = torch::empty_like(image);
+    kernels::BlendParameters p{};
+    p.raster = raster;
+    p.image = image.const_data_ptr<float>();
+    p.channels = image.size(3);
+    p.blended = result.data_ptr<float>();
+    cuda::run(cuda::render_table().antialias, p,
+              image.numel() / std::max<std::int64_t>(1, p.channels), image.device());
+    return result;
+}
+
+/// clip: positions_clip if its gradient is wanted.
+tensor_list blend_backward_on_cuda(const AntialiasParameters& raster, const torch::Tensor& image,
+                                   const torch::Tensor& gradient, const torch::Tensor& clip) {
+    torch::Tensor by_image = torch::empty_like(image);
+    kernels::BlendParameters p{};
+    p.raster = raster;
+    p.image = image.const_data_ptr<float>();
+    p.channels = image.size(3);
+    p.gradient = gradient.const_data_ptr<float>();
+    p.image_gradient = by_image.data_ptr<float>();
+    const std::int64_t pixels = image.numel() / std::max<std::int64_t>(1, p.channels);
+    const auto launch = [&](const Accumulator& sums) {
+        p.clip_gradient = sums;
+        cuda::run(cuda::render_table().antialias_backward, p, pixels, image.device());
+    };
+    if (!clip.defined()) {
+        launch({});
+        return {by_image, torch::Tensor(), torch::Tensor()};
+    }
+    const torch::Tensor sums =
+        cuda::sum_on_device(clip.numel(), 2 * pixels, image.device(), launch);
+    return {by_image, sums.view(clip.sizes()), torch::Tensor()};
+}
+
+/// On the CPU, pairs are found by all threads and blended by one: pixels belong to several pairs,
+/// and sums in a fixed order give the same bytes again.
 struct Antialias : torch::autograd::Function<Antialias> {
     static torch::Tensor forward(AutogradContext* context, const torch::Tensor& image,
                                  const torch::Tensor& positions_clip, const AntialiasInput& input) {
-        const torch::Tensor crossings =
-            find_crossings(antialias_parameters(input, positions_clip), image.size(0));
+        const AntialiasParameters p = antialias_parameters(input, positions_clip);
+        if (image.is_cuda()) {
+            context->save_for_backward({image, positions_clip, input.triangles, input.neighbours,
+                                        input.triangle, input.depth});
+            return blend_on_cuda(p, image);
+        }
+        const torch::Tensor crossings = find_crossings(p, image.size(0));
         torch::Tensor result = image.clone();
         const std::int64_t channels = image.size(3);
         const float* in = image.const_data_ptr<float>();
@@ -105,15 +148,18 @@ struct Antialias : torch::autograd::Function<Antialias> {
         const torch::Tensor& image = saved[0];
         const AntialiasParameters p =
             antialias_parameters({saved[2], saved[3], saved[4], saved[5]}, saved[1]);
+        if (image.is_cuda())
+            return blend_backward_on_cuda(
+                p, image, gradient, context->needs_input_grad(1) ? saved[1] : torch::Tensor());
         const std::int64_t channels = image.size(3);
         const float* in = image.const_data_ptr<float>();
         const float* by_out = gradient.const_data_ptr<float>();
         torch::Tensor by_image = gradient.clone(), by_clip;
         float* by_in = by_image.data_ptr<float>();
-        float* clip_gradient = nullptr;
+        Accumulator clip_gradient;
         if (context->needs_input_grad(1)) {
             by_clip = torch::zeros_like(saved[1]);
-            clip_gradient = by_clip.data_ptr<float>();
+            clip_gradient.values = by_clip.data_ptr<float>();
         }
         for_each_crossing(saved[6], [&](const Crossing& crossing) {
             const kernels::Blend blend = kernels::blend_of(crossing);
@@ -125,7 +171,7 @@ struct Antialias : torch::autograd::Function<Antialias> {
                 by_distance += g * (in[crossing.foreground * channels + c] -
                                     in[crossing.background * channels + c]);
             }
-            if (clip_gradient != nullptr)
+            if (clip_gradient.wanted())
                 kernels::crossing_backward(p, crossing, by_distance, clip_gradient);
         });
         return {by_image, by_clip, torch::Tensor()};
@@ -137,23 +183,25 @@ struct Antialias : torch::autograd::Function<Antialias> {
 torch::Tensor antialias(const torch::Tensor& image_, const Raster& raster,
                         const Geometry& geometry) {
     constexpr const char* op = "antialias";
+    const torch::Device device = operation_device(op, image_);
     const std::int64_t views = raster.views(), height = raster.height(), width = raster.width();
     const torch::Tensor image =
-        checked(op, "image", image_, torch::kFloat32, {views, height, width, -1});
+        checked(op, "image", image_, torch::kFloat32, {views, height, width, -1}, device);
     const torch::Tensor positions_clip =
         checked(op, "raster.positions_clip", raster.positions_clip, torch::kFloat32,
-                {views, geometry.positions.size(0), 4});
+                {views, geometry.positions.size(0), 4}, device);
     AntialiasInput input;
-    input.triangles = checked(op, "triangles", geometry.triangles, torch::kInt32, {-1, 3});
-    input.neighbours = checked(op, "neighbours",
-                               geometry.neighbours.defined()
-                                   ? geometry.neighbours
-                                   : triangle_neighbours(geometry.positions, geometry.triangles),
-                               torch::kInt32, {input.triangles.size(0), 3});
-    input.triangle =
-        checked(op, "raster.triangle", raster.triangle, torch::kInt32, {views, height, width});
+    input.triangles = checked(op, "triangles", geometry.triangles, torch::kInt32, {-1, 3}, device);
+    input.neighbours = checked(
+        op, "neighbours",
+        geometry.neighbours.defined()
+            ? geometry.neighbours
+            : triangle_neighbours(geometry.positions.cpu(), geometry.triangles.cpu()).to(device),
+        torch::kInt32, {input.triangles.size(0), 3}, device);
+    input.triangle = checked(op, "raster.triangle", raster.triangle, torch::kInt32,
+                             {views, height, width}, device);
     input.depth =
-        checked(op, "raster.depth", raster.depth, torch::kFloat32, {views, height, width});
+        checked(op, "raster.depth", raster.depth, torch::kFloat32, {views, height, width}, device);
     return Antialias::apply(image, positions_clip, input);
 }
 

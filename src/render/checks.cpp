@@ -7,16 +7,17 @@
 namespace item3d {
 
 torch::Tensor checked(const char* operation, const char* name, const torch::Tensor& tensor,
-                      torch::ScalarType type, std::initializer_list<std::int64_t> shape) {
+                      torch::ScalarType type, std::initializer_list<std::int64_t> shape,
+                      torch::Device device) {
     const std::vector<std::int64_t> wanted(shape);
-    bool good = tensor.defined() && tensor.device().is_cpu() && tensor.scalar_type() == type &&
+    bool good = tensor.defined() && tensor.device() == device && tensor.scalar_type() == type &&
                 tensor.dim() == static_cast<std::int64_t>(wanted.size());
     for (std::size_t i = 0; good && i < wanted.size(); ++i)
         good = wanted[i] < 0 || tensor.size(static_cast<std::int64_t>(i)) == wanted[i];
     if (!good) {
         std::ostringstream message;
         message << operation << ": " << name << " must be a " << torch::toString(type)
-                << " CPU tensor [";
+                << (device.is_cpu() ? " CPU" : " CUDA") << " tensor [";
         for (std::size_t i = 0; i < wanted.size(); ++i)
             message << (i ? ", " : "") << (wanted[i] < 0 ? "*" : std::to_string(wanted[i]));
         message << "], found ";
@@ -28,6 +29,13 @@ torch::Tensor checked(const char* operation, const char* name, const torch::Tens
         throw std::logic_error(message.str());
     }
     return tensor.contiguous();
+}
+
+torch::Device operation_device(const char* operation, const torch::Tensor& tensor) {
+    if (!tensor.defined() || !(tensor.is_cpu() || tensor.is_cuda()))
+        throw std::logic_error(std::string(operation) +
+                               ": a tensor on the CPU or on CUDA is wanted");
+    return tensor.device();
 }
 
 }  // namespace item3d

@@ -8,9 +8,14 @@
 namespace item3d {
 
 /// Returns `tensor`, made contiguous. Throws std::logic_error naming the wanted and the found
-/// device, type and shape unless it is a CPU tensor of `type` and `shape`, where -1 stands for any
-/// size.
+/// device, type and shape unless it is on `device`, of `type` and of `shape`, where -1 stands for
+/// any size.
 torch::Tensor checked(const char* operation, const char* name, const torch::Tensor& tensor,
-                      torch::ScalarType type, std::initializer_list<std::int64_t> shape);
+                      torch::ScalarType type, std::initializer_list<std::int64_t> shape,
+                      torch::Device device = torch::kCPU);
+
+/// The device of an operation's first input, which the others must be on as well: the CPU or a CUDA
+/// device. Throws std::logic_error for an undefined tensor or another kind of device.
+torch::Device operation_device(const char* operation, const torch::Tensor& tensor);
 
 }  // namespace item3d

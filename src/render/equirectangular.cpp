@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
+#include "item3d/render/cuda/module.h"
 #include "item3d/render/environment_light.h"
 #include "item3d/render/scatter_sum.h"
 
@@ -33,17 +34,13 @@ struct EquirectangularToCube : torch::autograd::Function<EquirectangularToCube> 
                                  std::int64_t size) {
         EquirectangularParameters p = parameters(map.size(0), map.size(1), static_cast<int>(size));
         p.map = map.const_data_ptr<float>();
-        torch::Tensor cube = torch::empty({6, size, size, 3}, torch::kFloat32);
-        float* out = cube.data_ptr<float>();
-        parallel_for("equirectangular_to_cube", 6 * size * size, [=](std::int64_t index) {
-            float sum[3] = {0, 0, 0};
-            kernels::for_each_equirectangular_tap(p, index, [&](int texel, float weight) {
-                for (int c = 0; c < 3; ++c)
-                    sum[c] += weight * p.map[3 * texel + c];
-            });
-            for (int c = 0; c < 3; ++c)
-                out[3 * index + c] = sum[c];
-        });
+        torch::Tensor cube = torch::empty({6, size, size, 3}, map.options());
+        p.cube = cube.data_ptr<float>();
+        if (cube.is_cuda())
+            cuda::run(cuda::render_table().equirectangular, p, 6 * size * size, cube.device());
+        else
+            parallel_for("equirectangular_to_cube", 6 * size * size,
+                         [=](std::int64_t i) { kernels::equirectangular_forward(p, i); });
         context->saved_data["height"] = map.size(0);
         context->saved_data["width"] = map.size(1);
         return cube;
@@ -53,16 +50,25 @@ struct EquirectangularToCube : torch::autograd::Function<EquirectangularToCube> 
         const std::int64_t width = context->saved_data["width"].toInt();
         const torch::Tensor gradient = gradients[0].contiguous();
         const std::int64_t size = gradient.size(1);
-        const EquirectangularParameters p = parameters(height, width, static_cast<int>(size));
-        const float* values = gradient.const_data_ptr<float>();
-        const torch::Tensor map_gradient = scatter_sum(
-            "equirectangular_to_cube backward", 6 * size * size, 3 * height * width,
-            [=](std::int64_t index, float* buffer) {
-                kernels::for_each_equirectangular_tap(p, index, [&](int texel, float weight) {
-                    for (int c = 0; c < 3; ++c)
-                        buffer[3 * texel + c] += weight * values[3 * index + c];
-                });
-            });
+        EquirectangularParameters p = parameters(height, width, static_cast<int>(size));
+        p.cube_gradient = gradient.const_data_ptr<float>();
+        const std::int64_t texels = 6 * size * size, elements = 3 * height * width;
+        torch::Tensor map_gradient;
+        if (gradient.is_cuda())
+            map_gradient =
+                cuda::sum_on_device(elements, 4 * p.samples * p.samples * texels, gradient.device(),
+                                    [&](const Accumulator& sums) {
+                                        p.map_gradient = sums;
+                                        cuda::run(cuda::render_table().equirectangular_backward, p,
+                                                  texels, gradient.device());
+                                    });
+        else
+            map_gradient = scatter_sum("equirectangular_to_cube backward", texels, elements,
+                                       [=](std::int64_t i, float* buffer) {
+                                           EquirectangularParameters own = p;
+                                           own.map_gradient.values = buffer;
+                                           kernels::equirectangular_backward(own, i);
+                                       });
         return {map_gradient.reshape({height, width, 3}), torch::Tensor()};
     }
 };
@@ -70,8 +76,9 @@ struct EquirectangularToCube : torch::autograd::Function<EquirectangularToCube> 
 }  // namespace
 
 torch::Tensor equirectangular_to_cube(const torch::Tensor& equirectangular, int size) {
-    torch::Tensor map = checked("equirectangular_to_cube", "equirectangular", equirectangular,
-                                torch::kFloat32, {-1, -1, 3});
+    torch::Tensor map =
+        checked("equirectangular_to_cube", "equirectangular", equirectangular, torch::kFloat32,
+                {-1, -1, 3}, operation_device("equirectangular_to_cube", equirectangular));
     ITEM3D_CHECK(size >= 1 && size <= 4096 && map.size(0) >= 1 && map.size(1) >= 1,
                  "equirectangular_to_cube: size in [1, 4096], found " + std::to_string(size));
     // Maps much finer than the cube are halved first, which costs less than more samples a texel.

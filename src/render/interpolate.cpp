@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
+#include "item3d/render/cuda/module.h"
 #include "item3d/render/rasterize.h"
 
 #include <torch/csrc/autograd/custom_function.h>
@@ -15,6 +16,7 @@ using torch::autograd::tensor_list;
 
 /// Indices of covered pixels, ascending: [P] int64.
 torch::Tensor covered_pixels(const torch::Tensor& triangle) {
+    if (triangle.is_cuda()) return triangle.reshape({-1}).ge(0).nonzero().squeeze(1);
     const std::int64_t rows = triangle.size(0) * triangle.size(1), width = triangle.size(2);
     const std::int32_t* ids = triangle.const_data_ptr<std::int32_t>();
     const std::int64_t rows_a_block = std::max<std::int64_t>(1, 65536 / width);
@@ -70,13 +72,16 @@ struct Interpolate : torch::autograd::Function<Interpolate> {
                                  const torch::Tensor& positions_clip,
                                  const InterpolateInput& input) {
         torch::Tensor values =
-            torch::empty({input.pixel.size(0), attributes.size(1)}, torch::kFloat32);
+            torch::empty({input.pixel.size(0), attributes.size(1)}, attributes.options());
         kernels::InterpolateParameters p =
             interpolate_parameters(input, attributes, positions_clip);
         p.values = values.data_ptr<float>();
-        parallel_for(
-            "interpolate", input.pixel.size(0),
-            [=](std::int64_t i) { kernels::interpolate_forward(p, i); }, 8192);
+        if (values.is_cuda())
+            cuda::run(cuda::render_table().interpolate, p, values.size(0), values.device());
+        else
+            parallel_for(
+                "interpolate", values.size(0),
+                [=](std::int64_t i) { kernels::interpolate_forward(p, i); }, 8192);
         context->save_for_backward({attributes, positions_clip, input.triangles, input.barycentrics,
                                     input.triangle, input.pixel});
         return values;
@@ -85,17 +90,34 @@ struct Interpolate : torch::autograd::Function<Interpolate> {
         const auto saved = context->get_saved_variables();
         const InterpolateInput input{saved[2], saved[3], saved[4], saved[5]};
         const torch::Tensor gradient = gradients[0].contiguous();
-        torch::Tensor attribute_gradient = torch::zeros_like(saved[0]);
-        torch::Tensor clip_gradient;
+        const std::int64_t count = input.pixel.size(0);
         kernels::InterpolateParameters p = interpolate_parameters(input, saved[0], saved[1]);
         p.value_gradient = gradient.const_data_ptr<float>();
-        p.attribute_gradient = attribute_gradient.data_ptr<float>();
+        if (gradient.is_cuda()) {
+            const std::int64_t attributes = saved[0].numel();
+            const bool moves = context->needs_input_grad(1);
+            const torch::Tensor sums =
+                cuda::sum_on_device(attributes + (moves ? saved[1].numel() : 0), 3 * count,
+                                    gradient.device(), [&](const Accumulator& accumulator) {
+                                        p.attribute_gradient = accumulator;
+                                        if (moves) p.clip_gradient = accumulator.from(attributes);
+                                        cuda::run(cuda::render_table().interpolate_backward, p,
+                                                  count, gradient.device());
+                                    });
+            return {sums.narrow(0, 0, attributes).view(saved[0].sizes()),
+                    moves ? sums.narrow(0, attributes, saved[1].numel()).view(saved[1].sizes())
+                          : torch::Tensor(),
+                    torch::Tensor()};
+        }
+        torch::Tensor attribute_gradient = torch::zeros_like(saved[0]);
+        torch::Tensor clip_gradient;
+        p.attribute_gradient.values = attribute_gradient.data_ptr<float>();
         if (context->needs_input_grad(1)) {
             clip_gradient = torch::zeros_like(saved[1]);
-            p.clip_gradient = clip_gradient.data_ptr<float>();
+            p.clip_gradient.values = clip_gradient.data_ptr<float>();
         }
         // One thread: pixels share vertices, and sums in a fixed order give the same bytes again.
-        for (std::int64_t i = 0; i < input.pixel.size(0); ++i)
+        for (std::int64_t i = 0; i < count; ++i)
             kernels::interpolate_backward(p, i);
         return {attribute_gradient, clip_gradient, torch::Tensor()};
     }
@@ -121,24 +143,29 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
                             const std::vector<Camera>& cameras) {
     constexpr const char* op = "interpolate_surface";
     constexpr auto real = torch::kFloat32;
+    const torch::Device device = operation_device(op, geometry.positions);
     const std::int64_t vertices = geometry.positions.size(0);
     const std::int64_t triangle_count = geometry.triangles.size(0);
-    const torch::Tensor positions = checked(op, "positions", geometry.positions, real, {-1, 3});
-    const torch::Tensor normals = checked(op, "normals", geometry.normals, real, {vertices, 3});
-    const torch::Tensor tangents = checked(op, "tangents", geometry.tangents, real, {vertices, 4});
-    const torch::Tensor uvs = checked(op, "uvs", geometry.uvs, real, {vertices, 2});
-    const torch::Tensor colors = checked(op, "colors", geometry.colors, real, {vertices, 4});
+    const torch::Tensor positions =
+        checked(op, "positions", geometry.positions, real, {-1, 3}, device);
+    const torch::Tensor normals =
+        checked(op, "normals", geometry.normals, real, {vertices, 3}, device);
+    const torch::Tensor tangents =
+        checked(op, "tangents", geometry.tangents, real, {vertices, 4}, device);
+    const torch::Tensor uvs = checked(op, "uvs", geometry.uvs, real, {vertices, 2}, device);
+    const torch::Tensor colors =
+        checked(op, "colors", geometry.colors, real, {vertices, 4}, device);
     const torch::Tensor triangles =
-        checked(op, "triangles", geometry.triangles, torch::kInt32, {-1, 3});
+        checked(op, "triangles", geometry.triangles, torch::kInt32, {-1, 3}, device);
     const torch::Tensor materials = checked(op, "triangle_material", geometry.triangle_material,
-                                            torch::kInt32, {triangle_count});
+                                            torch::kInt32, {triangle_count}, device);
     const torch::Tensor primitives = checked(op, "triangle_primitive", geometry.triangle_primitive,
-                                             torch::kInt32, {triangle_count});
+                                             torch::kInt32, {triangle_count}, device);
     const torch::Tensor triangle =
-        checked(op, "raster.triangle", raster.triangle, torch::kInt32, {-1, -1, -1});
+        checked(op, "raster.triangle", raster.triangle, torch::kInt32, {-1, -1, -1}, device);
     const torch::Tensor barycentrics =
         checked(op, "raster.barycentrics", raster.barycentrics, real,
-                {raster.views(), raster.height(), raster.width(), 2});
+                {raster.views(), raster.height(), raster.width(), 2}, device);
     ITEM3D_CHECK(static_cast<int>(cameras.size()) == raster.views(),
                  "interpolate_surface: the raster's " + std::to_string(raster.views()) +
                      " cameras are needed, found " + std::to_string(cameras.size()));
@@ -146,15 +173,16 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
     Surface surface;
     surface.pixel = covered_pixels(triangle);
     const std::int64_t count = surface.count();
-    const torch::Tensor eyes = camera_positions(cameras);
-    surface.position = torch::empty({count, 3}, real);
-    surface.normal = torch::empty({count, 3}, real);
-    surface.tangent = torch::empty({count, 4}, real);
-    surface.uv = torch::empty({count, 2}, real);
-    surface.color = torch::empty({count, 4}, real);
-    surface.view = torch::empty({count, 3}, real);
-    surface.material = torch::empty({count}, torch::kInt64);
-    surface.primitive = torch::empty({count}, torch::kInt64);
+    const torch::Tensor eyes = camera_positions(cameras).to(device);
+    const auto options = torch::TensorOptions().dtype(real).device(device);
+    surface.position = torch::empty({count, 3}, options);
+    surface.normal = torch::empty({count, 3}, options);
+    surface.tangent = torch::empty({count, 4}, options);
+    surface.uv = torch::empty({count, 2}, options);
+    surface.color = torch::empty({count, 4}, options);
+    surface.view = torch::empty({count, 3}, options);
+    surface.material = torch::empty({count}, options.dtype(torch::kInt64));
+    surface.primitive = torch::empty({count}, options.dtype(torch::kInt64));
     const kernels::SurfaceParameters parameters{
         positions.const_data_ptr<float>(),
         normals.const_data_ptr<float>(),
@@ -177,9 +205,12 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
         surface.view.data_ptr<float>(),
         surface.material.data_ptr<std::int64_t>(),
         surface.primitive.data_ptr<std::int64_t>()};
-    parallel_for(
-        "interpolate_surface", count,
-        [=](std::int64_t i) { kernels::interpolate_surface_point(parameters, i); }, 8192);
+    if (device.is_cuda())
+        cuda::run(cuda::render_table().interpolate_surface, parameters, count, device);
+    else
+        parallel_for(
+            "interpolate_surface", count,
+            [=](std::int64_t i) { kernels::interpolate_surface_point(parameters, i); }, 8192);
 
     const bool moves = positions.requires_grad() || raster.positions_clip.requires_grad();
     if (torch::GradMode::is_enabled() && (moves || normals.requires_grad())) {

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
+#include "item3d/render/cuda/module.h"
 #include "item3d/render/kernels/project.h"
 #include "item3d/render/kernels/raster.h"
 
@@ -19,13 +20,17 @@ struct ProjectVertices : torch::autograd::Function<ProjectVertices> {
     static torch::Tensor forward(AutogradContext* context, const torch::Tensor& positions,
                                  const torch::Tensor& world_to_clip) {
         const std::int64_t vertices = positions.size(0), views = world_to_clip.size(0);
-        torch::Tensor positions_clip = torch::empty({views, vertices, 4}, torch::kFloat32);
+        torch::Tensor positions_clip = torch::empty({views, vertices, 4}, positions.options());
         const kernels::ProjectParameters parameters{positions.const_data_ptr<float>(),
                                                     world_to_clip.const_data_ptr<float>(),
                                                     positions_clip.data_ptr<float>(), vertices};
-        parallel_for(
-            "project_vertices", views * vertices,
-            [=](std::int64_t i) { kernels::project_vertex(parameters, i); }, 32768);
+        if (positions.is_cuda())
+            cuda::run(cuda::render_table().project_vertices, parameters, views * vertices,
+                      positions.device());
+        else
+            parallel_for(
+                "project_vertices", views * vertices,
+                [=](std::int64_t i) { kernels::project_vertex(parameters, i); }, 32768);
         context->save_for_backward({world_to_clip});
         return positions_clip;
     }
@@ -48,51 +53,15 @@ torch::Tensor clip_matrices(const std::vector<Camera>& cameras, int width, int h
     return matrices;
 }
 
-}  // namespace
-
-Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, int width,
-                 int height, const torch::Tensor& behind_) {
-    ITEM3D_CHECK(width > 0 && height > 0 && width <= 16384 && height <= 16384,
-                 "rasterize: width and height must be in [1, 16384], found " +
-                     std::to_string(width) + " x " + std::to_string(height));
-    ITEM3D_CHECK(!cameras.empty(), "rasterize: at least one camera");
-    const torch::Tensor positions =
-        checked("rasterize", "positions", geometry.positions, torch::kFloat32, {-1, 3});
-    const torch::Tensor triangles =
-        checked("rasterize", "triangles", geometry.triangles, torch::kInt32, {-1, 3});
-    const std::int64_t views = static_cast<std::int64_t>(cameras.size());
-    const torch::Tensor behind =
-        behind_.defined()
-            ? checked("rasterize", "behind", behind_, torch::kFloat32, {views, height, width})
-            : torch::Tensor();
-
-    Raster raster;
-    raster.positions_clip =
-        ProjectVertices::apply(positions, clip_matrices(cameras, width, height));
-    raster.barycentrics = torch::zeros({views, height, width, 2}, torch::kFloat32);
-    raster.depth = torch::zeros({views, height, width}, torch::kFloat32);
-    raster.triangle = torch::full({views, height, width}, -1, torch::kInt32);
-
-    const std::int64_t triangle_count = triangles.size(0);
-    std::vector<kernels::PixelBox> boxes(static_cast<std::size_t>(views * triangle_count));
-    const kernels::RasterParameters parameters{
-        raster.positions_clip.const_data_ptr<float>(),
-        triangles.const_data_ptr<std::int32_t>(),
-        boxes.data(),
-        positions.size(0),
-        triangle_count,
-        width,
-        height,
-        raster.barycentrics.data_ptr<float>(),
-        raster.depth.data_ptr<float>(),
-        raster.triangle.data_ptr<std::int32_t>(),
-        behind.defined() ? behind.const_data_ptr<float>() : nullptr};
+/// Bands of rows are independent of each other, so their number changes no result. Pictures that
+/// take less than a millisecond are not worth waking other threads for.
+void rasterize_on_cpu(const kernels::RasterParameters& parameters, std::int64_t views) {
+    const int width = parameters.width, height = parameters.height;
+    const std::int64_t triangle_count = parameters.triangle_count;
     parallel_for(
         "bound_triangles", views * triangle_count,
         [=](std::int64_t i) { kernels::bound_triangle(parameters, i); }, 32768);
 
-    // Bands of rows are independent of each other, so their number changes no result. Pictures that
-    // take less than a millisecond are not worth waking other threads for.
     const bool small = views * width * height < 32768 && views * triangle_count < 32768;
     const std::int64_t bands = small ? 1
                                      : std::clamp<std::int64_t>(4 * omp_get_max_threads() / views,
@@ -110,6 +79,75 @@ Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, i
                 kernels::finish_depth(parameters, pixel);
         },
         small ? views : 1);
+}
+
+/// A thread draws one triangle into one band of rows. Bands, where triangles are few, keep a large
+/// one from being a single thread's work.
+void rasterize_on_cuda(const kernels::RasterParameters& parameters, std::int64_t views,
+                       torch::Device device) {
+    constexpr std::int64_t enough_threads = 1 << 20;
+    const std::int64_t triangles = views * parameters.triangle_count;
+    const std::int64_t pixels =
+        views * static_cast<std::int64_t>(parameters.width) * parameters.height;
+    const torch::Tensor keys =
+        torch::zeros({pixels}, torch::TensorOptions().dtype(torch::kInt64).device(device));
+    const kernels::KeyedRasterParameters keyed{
+        parameters, static_cast<unsigned long long*>(keys.data_ptr()), views,
+        std::clamp<std::int64_t>(enough_threads / std::max<std::int64_t>(1, triangles), 1,
+                                 parameters.height)};
+    const cuda::RenderTable& table = cuda::render_table();
+    cuda::run(table.bound_triangles, parameters, triangles, device);
+    cuda::run(table.rasterize_keys, keyed, triangles * keyed.bands, device);
+    cuda::run(table.resolve_keys, keyed, pixels, device);
+}
+
+}  // namespace
+
+Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, int width,
+                 int height, const torch::Tensor& behind_) {
+    ITEM3D_CHECK(width > 0 && height > 0 && width <= 16384 && height <= 16384,
+                 "rasterize: width and height must be in [1, 16384], found " +
+                     std::to_string(width) + " x " + std::to_string(height));
+    ITEM3D_CHECK(!cameras.empty(), "rasterize: at least one camera");
+    const torch::Device device = operation_device("rasterize", geometry.positions);
+    const torch::Tensor positions =
+        checked("rasterize", "positions", geometry.positions, torch::kFloat32, {-1, 3}, device);
+    const torch::Tensor triangles =
+        checked("rasterize", "triangles", geometry.triangles, torch::kInt32, {-1, 3}, device);
+    const std::int64_t views = static_cast<std::int64_t>(cameras.size());
+    const torch::Tensor behind = behind_.defined()
+                                     ? checked("rasterize", "behind", behind_, torch::kFloat32,
+                                               {views, height, width}, device)
+                                     : torch::Tensor();
+
+    Raster raster;
+    raster.positions_clip =
+        ProjectVertices::apply(positions, clip_matrices(cameras, width, height).to(device));
+    const auto real = torch::TensorOptions().dtype(torch::kFloat32).device(device);
+    raster.barycentrics = torch::zeros({views, height, width, 2}, real);
+    raster.depth = torch::zeros({views, height, width}, real);
+    raster.triangle = torch::full({views, height, width}, -1, real.dtype(torch::kInt32));
+
+    const std::int64_t triangle_count = triangles.size(0);
+    torch::Tensor boxes =
+        torch::empty({views * triangle_count, static_cast<std::int64_t>(sizeof(kernels::PixelBox))},
+                     real.dtype(torch::kUInt8));
+    const kernels::RasterParameters parameters{
+        raster.positions_clip.const_data_ptr<float>(),
+        triangles.const_data_ptr<std::int32_t>(),
+        static_cast<kernels::PixelBox*>(boxes.data_ptr()),
+        positions.size(0),
+        triangle_count,
+        width,
+        height,
+        raster.barycentrics.data_ptr<float>(),
+        raster.depth.data_ptr<float>(),
+        raster.triangle.data_ptr<std::int32_t>(),
+        behind.defined() ? behind.const_data_ptr<float>() : nullptr};
+    if (device.is_cuda())
+        rasterize_on_cuda(parameters, views, device);
+    else
+        rasterize_on_cpu(parameters, views);
     return raster;
 }
 

@@ -33,6 +33,9 @@ struct Surface {
     torch::Tensor normal;     ///< [P, 3] unit shading normal, turned towards the viewer
     torch::Tensor tangent;    ///< [P, 4]
     torch::Tensor uv;         ///< [P, 2]
+    /// [P, 4] d(u, v) by a pixel to the right, then by one down (uv_footprints); undefined: textures
+    /// are looked up at full resolution
+    torch::Tensor uv_footprint;
     torch::Tensor color;      ///< [P, 4] vertex colour
     torch::Tensor view;       ///< [P, 3] unit, from the surface to the camera
     torch::Tensor material;   ///< [P] int64 index into Model::materials
@@ -42,6 +45,10 @@ struct Surface {
 
 Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
                             const std::vector<Camera>& cameras);
+
+/// How far UV coordinates change between pixels, for Surface::uv_footprint: [P, 4], exact for the
+/// triangle's plane.
+torch::Tensor uv_footprints(const Geometry& geometry, const Raster& raster, const Surface& surface);
 
 /// Blends pixel pairs across silhouette edges by the edge's exact crossing (Laine et al., section
 /// 3.4); differentiable in `image` [N, H, W, C] and, through raster.positions_clip, in vertices.

@@ -3,10 +3,13 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
+#include "item3d/render/cuda/module.h"
 #include "item3d/render/kernels/shade.h"
 #include "item3d/render/scatter_sum.h"
 
 #include <torch/csrc/autograd/custom_function.h>
+
+#include <algorithm>
 
 namespace item3d {
 namespace {
@@ -27,7 +30,16 @@ struct ShadeSettings {
 /// specular levels.
 constexpr std::size_t first_level = 5;
 
-ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings& settings) {
+/// The BSDF table, which is copied to the first device that asks for it once.
+torch::Tensor bsdf_table_on(torch::Device device) {
+    if (device.is_cpu()) return bsdf_table();
+    static const torch::Tensor first = bsdf_table().to(device);
+    return first.device() == device ? first : bsdf_table().to(device);
+}
+
+/// bsdf: bsdf_table_on() the inputs' device.
+ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings& settings,
+                                 const torch::Tensor& bsdf) {
     const auto pointer = [](const torch::Tensor& tensor) {
         return tensor.numel() > 0 ? tensor.const_data_ptr<float>() : nullptr;
     };
@@ -38,8 +50,8 @@ ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings&
     p.normal = pointer(inputs[3]);
     p.tangent = pointer(settings.tangent);
     p.view = pointer(settings.view);
-    p.bsdf = pointer(bsdf_table());
-    p.bsdf_size = static_cast<int>(bsdf_table().size(0));
+    p.bsdf = pointer(bsdf);
+    p.bsdf_size = static_cast<int>(bsdf.size(0));
     p.multiple_scattering = settings.multiple_scattering;
     p.diffuse = pointer(inputs[4]);
     p.diffuse_size = static_cast<int>(inputs[4].size(1));
@@ -53,16 +65,34 @@ ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings&
     return p;
 }
 
+/// Returns the light's gradient [light_elements].
+torch::Tensor shade_backward_on_cuda(const ShadeParameters& p, const LightGradient& light,
+                                     std::int64_t light_elements, std::int64_t count,
+                                     torch::Device device) {
+    kernels::ShadeBackwardParameters parameters{p, light};
+    const auto launch = [&](const Accumulator& sums) {
+        parameters.light.sums = sums;
+        cuda::run(cuda::render_table().shade_backward, parameters, count, device);
+    };
+    if (light_elements > 0) return cuda::sum_on_device(light_elements, 4 * count, device, launch);
+    launch({});
+    return {};
+}
+
 struct Shade : torch::autograd::Function<Shade> {
     static torch::Tensor forward(AutogradContext* context, at::TensorList inputs_,
                                  const ShadeSettings& settings) {
         const tensor_list inputs = inputs_.vec();
         torch::Tensor radiance = torch::empty_like(inputs[0]);
-        ShadeParameters p = shade_parameters(inputs, settings);
+        const torch::Tensor bsdf = bsdf_table_on(radiance.device());
+        ShadeParameters p = shade_parameters(inputs, settings, bsdf);
         p.radiance = radiance.data_ptr<float>();
-        parallel_for(
-            "shade", inputs[0].size(0), [&p](std::int64_t i) { kernels::shade_forward(p, i); },
-            2048);
+        if (radiance.is_cuda())
+            cuda::run(cuda::render_table().shade, p, radiance.size(0), radiance.device());
+        else
+            parallel_for(
+                "shade", radiance.size(0), [&p](std::int64_t i) { kernels::shade_forward(p, i); },
+                2048);
 
         tensor_list saved = inputs;
         saved.push_back(settings.tangent);
@@ -86,7 +116,9 @@ struct Shade : torch::autograd::Function<Shade> {
         settings.multiple_scattering = context->saved_data["multiple_scattering"].toBool();
 
         const torch::Tensor radiance_gradient = gradients[0].contiguous();
-        ShadeParameters p = shade_parameters(inputs, settings);
+        const torch::Device device = radiance_gradient.device();
+        const torch::Tensor bsdf = bsdf_table_on(device);
+        ShadeParameters p = shade_parameters(inputs, settings, bsdf);
         p.radiance_gradient = radiance_gradient.const_data_ptr<float>();
         tensor_list results(inputs.size() + 1);
         const auto wanted = [&](std::size_t i) -> float* {
@@ -107,24 +139,23 @@ struct Shade : torch::autograd::Function<Shade> {
             offsets[i] = light_elements;
             light_elements += inputs[i].numel();
         }
-        if (light_elements == 0) {
+        LightGradient light;
+        light.diffuse = offsets[first_level - 1];
+        std::copy(offsets.begin() + first_level, offsets.end(), light.specular);
+        torch::Tensor light_gradient;
+        if (device.is_cuda())
+            light_gradient = shade_backward_on_cuda(p, light, light_elements, count, device);
+        else if (light_elements > 0)
+            light_gradient = scatter_sum("shade backward", count, light_elements,
+                                         [&](std::int64_t i, float* buffer) {
+                                             LightGradient own = light;
+                                             own.sums.values = buffer;
+                                             kernels::shade_backward(p, i, own);
+                                         });
+        else
             parallel_for(
                 "shade backward", count,
-                [&p](std::int64_t i) { kernels::shade_backward(p, i, {}); }, 1024);
-            return results;
-        }
-        const torch::Tensor light_gradient = scatter_sum(
-            "shade backward", count, light_elements, [&](std::int64_t i, float* buffer) {
-                LightGradient light;
-                if (offsets[first_level - 1] >= 0)
-                    light.diffuse = buffer + offsets[first_level - 1];
-                for (int level = 0; level < p.levels; ++level) {
-                    const std::int64_t offset =
-                        offsets[first_level + static_cast<std::size_t>(level)];
-                    if (offset >= 0) light.specular[level] = buffer + offset;
-                }
-                kernels::shade_backward(p, i, light);
-            });
+                [&](std::int64_t i) { kernels::shade_backward(p, i, light); }, 1024);
         for (std::size_t i = first_level - 1; i < inputs.size(); ++i)
             if (offsets[i] >= 0)
                 results[i] = light_gradient.narrow(0, offsets[i], inputs[i].numel())
@@ -139,32 +170,34 @@ torch::Tensor shade(const Surface& surface, const MaterialSample& material,
                     const EnvironmentLight& light, const ShadeOptions& options) {
     constexpr const char* op = "shade";
     constexpr auto real = torch::kFloat32;
+    const torch::Device device = operation_device(op, material.base_color);
     const std::int64_t count = surface.count();
     ITEM3D_CHECK(!light.specular.empty() && light.specular.size() == light.roughness.size() &&
                      light.specular.size() <= kernels::max_specular_levels,
                  "shade: light.specular needs 1 to 16 levels with a roughness each");
     const auto cube = [&](const char* name, const torch::Tensor& map) {
-        torch::Tensor good = checked(op, name, map, real, {6, -1, -1, 3});
+        torch::Tensor good = checked(op, name, map, real, {6, -1, -1, 3}, device);
         ITEM3D_CHECK(good.size(1) == good.size(2) && good.size(1) >= 2,
                      std::string("shade: ") + name + " must have square faces of at least 2 x 2");
         return good;
     };
-    tensor_list inputs{checked(op, "base_color", material.base_color, real, {count, 3}),
-                       checked(op, "orm", material.orm, real, {count, 3}),
-                       material.normal.defined()
-                           ? checked(op, "normal", material.normal, real, {count, 3})
-                           : torch::empty({0, 3}, real),
-                       checked(op, "surface.normal", surface.normal, real, {count, 3}),
-                       cube("light.diffuse", light.diffuse)};
+    tensor_list inputs{
+        checked(op, "base_color", material.base_color, real, {count, 3}, device),
+        checked(op, "orm", material.orm, real, {count, 3}, device),
+        material.normal.defined()
+            ? checked(op, "normal", material.normal, real, {count, 3}, device)
+            : torch::empty({0, 3}, torch::TensorOptions().dtype(real).device(device)),
+        checked(op, "surface.normal", surface.normal, real, {count, 3}, device),
+        cube("light.diffuse", light.diffuse)};
     for (const torch::Tensor& level : light.specular)
         inputs.push_back(cube("light.specular", level));
     const ShadeSettings settings{
-        checked(op, "surface.tangent", surface.tangent.detach(), real, {count, 4}),
-        checked(op, "surface.view", surface.view.detach(), real, {count, 3}), light.roughness,
-        options.multiple_scattering};
+        checked(op, "surface.tangent", surface.tangent.detach(), real, {count, 4}, device),
+        checked(op, "surface.view", surface.view.detach(), real, {count, 3}, device),
+        light.roughness, options.multiple_scattering};
     torch::Tensor radiance = Shade::apply(at::TensorList(inputs), settings);
     if (material.emissive.defined())
-        radiance = radiance + checked(op, "emissive", material.emissive, real, {count, 3});
+        radiance = radiance + checked(op, "emissive", material.emissive, real, {count, 3}, device);
     return radiance;
 }
 

@@ -4,6 +4,7 @@
 // smoothed too.
 #pragma once
 
+#include "item3d/core/accumulate.h"
 #include "item3d/core/host_device.h"
 #include "item3d/core/math.h"
 
@@ -105,6 +106,11 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
         }
         if (silhouette) {
             if (farthest < -tolerance) return false;
+            // Each edge is blended along one axis, the one that it crosses more steeply: both
+            // together would count a slanted edge's coverage twice.
+            const PairCoordinates a = at[first], b = at[second];
+            const float along = std::fabs(b.u - a.u), across = std::fabs(b.v - a.v);
+            if (vertical ? along >= across : along > across) return false;
             crossing.first = view * p.vertices + corners[first];
             crossing.second = view * p.vertices + corners[second];
             crossing.distance = farthest < 0 ? 0.0f : (farthest > 1 ? 1.0f : farthest);
@@ -130,7 +136,7 @@ ITEM3D_HOST_DEVICE inline Blend blend_of(const Crossing& crossing) {
 /// Adds the gradient by a crossing's distance to the edge's ends; clip_gradient [N, V, 4].
 ITEM3D_HOST_DEVICE inline void crossing_backward(const AntialiasParameters& p,
                                                  const Crossing& crossing, float gradient,
-                                                 float* clip_gradient) {
+                                                 const Accumulator& clip_gradient) {
     if (crossing.distance <= 0 || crossing.distance >= 1) return;
     const bool vertical = crossing.vertical != 0;
     const std::int64_t ends[2] = {crossing.first, crossing.second};
@@ -149,11 +155,70 @@ ITEM3D_HOST_DEVICE inline void crossing_backward(const AntialiasParameters& p,
         const float* clip = p.positions_clip + 4 * ends[k];
         const float inverse = 1.0f / clip[3];
         const float x_scale = 0.5f * p.width * inverse, y_scale = -0.5f * p.height * inverse;
-        float* out = clip_gradient + 4 * ends[k];
-        out[0] += by_x * x_scale;
-        out[1] += by_y * y_scale;
-        out[3] -= (by_x * x_scale * clip[0] + by_y * y_scale * clip[1]) * inverse;
+        const std::int64_t row = 4 * ends[k];
+        clip_gradient.add(row, by_x * x_scale);
+        clip_gradient.add(row + 1, by_y * y_scale);
+        clip_gradient.add(row + 3,
+                          -(by_x * x_scale * clip[0] + by_y * y_scale * clip[1]) * inverse);
     }
+}
+
+/// For threads that own a pixel each and gather, instead of going over a list of crossings.
+struct BlendParameters {
+    AntialiasParameters raster;
+    const float* image;         ///< [N, H, W, C]
+    std::int64_t channels;      ///< C
+    float* blended;             ///< [N, H, W, C]
+    const float* gradient;      ///< [N, H, W, C] by `blended`
+    float* image_gradient;      ///< [N, H, W, C]
+    Accumulator clip_gradient;  ///< [N, V, 4]
+};
+
+/// Calls f(crossing, own) for the crossings that a pixel takes part in, in the order of a list that
+/// goes by pixels; own: the pair belongs to this pixel, not to the one on the left or above.
+template <typename F>
+ITEM3D_HOST_DEVICE inline void for_each_crossing_at(const AntialiasParameters& p,
+                                                    std::int64_t pixel, const F& f) {
+    const std::int64_t x = pixel % p.width, y = pixel / p.width % p.height;
+    Crossing crossing;
+    if (y > 0 && find_crossing(p, pixel - p.width, true, crossing)) f(crossing, false);
+    if (x > 0 && find_crossing(p, pixel - 1, false, crossing)) f(crossing, false);
+    if (x + 1 < p.width && find_crossing(p, pixel, false, crossing)) f(crossing, true);
+    if (y + 1 < p.height && find_crossing(p, pixel, true, crossing)) f(crossing, true);
+}
+
+ITEM3D_HOST_DEVICE inline void blend_pixel(const BlendParameters& p, std::int64_t pixel) {
+    const std::int64_t channels = p.channels;
+    const float* own = p.image + pixel * channels;
+    float* out = p.blended + pixel * channels;
+    for (std::int64_t c = 0; c < channels; ++c)
+        out[c] = own[c];
+    for_each_crossing_at(p.raster, pixel, [&](const Crossing& crossing, bool) {
+        const Blend blend = blend_of(crossing);
+        if (blend.pixel != pixel) return;
+        const float* other = p.image + blend.other * channels;
+        for (std::int64_t c = 0; c < channels; ++c)
+            out[c] += blend.weight * (other[c] - own[c]);
+    });
+}
+
+ITEM3D_HOST_DEVICE inline void blend_pixel_backward(const BlendParameters& p, std::int64_t pixel) {
+    const std::int64_t channels = p.channels;
+    float* out = p.image_gradient + pixel * channels;
+    for (std::int64_t c = 0; c < channels; ++c)
+        out[c] = p.gradient[pixel * channels + c];
+    for_each_crossing_at(p.raster, pixel, [&](const Crossing& crossing, bool own) {
+        const Blend blend = blend_of(crossing);
+        const float* gradient = p.gradient + blend.pixel * channels;
+        for (std::int64_t c = 0; c < channels; ++c)
+            out[c] += (blend.pixel == pixel ? -blend.weight : blend.weight) * gradient[c];
+        if (!own || !p.clip_gradient.wanted()) return;
+        float by_distance = 0;
+        for (std::int64_t c = 0; c < channels; ++c)
+            by_distance += gradient[c] * (p.image[crossing.foreground * channels + c] -
+                                          p.image[crossing.background * channels + c]);
+        crossing_backward(p.raster, crossing, by_distance, p.clip_gradient);
+    });
 }
 
 }  // namespace item3d::kernels

@@ -1,6 +1,7 @@
 // Cube maps: OpenGL's face order and orientation, and bilinear lookups without seams.
 #pragma once
 
+#include "item3d/core/accumulate.h"
 #include "item3d/core/host_device.h"
 #include "item3d/core/math.h"
 
@@ -144,11 +145,12 @@ ITEM3D_HOST_DEVICE inline Vec3 cube_direction_gradient(const float* map, const C
     return by_x * taps.gradient_x + by_y * taps.gradient_y;
 }
 
-ITEM3D_HOST_DEVICE inline void cube_add_gradient(float* map_gradient, const CubeTaps& taps,
-                                                 Vec3 gradient) {
+/// first: where the map's gradient begins in `sums`.
+ITEM3D_HOST_DEVICE inline void cube_add_gradient(const Accumulator& sums, std::int64_t first,
+                                                 const CubeTaps& taps, Vec3 gradient) {
     for (int i = 0; i < 4; ++i)
         for (int c = 0; c < 3; ++c)
-            map_gradient[3 * taps.texel[i] + c] += taps.weight[i] * gradient[c];
+            sums.add(first + 3 * taps.texel[i] + c, taps.weight[i] * gradient[c]);
 }
 
 }  // namespace item3d::kernels

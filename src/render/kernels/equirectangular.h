@@ -1,6 +1,7 @@
 // Equirectangular maps resampled onto cube texels.
 #pragma once
 
+#include "item3d/core/accumulate.h"
 #include "item3d/core/host_device.h"
 #include "item3d/core/math.h"
 #include "item3d/render/kernels/cube.h"
@@ -16,6 +17,11 @@ struct EquirectangularParameters {
     int width;         ///< W
     int size;          ///< S, edge of the cube's faces
     int samples;       ///< sub-samples along each side of a texel
+    float* cube;       ///< [6, S, S, 3]
+
+    // Backward.
+    const float* cube_gradient;  ///< [6, S, S, 3]
+    Accumulator map_gradient;    ///< [H, W, 3]
 };
 
 /// Calls f(texel of the map, weight) for what a cube texel (index into [6, S, S]) is the mean of:
@@ -59,6 +65,25 @@ ITEM3D_HOST_DEVICE inline void for_each_equirectangular_tap(const Equirectangula
             f(y1 * p.width + right, weight * fx * fy);
         }
     }
+}
+
+ITEM3D_HOST_DEVICE inline void equirectangular_forward(const EquirectangularParameters& p,
+                                                       std::int64_t index) {
+    float sum[3] = {0, 0, 0};
+    for_each_equirectangular_tap(p, index, [&](int texel, float weight) {
+        for (int c = 0; c < 3; ++c)
+            sum[c] += weight * p.map[3 * texel + c];
+    });
+    for (int c = 0; c < 3; ++c)
+        p.cube[3 * index + c] = sum[c];
+}
+
+ITEM3D_HOST_DEVICE inline void equirectangular_backward(const EquirectangularParameters& p,
+                                                        std::int64_t index) {
+    for_each_equirectangular_tap(p, index, [&](int texel, float weight) {
+        for (int c = 0; c < 3; ++c)
+            p.map_gradient.add(3 * texel + c, weight * p.cube_gradient[3 * index + c]);
+    });
 }
 
 }  // namespace item3d::kernels

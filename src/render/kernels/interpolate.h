@@ -1,6 +1,7 @@
 // Vertex attributes at covered pixels, and the gradient of perspective-correct interpolation.
 #pragma once
 
+#include "item3d/core/accumulate.h"
 #include "item3d/core/host_device.h"
 #include "item3d/core/math.h"
 
@@ -113,10 +114,10 @@ struct InterpolateParameters {
     int channels;                   ///< A
     int width;
     int height;
-    float* values;                ///< [P, A]
-    const float* value_gradient;  ///< [P, A]
-    float* attribute_gradient;    ///< [V, A]
-    float* clip_gradient;         ///< [N, V, 4]
+    float* values;                   ///< [P, A]
+    const float* value_gradient;     ///< [P, A]
+    Accumulator attribute_gradient;  ///< [V, A]
+    Accumulator clip_gradient;       ///< [N, V, 4]
 };
 
 ITEM3D_HOST_DEVICE inline void interpolate_forward(const InterpolateParameters& p,
@@ -136,7 +137,7 @@ ITEM3D_HOST_DEVICE inline void interpolate_forward(const InterpolateParameters& 
 
 /// Adds one pixel's gradients. The weights b_i = e_i / (e_0 + e_1 + e_2), with the edge functions
 /// e_0 = q . (p_1 x p_2) and so on over clip-space (x, y, w) and the pixel q = (x, y, 1), move with
-/// the vertices. Not safe for concurrent calls that share vertices.
+/// the vertices. On the CPU not safe for concurrent calls that share vertices.
 ITEM3D_HOST_DEVICE inline void interpolate_backward(const InterpolateParameters& p,
                                                     std::int64_t index) {
     const std::int64_t pixel = p.pixel[index];
@@ -149,11 +150,11 @@ ITEM3D_HOST_DEVICE inline void interpolate_backward(const InterpolateParameters&
     for (int k = 0; k < 3; ++k) {
         const std::int64_t row = p.channels * static_cast<std::int64_t>(corners[k]);
         for (int c = 0; c < p.channels; ++c) {
-            p.attribute_gradient[row + c] += weights[k] * gradient[c];
+            p.attribute_gradient.add(row + c, weights[k] * gradient[c]);
             weight_gradient[k] += static_cast<double>(gradient[c]) * p.attributes[row + c];
         }
     }
-    if (p.clip_gradient == nullptr) return;
+    if (!p.clip_gradient.wanted()) return;
 
     using DVec3 = glm::dvec3;
     const std::int64_t per_view = static_cast<std::int64_t>(p.width) * p.height;
@@ -181,11 +182,10 @@ ITEM3D_HOST_DEVICE inline void interpolate_backward(const InterpolateParameters&
         position_gradient[j] += edge_gradient * glm::cross(q, v[i]);
     }
     for (int k = 0; k < 3; ++k) {
-        float* out =
-            p.clip_gradient + 4 * (view * p.vertices + static_cast<std::int64_t>(corners[k]));
-        out[0] += static_cast<float>(position_gradient[k].x);
-        out[1] += static_cast<float>(position_gradient[k].y);
-        out[3] += static_cast<float>(position_gradient[k].z);
+        const std::int64_t row = 4 * (view * p.vertices + static_cast<std::int64_t>(corners[k]));
+        p.clip_gradient.add(row, static_cast<float>(position_gradient[k].x));
+        p.clip_gradient.add(row + 1, static_cast<float>(position_gradient[k].y));
+        p.clip_gradient.add(row + 3, static_cast<float>(position_gradient[k].z));
     }
 }
 

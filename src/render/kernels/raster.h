@@ -8,6 +8,7 @@
 
 #include "item3d/core/host_device.h"
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -129,10 +130,12 @@ struct TriangleEdges {
     }
 };
 
-/// Draws one triangle of one view into rows [row_begin, row_end). Must be called in ascending order
-/// of triangles for each pixel: at equal depth the first one stays.
-ITEM3D_HOST_DEVICE inline void rasterize_triangle(const RasterParameters& p, std::int64_t view,
-                                                  std::int64_t t, int row_begin, int row_end) {
+/// Calls visit(pixel, nearness, e, sum) for the pixels in rows [row_begin, row_end) whose centre
+/// lies in one triangle of one view; nearness: 1/w, e, sum: the three edge functions and their sum.
+template <typename Visit>
+ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std::int64_t view,
+                                                 std::int64_t t, int row_begin, int row_end,
+                                                 const Visit& visit) {
     const PixelBox box = p.boxes[view * p.triangle_count + t];
     const int y0 = box.y0 > row_begin ? box.y0 : row_begin;
     const int y1 = box.y1 < row_end ? box.y1 : row_end;
@@ -202,22 +205,98 @@ ITEM3D_HOST_DEVICE inline void rasterize_triangle(const RasterParameters& p, std
                 inverse_w = inverse_w < low_inverse ? low_inverse : inverse_w;
                 inverse_w = inverse_w > high_inverse ? high_inverse : inverse_w;
             }
-            const std::int64_t pixel = row_pixel + x;
-            const float nearness = static_cast<float>(inverse_w);
-            if (!(nearness > p.depth[pixel])) continue;
-            // The margin keeps a fragment from being found again behind itself.
-            if (p.behind != nullptr && nearness * p.behind[pixel] > 1 - 1e-6f) continue;
-            p.depth[pixel] = nearness;
-            p.triangle[pixel] = static_cast<std::int32_t>(t);
-            p.barycentrics[2 * pixel] = static_cast<float>(e[0] / sum);
-            p.barycentrics[2 * pixel + 1] = static_cast<float>(e[1] / sum);
+            visit(row_pixel + x, static_cast<float>(inverse_w), e, sum);
         }
     }
+}
+
+/// Whether a fragment may be seen at a pixel.
+ITEM3D_HOST_DEVICE inline bool passes_behind(const RasterParameters& p, std::int64_t pixel,
+                                             float nearness) {
+    // The margin keeps a fragment from being found again behind itself.
+    return p.behind == nullptr || !(nearness * p.behind[pixel] > 1 - 1e-6f);
+}
+
+/// Draws one triangle of one view into rows [row_begin, row_end). Must be called in ascending order
+/// of triangles for each pixel: at equal depth the first one stays.
+ITEM3D_HOST_DEVICE inline void rasterize_triangle(const RasterParameters& p, std::int64_t view,
+                                                  std::int64_t t, int row_begin, int row_end) {
+    for_each_fragment(p, view, t, row_begin, row_end,
+                      [&](std::int64_t pixel, float nearness, const double* e, double sum) {
+                          if (!(nearness > p.depth[pixel])) return;
+                          if (!passes_behind(p, pixel, nearness)) return;
+                          p.depth[pixel] = nearness;
+                          p.triangle[pixel] = static_cast<std::int32_t>(t);
+                          p.barycentrics[2 * pixel] = static_cast<float>(e[0] / sum);
+                          p.barycentrics[2 * pixel + 1] = static_cast<float>(e[1] / sum);
+                      });
 }
 
 /// Turns the 1/w that rasterize_triangle left into z-depth.
 ITEM3D_HOST_DEVICE inline void finish_depth(const RasterParameters& p, std::int64_t pixel) {
     if (p.depth[pixel] > 0) p.depth[pixel] = 1.0f / p.depth[pixel];
+}
+
+/// For threads that draw triangles in any order: the nearest fragment of each pixel, and at equal
+/// depth that of the first triangle, is the largest key.
+struct KeyedRasterParameters {
+    RasterParameters raster;
+    unsigned long long* keys;  ///< [N, H, W], zeros: bits of 1/w, then of ~triangle
+    std::int64_t views;        ///< N
+    std::int64_t bands;        ///< of rows; a thread draws a triangle into one of them
+};
+
+/// index: (band * N + view) * T + triangle.
+ITEM3D_HOST_DEVICE inline void rasterize_keys(const KeyedRasterParameters& p, std::int64_t index) {
+    const std::int64_t t = index % p.raster.triangle_count;
+    const std::int64_t view = index / p.raster.triangle_count % p.views;
+    const std::int64_t band = index / p.raster.triangle_count / p.views;
+    const int row_begin = static_cast<int>(p.raster.height * band / p.bands);
+    const int row_end = static_cast<int>(p.raster.height * (band + 1) / p.bands);
+    for_each_fragment(
+        p.raster, view, t, row_begin, row_end,
+        [&](std::int64_t pixel, float nearness, const double*, double) {
+            if (!(nearness > 0) || !passes_behind(p.raster, pixel, nearness)) return;
+            const unsigned long long key =
+                static_cast<unsigned long long>(std::bit_cast<std::uint32_t>(nearness)) << 32 |
+                (0xffffffffu - static_cast<std::uint32_t>(t));
+#if defined(__CUDA_ARCH__)
+            if (key > p.keys[pixel]) atomicMax(p.keys + pixel, key);
+#else
+            if (key > p.keys[pixel]) p.keys[pixel] = key;
+#endif
+        });
+}
+
+/// Fills in what a pixel's key stands for.
+ITEM3D_HOST_DEVICE inline void resolve_key(const KeyedRasterParameters& keyed, std::int64_t pixel) {
+    const RasterParameters& p = keyed.raster;
+    const unsigned long long key = keyed.keys[pixel];
+    if (key == 0) {
+        p.depth[pixel] = p.barycentrics[2 * pixel] = p.barycentrics[2 * pixel + 1] = 0;
+        p.triangle[pixel] = -1;
+        return;
+    }
+    const std::int32_t t = static_cast<std::int32_t>(0xffffffffu - static_cast<std::uint32_t>(key));
+    const std::int64_t per_view = static_cast<std::int64_t>(p.width) * p.height;
+    const float* clip = p.positions_clip + 4 * p.vertices * (pixel / per_view);
+    const std::int32_t* corners = p.triangles + 3 * static_cast<std::int64_t>(t);
+    TriangleEdges edges;
+    edges.set(clip + 4 * static_cast<std::int64_t>(corners[0]),
+              clip + 4 * static_cast<std::int64_t>(corners[1]),
+              clip + 4 * static_cast<std::int64_t>(corners[2]));
+    const int x = static_cast<int>(pixel % p.width);
+    const int y = static_cast<int>(pixel % per_view / p.width);
+    const double ndc_x = (x + 0.5) * (2.0 / p.width) - 1.0;
+    const double ndc_y = 1.0 - (y + 0.5) * (2.0 / p.height);
+    double e[3];
+    for (int i = 0; i < 3; ++i)
+        e[i] = edges.a[i] * ndc_x + (edges.b[i] * ndc_y + edges.c[i]);
+    const double sum = e[0] + e[1] + e[2];
+    p.depth[pixel] = 1.0f / std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32));
+    p.triangle[pixel] = t;
+    p.barycentrics[2 * pixel] = static_cast<float>(e[0] / sum);
+    p.barycentrics[2 * pixel + 1] = static_cast<float>(e[1] / sum);
 }
 
 }  // namespace item3d::kernels

@@ -42,10 +42,17 @@ struct ShadeParameters {
     float* normal_gradient;
 };
 
-/// Where one thread adds the light's gradients; null: not wanted.
+/// Where the light's gradients are added: the maps' first elements in `sums`, -1: not wanted.
 struct LightGradient {
-    float* diffuse = nullptr;
-    float* specular[max_specular_levels] = {};
+    Accumulator sums;
+    std::int64_t diffuse = -1;
+    std::int64_t specular[max_specular_levels] = {-1, -1, -1, -1, -1, -1, -1, -1,
+                                                  -1, -1, -1, -1, -1, -1, -1, -1};
+};
+
+struct ShadeBackwardParameters {
+    ShadeParameters shade;
+    LightGradient light;
 };
 
 struct ShadingFrame {
@@ -125,23 +132,31 @@ ITEM3D_HOST_DEVICE inline SpecularLevels specular_levels(const ShadeParameters& 
     int low = 0;
     while (roughness >= steps[low + 1])
         ++low;
-    const float slope = 1 / (steps[low + 1] - steps[low]);
-    return {low, low + 1, (roughness - steps[low]) * slope, slope};
+    // By the logarithm a blend of two lobes comes nearest to the lobe between them.
+    const float scale = 1 / std::log(steps[low + 1] / steps[low]);
+    return {low, low + 1, std::log(roughness / steps[low]) * scale, scale / roughness};
 }
 
 /// Rough lobes lean from the mirror direction towards the normal (Lagarde and de Rousiers 2014,
 /// "Moving Frostbite to PBR", section 4.9.3). value: how much of the mirror direction is left.
+/// Below roughness 0.25 leaning costs more than it gives (docs/renderer.md), so it is faded in.
 struct DominantDirection {
     float value;
     float slope;  ///< d value / d roughness
 };
 
 ITEM3D_HOST_DEVICE inline DominantDirection dominant_direction(float roughness) {
+    constexpr float begin = 0.25f, end = 0.5f;
+    if (roughness <= begin) return {1, 0};
     const float alpha = roughness * roughness;
     const float smoothness = alpha < 1 ? 1 - alpha : 0.0f;
     const float root = std::sqrt(smoothness);
-    return {smoothness * (root + alpha),
-            alpha < 1 ? (smoothness - alpha - 1.5f * root) * 2 * roughness : 0.0f};
+    const float lean = smoothness * (root + alpha) - 1;
+    const float slope = alpha < 1 ? (smoothness - alpha - 1.5f * root) * 2 * roughness : 0.0f;
+    if (roughness >= end) return {1 + lean, slope};
+    const float x = (roughness - begin) / (end - begin);
+    const float fade = x * x * (3 - 2 * x), fade_slope = 6 * x * (1 - x) / (end - begin);
+    return {1 + fade * lean, fade * slope + fade_slope * lean};
 }
 
 /// All that forward and backward share.
@@ -231,11 +246,12 @@ ITEM3D_HOST_DEVICE inline void shade_backward(const ShadeParameters& p, std::int
     const Vec3 by_low = (1 - s.levels.fraction) * by_specular;
     const Vec3 by_high = s.levels.fraction * by_specular;
     const bool two_levels = s.levels.high != s.levels.low;
-    if (light.diffuse != nullptr) cube_add_gradient(light.diffuse, s.diffuse_taps, by_irradiance);
-    if (light.specular[s.levels.low] != nullptr)
-        cube_add_gradient(light.specular[s.levels.low], s.low_taps, by_low);
-    if (two_levels && light.specular[s.levels.high] != nullptr)
-        cube_add_gradient(light.specular[s.levels.high], s.high_taps, by_high);
+    if (light.diffuse >= 0)
+        cube_add_gradient(light.sums, light.diffuse, s.diffuse_taps, by_irradiance);
+    if (light.specular[s.levels.low] >= 0)
+        cube_add_gradient(light.sums, light.specular[s.levels.low], s.low_taps, by_low);
+    if (two_levels && light.specular[s.levels.high] >= 0)
+        cube_add_gradient(light.sums, light.specular[s.levels.high], s.high_taps, by_high);
 
     Vec3 by_reflected = cube_direction_gradient(p.specular[s.levels.low], s.low_taps, by_low);
     if (two_levels)

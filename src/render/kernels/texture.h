@@ -1,6 +1,8 @@
-// Bilinear texture lookups with glTF's wrap modes.
+// Texture lookups with glTF's wrap modes: bilinear, or trilinear along the longer axis of a pixel's
+// footprint (anisotropic).
 #pragma once
 
+#include "item3d/core/accumulate.h"
 #include "item3d/core/host_device.h"
 
 #include <cmath>
@@ -10,12 +12,22 @@ namespace item3d::kernels {
 
 enum class TextureWrap : int { repeat, mirrored_repeat, clamp_to_edge };
 
-struct TextureParameters {
-    const float* texture;  ///< [H, W, C]
-    const float* uv;       ///< [P, 2], (0, 0) the top left corner
+inline constexpr int max_texture_levels = 16;
+inline constexpr int most_texture_probes = 8;
+
+struct TextureLevel {
+    const float* texels;  ///< [H, W, C]
     int height;
     int width;
-    int channels;  ///< C
+    std::int64_t first;  ///< where this level's gradients begin
+};
+
+struct TextureParameters {
+    TextureLevel levels[max_texture_levels];  ///< each half as large as the one before
+    int level_count;
+    int channels;            ///< C
+    const float* uv;         ///< [P, 2], (0, 0) the top left corner
+    const float* footprint;  ///< [P, 4] d(u, v) by a pixel in x, then in y; null: level 0 alone
     TextureWrap wrap_u;
     TextureWrap wrap_v;
 };
@@ -29,11 +41,13 @@ ITEM3D_HOST_DEVICE inline int wrap_texel(int i, int size, TextureWrap wrap) {
 }
 
 struct TextureTaps {
-    std::int64_t texel[4];
+    std::int64_t texel[4];  ///< upper left, upper right, lower left, lower right
     float weight[4];
+    float x, y;  ///< fractions towards the right and down
 };
 
-ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureParameters& p, std::int64_t index) {
+ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureLevel& level, float u, float v,
+                                                   TextureWrap wrap_u, TextureWrap wrap_v) {
     const auto coordinate = [](float value, int size) {
         // Far outside, floats have no fraction left; and integers must not overflow.
         const float limit = 1e6f;
@@ -41,8 +55,7 @@ ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureParameters& p, s
         value = value < -limit ? -limit : (value > limit ? limit : value);
         return static_cast<double>(value) * size - 0.5;
     };
-    const double x = coordinate(p.uv[2 * index], p.width);
-    const double y = coordinate(p.uv[2 * index + 1], p.height);
+    const double x = coordinate(u, level.width), y = coordinate(v, level.height);
     const double floor_x = std::floor(x), floor_y = std::floor(y);
     const float fx = static_cast<float>(x - floor_x), fy = static_cast<float>(y - floor_y);
     const auto wrapped = [](double i, int size, TextureWrap wrap) {
@@ -53,36 +66,126 @@ ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureParameters& p, s
             i -= std::floor(i / (2.0 * size)) * (2.0 * size);
         return wrap_texel(static_cast<int>(i), size, wrap);
     };
-    const int x0 = wrapped(floor_x, p.width, p.wrap_u);
-    const int x1 = wrapped(floor_x + 1, p.width, p.wrap_u);
-    const int y0 = wrapped(floor_y, p.height, p.wrap_v);
-    const int y1 = wrapped(floor_y + 1, p.height, p.wrap_v);
-    const std::int64_t row0 = static_cast<std::int64_t>(y0) * p.width;
-    const std::int64_t row1 = static_cast<std::int64_t>(y1) * p.width;
+    const int x0 = wrapped(floor_x, level.width, wrap_u);
+    const int x1 = wrapped(floor_x + 1, level.width, wrap_u);
+    const int y0 = wrapped(floor_y, level.height, wrap_v);
+    const int y1 = wrapped(floor_y + 1, level.height, wrap_v);
+    const std::int64_t row0 = static_cast<std::int64_t>(y0) * level.width;
+    const std::int64_t row1 = static_cast<std::int64_t>(y1) * level.width;
     return {{row0 + x0, row0 + x1, row1 + x0, row1 + x1},
-            {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
+            {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy},
+            fx,
+            fy};
+}
+
+/// How a pixel's footprint is covered: probes along its longer axis, each between two levels.
+struct TextureFilter {
+    int probes;
+    float step_u, step_v;  ///< from one probe to the next
+    int level;
+    float fraction;  ///< weight of level + 1
+};
+
+ITEM3D_HOST_DEVICE inline TextureFilter texture_filter(const TextureParameters& p,
+                                                       std::int64_t index) {
+    const TextureFilter sharp{1, 0, 0, 0, 0};
+    if (p.footprint == nullptr) return sharp;
+    const float* f = p.footprint + 4 * index;
+    const auto width = static_cast<float>(p.levels[0].width);
+    const auto height = static_cast<float>(p.levels[0].height);
+    // Columns of the Jacobian in texels; its singular values are the ellipse's half axes.
+    const float ax = f[0] * width, ay = f[1] * height, bx = f[2] * width, by = f[3] * height;
+    const float xx = ax * ax + bx * bx, yy = ay * ay + by * by, xy = ax * ay + bx * by;
+    const float mean = 0.5f * (xx + yy), half = 0.5f * (xx - yy);
+    const float spread = std::sqrt(half * half + xy * xy);
+    if (!(mean + spread > 1) || !(mean + spread < 1e12f)) return sharp;
+    const float major = std::sqrt(mean + spread);
+    float minor = std::sqrt(mean > spread ? mean - spread : 0.0f);
+    minor = minor > 1 ? minor : 1.0f;
+    const float least = major / most_texture_probes;
+    minor = minor > least ? minor : least;
+    TextureFilter filter;
+    filter.probes = static_cast<int>(std::ceil(major / minor - 1e-3f));
+    filter.probes = filter.probes < 1 ? 1 : filter.probes;
+    const float angle = 0.5f * std::atan2(xy, half);
+    const float step = major / static_cast<float>(filter.probes);
+    filter.step_u = step * std::cos(angle) / width;
+    filter.step_v = step * std::sin(angle) / height;
+    float level = std::log2(minor);
+    const auto last = static_cast<float>(p.level_count - 1);
+    level = level < last ? level : last;
+    filter.level = static_cast<int>(level);
+    filter.fraction = level - static_cast<float>(filter.level);
+    return filter;
+}
+
+/// Calls f(level, taps, weight) for each bilinear lookup whose weighted sum is the value.
+template <typename F>
+ITEM3D_HOST_DEVICE inline void for_each_lookup(const TextureParameters& p, std::int64_t index,
+                                               const F& f) {
+    const TextureFilter filter = texture_filter(p, index);
+    const float share = 1 / static_cast<float>(filter.probes);
+    for (int probe = 0; probe < filter.probes; ++probe) {
+        const float along =
+            static_cast<float>(probe) - 0.5f * static_cast<float>(filter.probes - 1);
+        const float u = p.uv[2 * index] + along * filter.step_u;
+        const float v = p.uv[2 * index + 1] + along * filter.step_v;
+        const TextureLevel& fine = p.levels[filter.level];
+        f(fine, texture_taps(fine, u, v, p.wrap_u, p.wrap_v), (1 - filter.fraction) * share);
+        if (filter.fraction > 0) {
+            const TextureLevel& coarse = p.levels[filter.level + 1];
+            f(coarse, texture_taps(coarse, u, v, p.wrap_u, p.wrap_v), filter.fraction * share);
+        }
+    }
 }
 
 ITEM3D_HOST_DEVICE inline void texture_forward(const TextureParameters& p, std::int64_t index,
                                                float* values) {
-    const TextureTaps taps = texture_taps(p, index);
-    for (int c = 0; c < p.channels; ++c) {
-        float sum = 0;
-        for (int k = 0; k < 4; ++k)
-            sum += taps.weight[k] * p.texture[taps.texel[k] * p.channels + c];
-        values[index * p.channels + c] = sum;
-    }
+    float* out = values + index * p.channels;
+    for (int c = 0; c < p.channels; ++c)
+        out[c] = 0;
+    for_each_lookup(p, index, [&](const TextureLevel& level, const TextureTaps& taps, float share) {
+        for (int c = 0; c < p.channels; ++c) {
+            float sum = 0;
+            for (int k = 0; k < 4; ++k)
+                sum += taps.weight[k] * level.texels[taps.texel[k] * p.channels + c];
+            out[c] += share * sum;
+        }
+    });
 }
 
-/// Not safe for concurrent calls on one buffer.
+/// Adds to the levels' gradients, each from its `first` on.
 ITEM3D_HOST_DEVICE inline void texture_backward(const TextureParameters& p, std::int64_t index,
                                                 const float* value_gradient,
-                                                float* texture_gradient) {
-    const TextureTaps taps = texture_taps(p, index);
-    for (int k = 0; k < 4; ++k)
-        for (int c = 0; c < p.channels; ++c)
-            texture_gradient[taps.texel[k] * p.channels + c] +=
-                taps.weight[k] * value_gradient[index * p.channels + c];
+                                                const Accumulator& texel_gradient) {
+    const float* gradient = value_gradient + index * p.channels;
+    for_each_lookup(p, index, [&](const TextureLevel& level, const TextureTaps& taps, float share) {
+        for (int k = 0; k < 4; ++k)
+            for (int c = 0; c < p.channels; ++c)
+                texel_gradient.add(level.first + taps.texel[k] * p.channels + c,
+                                   share * taps.weight[k] * gradient[c]);
+    });
+}
+
+/// Writes uv_gradient [P, 2]; the footprint is held still.
+ITEM3D_HOST_DEVICE inline void texture_uv_backward(const TextureParameters& p, std::int64_t index,
+                                                   const float* value_gradient,
+                                                   float* uv_gradient) {
+    const float* gradient = value_gradient + index * p.channels;
+    float by_u = 0, by_v = 0;
+    for_each_lookup(p, index, [&](const TextureLevel& level, const TextureTaps& taps, float share) {
+        const auto at = [&](int k, int c) { return level.texels[taps.texel[k] * p.channels + c]; };
+        for (int c = 0; c < p.channels; ++c) {
+            const float right =
+                (1 - taps.y) * (at(1, c) - at(0, c)) + taps.y * (at(3, c) - at(2, c));
+            const float down =
+                (1 - taps.x) * (at(2, c) - at(0, c)) + taps.x * (at(3, c) - at(1, c));
+            by_u += share * gradient[c] * right * static_cast<float>(level.width);
+            by_v += share * gradient[c] * down * static_cast<float>(level.height);
+        }
+    });
+    uv_gradient[2 * index] = by_u;
+    uv_gradient[2 * index + 1] = by_v;
 }
 
 }  // namespace item3d::kernels

@@ -2,7 +2,9 @@
 //
 // Prefiltering for n = v = r (Karis 2013) weighs the radiance from l with D(h) (n.l), and there
 // (n.h)^2 = (1 + n.l) / 2, so GGX becomes such a zonal kernel: the sum over all texels within reach
-// can be written as a plain gather, and, the kernel being symmetric, so can its transpose.
+// can be written as a plain gather, and, the kernel being symmetric, so can its transpose. Wide
+// lobes on fine maps are summed over a pyramid: near texels at full resolution, the smooth rest on
+// coarser levels (multilevel summation, Brandt and Lubrecht 1990; Hardy et al. 2009).
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -14,19 +16,39 @@
 
 namespace item3d::kernels {
 
-/// k(c) = max(0, profile(c) - floor) of c = n.l, where profile is the cosine, or GGX times it, and
-/// grows with c.
+/// A kernel of c = n.l, written over d = 2 (1 - c), the squared chord:
+///   k(d) = max(0, profile(c) - floor), or within a cap d < inner the parabola `inner_cap`,
+///          less the parabola `outer_cap`; 0 from `outer` on.
+/// profile is the cosine, or GGX times it, and grows with c. The caps cut a kernel into a narrow
+/// part for a fine grid and a smooth rest for a coarser one.
 struct ZonalKernel {
-    bool cosine;      ///< profile(c) = c
-    float alpha2_1;   ///< GGX: alpha^2 - 1
-    float floor;      ///< profile at the cone's edge, so that the kernel ends without a step
-    float cut_angle;  ///< half angle of the cone outside which k = 0, at most pi / 2
+    bool cosine;     ///< profile(c) = c
+    float alpha2_1;  ///< GGX: alpha^2 - 1
+    float floor;     ///< profile at the lobe's edge, so that the kernel ends without a step
+    float inner;
+    float inner_cap[3];  ///< coefficients of 1, d, d^2
+    float outer;
+    float outer_cap[3];
 
     template <bool Cosine>
     ITEM3D_HOST_DEVICE float profile(float c) const {
         if constexpr (Cosine) return c;
         const float d = 0.5f * (1 + c) * alpha2_1 + 1;
         return c / (d * d);
+    }
+    template <bool Cosine>
+    ITEM3D_HOST_DEVICE float value(float c) const {
+        const float d = 2 - 2 * c;
+        const float above = profile<Cosine>(c) - floor;
+        const float kernel = above > 0 ? above : 0.0f;
+        const float cap = inner_cap[0] + d * (inner_cap[1] + d * inner_cap[2]);
+        const float rest = outer_cap[0] + d * (outer_cap[1] + d * outer_cap[2]);
+        return d < outer ? (d < inner ? cap : kernel) - rest : 0.0f;
+    }
+    /// Half angle of the cone outside which k = 0.
+    ITEM3D_HOST_DEVICE float reach() const {
+        const float sine = 0.5f * std::sqrt(outer);
+        return 2 * std::asin(sine < 1 ? sine : 1.0f);
     }
 };
 
@@ -105,8 +127,7 @@ template <bool Cosine>
 #pragma omp simd
         for (int lane = 0; lane < zonal_lanes; ++lane) {
             const float c = (along * centres[lane] + rest) * inverse_lengths[lane];
-            const float value = kernel.profile<Cosine>(c) - kernel.floor;
-            k[lane] = value > 0 ? value : 0.0f;
+            k[lane] = kernel.value<Cosine>(c);
         }
         for (int plane = 0; plane < 4; ++plane) {
             const float* values = row.planes[plane] + i;
@@ -128,9 +149,9 @@ ITEM3D_HOST_DEVICE inline void zonal_gather(const ZonalParameters& p, std::int64
     const Vec3 n = glm::normalize(cube_direction(out_face, texel_centre(out_column, p.out_size),
                                                  texel_centre(out_row, p.out_size)));
     const std::int64_t size = p.source_size, plane = 6 * size * size;
-    const float sine = std::sin(p.kernel.cut_angle);
+    const float reach = p.kernel.reach(), sine = std::sin(reach < 0.5f * pi ? reach : 0.5f * pi);
     // The corners of a face are 54.7 degrees off its centre.
-    const float farthest = p.kernel.cut_angle + 0.9554f;
+    const float farthest = reach + 0.9554f;
     const float face_cut = farthest < pi ? std::cos(farthest) : -1.0f;
     ZonalSums sums;
     for (int face = 0; face < 6; ++face) {
@@ -160,6 +181,49 @@ ITEM3D_HOST_DEVICE inline void zonal_gather(const ZonalParameters& p, std::int64
             sum += sums.lane[c][lane];
         p.out[4 * index + c] = sum;
     }
+}
+
+/// Twice as fine a map, bilinear and without seams. index: texel of out [6, 2R, 2R, 4].
+ITEM3D_HOST_DEVICE inline void upsample_cube(const float* coarse, int coarse_size,
+                                             std::int64_t index, float* out) {
+    const int size = 2 * coarse_size;
+    const int face = static_cast<int>(index / (size * size));
+    const int row = static_cast<int>(index / size % size), column = static_cast<int>(index % size);
+    const CubeTaps taps = cube_taps(
+        cube_direction(face, texel_centre(column, size), texel_centre(row, size)), coarse_size);
+    for (int c = 0; c < 4; ++c) {
+        float sum = 0;
+        for (int i = 0; i < 4; ++i)
+            sum += taps.weight[i] * coarse[4 * static_cast<std::int64_t>(taps.texel[i]) + c];
+        out[4 * index + c] = sum;
+    }
+}
+
+/// The transpose of upsample_cube without the taps across edges. index: texel of
+/// coarse_gradient [6, R, R, 4].
+ITEM3D_HOST_DEVICE inline void upsample_cube_backward(const float* gradient, int coarse_size,
+                                                      std::int64_t index, float* coarse_gradient) {
+    const int size = 2 * coarse_size;
+    const int face = static_cast<int>(index / (coarse_size * coarse_size));
+    const int row = static_cast<int>(index / coarse_size % coarse_size);
+    const int column = static_cast<int>(index % coarse_size);
+    float sum[4] = {0, 0, 0, 0};
+    for (int j = -1; j <= 2; ++j) {
+        const int y = 2 * row + j;
+        if (y < 0 || y >= size) continue;
+        for (int i = -1; i <= 2; ++i) {
+            const int x = 2 * column + i;
+            if (x < 0 || x >= size) continue;
+            const float weight =
+                (i == 0 || i == 1 ? 0.75f : 0.25f) * (j == 0 || j == 1 ? 0.75f : 0.25f);
+            const float* in =
+                gradient + 4 * ((static_cast<std::int64_t>(face) * size + y) * size + x);
+            for (int c = 0; c < 4; ++c)
+                sum[c] += weight * in[c];
+        }
+    }
+    for (int c = 0; c < 4; ++c)
+        coarse_gradient[4 * index + c] = sum[c];
 }
 
 }  // namespace item3d::kernels

@@ -1,0 +1,109 @@
+// Sums to which many threads contribute, for kernels that run on the CPU and on CUDA devices.
+#pragma once
+
+#include "item3d/core/host_device.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace item3d {
+
+/// An array of sums. On the CPU one thread owns it and adds; on a device many threads add at once:
+///   - to floats, by atomics, in whatever order the threads come, or
+///   - in two passes whose result does not depend on the order: the first (`largest`) finds the
+///     largest term of each sum, the second (`fixed`) adds in units of 2^-bits of its power of two,
+///     in 64-bit integers. finish_sum() then makes floats of them.
+struct Accumulator {
+    float* values = nullptr;
+    std::uint32_t* largest = nullptr;     ///< bits of the largest magnitude of each sum's terms
+    unsigned long long* fixed = nullptr;  ///< two's complement
+    int bits = 0;
+
+    ITEM3D_HOST_DEVICE bool wanted() const { return values != nullptr || largest != nullptr; }
+
+    /// The sums from `first` on.
+    ITEM3D_HOST_DEVICE Accumulator from(std::int64_t first) const {
+        return {values ? values + first : nullptr, largest ? largest + first : nullptr,
+                fixed ? fixed + first : nullptr, bits};
+    }
+
+    /// On the host not for concurrent calls on one sum.
+    ITEM3D_HOST_DEVICE void add(std::int64_t index, float value) const {
+        if (values != nullptr)
+            add_to(values[index], value);
+        else
+            add_in_passes(index, value);
+    }
+
+    /// Exponent of a float's magnitude, of subnormal numbers that of the smallest normal one.
+    ITEM3D_HOST_DEVICE static int exponent(std::uint32_t magnitude_bits) {
+        const int biased = static_cast<int>(magnitude_bits >> 23);
+        return (biased > 0 ? biased : 1) - 127;
+    }
+    /// Whether the largest term is infinite or not a number.
+    ITEM3D_HOST_DEVICE static bool overflows(std::uint32_t magnitude_bits) {
+        return magnitude_bits >= 0x7f800000u;
+    }
+
+  private:
+    // Apart, so that what the CPU does stays small enough to be inlined.
+#if !defined(__CUDACC__)
+    __attribute__((cold, noinline))
+#endif
+    ITEM3D_HOST_DEVICE void
+    add_in_passes(std::int64_t index, float value) const {
+        if (fixed != nullptr)
+            add_to(fixed[index], to_fixed(value, largest[index]));
+        else
+            raise_to(largest[index], magnitude(value));
+    }
+    ITEM3D_HOST_DEVICE static std::uint32_t magnitude(float value) {
+        return std::bit_cast<std::uint32_t>(value) & 0x7fffffffu;
+    }
+    ITEM3D_HOST_DEVICE unsigned long long to_fixed(float value, std::uint32_t of_largest) const {
+        if (overflows(of_largest)) return 0;
+        const double scaled = std::ldexp(static_cast<double>(value), bits - exponent(of_largest));
+        return static_cast<unsigned long long>(static_cast<long long>(std::rint(scaled)));
+    }
+    template <typename T>
+    ITEM3D_HOST_DEVICE static void add_to(T& sum, T value) {
+#if defined(__CUDA_ARCH__)
+        atomicAdd(&sum, value);
+#else
+        sum += value;
+#endif
+    }
+    ITEM3D_HOST_DEVICE static void raise_to(std::uint32_t& largest, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+        atomicMax(&largest, value);
+#else
+        if (value > largest) largest = value;
+#endif
+    }
+};
+
+/// How many bits of a term fit below the largest one's power of two when up to `terms` are added.
+inline int accumulator_bits(std::int64_t terms) {
+    int bits = 61;
+    while (bits > 24 && (terms >> (61 - bits)) > 0)
+        --bits;
+    return bits;
+}
+
+struct FinishSumsParameters {
+    const std::uint32_t* largest;
+    const unsigned long long* fixed;
+    int bits;
+    float* values;
+};
+
+/// What the second pass left, as a float; not a number where a term was none or infinite.
+ITEM3D_HOST_DEVICE inline void finish_sum(const FinishSumsParameters& p, std::int64_t index) {
+    const std::uint32_t largest = p.largest[index];
+    const double sum = std::ldexp(static_cast<double>(static_cast<long long>(p.fixed[index])),
+                                  Accumulator::exponent(largest) - p.bits);
+    p.values[index] = Accumulator::overflows(largest) ? NAN : static_cast<float>(sum);
+}
+
+}  // namespace item3d

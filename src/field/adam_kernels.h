@@ -1,0 +1,48 @@
+// The arithmetic of a step of Adam, one row of a parameter at a time.
+#pragma once
+
+#include "item3d/core/host_device.h"
+
+#include <cmath>
+#include <cstdint>
+
+namespace item3d {
+
+/// What one step needs beyond the gradient; rates are already bias corrected.
+struct AdamRates {
+    float beta1, beta2, epsilon;
+    float step_size;       ///< learning_rate / (1 - beta1^t)
+    float variance_scale;  ///< 1 / (1 - beta2^t)
+};
+
+struct AdamParameters {
+    const std::int64_t* rows;  ///< [R] rows of the parameter, no row twice; null: all in order
+    const float* gradient;     ///< [R, width]
+    std::int64_t width;
+    float* parameter;        ///< [*, width]
+    float* momentum;         ///< [*, width]
+    float* variance;         ///< [*, width]
+    std::int32_t* updates;   ///< [*]
+    const AdamRates* rates;  ///< by the row's number of updates, this one included
+};
+
+ITEM3D_HOST_DEVICE inline void adam_update(float& parameter, float& momentum, float& variance,
+                                           float gradient, const AdamRates& rates) {
+    momentum = rates.beta1 * momentum + (1.0f - rates.beta1) * gradient;
+    variance = rates.beta2 * variance + (1.0f - rates.beta2) * gradient * gradient;
+    parameter -=
+        rates.step_size * momentum / (std::sqrt(variance * rates.variance_scale) + rates.epsilon);
+}
+
+/// index: row of the gradient.
+ITEM3D_HOST_DEVICE inline void adam_step_row(const AdamParameters& p, std::int64_t index) {
+    const std::int64_t row = p.rows != nullptr ? p.rows[index] : index;
+    const AdamRates& rates = p.rates[++p.updates[row]];
+    for (std::int64_t c = 0; c < p.width; ++c) {
+        const std::int64_t at = row * p.width + c;
+        adam_update(p.parameter[at], p.momentum[at], p.variance[at],
+                    p.gradient[index * p.width + c], rates);
+    }
+}
+
+}  // namespace item3d

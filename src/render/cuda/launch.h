@@ -1,0 +1,43 @@
+// How a .cu file launches a kernel function over indices. For nvcc alone.
+#pragma once
+
+#include "item3d/render/cuda/table.h"
+
+#include <cuda_runtime.h>
+#include <nvtx3/nvToolsExt.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace item3d::cuda {
+
+template <typename F>
+__global__ void for_each_index(std::int64_t count, F f) {
+    const std::int64_t step = static_cast<std::int64_t>(gridDim.x) * blockDim.x;
+    for (std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+         i < count; i += step)
+        f(i);
+}
+
+/// Calls f(i) for every i in [0, count) on the device of `stream`, which must be the current one;
+/// returns a cudaError_t. `name` is what a profiler shows (NVTX). Blocks have the size that keeps
+/// most threads resident; where items outnumber a few times the device's threads, each thread
+/// takes several.
+template <typename F>
+int launch(const char* name, std::int64_t count, const F& f, Stream stream) {
+    if (count <= 0) return cudaSuccess;
+    constexpr std::int64_t waves = 32;
+    int resident_blocks = 0, block_size = 0;
+    const cudaError_t error =
+        cudaOccupancyMaxPotentialBlockSize(&resident_blocks, &block_size, for_each_index<F>);
+    if (error != cudaSuccess) return error;
+    const std::int64_t blocks =
+        std::min((count + block_size - 1) / block_size, waves * resident_blocks);
+    nvtxRangePushA(name);
+    for_each_index<<<static_cast<unsigned>(blocks), static_cast<unsigned>(block_size), 0,
+                     static_cast<cudaStream_t>(stream)>>>(count, f);
+    nvtxRangePop();
+    return cudaGetLastError();
+}
+
+}  // namespace item3d::cuda

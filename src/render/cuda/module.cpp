@@ -1,0 +1,92 @@
+#include "item3d/render/cuda/module.h"
+
+#include "item3d/core/error.h"
+
+#include <ATen/Context.h>
+#include <c10/core/impl/VirtualGuardImpl.h>
+#include <c10/util/StringUtil.h>
+#include <dlfcn.h>
+#include <torch/cuda.h>
+
+#include <filesystem>
+
+namespace item3d::cuda {
+namespace {
+
+constexpr const char* file_name = "libitem3d_cuda.so";
+
+[[noreturn]] void cannot_use(const std::string& reason) {
+    throw ResourceError(c10::str("cannot compute on CUDA: ", reason, "; use --device cpu"));
+}
+
+void* open_module() {
+    std::error_code error;
+    const std::filesystem::path folder =
+        std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    for (const std::filesystem::path& path :
+         {folder / file_name, folder / ".." / "lib" / "item3d" / file_name}) {
+        if (!std::filesystem::exists(path, error)) continue;
+        void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+        if (module == nullptr) cannot_use(dlerror());
+        return module;
+    }
+    cannot_use(c10::str(file_name, ", which `make` builds, is not in ", folder.string()));
+}
+
+/// LibTorch before 2.12 gives no way to a CUDA stream but through libtorch_cuda's own headers;
+/// there, all but the default stream, which is what the program uses, are refused.
+template <typename S>
+Stream native_handle(const S& stream) {
+    if constexpr (requires { stream.native_handle(); }) {
+        return stream.native_handle();
+    } else {
+        if (stream.id() != 0) cannot_use("this LibTorch allows for the default stream alone");
+        return nullptr;
+    }
+}
+
+Stream current_stream(torch::Device device) {
+    return native_handle(c10::impl::VirtualGuardImpl(device.type()).getStream(device));
+}
+
+}  // namespace
+
+bool cuda_available() {
+    static const bool available = [] {
+        // Without a driver, loading a gigabyte of LibTorch would be for nothing.
+        if (dlopen("libcuda.so.1", RTLD_NOW | RTLD_GLOBAL) == nullptr) return false;
+        if (dlopen("libtorch_cuda.so", RTLD_NOW | RTLD_GLOBAL) == nullptr) return false;
+        return torch::cuda::is_available();
+    }();
+    return available;
+}
+
+bool deterministic_sums() {
+    return at::globalContext().deterministicAlgorithms();
+}
+
+const TableHeader* find_table(const char* symbol, std::uint32_t size) {
+    static void* const module = open_module();
+    // POSIX has dlsym's pointer hold functions as well.
+    const auto function = reinterpret_cast<const TableHeader* (*)()>(dlsym(module, symbol));
+    if (function == nullptr) cannot_use(c10::str(file_name, " has no ", symbol));
+    const TableHeader* table = function();
+    if (table->version != table_version || table->size != size)
+        cannot_use(c10::str(file_name, " is of another version of item3d"));
+    return table;
+}
+
+const RenderTable& render_table() {
+    // A header is a table's first member, so both have one address.
+    static const auto* const table =
+        reinterpret_cast<const RenderTable*>(find_table("item3d_cuda_render", sizeof(RenderTable)));
+    return *table;
+}
+
+Launch::Launch(torch::Device device) : guard_(device), stream_(current_stream(device)) {}
+
+void Launch::check(int error) const {
+    if (error != 0) cannot_use(render_table().error_text(error));
+}
+
+}  // namespace item3d::cuda

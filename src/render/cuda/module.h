@@ -1,0 +1,85 @@
+// The way to the kernels on CUDA devices. They are in libitem3d_cuda.so, which is opened at first
+// use, so that the program starts and works on machines without any library of NVIDIA's.
+#pragma once
+
+#include "item3d/render/cuda/table.h"
+
+#include <c10/core/DeviceGuard.h>
+#include <torch/types.h>
+
+#include <string>
+
+namespace item3d::cuda {
+
+/// Whether LibTorch can compute on a CUDA device here. The first call loads LibTorch's CUDA half if
+/// there are a driver and libtorch_cuda.so (scripts/setup.sh fetches the CPU half alone; a LibTorch
+/// of the machine's own, ITEM3D_TORCH_ROOT, may have both). LibTorch looks for it only once, so ask
+/// here, and not torch::cuda::is_available() before.
+bool cuda_available();
+
+/// Whether sums on devices must not depend on the order in which threads come: LibTorch's own
+/// switch, at::globalContext().setDeterministicAlgorithms().
+bool deterministic_sums();
+
+/// The table that libitem3d_cuda.so exports under `symbol`. Opens the module, which lies beside the
+/// program or in ../lib/item3d. Throws ResourceError, in one line, when it is not there, cannot be
+/// opened, or comes from another build.
+const TableHeader* find_table(const char* symbol, std::uint32_t size);
+
+/// The renderer's entries; throws as find_table does.
+const RenderTable& render_table();
+
+/// Launches on the device's current stream. Throws ResourceError with CUDA's reason when the
+/// launch fails; what fails later, LibTorch reports when it next waits for the device.
+template <typename Parameters>
+void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t count,
+         torch::Device device);
+
+/// What run() is made of: makes a device the current one while it lives.
+class Launch {
+  public:
+    explicit Launch(torch::Device device);
+    Stream stream() const { return stream_; }
+    void check(int error) const;
+
+  private:
+    c10::OptionalDeviceGuard guard_;
+    Stream stream_;
+};
+
+template <typename Parameters>
+void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t count,
+         torch::Device device) {
+    const Launch launch(device);
+    launch.check(kernel(parameters, count, launch.stream()));
+}
+
+/// [elements] float32 on `device`: the sums of what add(accumulator) adds by launches of its own.
+/// It is called once, or twice for sums that do not depend on the order of threads. most_terms: of
+/// one sum.
+template <typename Add>
+torch::Tensor sum_on_device(std::int64_t elements, std::int64_t most_terms, torch::Device device,
+                            const Add& add) {
+    const auto options = torch::TensorOptions().device(device);
+    torch::Tensor sums = torch::zeros({elements}, options.dtype(torch::kFloat32));
+    Accumulator accumulator;
+    if (!deterministic_sums()) {
+        accumulator.values = sums.data_ptr<float>();
+        add(accumulator);
+        return sums;
+    }
+    const torch::Tensor largest = torch::zeros({elements}, options.dtype(torch::kInt32));
+    const torch::Tensor fixed = torch::zeros({elements}, options.dtype(torch::kInt64));
+    accumulator.bits = accumulator_bits(most_terms);
+    accumulator.largest = static_cast<std::uint32_t*>(largest.data_ptr());
+    add(accumulator);
+    accumulator.fixed = static_cast<unsigned long long*>(fixed.data_ptr());
+    add(accumulator);
+    run(render_table().finish_sums,
+        FinishSumsParameters{accumulator.largest, accumulator.fixed, accumulator.bits,
+                             sums.data_ptr<float>()},
+        elements, device);
+    return sums;
+}
+
+}  // namespace item3d::cuda

@@ -1,0 +1,95 @@
+// Kernels over surface points and texels, and the table of all of the renderer's.
+#include "item3d/render/cuda/entries.h"
+#include "item3d/render/cuda/launch.h"
+
+namespace item3d::cuda {
+
+int interpolate_surface(const kernels::SurfaceParameters& p, std::int64_t count, Stream stream) {
+    return launch(
+        "interpolate_surface", count,
+        [=] __device__(std::int64_t i) { kernels::interpolate_surface_point(p, i); }, stream);
+}
+
+int interpolate(const kernels::InterpolateParameters& p, std::int64_t count, Stream stream) {
+    return launch(
+        "interpolate", count,
+        [=] __device__(std::int64_t i) { kernels::interpolate_forward(p, i); }, stream);
+}
+
+int interpolate_backward(const kernels::InterpolateParameters& p, std::int64_t count,
+                         Stream stream) {
+    return launch(
+        "interpolate backward", count,
+        [=] __device__(std::int64_t i) { kernels::interpolate_backward(p, i); }, stream);
+}
+
+int shade(const kernels::ShadeParameters& p, std::int64_t count, Stream stream) {
+    return launch(
+        "shade", count, [=] __device__(std::int64_t i) { kernels::shade_forward(p, i); }, stream);
+}
+
+int shade_backward(const kernels::ShadeBackwardParameters& p, std::int64_t count, Stream stream) {
+    return launch(
+        "shade backward", count,
+        [=] __device__(std::int64_t i) { kernels::shade_backward(p.shade, i, p.light); }, stream);
+}
+
+int equirectangular(const kernels::EquirectangularParameters& p, std::int64_t count,
+                    Stream stream) {
+    return launch(
+        "equirectangular_to_cube", count,
+        [=] __device__(std::int64_t i) { kernels::equirectangular_forward(p, i); }, stream);
+}
+
+int equirectangular_backward(const kernels::EquirectangularParameters& p, std::int64_t count,
+                             Stream stream) {
+    return launch(
+        "equirectangular_to_cube backward", count,
+        [=] __device__(std::int64_t i) { kernels::equirectangular_backward(p, i); }, stream);
+}
+
+int uv_footprints(const kernels::FootprintParameters& p, std::int64_t count, Stream stream) {
+    return launch(
+        "uv_footprints", count, [=] __device__(std::int64_t i) { kernels::uv_footprint(p, i); },
+        stream);
+}
+
+int finish_sums(const FinishSumsParameters& p, std::int64_t count, Stream stream) {
+    return launch(
+        "finish_sums", count, [=] __device__(std::int64_t i) { finish_sum(p, i); }, stream);
+}
+
+namespace {
+
+const char* error_text(int error) {
+    return cudaGetErrorString(static_cast<cudaError_t>(error));
+}
+
+constexpr RenderTable table{{table_version, sizeof(RenderTable)},
+                            error_text,
+                            project_vertices,
+                            bound_triangles,
+                            rasterize_keys,
+                            resolve_keys,
+                            interpolate_surface,
+                            interpolate,
+                            interpolate_backward,
+                            shade,
+                            shade_backward,
+                            antialias,
+                            antialias_backward,
+                            equirectangular,
+                            equirectangular_backward,
+                            uv_footprints,
+                            texture,
+                            texture_backward,
+                            texture_uv_backward,
+                            finish_sums};
+
+}  // namespace
+}  // namespace item3d::cuda
+
+extern "C" __attribute__((visibility("default"))) const item3d::cuda::RenderTable*
+item3d_cuda_render() {
+    return &item3d::cuda::table;
+}
