@@ -97,7 +97,7 @@ int run(int argc, char** argv) {
         {"bsdf", [&] { return bsdf_section(folders); }},
         {"irradiance", [&] { return irradiance_section(folders); }},
         {"spheres", [&] { return sphere_section(folders, "studio"); }},
-        {"spheres", [&] { return sphere_section(folders, "sky_noon"); }},
+        {"sky", [&] { return sphere_section(folders, "sky_noon"); }},
         {"geometry", [&] { return geometry_section(folders); }},
         {"views", [&] { return view_section(folders); }},
         {"gradient", [&] { return gradient_section(folders); }}};

@@ -16,7 +16,7 @@ namespace {
 
 const Vec3 base_color(0.8f, 0.45f, 0.2f);
 constexpr int size = 256;
-constexpr int stride = 6;  ///< between the pixels that are compared
+constexpr int stride = 10;  ///< between the pixels whose split sum is summed exactly
 
 /// The map's texels as directions with radiance times solid angle.
 struct Texels {
@@ -76,12 +76,12 @@ struct PixelList {
     std::vector<Vec3> normal, view;
 };
 
-PixelList inner_pixels(const torch::Tensor& mask, const Camera& camera) {
+PixelList inner_pixels(const torch::Tensor& mask, const Camera& camera, int step) {
     PixelList list;
     const float tangent = std::tan(0.5f * camera.field_of_view_x);
     const Vec3 eye = camera.position();
-    for (int y = stride / 2; y < size; y += stride) {
-        for (int x = stride / 2; x < size; x += stride) {
+    for (int y = step / 2; y < size; y += step) {
+        for (int x = step / 2; x < size; x += step) {
             if (mask[y][x].item<float>() < 0.999f) continue;
             const Vec3 ray = glm::normalize(
                 Vec3(tangent * (2 * (static_cast<float>(x) + 0.5f) / size - 1),
@@ -135,36 +135,41 @@ torch::Tensor exact_split_sum(const PixelList& pixels, const Texels& texels, con
 Section sphere_section(const Folders& folders, const std::string& light_name) {
     const auto folder = folders.data / "spheres" / light_name;
     const Image map = load_image(folders.data / "env" / (light_name + ".hdr"));
-    const EnvironmentLight light = prefilter(map);
-    const Texels coarse = list_texels(map, 1), fine = list_texels(map, 4);
+    const EnvironmentLight light =
+        prefilter(map, std::getenv("CUBE") ? atoi(std::getenv("CUBE")) : 256);
+    const Texels coarse = list_texels(map, 1), fine = list_texels(map, 3);
     const Model sphere = unit_sphere();
     const Geometry geometry = Geometry::from_model(sphere);
     Camera camera;
     camera.camera_to_world[3] = Vec4(0, 0, 4, 1);
     camera.field_of_view_x = 32 * pi / 180;
-    const PixelList pixels = inner_pixels(load_reference(folder / "mask.png").select(2, 0), camera);
+    const torch::Tensor mask = load_reference(folder / "mask.png").select(2, 0);
+    const PixelList pixels = inner_pixels(mask, camera, stride);
     const torch::Tensor index = torch::tensor(pixels.pixel);
-    const auto chosen = [&](const torch::Tensor& picture) {
-        return picture.reshape({size * size, -1}).index_select(0, index).narrow(1, 0, 3);
+    const torch::Tensor inner = torch::tensor(inner_pixels(mask, camera, 1).pixel);
+    const auto at = [&](const torch::Tensor& picture, const torch::Tensor& places) {
+        return picture.reshape({size * size, -1}).index_select(0, places).narrow(1, 0, 3);
     };
 
     Section section;
     section.title = "Spheres under " + light_name;
     section.text = fmt::format(
-        "Mean absolute difference over the mean, at {} pixels inside the sphere; in brackets the "
-        "median of the relative differences. *Split sum*: the approximation itself, summed over "
-        "every texel, against the path-traced reflectance that it approximates. *Models*: that "
-        "reflectance against Disney's. *Ours to the split sum*: what the chain of levels and the "
-        "lean of rough lobes change. *Ours*: against the path-traced reflectance, without "
-        "multiple scattering, which the reference does not have. *Energy*: our sum over the "
-        "reference's, then with multiple scattering.",
-        pixels.pixel.size());
+        "Mean absolute difference over the mean; in brackets the median of the relative "
+        "differences of single values. *Split sum*: the approximation itself, summed over every "
+        "texel, against the path-traced reflectance that it approximates (Lambert and GGX), at {} "
+        "pixels; *ours there*: we against the same. *Ours to the split sum*: what the chain of "
+        "levels and the lean of rough lobes change. *All pixels*: we against the path-traced "
+        "reflectance at all {} pixels inside the sphere; *models*: Disney's against it. *Energy*: "
+        "our sum over the reference's, then with multiple scattering, which the reference does "
+        "not have.",
+        pixels.pixel.size(), inner.size(0));
     section.columns = {"metallic",
                        "roughness",
                        "split sum",
-                       "models",
+                       "ours there",
                        "ours to the split sum",
-                       "ours",
+                       "ours, all pixels",
+                       "models",
                        "energy",
                        "with multiple scattering"};
     std::vector<std::vector<torch::Tensor>> tiles(3);
@@ -193,22 +198,24 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
                 return render(geometry, TexturedMaterials(model), light, {camera}, options)[0];
             };
             const torch::Tensor single = ours(false), multiple = ours(true);
-            const Difference approximation = difference(split, chosen(traced));
-            const Difference models = difference(chosen(disney), chosen(traced));
-            const Difference chain = difference(chosen(single), split);
-            const Difference all = difference(chosen(single), chosen(traced));
-            const Difference boosted = difference(chosen(multiple), chosen(traced));
+            const Difference approximation = difference(split, at(traced, index));
+            const Difference chain = difference(at(single, index), split);
+            const Difference sampled = difference(at(single, index), at(traced, index));
+            const Difference all = difference(at(single, inner), at(traced, inner));
+            const Difference models = difference(at(disney, inner), at(traced, inner));
+            const Difference boosted = difference(at(multiple, inner), at(traced, inner));
             const auto cell = [](const Difference& d) {
                 return fmt::format("{:.1f} % ({:.1f})", 100 * d.mean, 100 * d.median);
             };
             section.rows.push_back({std::to_string(metallic), fmt::format("{:.2f}", roughness),
-                                    cell(approximation), cell(models), cell(chain), cell(all),
-                                    fmt::format("{:.3f}", all.bias),
+                                    cell(approximation), cell(sampled), cell(chain), cell(all),
+                                    cell(models), fmt::format("{:.3f}", all.bias),
                                     fmt::format("{:.3f}", boosted.bias)});
             section.numbers[fmt::format("m{}_{}", metallic, name)] = {
                 {"split_sum", approximation.mean},
                 {"models", models.mean},
                 {"ours_to_split_sum", chain.mean},
+                {"ours_there", sampled.mean},
                 {"ours", all.mean},
                 {"ours_median", all.median},
                 {"split_sum_median", approximation.median},

@@ -42,19 +42,15 @@ TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
         torch::tensor({-0.71f, -0.52f, 0.f, 0.83f, -0.31f, 0.f, 0.12f, 0.77f, 0.f}).reshape({3, 3}),
         torch::tensor({0, 1, 2}).reshape({1, 3}));
     const double area = 0.5 * (1.54 * 1.29 - 0.83 * 0.21) * (size / 2) * (size / 2);
-    const double hard =
-        (rasterize(triangle, cameras, size, size).triangle >= 0).sum().item<double>();
-    // Pairs along rows turn the count of pixels into the exact area, and so do pairs along columns;
-    // with both the count's error is taken off twice.
-    EXPECT_NEAR(coverage(triangle, cameras, size).sum().item<double>(), 2 * area - hard, 1.5);
+    // Each edge is blended along one axis: the sum is the area, whatever the slope.
+    EXPECT_NEAR(coverage(triangle, cameras, size).sum().item<double>(), area, 0.5);
 
     // A sphere of triangles much smaller than pixels: its outline is still smoothed.
     const Geometry sphere = Geometry::from_model(testing::make_sphere(200, 400));
     const Camera camera = front_camera(4, 0.7f);
     const double radius = 16 / std::tan(0.35) * std::tan(std::asin(0.25));
     const torch::Tensor picture = coverage(sphere, {camera}, 32);
-    const double count = (rasterize(sphere, {camera}, 32, 32).triangle >= 0).sum().item<double>();
-    EXPECT_NEAR(picture.sum().item<double>(), 2 * M_PI * radius * radius - count, 4);
+    EXPECT_NEAR(picture.sum().item<double>(), M_PI * radius * radius, 1);
     const torch::Tensor soft = (picture > 0.02f).logical_and(picture < 0.98f);
     EXPECT_GT(soft.sum().item<int>(), 40);
 }

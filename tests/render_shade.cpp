@@ -128,7 +128,7 @@ TEST(Shade, Gradients) {
                         set(changed, value);
                         return shade(changed.surface, changed.material, changed.light, options);
                     },
-                    x, 2e-4f, 0.02);
+                    x, 5e-5f, 0.02);
             };
             check("base colour", scene.material.base_color,
                   [](Scene& s, const torch::Tensor& x) { s.material.base_color = x; });

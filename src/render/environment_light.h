@@ -10,7 +10,7 @@ namespace item3d {
 /// An environment made ready for shading. Cube faces are in OpenGL's order +X -X +Y -Y +Z -Z;
 /// [6, S, S, 3] linear radiance. All tensors carry gradients back to what `prefilter` was given.
 struct EnvironmentLight {
-    torch::Tensor diffuse;                ///< [6, 16, 16, 3] irradiance / pi
+    torch::Tensor diffuse;                ///< [6, 32, 32, 3] irradiance / pi
     std::vector<torch::Tensor> specular;  ///< GGX-prefiltered chain, finest first
     std::vector<float> roughness;         ///< perceptual roughness of each level
     EnvironmentLight to(torch::Device device) const;
@@ -19,8 +19,9 @@ struct EnvironmentLight {
 /// [H, 2H, 3] equirectangular linear radiance -> [6, size, size, 3], differentiable.
 torch::Tensor equirectangular_to_cube(const torch::Tensor& equirectangular, int size);
 
-/// Differentiable in `cube` [6, S, S, 3]. S is a power of two, at least 16; the chain goes from S
-/// down to 16 with roughness 0.08 .. 0.5, then one level more for roughness 1.
+/// Differentiable in `cube` [6, S, S, 3]. S is a power of two in [16, 1024]; the chain halves S
+/// down to 32 with two lobes a resolution, roughness 0.08 .. 0.5 in equal ratios, then stays there
+/// for 0.5, 0.63, 0.79 and 1.
 EnvironmentLight prefilter(const torch::Tensor& cube);
 
 /// Convenience for fixed lights. size: edge of the finest cube face.

@@ -1,4 +1,5 @@
 #include "item3d/core/error.h"
+#include "item3d/render/occlusion.h"
 #include "item3d/render/textured.h"
 
 namespace item3d {
@@ -10,10 +11,12 @@ constexpr int most_layers = 8;
 /// One layer, front to back: [1, H, W, 4] premultiplied.
 torch::Tensor shade_layer(const Raster& raster, const Geometry& geometry,
                           const TexturedMaterials& materials, const EnvironmentLight& light,
-                          const std::vector<Camera>& camera, const ShadeOptions& options) {
-    const Surface surface = interpolate_surface(geometry, raster, camera);
-    const MaterialSample material = materials.sample(surface);
-    const torch::Tensor radiance = shade(surface, material, light, options);
+                          const std::vector<Camera>& camera, const RenderOptions& options) {
+    Surface surface = interpolate_surface(geometry, raster, camera);
+    surface.uv_footprint = uv_footprints(geometry, raster, surface);
+    MaterialSample material = materials.sample(surface);
+    if (options.occlusion) material = options.occlusion->shadowed(material, raster, surface);
+    const torch::Tensor radiance = shade(surface, material, light, options.shade);
     const torch::Tensor alpha = material.alpha.defined()
                                     ? material.alpha.unsqueeze(1)
                                     : torch::ones({surface.count(), 1}, radiance.options());
@@ -28,7 +31,7 @@ torch::Tensor render_view(const Geometry& geometry, const TexturedMaterials& mat
     const int samples = options.supersampling;
     const int width = options.width * samples, height = options.height * samples;
     const Raster first = rasterize(geometry, cameras, width, height);
-    torch::Tensor picture = shade_layer(first, geometry, materials, light, cameras, options.shade);
+    torch::Tensor picture = shade_layer(first, geometry, materials, light, cameras, options);
 
     if (materials.has_alpha()) {
         Raster layer = first;
@@ -40,9 +43,9 @@ torch::Tensor render_view(const Geometry& geometry, const TexturedMaterials& mat
             layer =
                 rasterize(geometry, cameras, width, height,
                           torch::where(open, layer.depth, torch::full_like(layer.depth, 1e30f)));
-            picture = picture + (1 - picture.narrow(3, 3, 1)) * shade_layer(layer, geometry,
-                                                                            materials, light,
-                                                                            cameras, options.shade);
+            picture =
+                picture + (1 - picture.narrow(3, 3, 1)) *
+                              shade_layer(layer, geometry, materials, light, cameras, options);
         }
     }
     if (options.background) {

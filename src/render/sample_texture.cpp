@@ -25,56 +25,125 @@ TextureWrap kernel_wrap(Wrap wrap) {
     }
 }
 
-TextureParameters texture_parameters(const torch::Tensor& texture, const torch::Tensor& uv,
-                                     std::int64_t wrap_u, std::int64_t wrap_v) {
-    return {texture.const_data_ptr<float>(),   uv.const_data_ptr<float>(),
-            static_cast<int>(texture.size(0)), static_cast<int>(texture.size(1)),
-            static_cast<int>(texture.size(2)), static_cast<TextureWrap>(wrap_u),
-            static_cast<TextureWrap>(wrap_v)};
+/// What is not differentiated.
+struct SampleSettings {
+    torch::Tensor footprint;  ///< [P, 4] or undefined
+    TextureWrap wrap_u, wrap_v;
+};
+
+/// inputs: UV, then the levels.
+TextureParameters texture_parameters(const tensor_list& inputs, const SampleSettings& settings) {
+    TextureParameters p{};
+    p.uv = inputs[0].const_data_ptr<float>();
+    p.footprint =
+        settings.footprint.defined() ? settings.footprint.const_data_ptr<float>() : nullptr;
+    p.wrap_u = settings.wrap_u;
+    p.wrap_v = settings.wrap_v;
+    p.level_count = static_cast<int>(inputs.size()) - 1;
+    p.channels = static_cast<int>(inputs[1].size(2));
+    std::int64_t first = 0;
+    for (std::size_t i = 1; i < inputs.size(); ++i) {
+        p.levels[i - 1] = {inputs[i].const_data_ptr<float>(), static_cast<int>(inputs[i].size(0)),
+                           static_cast<int>(inputs[i].size(1)), first};
+        first += inputs[i].numel();
+    }
+    return p;
 }
 
 struct SampleTexture : torch::autograd::Function<SampleTexture> {
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& texture,
-                                 const torch::Tensor& uv, std::int64_t wrap_u,
-                                 std::int64_t wrap_v) {
-        torch::Tensor values = torch::empty({uv.size(0), texture.size(2)}, torch::kFloat32);
+    static torch::Tensor forward(AutogradContext* context, at::TensorList inputs_,
+                                 const SampleSettings& settings) {
+        const tensor_list inputs = inputs_.vec();
+        const std::int64_t count = inputs[0].size(0);
+        torch::Tensor values = torch::empty({count, inputs[1].size(2)}, torch::kFloat32);
         float* out = values.data_ptr<float>();
-        const TextureParameters p = texture_parameters(texture, uv, wrap_u, wrap_v);
+        const TextureParameters p = texture_parameters(inputs, settings);
         parallel_for(
-            "sample_texture", uv.size(0),
-            [=](std::int64_t i) { kernels::texture_forward(p, i, out); }, 8192);
-        context->save_for_backward({texture, uv});
-        context->saved_data["wrap_u"] = wrap_u;
-        context->saved_data["wrap_v"] = wrap_v;
+            "sample_texture", count,
+            [&p, out](std::int64_t i) { kernels::texture_forward(p, i, out); }, 4096);
+        tensor_list saved = inputs;
+        saved.push_back(settings.footprint);
+        context->save_for_backward(saved);
+        context->saved_data["wrap_u"] = static_cast<std::int64_t>(settings.wrap_u);
+        context->saved_data["wrap_v"] = static_cast<std::int64_t>(settings.wrap_v);
         return values;
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
-        const auto saved = context->get_saved_variables();
-        const TextureParameters p =
-            texture_parameters(saved[0], saved[1], context->saved_data["wrap_u"].toInt(),
-                               context->saved_data["wrap_v"].toInt());
+        tensor_list inputs = context->get_saved_variables();
+        const SampleSettings settings{
+            inputs.back(), static_cast<TextureWrap>(context->saved_data["wrap_u"].toInt()),
+            static_cast<TextureWrap>(context->saved_data["wrap_v"].toInt())};
+        inputs.pop_back();
+        const TextureParameters p = texture_parameters(inputs, settings);
         const torch::Tensor gradient = gradients[0].contiguous();
-        torch::Tensor by_texture = torch::zeros_like(saved[0]);
         const float* in = gradient.const_data_ptr<float>();
-        float* out = by_texture.data_ptr<float>();
+        const std::int64_t count = inputs[0].size(0);
+        tensor_list results(inputs.size() + 1);
+        if (context->needs_input_grad(0)) {
+            results[0] = torch::empty_like(inputs[0]);
+            float* out = results[0].data_ptr<float>();
+            parallel_for(
+                "sample_texture by uv", count,
+                [&p, in, out](std::int64_t i) { kernels::texture_uv_backward(p, i, in, out); },
+                4096);
+        }
+        bool texels = false;
+        for (std::size_t i = 1; i < inputs.size(); ++i)
+            texels = texels || context->needs_input_grad(i);
+        if (!texels) return results;
+        std::int64_t total = 0;
+        for (std::size_t i = 1; i < inputs.size(); ++i)
+            total += inputs[i].numel();
+        const torch::Tensor by_texels = torch::zeros({total});
+        Accumulator sums;
+        sums.values = by_texels.data_ptr<float>();
         // One thread, for the same bytes again; buffers of many threads would cost more to sum.
-        for (std::int64_t i = 0; i < saved[1].size(0); ++i)
-            kernels::texture_backward(p, i, in, out);
-        return {by_texture, torch::Tensor(), torch::Tensor(), torch::Tensor()};
+        for (std::int64_t i = 0; i < count; ++i)
+            kernels::texture_backward(p, i, in, sums);
+        for (std::size_t i = 1; i < inputs.size(); ++i)
+            results[i] =
+                by_texels.narrow(0, p.levels[i - 1].first, inputs[i].numel()).view_as(inputs[i]);
+        return results;
     }
 };
 
 }  // namespace
 
-torch::Tensor sample_texture(const torch::Tensor& texture_, const torch::Tensor& uv_, Wrap wrap_u,
+std::vector<torch::Tensor> texture_pyramid(const torch::Tensor& texture) {
+    std::vector<torch::Tensor> levels{texture.contiguous()};
+    while (levels.size() < kernels::max_texture_levels &&
+           std::max(levels.back().size(0), levels.back().size(1)) > 1) {
+        const torch::Tensor fine = levels.back().permute({2, 0, 1}).unsqueeze(0);
+        const std::int64_t height = std::max<std::int64_t>(1, fine.size(2) / 2);
+        const std::int64_t width = std::max<std::int64_t>(1, fine.size(3) / 2);
+        const bool even = fine.size(2) == 2 * height && fine.size(3) == 2 * width;
+        const torch::Tensor coarse =
+            even ? torch::avg_pool2d(fine, 2) : torch::adaptive_avg_pool2d(fine, {height, width});
+        levels.push_back(coarse.squeeze(0).permute({1, 2, 0}).contiguous());
+    }
+    return levels;
+}
+
+torch::Tensor sample_texture(const std::vector<torch::Tensor>& levels, const torch::Tensor& uv_,
+                             const torch::Tensor& footprint, Wrap wrap_u, Wrap wrap_v) {
+    constexpr const char* op = "sample_texture";
+    ITEM3D_CHECK(!levels.empty() && levels.size() <= kernels::max_texture_levels &&
+                     levels[0].dim() == 3 && levels[0].numel() > 0,
+                 "sample_texture: 1 to 16 levels of a texture [H, W, C] with texels");
+    tensor_list inputs{checked(op, "uv", uv_, torch::kFloat32, {-1, 2})};
+    for (const torch::Tensor& level : levels)
+        inputs.push_back(
+            checked(op, "texture", level, torch::kFloat32, {-1, -1, levels[0].size(2)}));
+    SampleSettings settings{{}, kernel_wrap(wrap_u), kernel_wrap(wrap_v)};
+    if (footprint.defined())
+        settings.footprint =
+            checked(op, "footprint", footprint.detach(), torch::kFloat32, {inputs[0].size(0), 4});
+    return SampleTexture::apply(at::TensorList(inputs), settings);
+}
+
+torch::Tensor sample_texture(const torch::Tensor& texture, const torch::Tensor& uv, Wrap wrap_u,
                              Wrap wrap_v) {
-    const torch::Tensor texture =
-        checked("sample_texture", "texture", texture_, torch::kFloat32, {-1, -1, -1});
-    const torch::Tensor uv =
-        checked("sample_texture", "uv", uv_.detach(), torch::kFloat32, {-1, 2});
-    ITEM3D_CHECK(texture.numel() > 0, "sample_texture: a texture with texels");
-    return SampleTexture::apply(texture, uv, static_cast<std::int64_t>(kernel_wrap(wrap_u)),
-                                static_cast<std::int64_t>(kernel_wrap(wrap_v)));
+    return sample_texture(std::vector<torch::Tensor>{texture}, uv, {}, wrap_u, wrap_v);
 }
 
 }  // namespace item3d

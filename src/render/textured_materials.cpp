@@ -10,11 +10,12 @@ namespace {
 
 /// A texture of one use, with the channels that this use wants.
 struct MaterialTexture {
-    torch::Tensor texels;  ///< [H, W, C]; undefined: none
+    std::vector<torch::Tensor> levels;  ///< [H, W, C] and its mip levels; empty: none
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 
-    torch::Tensor at(const torch::Tensor& uv) const {
-        return sample_texture(texels, uv, wrap_u, wrap_v);
+    bool defined() const { return !levels.empty(); }
+    torch::Tensor at(const Surface& surface) const {
+        return sample_texture(levels, surface.uv, surface.uv_footprint, wrap_u, wrap_v);
     }
 };
 
@@ -41,7 +42,7 @@ MaterialTexture load_texture(const Model& model, int index, std::int64_t channel
         torch::Tensor linear = srgb_to_linear(texels.narrow(2, 0, 3));
         texels = channels == 4 ? torch::cat({linear, texels.narrow(2, 3, 1)}, 2) : linear;
     }
-    texture.texels = texels.contiguous().to(device);
+    texture.levels = texture_pyramid(texels.to(device));
     texture.wrap_u = source.wrap_u;
     texture.wrap_v = source.wrap_v;
     return texture;
@@ -67,8 +68,8 @@ struct TexturedMaterials::State {
     std::vector<MaterialTextures> materials;
     bool any_normal = false, any_emissive = false, any_alpha = false;
 
-    MaterialSample sample_one(const MaterialTextures& material, const torch::Tensor& uv,
-                              const torch::Tensor& color) const;
+    /// Of all points of a surface: its UV, footprints and colours alone are looked at.
+    MaterialSample sample_one(const MaterialTextures& material, const Surface& surface) const;
 };
 
 TexturedMaterials::TexturedMaterials(const Model& model, torch::Device device) {
@@ -83,7 +84,7 @@ TexturedMaterials::TexturedMaterials(const Model& model, torch::Device device) {
         textures.occlusion = load_texture(model, material.occlusion_texture, 3, false, device);
         textures.normal = load_texture(model, material.normal_texture, 3, false, device);
         textures.emissive = load_texture(model, material.emissive_texture, 3, true, device);
-        state->any_normal = state->any_normal || textures.normal.texels.defined();
+        state->any_normal = state->any_normal || textures.normal.defined();
         state->any_emissive = state->any_emissive || textures.emits();
         state->any_alpha = state->any_alpha || textures.transparent();
         state->materials.push_back(std::move(textures));
@@ -96,34 +97,33 @@ bool TexturedMaterials::has_alpha() const {
 }
 
 MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& material,
-                                                    const torch::Tensor& uv,
-                                                    const torch::Tensor& color) const {
+                                                    const Surface& surface) const {
     const Material& factors = material.factors;
-    const torch::Device device = uv.device();
-    const std::int64_t count = uv.size(0);
+    const torch::Device device = surface.uv.device();
+    const std::int64_t count = surface.uv.size(0);
 
     const Vec4 base = factors.base_color_factor;
-    torch::Tensor base_color = color * row({base.x, base.y, base.z, base.w}, device);
-    if (material.base_color.texels.defined()) base_color = base_color * material.base_color.at(uv);
+    torch::Tensor base_color = surface.color * row({base.x, base.y, base.z, base.w}, device);
+    if (material.base_color.defined()) base_color = base_color * material.base_color.at(surface);
 
     MaterialSample sample;
     sample.base_color = base_color.narrow(1, 0, 3).clamp(0, 1);
     torch::Tensor roughness_metallic =
         row({factors.roughness_factor, factors.metallic_factor}, device).expand({count, 2});
-    if (material.metallic_roughness.texels.defined())
+    if (material.metallic_roughness.defined())
         roughness_metallic =
-            roughness_metallic * material.metallic_roughness.at(uv).narrow(1, 1, 2);
-    torch::Tensor occlusion = torch::ones({count, 1}, uv.options());
-    if (material.occlusion.texels.defined())
+            roughness_metallic * material.metallic_roughness.at(surface).narrow(1, 1, 2);
+    torch::Tensor occlusion = torch::ones({count, 1}, surface.uv.options());
+    if (material.occlusion.defined())
         occlusion =
-            1 + factors.occlusion_strength * (material.occlusion.at(uv).narrow(1, 0, 1) - 1);
+            1 + factors.occlusion_strength * (material.occlusion.at(surface).narrow(1, 0, 1) - 1);
     sample.orm = torch::cat({occlusion, roughness_metallic}, 1).clamp(0, 1);
 
     if (any_normal) {
-        if (material.normal.texels.defined()) {
+        if (material.normal.defined()) {
             const torch::Tensor scale =
                 row({factors.normal_scale, factors.normal_scale, 1}, device);
-            const torch::Tensor normal = (2 * material.normal.at(uv) - 1) * scale;
+            const torch::Tensor normal = (2 * material.normal.at(surface) - 1) * scale;
             sample.normal = normal / normal.norm(2, 1, true).clamp_min(1e-6f);
         } else {
             sample.normal = row({0, 0, 1}, device).expand({count, 3});
@@ -132,8 +132,8 @@ MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& mate
     if (any_emissive) {
         const Vec3 emissive = factors.emissive_factor;
         sample.emissive = row({emissive.x, emissive.y, emissive.z}, device).expand({count, 3});
-        if (material.emissive.texels.defined())
-            sample.emissive = sample.emissive * material.emissive.at(uv);
+        if (material.emissive.defined())
+            sample.emissive = sample.emissive * material.emissive.at(surface);
     }
     if (any_alpha) {
         const torch::Tensor alpha = base_color.select(1, 3);
@@ -150,7 +150,7 @@ MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& mate
 MaterialSample TexturedMaterials::sample(const Surface& surface) const {
     const std::size_t materials = state_->materials.size();
     ITEM3D_CHECK(materials > 0, "TexturedMaterials: a model with at least one material");
-    if (materials == 1) return state_->sample_one(state_->materials[0], surface.uv, surface.color);
+    if (materials == 1) return state_->sample_one(state_->materials[0], surface);
 
     // Each point is sampled from its own material, then put back in its place.
     std::vector<MaterialSample> parts;
@@ -160,8 +160,12 @@ MaterialSample TexturedMaterials::sample(const Surface& surface) const {
             (surface.material == static_cast<std::int64_t>(m)).nonzero().squeeze(1);
         if (place.size(0) == 0 && !(parts.empty() && m + 1 == materials)) continue;
         places.push_back(place);
-        parts.push_back(state_->sample_one(state_->materials[m], surface.uv.index_select(0, place),
-                                           surface.color.index_select(0, place)));
+        Surface part;
+        part.uv = surface.uv.index_select(0, place);
+        part.color = surface.color.index_select(0, place);
+        if (surface.uv_footprint.defined())
+            part.uv_footprint = surface.uv_footprint.index_select(0, place);
+        parts.push_back(state_->sample_one(state_->materials[m], part));
     }
     const torch::Tensor order = torch::argsort(torch::cat(places));
     const auto gather = [&](torch::Tensor MaterialSample::*member) -> torch::Tensor {
