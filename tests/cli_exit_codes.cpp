@@ -1,75 +1,13 @@
 // The program as a user meets it: what it says, where, and its exit code.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include "cli_support.h"
 
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <set>
-#include <sstream>
-#include <string>
-
+namespace item3d::testing {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Result {
-    int code = -1;
-    std::string out;
-    std::string error;
-};
-
-std::string read_file(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
-class Program : public ::testing::Test {
-  protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() / ("item3d_cli_" + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-        cube_ = folder_ / "cube.obj";
-        std::ofstream(cube_) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    /// Runs `item3d ARGUMENTS`; 124 stands for a minute without an end.
-    Result run(const std::string& arguments, const std::string& before = "") const {
-        const fs::path out = folder_ / "stdout";
-        const fs::path error = folder_ / "stderr";
-        const std::string command = before + "timeout 60 '" ITEM3D_PROGRAM "' " + arguments +
-                                    " >'" + out.string() + "' 2>'" + error.string() + "'";
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(error)};
-    }
-
-    /// The error is one line on stderr that names `subject`.
-    void expect_error(const std::string& arguments, int code, const std::string& subject,
-                      const std::string& before = "") const {
-        const Result result = run(arguments, before);
-        EXPECT_EQ(result.code, code) << arguments << "\n" << result.error;
-        const std::size_t start = result.error.find("item3d: error: ");
-        ASSERT_NE(start, std::string::npos) << arguments << "\n" << result.error;
-        const std::string line = result.error.substr(start);
-        EXPECT_NE(line.find(subject), std::string::npos) << line;
-        EXPECT_EQ(line.find('\n'), line.size() - 1) << "more than one line: " << line;
-    }
-
-    std::string quoted(const fs::path& path) const { return "'" + path.string() + "'"; }
-
-    fs::path folder_;
-    fs::path cube_;
-};
 
 TEST_F(Program, HelpAndVersionGoToStdout) {
     const Result help = run("--help");
     EXPECT_EQ(help.code, 0);
-    for (const char* command : {"edit", "render", "generate", "prior"}) {
+    for (const char* command : {"edit", "render", "generate", "prior", "bench"}) {
         EXPECT_NE(help.out.find(command), std::string::npos) << command;
         EXPECT_EQ(run(std::string(command) + " --help").code, 0) << command;
     }
@@ -231,3 +169,4 @@ TEST_F(EditProgram, KilledEditGoesOnToTheSameBytes) {
 }
 
 }  // namespace
+}  // namespace item3d::testing

@@ -6,6 +6,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/evaluate/color.h"
 #include "item3d/evaluate/picture.h"
+#include "item3d/render/occlusion.h"
 #include "item3d/render/textured.h"
 #include "item3d/scene/camera.h"
 #include "item3d/scene/environment.h"
@@ -39,6 +40,7 @@ struct RenderCommand : CommonOptions {
     std::string size = "512x512";
     std::string channel = "shaded";
     std::string background = "none";
+    std::string occlusion = "none";
 };
 
 std::string lower_extension(const fs::path& path) {
@@ -135,6 +137,11 @@ class Painter {
             const Image light =
                 adjust_light(load_light(options.light), options.light_rotation, options.exposure);
             light_ = prefilter(light, 256, device);
+            if (options.occlusion != "none") {
+                OcclusionOptions occlusion;
+                if (options.occlusion == "light") occlusion.light = light;
+                occlusion_ = std::make_shared<Occlusion>(geometry_, &model, occlusion);
+            }
         }
     }
 
@@ -146,6 +153,7 @@ class Painter {
         options.width = size_.width;
         options.height = size_.height;
         options.background = background_;
+        options.occlusion = occlusion_;
         return to_image(render(geometry_, materials_, light_, {camera}, options)[0].cpu());
     }
 
@@ -228,11 +236,15 @@ class Painter {
     Geometry geometry_;
     TexturedMaterials materials_;
     EnvironmentLight light_;
+    std::shared_ptr<const Occlusion> occlusion_;
 };
 
 void run_render(const RenderCommand& options, torch::Device device) {
     if (!options.cameras.empty() && options.views > 0) {
         throw UsageError("--views and --cameras exclude one another");
+    }
+    if (options.occlusion != "none" && options.channel != "shaded") {
+        throw UsageError("--occlusion is of --channel shaded alone");
     }
     const PictureSize size = parse_size(options.size);
     const Model model = load_model(options.model);
@@ -305,6 +317,11 @@ void add_render_command(CLI::App& app) {
                      "(along the view axis), mask")
         ->check(CLI::IsMember({"shaded", "base_color", "orm", "normal", "depth", "mask"}))
         ->capture_default_str();
+    command
+        ->add_flag("--occlusion{ambient}", options->occlusion,
+                   "Darken what the model hides from light all around it; --occlusion=light: from "
+                   "this light, so that its sun casts shadows. Multiplies an occlusion texture")
+        ->check(CLI::IsMember({"none", "ambient", "light"}));
     command
         ->add_option("--background", options->background,
                      "A colour by name, #rrggbb, or none for a transparent picture")

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""item3d's renderer beside Mitsuba 3: milliseconds for a picture, and for a picture with the gradient of its
+mean square to the base colour texture. One run measures both, one after the other, on as many threads.
+
+    python3 bench/mitsuba_render.py ITEM3D MODEL.obj TEXTURE.png LIGHT.hdr [--size 512] [--samples 16] ...
+
+ITEM3D is the program. MODEL must name TEXTURE as its base colour for both to draw the same. Mitsuba
+traces direct light alone (path depth 2, so with shadows, without light between surfaces), as many samples
+a pixel as --samples says; item3d draws one sample a pixel with antialiased edges. Both see the model through
+the camera that `item3d bench render` chooses.
+
+Needs Mitsuba 3 (pip install mitsuba) and numpy; Mitsuba's llvm variants need an LLVM library, which the
+environment variable DRJIT_LIBLLVM_PATH names where it is not found (versions 17 to 19 work)."""
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import time
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('item3d')
+    parser.add_argument('model')
+    parser.add_argument('texture')
+    parser.add_argument('light')
+    parser.add_argument('--size', type=int, default=512)
+    parser.add_argument('--samples', type=int, default=16, help="Mitsuba's, a pixel")
+    parser.add_argument('--threads', type=int, default=os.cpu_count())
+    parser.add_argument('--repeats', type=int, default=7)
+    parser.add_argument('--variant', default='llvm_ad_rgb')
+    return parser.parse_args()
+
+
+def time_item3d(options):
+    command = [options.item3d, 'bench', 'render', '--model', options.model, '--light', options.light,
+               '--size', f'{options.size}x{options.size}', '--threads', str(options.threads),
+               '--repeats', str(options.repeats), '--device', 'cpu', '--json', '--quiet']
+    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+def median_ms(run, repeats):
+    run(0)  # compiles
+    taken = []
+    for seed in range(1, repeats + 1):
+        start = time.perf_counter()
+        run(seed)
+        taken.append(1000 * (time.perf_counter() - start))
+    return statistics.median(taken)
+
+
+def time_mitsuba(options, camera):
+    import mitsuba as mi
+    mi.set_variant(options.variant)
+    import drjit as dr
+    import numpy as np
+    dr.set_thread_count(options.threads)
+
+    # Mitsuba's cameras look along +Z with +X to the left.
+    pose = np.array(camera['camera_to_world']) @ np.diag([-1.0, 1.0, -1.0, 1.0])
+    scene = mi.load_dict({
+        'type': 'scene',
+        'integrator': {'type': 'path', 'max_depth': 2, 'hide_emitters': True},
+        # Its panoramas start where ours have their middle.
+        'light': {'type': 'envmap', 'filename': options.light,
+                  'to_world': mi.ScalarTransform4f().rotate([0, 1, 0], 180)},
+        'sensor': {'type': 'perspective', 'fov': camera['field_of_view_x_degrees'], 'fov_axis': 'x',
+                   'near_clip': 0.01, 'far_clip': 1000.0, 'to_world': mi.ScalarTransform4f(pose),
+                   'film': {'type': 'hdrfilm', 'width': options.size, 'height': options.size,
+                            'pixel_format': 'rgba', 'rfilter': {'type': 'box'}},
+                   'sampler': {'type': 'independent', 'sample_count': options.samples}},
+        'model': {'type': 'obj', 'filename': options.model,
+                  'bsdf': {'type': 'twosided', 'nested': {
+                      'type': 'principled', 'roughness': 0.5, 'metallic': 0.0, 'specular': 0.5,
+                      'base_color': {'type': 'bitmap', 'filename': options.texture, 'format': 'variant'}}}},
+    })
+    parameters = mi.traverse(scene)
+    key = next(name for name in parameters.keys() if name.endswith('base_color.data'))
+
+    def forward(seed):
+        with dr.suspend_grad():
+            image = mi.render(scene, spp=options.samples, seed=seed)
+            dr.eval(image)
+            dr.sync_thread()
+        return image
+
+    def forward_backward(seed):
+        texture = type(parameters[key])(dr.detach(parameters[key]))
+        dr.enable_grad(texture)
+        parameters[key] = texture
+        parameters.update()
+        image = mi.render(scene, parameters, spp=options.samples, seed=seed, seed_grad=seed + 1000)
+        dr.backward(dr.mean(dr.square(image), axis=None))
+        gradient = dr.grad(texture)
+        dr.eval(gradient)
+        dr.sync_thread()
+        if not np.abs(np.array(gradient)).max() > 0:
+            sys.exit('Mitsuba gave no gradient')
+        parameters[key] = dr.detach(texture)
+
+    return {'version': mi.__version__, 'variant': mi.variant(), 'samples': options.samples,
+            # Of the picture, to see that both look at the same thing.
+            'coverage': float(np.array(forward(0))[..., 3].mean()),
+            'forward_ms': median_ms(forward, options.repeats),
+            'forward_backward_ms': median_ms(forward_backward, options.repeats)}
+
+
+def main():
+    options = arguments()
+    ours = time_item3d(options)
+    theirs = time_mitsuba(options, ours['camera'])
+    faster = {name: theirs[name] / ours[name] for name in ('forward_ms', 'forward_backward_ms')}
+    json.dump({'triangles': ours['triangles'], 'size': options.size, 'threads': options.threads,
+               'item3d': {'coverage': ours['covered_pixels'] / options.size ** 2,
+                          **{name: ours[name] for name in faster}},
+               'mitsuba': theirs,
+               'times_faster': {name.removesuffix('_ms'): value for name, value in faster.items()},
+               'load_average': os.getloadavg()[0]}, sys.stdout, indent=2)
+    print()
+
+
+if __name__ == '__main__':
+    main()

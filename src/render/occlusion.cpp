@@ -1,0 +1,235 @@
+#include "item3d/render/occlusion.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/parallel.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/random.h"
+#include "item3d/render/checks.h"
+#include "item3d/render/kernels/occlusion.h"
+#include "item3d/render/occlusion_grid.h"
+#include "item3d/render/occlusion_light.h"
+#include "item3d/render/ray_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace item3d {
+namespace {
+
+constexpr int fewest_rays = 32;
+/// Of all points and sides together, before points get fewer than they were asked for.
+constexpr std::int64_t ray_budget = std::int64_t{1} << 24;
+
+/// Of the triangles that meet at a point, so many are looked at.
+constexpr std::int64_t most_members = 16;
+
+/// A point of the (0, 2)-sequence of van der Corput and Sobol', digits scrambled by `scramble`: any
+/// aligned power of two of them is spread evenly over the unit square.
+Vec2 sequence_point(std::uint32_t index, std::uint64_t scramble) {
+    std::uint32_t x = 0, y = 0, direction = 1u << 31;
+    for (std::uint32_t bits = index, place = 1u << 31; bits != 0; bits >>= 1, place >>= 1) {
+        if ((bits & 1u) != 0) {
+            x ^= place;
+            y ^= direction;
+        }
+        direction ^= direction >> 1;
+    }
+    x ^= static_cast<std::uint32_t>(scramble);
+    y ^= static_cast<std::uint32_t>(scramble >> 32);
+    // 24 bits are what a float holds below 1.
+    return Vec2(static_cast<float>(x >> 8), static_cast<float>(y >> 8)) * 0x1.0p-24f;
+}
+
+/// A direction around a unit normal, with the density cos / pi.
+Vec3 cosine_direction(Vec3 normal, Vec2 square) {
+    const float radius = std::sqrt(square.x), angle = 2 * pi * square.y;
+    const Vec3 side = glm::normalize(
+        glm::cross(normal, std::abs(normal.x) < 0.7f ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
+    return radius * std::cos(angle) * side + radius * std::sin(angle) * glm::cross(normal, side) +
+           std::sqrt(std::max(0.0f, 1 - square.x)) * normal;
+}
+
+/// What traces the rays of one group of points after another.
+class Tracer {
+  public:
+    Tracer(const OcclusionGrid& grid, const RayScene& scene, const OcclusionOptions& options)
+        : grid_(grid), scene_(scene), seed_(options.seed) {
+        if (!options.light.empty()) light_.emplace(options.light);
+        if (light_ && light_->dark()) light_.reset();
+        const auto groups = static_cast<std::int64_t>(grid.begin.size()) - 1;
+        const std::int64_t share = ray_budget / std::max<std::int64_t>(1, 2 * groups);
+        rays_ = static_cast<int>(
+            std::clamp<std::int64_t>(share, std::min(fewest_rays, options.rays), options.rays));
+        // Enough for any ray to leave the triangle that it starts from, whatever the rounding.
+        offset_ = std::max(5e-5f * grid.diagonal, 1e-6f * grid.farthest);
+    }
+
+    /// The share of light that reaches the points of a group, on the normal's side or behind it.
+    float openness(std::size_t group, bool behind) const {
+        const std::int64_t begin = grid_.begin[group], members = grid_.begin[group + 1] - begin;
+        const std::uint64_t key =
+            grid_.key[static_cast<std::size_t>(grid_.member[static_cast<std::size_t>(begin)])];
+        Random random(seed_, key ^ (behind ? 1u : 0u));
+        const std::uint64_t scramble = random.bits(), choice = random.bits();
+
+        // Where points of several triangles meet, each has its own plane to start from.
+        std::array<OcclusionGrid::Point, most_members> points;
+        const std::int64_t chosen = std::min<std::int64_t>(members, most_members);
+        for (std::int64_t k = 0; k < chosen; ++k) {
+            const auto member = static_cast<std::size_t>(begin + k * members / chosen);
+            OcclusionGrid::Point& point = points[static_cast<std::size_t>(k)];
+            point = grid_.point(grid_.member[member]);
+            if (behind) point.normal = -point.normal;
+            if (glm::dot(point.normal, point.face) < 0) point.face = -point.face;
+        }
+
+        double arrives = 0, comes = 0;
+        for (int ray = 0; ray < rays_; ++ray) {
+            // A deep crevice and the inside of a closed shape need not be known better.
+            if (ray == rays_ / 4 && ray >= 16 && arrives == 0 && comes > 0) return 0;
+            const std::uint64_t bits = mix_bits(choice ^ static_cast<std::uint64_t>(ray));
+            const OcclusionGrid::Point& point =
+                points[static_cast<std::size_t>(bits % static_cast<std::uint64_t>(chosen))];
+            const Vec3 up = point.face;
+            if (up == Vec3(0.0f)) continue;
+            const Sample sample = direction(point.normal, ray, scramble);
+            // What the interpolated normal sees below the triangle is no obstacle's doing.
+            if (!(sample.weight > 0) || !(glm::dot(sample.direction, up) > 0)) continue;
+            comes += sample.weight;
+            if (!scene_.blocked(point.position + offset_ * up, sample.direction, bits))
+                arrives += sample.weight;
+        }
+        return comes > 0 ? static_cast<float>(arrives / comes) : 1.0f;
+    }
+
+  private:
+    struct Sample {
+        Vec3 direction;
+        float weight;
+    };
+
+    /// With a light, half of the rays follow it and half the cosine; each is weighed by what both
+    /// halves together send that way (the balance heuristic of Veach 1997).
+    Sample direction(Vec3 normal, int ray, std::uint64_t scramble) const {
+        if (!light_)
+            return {
+                cosine_direction(normal, sequence_point(static_cast<std::uint32_t>(ray), scramble)),
+                1.0f};
+        const Vec2 square = sequence_point(static_cast<std::uint32_t>(ray / 2),
+                                           ray % 2 == 0 ? scramble : mix_bits(scramble));
+        const Vec3 direction =
+            ray % 2 == 0 ? cosine_direction(normal, square) : light_->direction(square);
+        const float cosine = glm::dot(normal, direction);
+        if (!(cosine > 0)) return {direction, 0.0f};
+        const float radiance = light_->luminance(direction);
+        return {direction, radiance * cosine / (cosine / pi + radiance / light_->total())};
+    }
+
+    const OcclusionGrid& grid_;
+    const RayScene& scene_;
+    std::optional<OcclusionLight> light_;
+    std::uint64_t seed_;
+    int rays_ = 0;
+    float offset_ = 0;
+};
+
+template <typename T>
+torch::Tensor to_tensor(const std::vector<T>& values, torch::ScalarType type) {
+    return torch::from_blob(const_cast<T*>(values.data()),
+                            {static_cast<std::int64_t>(values.size())}, type)
+        .clone();
+}
+
+}  // namespace
+
+struct Occlusion::State {
+    torch::Tensor positions, normals, triangles;
+    torch::Tensor first;       ///< [T + 1] int64
+    torch::Tensor resolution;  ///< [T] int32
+    torch::Tensor values;      ///< [points, 2] uint8
+};
+
+Occlusion::Occlusion(const Geometry& geometry, const Model* model,
+                     const OcclusionOptions& options) {
+    ITEM3D_CHECK(options.rays >= 1, "Occlusion: at least one ray");
+    const OcclusionGrid grid = make_occlusion_grid(geometry, options.spacing, options.most_points);
+    const RayScene scene(geometry, model);
+    const Tracer tracer(grid, scene, options);
+
+    auto state = std::make_shared<State>();
+    state->values = torch::full({grid.points(), 2}, 255, torch::kUInt8);
+    std::uint8_t* values = state->values.data_ptr<std::uint8_t>();
+    const auto groups = static_cast<std::int64_t>(grid.begin.size()) - 1;
+    constexpr std::int64_t groups_a_step = 4096;
+    Progress progress("occlusion", groups);
+    for (std::int64_t start = 0; start < groups; start += groups_a_step) {
+        if (interrupted()) throw Interrupted("occlusion was not computed to its end");
+        const std::int64_t count = std::min(groups_a_step, groups - start);
+        parallel_for(
+            "trace occlusion", 2 * count,
+            [&](std::int64_t i) {
+                const auto group = static_cast<std::size_t>(start + i / 2);
+                const auto value = static_cast<std::uint8_t>(
+                    std::lround(255 * tracer.openness(group, i % 2 == 1)));
+                for (std::int64_t m = grid.begin[group]; m < grid.begin[group + 1]; ++m)
+                    values[2 * grid.member[static_cast<std::size_t>(m)] + i % 2] = value;
+            },
+            16);
+        progress.update(start + count);
+    }
+    progress.finish();
+    join_grids(grid, values);
+
+    state->positions = grid.positions;
+    state->normals = grid.normals;
+    state->triangles = grid.triangles;
+    state->first = to_tensor(grid.first, torch::kInt64);
+    state->resolution = to_tensor(grid.resolution, torch::kInt32);
+    state_ = std::move(state);
+}
+
+std::int64_t Occlusion::points() const {
+    return state_->values.size(0);
+}
+
+torch::Tensor Occlusion::at(const Raster& raster, const Surface& surface) const {
+    constexpr const char* op = "Occlusion::at";
+    const auto on_cpu = [](const torch::Tensor& tensor) { return tensor.detach().cpu(); };
+    const std::int64_t count = surface.count();
+    const torch::Tensor triangle =
+        checked(op, "raster.triangle", on_cpu(raster.triangle), torch::kInt32, {-1, -1, -1});
+    const torch::Tensor barycentrics =
+        checked(op, "raster.barycentrics", on_cpu(raster.barycentrics), torch::kFloat32,
+                {raster.views(), raster.height(), raster.width(), 2});
+    const torch::Tensor pixel =
+        checked(op, "surface.pixel", on_cpu(surface.pixel), torch::kInt64, {count});
+    const torch::Tensor normal =
+        checked(op, "surface.normal", on_cpu(surface.normal), torch::kFloat32, {count, 3});
+    torch::Tensor openness = torch::empty({count}, torch::kFloat32);
+    const kernels::OcclusionParameters parameters{state_->normals.const_data_ptr<float>(),
+                                                  state_->positions.const_data_ptr<float>(),
+                                                  state_->triangles.const_data_ptr<std::int32_t>(),
+                                                  state_->first.const_data_ptr<std::int64_t>(),
+                                                  state_->resolution.const_data_ptr<std::int32_t>(),
+                                                  state_->values.const_data_ptr<std::uint8_t>(),
+                                                  barycentrics.const_data_ptr<float>(),
+                                                  triangle.const_data_ptr<std::int32_t>(),
+                                                  pixel.const_data_ptr<std::int64_t>(),
+                                                  normal.const_data_ptr<float>(),
+                                                  openness.data_ptr<float>()};
+    parallel_for(
+        "occlusion", count, [=](std::int64_t i) { kernels::occlusion_at(parameters, i); }, 8192);
+    return openness.to(surface.pixel.device());
+}
+
+MaterialSample Occlusion::shadowed(const MaterialSample& material, const Raster& raster,
+                                   const Surface& surface) const {
+    MaterialSample darker = material;
+    const torch::Tensor open = at(raster, surface).unsqueeze(1);
+    darker.orm = torch::cat({material.orm.narrow(1, 0, 1) * open, material.orm.narrow(1, 1, 2)}, 1);
+    return darker;
+}
+
+}  // namespace item3d

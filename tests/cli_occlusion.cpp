@@ -1,0 +1,44 @@
+// item3d render --occlusion: off unless asked for, and of use where something is hidden.
+#include "cli_support.h"
+
+namespace item3d::testing {
+namespace {
+
+/// A floor with a wall on it.
+class OcclusionProgram : public Program {
+  protected:
+    void SetUp() override {
+        Program::SetUp();
+        corner_ = folder_ / "corner.obj";
+        std::ofstream(corner_) << "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 1 0\nv 1 1 0\n"
+                                  "f 1 4 3 2\nf 1 2 6 5\n";
+    }
+    std::string picture(const std::string& name, const std::string& options) const {
+        const fs::path path = folder_ / (name + ".exr");
+        const Result result = run("render " + options + " " + quoted(corner_) +
+                                  " --size 32x32 --quiet -o " + quoted(path));
+        EXPECT_EQ(result.code, 0) << result.error;
+        EXPECT_EQ(result.error, "");
+        return read_file(path);
+    }
+    fs::path corner_;
+};
+
+TEST_F(OcclusionProgram, ChangesThePictureOnlyWhereAsked) {
+    const std::string plain = picture("plain", "");
+    EXPECT_EQ(picture("none", "--occlusion=none"), plain);
+    const std::string ambient = picture("ambient", "--occlusion");
+    EXPECT_NE(ambient, plain);
+    EXPECT_EQ(picture("again", "--occlusion=ambient --threads 3"), ambient);
+    const std::string light = picture("light", "--occlusion=light --light noon");
+    EXPECT_NE(light, picture("noon", "--occlusion --light noon"));
+}
+
+TEST_F(OcclusionProgram, IsOfShadedPicturesAlone) {
+    const std::string rest = quoted(corner_) + " -o " + quoted(folder_ / "p.png");
+    EXPECT_EQ(run("render --occlusion --channel depth " + rest).code, 2);
+    EXPECT_EQ(run("render --occlusion=much " + rest).code, 2);
+}
+
+}  // namespace
+}  // namespace item3d::testing
