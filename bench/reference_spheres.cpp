@@ -135,8 +135,7 @@ torch::Tensor exact_split_sum(const PixelList& pixels, const Texels& texels, con
 Section sphere_section(const Folders& folders, const std::string& light_name) {
     const auto folder = folders.data / "spheres" / light_name;
     const Image map = load_image(folders.data / "env" / (light_name + ".hdr"));
-    const EnvironmentLight light =
-        prefilter(map, std::getenv("CUBE") ? atoi(std::getenv("CUBE")) : 256);
+    const EnvironmentLight light = prefilter(map);
     const Texels coarse = list_texels(map, 1), fine = list_texels(map, 3);
     const Model sphere = unit_sphere();
     const Geometry geometry = Geometry::from_model(sphere);

@@ -1,11 +1,14 @@
 // A textured model from eight views: what is seen where, and its radiance.
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/render/occlusion.h"
 #include "item3d/render/textured.h"
 #include "item3d/scene/io/load.h"
 #include "reference_report.h"
 
 #include <nlohmann/json.hpp>
+
+#include <array>
 
 namespace item3d::reference {
 namespace {
@@ -131,23 +134,36 @@ Section geometry_section(const Folders& folders) {
 
 Section view_section(const Folders& folders) {
     const Views views = load_views(folders);
-    const EnvironmentLight light = prefilter(load_image(folders.data / "env" / "sky_noon.hdr"));
+    const Image map = load_image(folders.data / "env" / "sky_noon.hdr");
+    const EnvironmentLight light = prefilter(map);
     Section section;
     section.title = "A textured model";
     section.text =
         "spot under sky_noon, roughness 0.4, away from silhouettes: mean absolute difference over "
-        "the mean, and our energy over the reference's. The reference is shadowed by the model "
-        "itself; we are not, so crevices and the sun's shadows are brighter here.";
-    section.columns = {"view", "ours to lambert + GGX", "energy", "ours to Disney's",
-                       "Disney's to lambert + GGX"};
-    std::vector<std::vector<torch::Tensor>> tiles(3);
+        "the mean. The reference is shadowed by the model itself; we are not unless asked: without "
+        "occlusion, with ambient occlusion, and with the share of this light that arrives. "
+        "*Energy*: our sum over the reference's with the last.";
+    section.columns = {"view",          "no occlusion", "ambient",
+                       "of this light", "energy",       "of this light, to Disney's",
+                       "models"};
+    OcclusionOptions of_light;
+    of_light.light = map;
+    const std::array<std::shared_ptr<const Occlusion>, 3> occlusions = {
+        nullptr, std::make_shared<Occlusion>(views.geometry),
+        std::make_shared<Occlusion>(views.geometry, nullptr, of_light)};
+    std::vector<std::vector<torch::Tensor>> tiles(4);
+    std::array<double, 3> means{};
     for (std::size_t v = 0; v < views.cameras.size(); ++v) {
         const int view = static_cast<int>(v);
-        RenderOptions options;
-        options.width = options.height = size;
-        options.shade.multiple_scattering = false;
-        const torch::Tensor picture = render(views.geometry, TexturedMaterials(views.model), light,
-                                             {views.cameras[v]}, options)[0];
+        std::array<torch::Tensor, 3> pictures;
+        for (std::size_t i = 0; i < pictures.size(); ++i) {
+            RenderOptions options;
+            options.width = options.height = size;
+            options.shade.multiple_scattering = false;
+            options.occlusion = occlusions[i];
+            pictures[i] = render(views.geometry, TexturedMaterials(views.model), light,
+                                 {views.cameras[v]}, options)[0];
+        }
         const torch::Tensor traced = load_reference(views.file(view, "lambertggx.exr"));
         const torch::Tensor disney = load_reference(views.file(view, "principled.exr"));
         const torch::Tensor mask = load_reference(views.file(view, "mask.png")).select(2, 0) > 0.5f;
@@ -157,26 +173,40 @@ Section view_section(const Folders& folders) {
                 .index_select(0, inside.flatten())
                 .narrow(1, 0, 3);
         };
-        const Difference ours = difference(chosen(picture), chosen(traced));
-        const Difference to_disney = difference(chosen(picture), chosen(disney));
+        std::array<Difference, 3> ours{};
+        for (std::size_t i = 0; i < ours.size(); ++i) {
+            ours[i] = difference(chosen(pictures[i]), chosen(traced));
+            means[i] += ours[i].mean / static_cast<double>(views.cameras.size());
+        }
+        const Difference to_disney = difference(chosen(pictures[2]), chosen(disney));
         const Difference models = difference(chosen(disney), chosen(traced));
         const auto percent = [](double part) { return fmt::format("{:.1f} %", 100 * part); };
-        section.rows.push_back({std::to_string(view), percent(ours.mean),
-                                fmt::format("{:.3f}", ours.bias), percent(to_disney.mean),
-                                percent(models.mean)});
-        section.numbers[fmt::format("view_{:02}", view)] = {{"ours", ours.mean},
-                                                            {"energy", ours.bias},
-                                                            {"ours_to_principled", to_disney.mean},
-                                                            {"models", models.mean}};
+        section.rows.push_back({std::to_string(view), percent(ours[0].mean), percent(ours[1].mean),
+                                percent(ours[2].mean), fmt::format("{:.3f}", ours[2].bias),
+                                percent(to_disney.mean), percent(models.mean)});
+        section.numbers[fmt::format("view_{:02}", view)] = {
+            {"no_occlusion", ours[0].mean},
+            {"ambient", ours[1].mean},
+            {"of_light", ours[2].mean},
+            {"energy_no_occlusion", ours[0].bias},
+            {"energy_of_light", ours[2].bias},
+            {"of_light_to_principled", to_disney.mean},
+            {"models", models.mean}};
         if (view % 2 == 1) continue;
-        const torch::Tensor a = traced.narrow(2, 0, 3), b = picture.narrow(2, 0, 3);
-        tiles[0].push_back(a);
-        tiles[1].push_back(b);
-        tiles[2].push_back((a - b).abs() * 4);
+        const auto color = [](const torch::Tensor& image) { return image.narrow(2, 0, 3); };
+        tiles[0].push_back(color(traced));
+        tiles[1].push_back(color(pictures[0]));
+        tiles[2].push_back(color(pictures[2]));
+        tiles[3].push_back((color(traced) - color(pictures[2])).abs() * 4);
     }
+    section.rows.push_back({"mean", fmt::format("{:.1f} %", 100 * means[0]),
+                            fmt::format("{:.1f} %", 100 * means[1]),
+                            fmt::format("{:.1f} %", 100 * means[2]), "", "", ""});
     save_tiles(folders.output / "views.png", tiles);
     section.pictures = {"views.png"};
-    section.text += " The picture: path traced, ours, four times the difference.";
+    section.text +=
+        " The picture: path traced, ours without occlusion, ours with that of this light, four "
+        "times the difference of the last.";
     return section;
 }
 

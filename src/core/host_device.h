@@ -3,8 +3,6 @@
 
 #if defined(__CUDACC__)
 #define ITEM3D_HOST_DEVICE __host__ __device__
-#define ITEM3D_LAMBDA __host__ __device__
 #else
 #define ITEM3D_HOST_DEVICE
-#define ITEM3D_LAMBDA
 #endif

@@ -7,7 +7,8 @@
 
 namespace item3d {
 
-/// All primitives of a model in one set of vertices. float32 unless said otherwise, on one device.
+/// All primitives of a model in one set of vertices: at least theirs, more where tangents differ
+/// between the triangles around one. float32 unless said otherwise, on one device.
 struct Geometry {
     torch::Tensor positions;  ///< [V, 3] world space; may require gradients
     torch::Tensor normals;    ///< [V, 3] unit

@@ -20,7 +20,6 @@ using kernels::ZonalKernel;
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-constexpr int smallest_size = 32;                    ///< of the chain
 constexpr int coarsest_size = 16;                    ///< of what far texels are summed on
 constexpr int least_size = 16, largest_size = 1024;  ///< of an environment
 constexpr float finest_roughness = 0.08f;
@@ -28,8 +27,8 @@ constexpr float chain_roughness = 0.5f;  ///< of the smallest level's first lobe
 constexpr std::array<float, 4> wide_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
 constexpr float kept_energy = 0.999f;
 constexpr int diffuse_size = 32;
-/// How far texels are summed at full resolution, in texels at a face's centre. Measured: 3 changes
-/// a lobe's mean by less than NEAR_ERROR.
+/// How far texels are summed at full resolution, in texels at a face's centre. Less shows in the
+/// reference report: at 2, lobes of roughness 0.25 lose their shape.
 constexpr float near_texels = 3;
 
 /// Solid angles of a face's texels, [size, size], exact.
@@ -93,13 +92,6 @@ SplitKernel split_kernel(const ZonalKernel& kernel, float at) {
     return split;
 }
 
-/// [6, S, S, 3] and solid-angle-like [S, S] or [6, S, S] -> planes [4, 6, S, S].
-torch::Tensor to_planes(const torch::Tensor& colors, const torch::Tensor& fourth) {
-    const std::int64_t size = colors.size(1);
-    return torch::cat({colors.permute({3, 0, 1, 2}), fourth.expand({1, 6, size, size})}, 0)
-        .contiguous();
-}
-
 using AddRow = void (*)(const ZonalKernel&, const kernels::ZonalRow&, kernels::ZonalSums&);
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -123,8 +115,9 @@ AddRow fastest_row() {
 }
 #endif
 
-/// Sums [6, R, R, 4] of the kernel over planes [4, 6, S, S].
-torch::Tensor zonal_sums(const torch::Tensor& planes, int out_size, const ZonalKernel& kernel) {
+/// Sums [6, R, R, 4] of the kernel over flux [6, S, S, 4].
+torch::Tensor zonal_sums(const torch::Tensor& flux, int out_size, const ZonalKernel& kernel) {
+    const torch::Tensor planes = flux.permute({3, 0, 1, 2}).contiguous();
     const int size = static_cast<int>(planes.size(2));
     torch::Tensor out = torch::empty({6, out_size, out_size, 4}, torch::kFloat32);
     std::vector<float> centres(static_cast<std::size_t>(size));
@@ -144,18 +137,17 @@ torch::Tensor zonal_sums(const torch::Tensor& planes, int out_size, const ZonalK
     return out;
 }
 
-/// flux [6, S, S, 3] and solid angles -> sums of both under the kernel [6, R, R, 4].
+/// flux [6, S, S, 4] -> its sums under the kernel [6, R, R, 4].
 struct ZonalSum : torch::autograd::Function<ZonalSum> {
     static torch::Tensor forward(AutogradContext* context, const torch::Tensor& flux,
-                                 const torch::Tensor& solid_angles, std::int64_t out_size,
-                                 const ZonalKernel& kernel) {
+                                 std::int64_t out_size, const ZonalKernel& kernel) {
         context->saved_data["size"] = flux.size(1);
         std::vector<double> numbers{kernel.cosine ? 1.0 : 0.0, kernel.alpha2_1, kernel.floor,
                                     kernel.inner, kernel.outer};
         numbers.insert(numbers.end(), kernel.inner_cap, kernel.inner_cap + 3);
         numbers.insert(numbers.end(), kernel.outer_cap, kernel.outer_cap + 3);
         context->saved_data["kernel"] = numbers;
-        return zonal_sums(to_planes(flux, solid_angles), static_cast<int>(out_size), kernel);
+        return zonal_sums(flux, static_cast<int>(out_size), kernel);
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const std::vector<double> k = context->saved_data["kernel"].toDoubleVector();
@@ -167,105 +159,83 @@ struct ZonalSum : torch::autograd::Function<ZonalSum> {
                                  {number(5), number(6), number(7)},
                                  number(4),
                                  {number(8), number(9), number(10)}};
-        const torch::Tensor sums =
-            zonal_sums(to_planes(gradients[0].narrow(3, 0, 3), torch::zeros({1})),
-                       static_cast<int>(context->saved_data["size"].toInt()), kernel);
-        return {sums.narrow(3, 0, 3), torch::Tensor(), torch::Tensor(), torch::Tensor()};
+        return {
+            zonal_sums(gradients[0], static_cast<int>(context->saved_data["size"].toInt()), kernel),
+            torch::Tensor(), torch::Tensor()};
     }
 };
 
-/// [6, R, R, 4] -> [6, 2R, 2R, 4]
-struct UpsampleCube : torch::autograd::Function<UpsampleCube> {
-    static torch::Tensor forward(AutogradContext*, const torch::Tensor& coarse) {
-        const auto size = static_cast<int>(coarse.size(1));
-        torch::Tensor fine = torch::empty({6, 2 * size, 2 * size, 4});
-        const float* in = coarse.const_data_ptr<float>();
-        float* out = fine.data_ptr<float>();
-        parallel_for(
-            "upsample_cube", fine.numel() / 4,
-            [=](std::int64_t i) { kernels::upsample_cube(in, size, i, out); }, 4096);
-        return fine;
-    }
-    static tensor_list backward(AutogradContext*, tensor_list gradients) {
-        const torch::Tensor gradient = gradients[0].contiguous();
-        const auto size = static_cast<int>(gradient.size(1)), half = size / 2;
-        torch::Tensor coarse = torch::empty({6, half, half, 4});
-        const float* in = gradient.const_data_ptr<float>();
-        float* out = coarse.data_ptr<float>();
-        parallel_for(
-            "upsample_cube backward", coarse.numel() / 4,
-            [=](std::int64_t i) { kernels::upsample_cube_backward(in, half, i, out); }, 4096);
-        // What crosses an edge goes to another face: few texels, added in order.
-        for (int face = 0; face < 6; ++face) {
-            for (int y = 0; y < size; ++y) {
-                const bool border_row = y == 0 || y == size - 1;
-                for (int x = 0; x < size; x += border_row ? 1 : size - 1) {
-                    const kernels::CubeTaps taps = kernels::cube_taps(
-                        kernels::cube_direction(face, kernels::texel_centre(x, size),
-                                                kernels::texel_centre(y, size)),
-                        half);
-                    const float* value = in + 4 * ((face * size + y) * size + x);
-                    for (int i = 0; i < 4; ++i) {
-                        if (taps.texel[i] / (half * half) == face) continue;
-                        for (int c = 0; c < 4; ++c)
-                            out[4 * taps.texel[i] + c] += taps.weight[i] * value[c];
-                    }
+/// [6, R, R, 4] -> [6, 2R, 2R, 4], bilinear.
+torch::Tensor upsampled(const torch::Tensor& coarse_) {
+    const torch::Tensor coarse = coarse_.contiguous();
+    const auto size = static_cast<int>(coarse.size(1));
+    torch::Tensor fine = torch::empty({6, 2 * size, 2 * size, 4});
+    const float* in = coarse.const_data_ptr<float>();
+    float* out = fine.data_ptr<float>();
+    parallel_for(
+        "upsample_cube", fine.numel() / 4,
+        [=](std::int64_t i) { kernels::upsample_cube(in, size, i, out); }, 4096);
+    return fine;
+}
+
+/// The transpose of upsampled(): each texel's flux is shared among the coarse texels around it,
+/// which keeps where it comes from.
+torch::Tensor restricted(const torch::Tensor& fine_) {
+    const torch::Tensor fine = fine_.contiguous();
+    const auto size = static_cast<int>(fine.size(1)), half = size / 2;
+    torch::Tensor coarse = torch::empty({6, half, half, 4});
+    const float* in = fine.const_data_ptr<float>();
+    float* out = coarse.data_ptr<float>();
+    parallel_for(
+        "restrict_cube", coarse.numel() / 4,
+        [=](std::int64_t i) { kernels::upsample_cube_backward(in, half, i, out); }, 4096);
+    // What crosses an edge goes to another face: few texels, added in order.
+    for (int face = 0; face < 6; ++face) {
+        for (int y = 0; y < size; ++y) {
+            const bool border_row = y == 0 || y == size - 1;
+            for (int x = 0; x < size; x += border_row ? 1 : size - 1) {
+                const kernels::CubeTaps taps =
+                    kernels::cube_taps(kernels::cube_direction(face, kernels::texel_centre(x, size),
+                                                               kernels::texel_centre(y, size)),
+                                       half);
+                const float* value = in + 4 * ((face * size + y) * size + x);
+                for (int i = 0; i < 4; ++i) {
+                    if (taps.texel[i] / (half * half) == face) continue;
+                    for (int c = 0; c < 4; ++c)
+                        out[4 * taps.texel[i] + c] += taps.weight[i] * value[c];
                 }
             }
         }
-        return {coarse};
+    }
+    return coarse;
+}
+
+struct UpsampleCube : torch::autograd::Function<UpsampleCube> {
+    static torch::Tensor forward(AutogradContext*, const torch::Tensor& coarse) {
+        return upsampled(coarse);
+    }
+    static tensor_list backward(AutogradContext*, tensor_list gradients) {
+        return {restricted(gradients[0])};
     }
 };
 
-/// The environment at all resolutions, finest first.
-class Pyramid {
-  public:
-    explicit Pyramid(const torch::Tensor& cube) {
-        const torch::Tensor angles = texel_solid_angles(static_cast<int>(cube.size(1)));
-        levels_.push_back({cube * angles.unsqueeze(-1), angles});
-        while (size(count() - 1) > coarsest_size) {
-            const std::int64_t half = size(count() - 1) / 2;
-            const Level& fine = levels_.back();
-            levels_.push_back({fine.flux.reshape({6, half, 2, half, 2, 3}).sum({2, 4}),
-                               fine.solid_angles.reshape({half, 2, half, 2}).sum({1, 3})});
-        }
-    }
-    int count() const { return static_cast<int>(levels_.size()); }
-    int size(int level) const {
-        return static_cast<int>(levels_[static_cast<std::size_t>(level)].flux.size(1));
-    }
-    /// Mean radiance under the kernel, [6, R, R, 3], summed over one level's texels.
-    torch::Tensor mean(int level, int out_size, const ZonalKernel& kernel) const {
-        return normalized(sums(level, out_size, kernel));
-    }
-    /// The same at the level's own resolution, far texels summed on coarser levels.
-    torch::Tensor multilevel_mean(int level, const ZonalKernel& kernel) const {
-        return normalized(multilevel_sums(level, kernel));
-    }
+torch::Tensor mean_radiance(const torch::Tensor& sums) {
+    return sums.narrow(3, 0, 3) / sums.narrow(3, 3, 1).detach().clamp_min(1e-30f);
+}
 
-  private:
-    struct Level {
-        torch::Tensor flux;          ///< [6, S, S, 3] radiance times solid angle
-        torch::Tensor solid_angles;  ///< [S, S]
-    };
-    static torch::Tensor normalized(const torch::Tensor& sums) {
-        return sums.narrow(3, 0, 3) / sums.narrow(3, 3, 1).detach().clamp_min(1e-30f);
-    }
-    torch::Tensor sums(int level, int out_size, const ZonalKernel& kernel) const {
-        const Level& source = levels_[static_cast<std::size_t>(level)];
-        return ZonalSum::apply(source.flux, source.solid_angles,
-                               static_cast<std::int64_t>(out_size), kernel);
-    }
-    torch::Tensor multilevel_sums(int level, const ZonalKernel& kernel) const {
-        const float near = near_texels * 2 / static_cast<float>(size(level));
-        if (level + 1 == count() || near * near >= 0.7f * kernel.outer)
-            return sums(level, size(level), kernel);
-        const SplitKernel split = split_kernel(kernel, near * near);
-        return sums(level, size(level), split.near) +
-               UpsampleCube::apply(multilevel_sums(level + 1, split.rest));
-    }
-    std::vector<Level> levels_;
-};
+/// Sums over a level of the chain at its own resolution, far texels on coarser levels down to
+/// `last`.
+torch::Tensor multilevel_sums(const std::vector<torch::Tensor>& chain, std::size_t level,
+                              std::size_t last, const ZonalKernel& kernel) {
+    const torch::Tensor& flux = chain[level];
+    const std::int64_t size = flux.size(1);
+    const float near = near_texels * 2 / static_cast<float>(size);
+    if (level == last || near * near >= 0.7f * kernel.outer)
+        return ZonalSum::apply(flux, size, kernel);
+    const SplitKernel split = split_kernel(kernel, near * near);
+    return ZonalSum::apply(flux, size, split.near) +
+           UpsampleCube::apply(multilevel_sums(chain, level + 1, last, split.rest));
+}
 
 }  // namespace
 
@@ -285,25 +255,32 @@ EnvironmentLight prefilter(const torch::Tensor& cube_) {
                  "S = " +
                      std::to_string(size) + " and " + std::to_string(cube.size(2)));
 
-    const Pyramid pyramid(cube);
-    int smallest = 0;
-    while (pyramid.size(smallest) > smallest_size)
-        ++smallest;
+    // Radiance times solid angle, and the solid angle.
+    const torch::Tensor angles = texel_solid_angles(size).unsqueeze(-1).expand({6, size, size, 1});
+    std::vector<torch::Tensor> chain{torch::cat({cube * angles, angles}, 3)};
+    while (chain.back().size(1) > coarsest_size) {
+        const std::int64_t half = chain.back().size(1) / 2;
+        chain.push_back(chain.back().reshape({6, half, 2, half, 2, 4}).sum({2, 4}));
+    }
+    const std::size_t smallest = chain.size() - (size > coarsest_size ? 2 : 1);  // 32 texels
+
     EnvironmentLight light;
-    light.diffuse = pyramid.mean(std::max(0, smallest - 1), diffuse_size, cosine_kernel());
-    const auto add = [&](int level, float roughness) {
+    light.diffuse = mean_radiance(ZonalSum::apply(chain[smallest > 0 ? smallest - 1 : 0],
+                                                  std::int64_t{diffuse_size}, cosine_kernel()));
+    const auto add = [&](std::size_t level, std::size_t last, float roughness) {
         light.specular.push_back(
-            pyramid.multilevel_mean(level, ggx_kernel(roughness, kept_energy)));
+            mean_radiance(multilevel_sums(chain, level, last, ggx_kernel(roughness, kept_energy))));
         light.roughness.push_back(roughness);
     };
     // Two lobes a resolution: the shading blends neighbours, which shows when they are far apart.
-    const int lobes = std::max(1, 2 * smallest);
-    for (int lobe = 0; lobe < lobes; ++lobe)
-        add(std::min(lobe / 2, smallest),
+    const std::size_t lobes = std::max<std::size_t>(1, 2 * smallest);
+    for (std::size_t lobe = 0; lobe < lobes; ++lobe)
+        add(lobe / 2, smallest,
             finest_roughness * std::pow(chain_roughness / finest_roughness,
                                         static_cast<float>(lobe) / static_cast<float>(lobes)));
+    // Lobes this wide lose nothing by one level more.
     for (const float roughness : wide_roughness)
-        add(smallest, roughness);
+        add(smallest, chain.size() - 1, roughness);
     return light;
 }
 

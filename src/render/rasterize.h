@@ -28,13 +28,13 @@ Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, i
 
 /// Attributes of the covered pixels alone, P in number, interpolated with perspective.
 struct Surface {
-    torch::Tensor pixel;      ///< [P] int64 index into N*H*W
-    torch::Tensor position;   ///< [P, 3] world space
-    torch::Tensor normal;     ///< [P, 3] unit shading normal, turned towards the viewer
-    torch::Tensor tangent;    ///< [P, 4]
-    torch::Tensor uv;         ///< [P, 2]
-    /// [P, 4] d(u, v) by a pixel to the right, then by one down (uv_footprints); undefined: textures
-    /// are looked up at full resolution
+    torch::Tensor pixel;     ///< [P] int64 index into N*H*W
+    torch::Tensor position;  ///< [P, 3] world space
+    torch::Tensor normal;    ///< [P, 3] unit shading normal, turned towards the viewer
+    torch::Tensor tangent;   ///< [P, 4]
+    torch::Tensor uv;        ///< [P, 2]
+    /// [P, 4] d(u, v) by a pixel to the right, then by one down (uv_footprints); undefined:
+    /// textures are looked up at full resolution
     torch::Tensor uv_footprint;
     torch::Tensor color;      ///< [P, 4] vertex colour
     torch::Tensor view;       ///< [P, 3] unit, from the surface to the camera

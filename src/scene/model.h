@@ -52,7 +52,8 @@ struct Material {
 struct Primitive {
     std::string name;
     std::vector<Vec3> positions;
-    /// Unit length. Always there: area-weighted by position where the file has none.
+    /// Unit length. Always there: where the file has none, flat for glTF (each corner is a vertex
+    /// of its own then) and area-weighted by position for OBJ.
     std::vector<Vec3> normals;
     /// Empty when the file has none. glTF's convention: (0, 0) is the top left corner of the image.
     std::vector<Vec2> uvs;

@@ -38,6 +38,7 @@ struct ZonalKernel {
     }
     template <bool Cosine>
     ITEM3D_HOST_DEVICE float value(float c) const {
+        if constexpr (Cosine) return c > 0 ? c : 0.0f;
         const float d = 2 - 2 * c;
         const float above = profile<Cosine>(c) - floor;
         const float kernel = above > 0 ? above : 0.0f;
