@@ -39,32 +39,6 @@ void save_tiles(const std::filesystem::path& path,
     save_image(path, to_image(linear_to_srgb(torch::cat(rows, 0).clamp(0, 1))));
 }
 
-Model unit_sphere() {
-    constexpr int latitudes = 256, longitudes = 512;
-    Primitive sphere;
-    for (int i = 0; i <= latitudes; ++i) {
-        for (int j = 0; j <= longitudes; ++j) {
-            const float theta = pi * static_cast<float>(i) / latitudes;
-            const float phi = 2 * pi * static_cast<float>(j) / longitudes;
-            sphere.positions.emplace_back(std::sin(theta) * std::sin(phi), std::cos(theta),
-                                          std::sin(theta) * std::cos(phi));
-        }
-    }
-    sphere.normals = sphere.positions;
-    for (int i = 0; i < latitudes; ++i) {
-        for (int j = 0; j < longitudes; ++j) {
-            const auto a = static_cast<std::uint32_t>(i * (longitudes + 1) + j);
-            const auto b = a + static_cast<std::uint32_t>(longitudes + 1);
-            for (const std::uint32_t index : {a, b, b + 1, a, b + 1, a + 1})
-                sphere.indices.push_back(index);
-        }
-    }
-    Model model;
-    model.materials.emplace_back();
-    model.primitives.push_back(std::move(sphere));
-    return model;
-}
-
 namespace {
 
 std::string markdown(const Section& section) {

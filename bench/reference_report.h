@@ -1,8 +1,6 @@
 // The renderer beside references that other software made: what each part measures and says.
 #pragma once
 
-#include "item3d/scene/model.h"
-
 #include <nlohmann/json.hpp>
 #include <torch/types.h>
 
@@ -40,8 +38,6 @@ torch::Tensor load_reference(const std::filesystem::path& path);
 
 /// Pictures [H, W, 3], linear, side by side (rows of tiles) as one sRGB PNG.
 void save_tiles(const std::filesystem::path& path, const std::vector<std::vector<torch::Tensor>>&);
-
-Model unit_sphere();
 
 Section sphere_section(const Folders& folders, const std::string& light);
 Section view_section(const Folders& folders);

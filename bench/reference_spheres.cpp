@@ -6,6 +6,7 @@
 #include "item3d/render/textured.h"
 #include "item3d/scene/environment.h"
 #include "item3d/scene/io/load.h"
+#include "item3d/scene/sphere.h"
 #include "reference_report.h"
 
 #include <array>
@@ -137,7 +138,7 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
     const Image map = load_image(folders.data / "env" / (light_name + ".hdr"));
     const EnvironmentLight light = prefilter(map);
     const Texels coarse = list_texels(map, 1), fine = list_texels(map, 3);
-    const Model sphere = unit_sphere();
+    const Model sphere = make_unit_sphere(256, 512);
     const Geometry geometry = Geometry::from_model(sphere);
     Camera camera;
     camera.camera_to_world[3] = Vec4(0, 0, 4, 1);

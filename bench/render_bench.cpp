@@ -3,6 +3,7 @@
 
 #include "item3d/render/textured.h"
 #include "item3d/scene/io/load.h"
+#include "item3d/scene/sphere.h"
 
 #include <benchmark/benchmark.h>
 
@@ -11,33 +12,6 @@
 
 namespace item3d {
 namespace {
-
-Model sphere(int latitudes, int longitudes) {
-    Primitive primitive;
-    for (int i = 0; i <= latitudes; ++i) {
-        for (int j = 0; j <= longitudes; ++j) {
-            const float u = static_cast<float>(j) / static_cast<float>(longitudes);
-            const float v = static_cast<float>(i) / static_cast<float>(latitudes);
-            const Vec3 p(std::sin(pi * v) * std::sin(2 * pi * u), std::cos(pi * v),
-                         std::sin(pi * v) * std::cos(2 * pi * u));
-            primitive.positions.push_back(p);
-            primitive.normals.push_back(p);
-            primitive.uvs.push_back(Vec2(u, v));
-        }
-    }
-    for (int i = 0; i < latitudes; ++i) {
-        for (int j = 0; j < longitudes; ++j) {
-            const auto a = static_cast<std::uint32_t>(i * (longitudes + 1) + j);
-            const auto b = a + static_cast<std::uint32_t>(longitudes + 1);
-            for (const std::uint32_t index : {a, b, b + 1, a, b + 1, a + 1})
-                primitive.indices.push_back(index);
-        }
-    }
-    Model model;
-    model.materials.emplace_back();
-    model.primitives.push_back(std::move(primitive));
-    return model;
-}
 
 struct Scene {
     Geometry geometry;
@@ -48,7 +22,7 @@ struct Scene {
 const Scene& scene() {
     static const Scene made = [] {
         const char* path = std::getenv("ITEM3D_BENCH_MODEL");
-        const Model model = path != nullptr ? load_model(path) : sphere(54, 54);
+        const Model model = path != nullptr ? load_model(path) : make_unit_sphere(54, 54);
         torch::manual_seed(0);
         return Scene{Geometry::from_model(model), turntable(model.bounds(), 1, 0.3f, 0.6f),
                      prefilter(torch::rand({6, 64, 64, 3}))};
@@ -73,7 +47,7 @@ void rasterize_view(benchmark::State& state) {
 BENCHMARK(rasterize_view)->Arg(64)->Arg(128)->Arg(512)->Unit(benchmark::kMillisecond);
 
 void rasterize_million_triangles(benchmark::State& state) {
-    static const Model model = sphere(708, 708);
+    static const Model model = make_unit_sphere(708, 708);
     static const Geometry geometry = Geometry::from_model(model);
     const int size = static_cast<int>(state.range(0));
     const auto cameras = turntable(model.bounds(), 1, 0.3f, 0.6f);

@@ -46,7 +46,7 @@ TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
     EXPECT_NEAR(coverage(triangle, cameras, size).sum().item<double>(), area, 0.5);
 
     // A sphere of triangles much smaller than pixels: its outline is still smoothed.
-    const Geometry sphere = Geometry::from_model(testing::make_sphere(200, 400));
+    const Geometry sphere = Geometry::from_model(make_unit_sphere(200, 400));
     const Camera camera = front_camera(4, 0.7f);
     const double radius = 16 / std::tan(0.35) * std::tan(std::asin(0.25));
     const torch::Tensor picture = coverage(sphere, {camera}, 32);

@@ -16,7 +16,6 @@ namespace item3d {
 namespace {
 
 using testing::front_camera;
-using testing::make_sphere;
 
 #define SKIP_WITHOUT_DEVICE()    \
     if (!cuda::cuda_available()) \
@@ -30,7 +29,7 @@ struct Scene {
 };
 
 Scene make_scene() {
-    Model model = make_sphere(24, 48);
+    Model model = make_unit_sphere(24, 48);
     Primitive inner = model.primitives[0];
     for (Vec3& position : inner.positions)
         position = position * 0.7f + Vec3(0.5f, 0.1f, 0.4f);

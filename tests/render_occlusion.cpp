@@ -18,7 +18,6 @@ namespace {
 using testing::front_camera;
 using testing::make_geometry;
 using testing::make_quad;
-using testing::make_sphere;
 
 constexpr float half_pi = pi / 2;
 
@@ -88,13 +87,13 @@ TEST(Occlusion, NothingHidesAPlaneOrASphere) {
         EXPECT_EQ(look(of_plane, plane, camera).open.min().item<float>(), 1.0f);
 
     // Coarse, so that the normals' hemispheres reach far below the triangles' planes.
-    const Geometry sphere = Geometry::from_model(make_sphere(8, 12));
+    const Geometry sphere = Geometry::from_model(make_unit_sphere(8, 12));
     const Occlusion of_sphere(sphere, nullptr, quick());
     EXPECT_EQ(look(of_sphere, sphere, front_camera()).open.min().item<float>(), 1.0f);
 }
 
 TEST(Occlusion, InsideOfAClosedShapeIsDark) {
-    const Geometry sphere = Geometry::from_model(make_sphere(24, 32));
+    const Geometry sphere = Geometry::from_model(make_unit_sphere(24, 32));
     Camera inside = front_camera(0.0f, half_pi);
     inside.near_plane = 0.01f;
     const Seen seen = look(Occlusion(sphere, nullptr, quick()), sphere, inside);

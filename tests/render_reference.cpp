@@ -116,7 +116,7 @@ TEST(Reference, GradientOfABaseColourTexture) {
 TEST(Reference, Spheres) {
     const auto folder = shared / "spheres";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no reference data";
-    const Model sphere = testing::make_sphere(180, 360);
+    const Model sphere = make_unit_sphere(180, 360);
     const Geometry geometry = Geometry::from_model(sphere);
     Camera camera = testing::front_camera(4, 32 * pi / 180);
     // Median of the relative errors of pixels, and the ratio of sums: split-sum is an

@@ -3,6 +3,7 @@
 
 #include "item3d/render/rasterize.h"
 #include "item3d/render/shade.h"
+#include "item3d/scene/sphere.h"
 
 #include <gtest/gtest.h>
 #include <torch/types.h>
@@ -40,35 +41,6 @@ inline Geometry make_quad(float half_width, float half_height, float z = 0) {
     const float w = half_width, h = half_height;
     return make_geometry(torch::tensor({-w, -h, z, w, -h, z, w, h, z, -w, h, z}).reshape({4, 3}),
                          torch::tensor({0, 1, 2, 0, 2, 3}).reshape({2, 3}));
-}
-
-/// A unit sphere of latitudes x longitudes quads with exact normals.
-inline Model make_sphere(int latitudes, int longitudes) {
-    Primitive sphere;
-    for (int i = 0; i <= latitudes; ++i) {
-        for (int j = 0; j <= longitudes; ++j) {
-            const float u = static_cast<float>(j) / static_cast<float>(longitudes);
-            const float v = static_cast<float>(i) / static_cast<float>(latitudes);
-            const float theta = pi * v, phi = 2 * pi * u;
-            const Vec3 p(std::sin(theta) * std::sin(phi), std::cos(theta),
-                         std::sin(theta) * std::cos(phi));
-            sphere.positions.push_back(p);
-            sphere.normals.push_back(p);
-            sphere.uvs.push_back(Vec2(u, v));
-        }
-    }
-    for (int i = 0; i < latitudes; ++i) {
-        for (int j = 0; j < longitudes; ++j) {
-            const auto a = static_cast<std::uint32_t>(i * (longitudes + 1) + j);
-            const auto b = a + static_cast<std::uint32_t>(longitudes + 1);
-            for (const std::uint32_t index : {a, b, b + 1, a, b + 1, a + 1})
-                sphere.indices.push_back(index);
-        }
-    }
-    Model model;
-    model.materials.emplace_back();
-    model.primitives.push_back(std::move(sphere));
-    return model;
 }
 
 inline torch::Tensor unit_rows(const torch::Tensor& rows) {

@@ -119,7 +119,7 @@ TEST(Tangents, VerticesOfMirroredSeamsAreSplit) {
 }
 
 TEST(Tangents, OfASpherePointEast) {
-    Model model = testing::make_sphere(60, 120);
+    Model model = make_unit_sphere(60, 120);
     Primitive& sphere = model.primitives[0];
     const std::size_t count = sphere.positions.size();
     add_tangents(sphere);
@@ -135,7 +135,7 @@ TEST(Tangents, OfASpherePointEast) {
 }
 
 TEST(Tangents, DoNotDependOnTheOrderOfTriangles) {
-    Primitive sphere = testing::make_sphere(9, 14).primitives[0];
+    Primitive sphere = make_unit_sphere(9, 14).primitives[0];
     for (Vec2& uv : sphere.uvs)
         uv.x = std::abs(uv.x - 0.5f);  // with a mirrored seam
     const std::size_t triangles = sphere.indices.size() / 3;

@@ -5,6 +5,7 @@
 #include "item3d/field/neural_texture.h"
 #include "item3d/render/textured.h"
 #include "item3d/scene/environment.h"
+#include "item3d/scene/sphere.h"
 
 #include <torch/cuda.h>
 
@@ -210,30 +211,9 @@ Camera BenchScene::camera(PictureSize size) const {
 }
 
 BenchScene sphere_scene(int squares) {
-    Primitive primitive;
-    for (int i = 0; i <= squares; ++i) {
-        for (int j = 0; j <= squares; ++j) {
-            const float u = static_cast<float>(j) / static_cast<float>(squares);
-            const float v = static_cast<float>(i) / static_cast<float>(squares);
-            const Vec3 point(std::sin(pi * v) * std::sin(2 * pi * u), std::cos(pi * v),
-                             std::sin(pi * v) * std::cos(2 * pi * u));
-            primitive.positions.push_back(point);
-            primitive.normals.push_back(point);
-            primitive.uvs.push_back(Vec2(u, v));
-        }
-    }
-    for (int i = 0; i < squares; ++i) {
-        for (int j = 0; j < squares; ++j) {
-            const auto a = static_cast<std::uint32_t>(i * (squares + 1) + j);
-            const auto b = a + static_cast<std::uint32_t>(squares + 1);
-            for (const std::uint32_t index : {a, b, b + 1, a, b + 1, a + 1})
-                primitive.indices.push_back(index);
-        }
-    }
     BenchScene scene;
     scene.name = "sphere";
-    scene.model.materials.emplace_back();
-    scene.model.primitives.push_back(std::move(primitive));
+    scene.model = make_unit_sphere(squares, squares);
     return scene;
 }
 
