@@ -62,8 +62,8 @@ TEST(Reference, Irradiance) {
             (shade(surface, white, diffuse_only).reshape_as(reference) - reference).abs();
         std::printf("[ irradiance %s: mean error %.5f, largest %.5f of 1 ]\n", name,
                     error.mean().item<float>(), error.max().item<float>());
-        EXPECT_LT(error.mean().item<float>(), 0.004) << name;
-        EXPECT_LT(error.max().item<float>(), 0.03) << name;
+        EXPECT_LT(error.mean().item<float>(), 0.0015) << name;
+        EXPECT_LT(error.max().item<float>(), 0.02) << name;
     }
 }
 
@@ -157,7 +157,7 @@ TEST(Reference, Spheres) {
                     "scattering %.3f, %.3f ]\n",
                     light_name, metallic, roughness, single[0], single[1], multiple[0],
                     multiple[1]);
-                EXPECT_LT(single[0], 0.25);
+                EXPECT_LT(single[0], 0.16);
             }
         }
     }

@@ -27,8 +27,8 @@ constexpr float chain_roughness = 0.5f;  ///< of the smallest level's first lobe
 constexpr std::array<float, 4> wide_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
 constexpr float kept_energy = 0.999f;
 constexpr int diffuse_size = 32;
-/// How far texels are summed at full resolution, in texels at a face's centre. Less shows in the
-/// reference report: at 2, lobes of roughness 0.25 lose their shape.
+/// How far texels are summed at full resolution, in texels at a face's centre: between the
+/// reference report's error for smooth metal, which falls with it, and time, which grows.
 constexpr float near_texels = 3;
 
 /// Solid angles of a face's texels, [size, size], exact.
@@ -178,8 +178,7 @@ torch::Tensor upsampled(const torch::Tensor& coarse_) {
     return fine;
 }
 
-/// The transpose of upsampled(): each texel's flux is shared among the coarse texels around it,
-/// which keeps where it comes from.
+/// The transpose of upsampled().
 torch::Tensor restricted(const torch::Tensor& fine_) {
     const torch::Tensor fine = fine_.contiguous();
     const auto size = static_cast<int>(fine.size(1)), half = size / 2;
