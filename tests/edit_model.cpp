@@ -146,12 +146,14 @@ TEST_F(EditTest, iterations_change_the_texture_and_depend_on_the_seed) {
 }
 
 TEST_F(EditTest, resumes_to_the_same_bytes_after_two_interrupts) {
-    EditRequest edit = request("whole", 9);
+    EditRequest edit = request("whole", 6);
+    edit.settings.detail = "always";
+    edit.settings.detail_views = 2;
     edit_model(edit);
     const Bytes whole = read_bytes(edit.output / "model.glb");
 
     edit.output = folder_ / "parts";
-    for (const int stop : {3, 6}) {
+    for (const int stop : {3, 7}) {  // the second is between the views of the detail stage
         edit.stop_after = stop;
         EXPECT_THROW(edit_model(edit), Interrupted);
         EXPECT_FALSE(fs::exists(edit.output / "model.glb"));
@@ -160,6 +162,26 @@ TEST_F(EditTest, resumes_to_the_same_bytes_after_two_interrupts) {
     edit.stop_after = 0;
     edit_model(edit);
     EXPECT_EQ(whole, read_bytes(edit.output / "model.glb"));
+}
+
+TEST_F(EditTest, detail_changes_the_base_color_and_little_else) {
+    EditRequest edit = request("out", 1);
+    edit.settings.learning_rate = 1e-9f;  // what changes is the detail stage's doing
+    edit.settings.metallic = "always";
+    edit.settings.detail = "always";
+    edit.settings.detail_views = 2;
+    const nlohmann::json summary = edit_model(edit);
+    EXPECT_TRUE(summary["seconds"].contains("detail"));
+    const auto& before = summary["scores"]["before"];
+    const auto& after = summary["scores"]["after"];
+    EXPECT_NEAR(after["metallic"], before["metallic"], 0.02);
+    EXPECT_NEAR(after["roughness"], before["roughness"], 0.02);
+    const Image was = base_color_of(edit.model);
+    const Image now = base_color_of(edit.output / "model.glb");
+    double changed = 0;
+    for (std::size_t i = 0; i < was.pixels.size(); ++i)
+        changed += std::abs(was.pixels[i] - now.pixels[i]);
+    EXPECT_GT(changed / static_cast<double>(was.pixels.size()), 0.01);
 }
 
 TEST_F(EditTest, a_checkpoint_of_other_settings_is_refused) {
@@ -228,6 +250,24 @@ TEST(Metals, are_found_as_whole_words) {
     EXPECT_FALSE(crosses_metallic("a silver ring", "a golden ring"));
 }
 
+TEST(EditSettings, detail_is_wanted_where_the_target_alone_names_such_a_material) {
+    EditSettings settings;
+    settings.from = "a red mug";
+    settings.to = "a Marble mug";
+    EXPECT_FALSE(wants_detail(settings));
+    settings.detail_words = {"wooden", "marble"};
+    EXPECT_TRUE(wants_detail(settings));
+    settings.from = "a marble mug, red";
+    EXPECT_FALSE(wants_detail(settings));
+    settings.detail = "always";
+    EXPECT_TRUE(wants_detail(settings));
+    settings.keep = {"base_color"};
+    EXPECT_FALSE(wants_detail(settings));
+    settings.keep = {};
+    settings.iterations = 0;
+    EXPECT_FALSE(wants_detail(settings));
+}
+
 TEST(EditSettings, prior_defaults_and_overrides_are_merged_and_checked) {
     const fs::path folder =
         fs::temp_directory_path() / ("item3d-prior-" + std::to_string(::getpid()));
@@ -240,6 +280,7 @@ TEST(EditSettings, prior_defaults_and_overrides_are_merged_and_checked) {
     EXPECT_THROW(resolve_settings(folder, {{"timesteps", {0.9, 0.1}}}), InputError);
     EXPECT_THROW(resolve_settings(folder, {{"keep", {"colour"}}}), InputError);
     EXPECT_THROW(resolve_settings(folder, {{"batch", 0}}), InputError);
+    EXPECT_THROW(resolve_settings(folder, {{"detail", "some"}}), InputError);
     write_atomically(folder / "prior.json", std::string_view("[1"));
     EXPECT_THROW(resolve_settings(folder, {}), InputError);
     fs::remove_all(folder);

@@ -112,6 +112,29 @@ TEST(Pipeline, GeneratingDependsOnTheSeedAloneAndNotOnTheCount) {
     EXPECT_THROW(generate(pipeline, options), InputError);
 }
 
+TEST(Pipeline, GeneratingFromAPictureWalksPartOfTheSchedule) {
+    set_verbosity(Verbosity::quiet);
+    const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
+    GenerateOptions options;
+    options.prompt = "a duck";
+    options.steps = 4;
+    options.image = torch::full({1, pipeline.latent_channels(), 8, 8}, 0.7f);
+    options.strength = 0;
+    EXPECT_TRUE(generate_latents(pipeline, options).equal(options.image));
+    options.strength = 0.25;
+    const double little = largest_difference(generate_latents(pipeline, options), options.image);
+    options.strength = 1;
+    const double much = largest_difference(generate_latents(pipeline, options), options.image);
+    EXPECT_GT(little, 0);
+    EXPECT_LT(little, much);
+
+    options.eta = 1;
+    const torch::Tensor noisy = generate_latents(pipeline, options);
+    EXPECT_TRUE(noisy.equal(generate_latents(pipeline, options)));
+    options.eta = 0;
+    EXPECT_GT(largest_difference(generate_latents(pipeline, options), noisy), 1e-3);
+}
+
 TEST(Pipeline, SaysWhatIsWrongWithAFolder) {
     const TemporaryFolder folder;
     const auto fresh = [&] {

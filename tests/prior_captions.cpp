@@ -1,4 +1,5 @@
 // Words, captions and tokens.
+#include "item3d/core/words.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/lights.h"
 #include "item3d/prior/tokenizer_training.h"

@@ -43,7 +43,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     if (request.resume) {
         if (load_state(request, state)) {
             note(fmt::format("resuming after iteration {} of {}", state.iteration,
-                             settings.iterations));
+                             total_iterations(settings)));
             return state;
         }
         note("nothing to resume in " + request.output.string() + ": beginning anew");

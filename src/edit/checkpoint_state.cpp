@@ -62,6 +62,7 @@ class StateReader {
         }
         return found->second;
     }
+    bool has(const std::string& name) const { return tensors_.count(name) != 0; }
     void parameters(const std::string& prefix, NeuralTexture& field) const {
         const torch::NoGradGuard no_grad;
         for (const auto& item : field->named_parameters()) {
@@ -106,6 +107,14 @@ void save_state(const EditRequest& request, const EditState& state) {
     for (const auto& [name, tensor] : state.guidance->state()) {
         checkpoint.tensors.emplace_back("guidance." + name, tensor);
     }
+    if (!state.detail.before.is_empty()) {
+        append_parameters(checkpoint.tensors, "detail.before.", state.detail.before);
+        for (const auto& [name, tensor] : state.detail.optimizer.state()) {
+            checkpoint.tensors.emplace_back("detail.optimizer." + name, tensor);
+        }
+        if (!state.detail.targets.empty())
+            checkpoint.tensors.emplace_back("detail.targets", torch::cat(state.detail.targets));
+    }
     checkpoint.tensors.emplace_back("curve.direction_length",
                                     torch::tensor(state.direction_length));
     checkpoint.tensors.emplace_back("curve.adjustment_loss", torch::tensor(state.adjustment_loss));
@@ -126,6 +135,13 @@ bool load_state(const EditRequest& request, EditState& state) {
         guidance.emplace_back(name, tensor);
     }
     state.guidance->load_state(guidance);
+    if (reader.has("detail.before.table")) {
+        begin_detail(state);
+        reader.parameters("detail.before.", state.detail.before);
+        state.detail.optimizer.load_state(reader.with_prefix("detail.optimizer."));
+        if (reader.has("detail.targets"))
+            state.detail.targets = reader.get("detail.targets").split(1);
+    }
     state.direction_length = to_floats(reader.get("curve.direction_length"));
     state.adjustment_loss = to_floats(reader.get("curve.adjustment_loss"));
     state.iteration = checkpoint->iteration;

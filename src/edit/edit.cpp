@@ -21,6 +21,11 @@ nlohmann::json edit_model(const EditRequest& request) {
     const IterationTimes iteration_times = optimize(request, scene, state);
     times.end_stage("optimize");
 
+    if (wants_detail(request.settings)) {
+        add_detail(request, scene, state);
+        times.end_stage("detail");
+    }
+
     const EditedModel edited = bake_and_save(request, scene, state);
     times.end_stage("bake");
 

@@ -1,8 +1,9 @@
 #include "item3d/edit/metals.h"
 
+#include "item3d/core/words.h"
+
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 
 namespace item3d {
@@ -18,18 +19,10 @@ constexpr std::array<std::string_view, 29> metal_words = {
 }  // namespace
 
 bool names_metal(const std::string& prompt) {
-    std::string word;
-    // The end counts as a separator.
-    for (std::size_t i = 0; i <= prompt.size(); ++i) {
-        const auto byte = i < prompt.size() ? static_cast<unsigned char>(prompt[i]) : ' ';
-        if (std::isalpha(byte) != 0) {
-            word += static_cast<char>(std::tolower(byte));
-            continue;
-        }
-        if (std::binary_search(metal_words.begin(), metal_words.end(), word)) return true;
-        word.clear();
-    }
-    return false;
+    const std::vector<std::string> words = prompt_words(prompt);
+    return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+        return std::binary_search(metal_words.begin(), metal_words.end(), word);
+    });
 }
 
 bool crosses_metallic(const std::string& from, const std::string& to) {

@@ -1,4 +1,4 @@
-// The loop: cameras -> render -> guidance -> backward -> step.
+// The loop: cameras -> render -> guidance -> backward -> step; then the detail stage.
 #pragma once
 
 #include "item3d/edit/edit.h"
@@ -14,13 +14,21 @@
 
 namespace item3d {
 
+/// What the detail stage has done so far.
+struct DetailState {
+    NeuralTexture before{nullptr};  ///< the field at its beginning; empty: not begun
+    Adam optimizer;
+    std::vector<torch::Tensor> targets;  ///< [1, 3, R, R] sRGB, one for each view so far
+};
+
 /// Everything that an edit changes; what a checkpoint holds.
 struct EditState {
     NeuralTexture fitted{nullptr};  ///< the field as fitted to the input, for the bake's residual
     NeuralTexture field{nullptr};
     Adam optimizer;
     std::unique_ptr<Guidance> guidance;
-    std::int64_t iteration = 0;           ///< iterations done
+    DetailState detail;
+    std::int64_t iteration = 0;           ///< iterations done, views of the detail stage included
     std::vector<float> direction_length;  ///< a curve of the report, one value an iteration
     std::vector<float> adjustment_loss;
 };
@@ -29,8 +37,23 @@ struct EditState {
 /// folder when the request says resume and one is there.
 EditState begin_or_resume(const EditRequest& request, const EditScene& scene);
 
+/// Prepares the stage's state at the field as it is.
+void begin_detail(EditState& state);
+
+/// Iterations of the loop and views of the detail stage.
+std::int64_t total_iterations(const EditSettings& settings);
+
 /// Runs the remaining iterations; writes checkpoints and previews as it goes. Throws Interrupted
 /// after writing the checkpoint.
 IterationTimes optimize(const EditRequest& request, const EditScene& scene, EditState& state);
+
+/// What guidance leaves out. Its gradient is an average over noises, and an average has no grain: a
+/// small prior's edit ends in the right colour, shine and metal, as smooth as before. So the prior
+/// then samples: a picture of the model is noised part of the way, denoised with the target
+/// sentence and fresh noise in each step, and the field's base colour is fitted to the fine part of
+/// what changed, view after view (the dataset updates of Instruct-NeRF2NeRF, Haque et al. 2023,
+/// with SDEdit's sampling). What is coarse, and all other channels, stay as guidance left them.
+/// Does nothing unless wants_detail(settings). Throws as optimize.
+void add_detail(const EditRequest& request, const EditScene& scene, EditState& state);
 
 }  // namespace item3d

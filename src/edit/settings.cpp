@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/words.h"
 
 #include <algorithm>
 #include <array>
@@ -36,6 +37,10 @@ void check(const EditSettings& settings) {
             "must be auto or always");
     require(settings.metallic_start >= 0 && settings.metallic_start <= 1, "metallic_start",
             "must be between 0 and 1");
+    require(settings.detail == "auto" || settings.detail == "off" || settings.detail == "always",
+            "--detail", "must be auto, off or always");
+    require(settings.detail_views >= 1 && settings.detail_views <= 1000, "detail_views",
+            "must be between 1 and 1000");
     require(settings.adjust_samples >= 1 && settings.adjust_samples <= 64, "adjust_samples",
             "must be between 1 and 64");
     require(settings.texture_size >= 0 && settings.texture_size <= 8192, "--texture-size",
@@ -65,6 +70,18 @@ EditSettings resolve_settings(const std::filesystem::path& prior, const json& ov
         throw InputError((prior / "prior.json").string(),
                          std::string("its defaults are of the wrong kind: ") + error.what());
     }
+}
+
+bool wants_detail(const EditSettings& settings) {
+    const auto has = [](const std::vector<std::string>& words, const std::string& word) {
+        return std::find(words.begin(), words.end(), word) != words.end();
+    };
+    if (settings.iterations == 0 || has(settings.keep, "base_color")) return false;
+    if (settings.detail != "auto") return settings.detail == "always";
+    const std::vector<std::string> from = prompt_words(settings.from);
+    const std::vector<std::string> to = prompt_words(settings.to);
+    return std::any_of(settings.detail_words.begin(), settings.detail_words.end(),
+                       [&](const std::string& word) { return has(to, word) && !has(from, word); });
 }
 
 GuidanceOptions guidance_options(const EditSettings& settings) {

@@ -29,6 +29,11 @@ struct EditSettings {
     float learning_rate = 0.01f;
     std::string metallic = "auto";  ///< auto: edited where a prompt names a metal; or always
     float metallic_start = 0.5f;    ///< where one prompt names a metal and the other does not
+    /// The detail stage (optimize.h) after the iterations. auto: where the target sentence has one
+    /// of `detail_words` that the source has not; or off, or always.
+    std::string detail = "auto";
+    std::vector<std::string> detail_words;  ///< lower case; the prior's own list
+    int detail_views = 16;
     std::vector<float> timesteps = {0.02f, 0.98f};
     std::string weighting = "dreamfusion";
     std::string light = "studio";     ///< preset or .hdr/.exr file
@@ -42,13 +47,16 @@ struct EditSettings {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(EditSettings, from, to, guidance, adjust, anchor,
                                                 cfg, adjust_learning_rate, adjust_samples,
                                                 iterations, batch, resolution, learning_rate,
-                                                metallic, metallic_start, timesteps, weighting,
-                                                light, background, texture_size, keep, material,
-                                                seed)
+                                                metallic, metallic_start, detail, detail_words,
+                                                detail_views, timesteps, weighting, light,
+                                                background, texture_size, keep, material, seed)
 
 /// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- overrides. Throws InputError
 /// when a value is of the wrong type or out of range.
 EditSettings resolve_settings(const std::filesystem::path& prior, const nlohmann::json& overrides);
+
+/// Whether the detail stage runs.
+bool wants_detail(const EditSettings& settings);
 
 GuidanceOptions guidance_options(const EditSettings& settings);
 

@@ -85,6 +85,14 @@ struct GenerateOptions {
     int count = 1;
     std::uint64_t seed = 0;
     torch::Tensor latents;  ///< [count, C, h, w] standard normal to start from; empty: by seed
+    /// [count, C, h, w] scaled latents of pictures to begin from instead of noise alone, and how
+    /// much of the schedule is walked again: 1 forgets them, 0 leaves them (SDEdit, Meng et al.
+    /// 2022).
+    torch::Tensor image;
+    double strength = 1;
+    /// 0: DDIM; 1: fresh noise in each step, as DDPM. Small priors draw more detail with it.
+    double eta = 0;
+    bool show_progress = true;
 };
 
 /// DDIM sampling with classifier-free guidance; images [count, H, W, 3] in [0, 1] (sRGB).

@@ -58,6 +58,7 @@ nlohmann::json edit_defaults() {
             {"weighting", "dreamfusion"},
             {"light", "studio"},
             {"background", "vary"},
+            {"detail_words", {"wood", "wooden", "marble", "stone", "grass"}},
             {"keep", {"occlusion", "normal"}}};
 }
 

@@ -2,9 +2,9 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/words.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace item3d {
 namespace {
@@ -34,20 +34,6 @@ KnownWord read_word(const std::string& kind, const nlohmann::json& entry) {
 }
 
 }  // namespace
-
-std::vector<std::string> prompt_words(const std::string& prompt) {
-    std::vector<std::string> words;
-    int before = 0;  // 0: between words, 1: in letters, 2: in digits
-    for (const char character : prompt) {
-        const auto byte = static_cast<unsigned char>(character);
-        // Bytes of other scripts count as letters, so that such words are seen as unknown.
-        const int now = std::isdigit(byte) ? 2 : std::isalpha(byte) || byte >= 0x80 ? 1 : 0;
-        if (now != 0 && now != before) words.emplace_back();
-        if (now != 0) words.back() += static_cast<char>(std::tolower(byte));
-        before = now;
-    }
-    return words;
-}
 
 PriorVocabulary::PriorVocabulary(const nlohmann::json& prior_json, const std::string& subject) {
     try {

@@ -51,7 +51,4 @@ class PriorVocabulary {
     std::vector<std::string> all_words_;  ///< sorted; every word of training captions
 };
 
-/// Lower-case words of a prompt: runs of letters, and runs of digits.
-std::vector<std::string> prompt_words(const std::string& prompt);
-
 }  // namespace item3d

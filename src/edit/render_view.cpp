@@ -1,0 +1,64 @@
+#include "item3d/edit/render_view.h"
+
+#include "item3d/core/random.h"
+
+#include <ATen/CPUGeneratorImpl.h>
+
+namespace item3d {
+namespace {
+
+constexpr std::uint64_t spread_stream = 6;  // of the edit's seed; others are in views.cpp
+
+/// Small pictures are drawn at twice their size and averaged, as the embedded prior's training
+/// pictures were; large ones get their edges from antialias().
+int supersampling(int resolution) {
+    return resolution <= 128 ? 2 : 1;
+}
+
+torch::Tensor offsets(const torch::Tensor& positions, const EditScene& scene,
+                      const EditSettings& settings, const ViewOptions& options) {
+    Random random(settings.seed, spread_stream, options.spread_draw);
+    auto generator = at::detail::createCPUGenerator(random.bits());
+    const float pixel = 2 * scene.sphere.radius / static_cast<float>(settings.resolution);
+    return options.spread * pixel * torch::randn(positions.sizes(), generator, torch::kFloat32);
+}
+
+}  // namespace
+
+View render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
+                 const ViewOptions& options) {
+    const int scale = supersampling(settings.resolution);
+    const int size = settings.resolution * scale;
+    const auto cameras =
+        sample_cameras(scene.sphere, options.count, settings.seed, options.iteration);
+    const EnvironmentLight& light = scene.lights->pick(settings.seed, options.iteration);
+
+    const Raster raster = rasterize(scene.geometry, cameras, size, size);
+    const Surface surface = interpolate_surface(scene.geometry, raster, cameras);
+    View view;
+    view.depth = raster.depth;
+    view.surface = surface;
+    if (options.spread > 0) {
+        view.surface.position =
+            surface.position + offsets(surface.position, scene, settings, options);
+    }
+    view.material = scene.source->sample(view.surface, field);
+    torch::Tensor radiance = shade(surface, view.material, light);
+    if (view.material.emissive.defined()) radiance = radiance + view.material.emissive;
+
+    const torch::Tensor background =
+        sample_backgrounds(settings.background, options.count, settings.seed, options.iteration)
+            .view({options.count, 1, 1, 3})
+            .expand({options.count, size, size, 3});
+    torch::Tensor picture = scatter(radiance, surface, raster, background);
+    if (scale == 1) picture = antialias(picture, raster, scene.geometry);
+    view.images = linear_to_srgb(picture.clamp(0, 1)).permute({0, 3, 1, 2});
+    view.coverage = (raster.triangle >= 0).to(torch::kFloat32).unsqueeze(1);
+    if (scale > 1) {
+        view.images = torch::avg_pool2d(view.images, scale);
+        view.coverage = torch::avg_pool2d(view.coverage, scale);
+    }
+    return view;
+}
+
+}  // namespace item3d

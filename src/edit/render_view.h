@@ -1,0 +1,32 @@
+// What the prior is shown: the model with the neural texture, from the cameras of an iteration.
+#pragma once
+
+#include "item3d/edit/scene.h"
+
+#include <torch/types.h>
+
+#include <cstdint>
+
+namespace item3d {
+
+struct View {
+    torch::Tensor images;     ///< [N, 3, R, R] sRGB, differentiable in the field
+    torch::Tensor depth;      ///< [N, R', R'] z-depth, 0: background; R' is R or finer
+    torch::Tensor coverage;   ///< [N, 1, R, R] 0 .. 1, how much of each pixel the model covers
+    MaterialSample material;  ///< at the surface points of the picture
+    Surface surface;          ///< those points, where the material was looked up
+};
+
+struct ViewOptions {
+    int count = 1;               ///< views
+    std::int64_t iteration = 0;  ///< draws cameras, light and background, with the settings' seed
+    /// Offsets of the points where the material is looked up, in pixels (standard deviation), so
+    /// that what is learnt from one picture covers its pixels and not a point in each.
+    float spread = 0;
+    std::uint64_t spread_draw = 0;  ///< another draw of those offsets
+};
+
+View render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
+                 const ViewOptions& options);
+
+}  // namespace item3d

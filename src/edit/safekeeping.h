@@ -1,0 +1,24 @@
+// What happens between the steps of an edit: checkpoints, previews, and stopping when asked to.
+#pragma once
+
+#include "item3d/core/progress.h"
+#include "item3d/edit/optimize.h"
+#include "item3d/edit/preview.h"
+
+namespace item3d {
+
+class Safekeeping {
+  public:
+    Safekeeping(const EditRequest& request, const EditScene& scene);
+    /// Call after each step. Throws Interrupted, with the checkpoint written, after Ctrl-C or at
+    /// the request's stop_after unless the edit is done by then.
+    void after_step(EditState& state, Progress& progress);
+
+  private:
+    const EditRequest& request_;
+    Preview preview_;
+    double checkpointed_;
+    double previewed_;
+};
+
+}  // namespace item3d
