@@ -64,7 +64,10 @@ function(item3d_use_torch_headers TARGET)
         add_library(item3d_torch_pch OBJECT ${CMAKE_BINARY_DIR}/torch_pch.cpp)
         target_link_libraries(item3d_torch_pch PRIVATE item3d_torch item3d_warnings item3d_openmp)
         target_precompile_headers(item3d_torch_pch PRIVATE
-            <torch/types.h> <torch/csrc/autograd/custom_function.h>)
+            <torch/types.h> <torch/csrc/autograd/custom_function.h>
+            <torch/nn/module.h> <torch/nn/pimpl.h> <torch/nn/modules/container/modulelist.h>
+            <torch/nn/modules/conv.h> <torch/nn/modules/linear.h>
+            <torch/nn/modules/normalization.h> <nlohmann/json.hpp>)
     endif()
     target_precompile_headers(${TARGET} REUSE_FROM item3d_torch_pch)
 endfunction()

@@ -46,18 +46,23 @@ struct BoxBuilder {
     /// Covers every pixel whose centre may lie inside, with a margin for rounding.
     ITEM3D_HOST_DEVICE PixelBox pixels(int width, int height) const {
         constexpr float margin = 4e-3f;
-        const auto clamp = [](float value, int limit) {
-            return static_cast<std::int16_t>(
-                value < 0 ? 0.0f : (value > limit ? static_cast<float>(limit) : value));
-        };
         PixelBox box;
         if (!(low_x <= high_x) || !(low_y <= high_y)) return box;
         const float half_width = 0.5f * width, half_height = 0.5f * height;
-        box.x0 = clamp(std::ceil(low_x * half_width + half_width - 0.5f - margin), width);
-        box.x1 = clamp(std::floor(high_x * half_width + half_width - 0.5f + margin) + 1, width);
-        box.y0 = clamp(std::ceil(half_height - high_y * half_height - 0.5f - margin), height);
-        box.y1 = clamp(std::floor(half_height - low_y * half_height - 0.5f + margin) + 1, height);
+        box.x0 = first_above(low_x * half_width + half_width - 0.5f - margin, width);
+        box.x1 = first_above(high_x * half_width + half_width - 0.5f + margin, width);
+        box.y0 = first_above(half_height - high_y * half_height - 0.5f - margin, height);
+        box.y1 = first_above(half_height - low_y * half_height - 0.5f + margin, height);
         return box;
+    }
+
+  private:
+    /// The smallest whole number above `value`, in [0, limit]. Conversions instead of ceil(), which
+    /// is a function call on old x86-64.
+    ITEM3D_HOST_DEVICE static std::int16_t first_above(float value, int limit) {
+        if (!(value >= 0)) return 0;
+        if (value >= static_cast<float>(limit)) return static_cast<std::int16_t>(limit);
+        return static_cast<std::int16_t>(static_cast<int>(value) + 1);
     }
 };
 
@@ -69,21 +74,23 @@ ITEM3D_HOST_DEVICE inline void bound_triangle(const RasterParameters& p, std::in
     float near_distance[3];
     int in_front = 0;
     bool finite = true;
+    BoxBuilder builder;
     for (int i = 0; i < 3; ++i) {
         v[i] = clip + 4 * static_cast<std::int64_t>(corners[i]);
         near_distance[i] = v[i][2] + v[i][3];
         // false for NaN as well
         finite = finite && std::fabs(v[i][0]) < 1e30f && std::fabs(v[i][1]) < 1e30f &&
                  std::fabs(near_distance[i]) < 1e30f;
-        in_front += near_distance[i] >= 0 && v[i][3] > 0;
+        if (near_distance[i] >= 0 && v[i][3] > 0) {
+            ++in_front;
+            const float inverse_w = 1.0f / v[i][3];
+            builder.add(v[i][0] * inverse_w, v[i][1] * inverse_w);
+        }
     }
     PixelBox box;
     if (finite && in_front > 0) {
-        BoxBuilder builder;
-        for (int i = 0; i < 3; ++i) {
+        for (int i = 0; in_front < 3 && i < 3; ++i) {
             const int j = i == 2 ? 0 : i + 1;
-            if (near_distance[i] >= 0 && v[i][3] > 0)
-                builder.add(v[i][0] / v[i][3], v[i][1] / v[i][3]);
             if ((near_distance[i] >= 0) != (near_distance[j] >= 0)) {
                 const float t = near_distance[i] / (near_distance[i] - near_distance[j]);
                 float w = v[i][3] + t * (v[j][3] - v[i][3]);
@@ -99,9 +106,9 @@ ITEM3D_HOST_DEVICE inline void bound_triangle(const RasterParameters& p, std::in
 
 /// Edge functions of one triangle, all positive inside.
 struct TriangleEdges {
-    double a[3], b[3], c[3];     ///< e_i = a x + b y + c in normalized device coordinates
-    bool keeps_zero[3];          ///< whether e_i = 0 belongs to this triangle
-    double inverse_determinant;  ///< 1/w at a pixel = (e_0 + e_1 + e_2) * inverse_determinant
+    double a[3], b[3], c[3];  ///< e_i = a x + b y + c in normalized device coordinates
+    bool keeps_zero[3];       ///< whether e_i = 0 belongs to this triangle
+    double determinant;       ///< above 0; 1/w at a pixel = (e_0 + e_1 + e_2) / determinant
 
     /// False for triangles without area on the screen.
     ITEM3D_HOST_DEVICE bool set(const float* v0, const float* v1, const float* v2) {
@@ -114,7 +121,7 @@ struct TriangleEdges {
             b[i] = pw * qx - px * qw;
             c[i] = px * qy - py * qx;
         }
-        const double determinant = a[0] * v0[0] + b[0] * v0[1] + c[0] * v0[3];
+        determinant = a[0] * v0[0] + b[0] * v0[1] + c[0] * v0[3];
         if (!(determinant > 0) && !(determinant < 0)) return false;
         if (determinant < 0) {
             for (int i = 0; i < 3; ++i) {
@@ -122,8 +129,8 @@ struct TriangleEdges {
                 b[i] = -b[i];
                 c[i] = -c[i];
             }
+            determinant = -determinant;
         }
-        inverse_determinant = 1.0 / (determinant < 0 ? -determinant : determinant);
         for (int i = 0; i < 3; ++i)
             keeps_zero[i] = a[i] > 0 || (a[i] == 0 && (b[i] > 0 || (b[i] == 0 && c[i] > 0)));
         return true;
@@ -151,13 +158,12 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
 
     double near_distance[3];
     bool crosses_near = false;
-    double low_inverse = 1e300, high_inverse = 0;
+    float least_w = v[0][3], largest_w = v[0][3];
     for (int i = 0; i < 3; ++i) {
         near_distance[i] = static_cast<double>(v[i][2]) + v[i][3];
         crosses_near = crosses_near || near_distance[i] < 0 || v[i][3] <= 0;
-        const double inverse = 1.0 / v[i][3];
-        low_inverse = inverse < low_inverse ? inverse : low_inverse;
-        high_inverse = inverse > high_inverse ? inverse : high_inverse;
+        least_w = v[i][3] < least_w ? v[i][3] : least_w;
+        largest_w = v[i][3] > largest_w ? v[i][3] : largest_w;
     }
 
     const double step_x = 2.0 / p.width, step_y = 2.0 / p.height;
@@ -196,14 +202,14 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
             if (!inside) continue;
             const double sum = e[0] + e[1] + e[2];
             if (!(sum > 0)) continue;
-            double inverse_w = sum * edges.inverse_determinant;
+            double inverse_w = sum / edges.determinant;
             if (crosses_near) {
                 if (e[0] * near_distance[0] + e[1] * near_distance[1] + e[2] * near_distance[2] < 0)
                     continue;
             } else {
                 // Slivers: rounding must not push them in front of everything else.
-                inverse_w = inverse_w < low_inverse ? low_inverse : inverse_w;
-                inverse_w = inverse_w > high_inverse ? high_inverse : inverse_w;
+                if (inverse_w * largest_w < 1) inverse_w = 1.0 / largest_w;
+                if (inverse_w * least_w > 1) inverse_w = 1.0 / least_w;
             }
             visit(row_pixel + x, static_cast<float>(inverse_w), e, sum);
         }
