@@ -164,7 +164,8 @@ TEST(CudaKernels, KeysGiveTheCpusRaster) {
             2,
             3};
         for (std::int64_t i = 0; i < 2 * triangles; ++i)
-            kernels::bound_triangle(keyed.raster, i);
+            kernels::bound_triangle(keyed.raster, i / keyed.raster.triangle_count,
+                                    i % keyed.raster.triangle_count);
         for (std::int64_t i = 2 * triangles * keyed.bands; i-- > 0;)
             kernels::rasterize_keys(keyed, i);
         for (std::int64_t i = 0; i < depth.numel(); ++i)

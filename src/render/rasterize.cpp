@@ -74,9 +74,7 @@ class BandBins {
                 const std::int64_t view = i / chunks_, first = i % chunks_ * chunk;
                 const std::int64_t last = std::min(first + chunk, parameters.triangle_count);
                 for (std::int64_t t = first; t < last; ++t) {
-                    const std::int64_t index = view * parameters.triangle_count + t;
-                    kernels::bound_triangle(parameters, index);
-                    const kernels::PixelBox box = parameters.boxes[index];
+                    const kernels::PixelBox box = kernels::bound_triangle(parameters, view, t);
                     if (box.x0 >= box.x1 || box.y0 >= box.y1) continue;
                     const int top = band_of_row[static_cast<std::size_t>(box.y0)];
                     const int bottom = band_of_row[static_cast<std::size_t>(box.y1 - 1)];

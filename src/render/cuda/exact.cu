@@ -13,7 +13,10 @@ int project_vertices(const kernels::ProjectParameters& p, std::int64_t count, St
 
 int bound_triangles(const kernels::RasterParameters& p, std::int64_t count, Stream stream) {
     return launch(
-        "bound_triangles", count, [=] __device__(std::int64_t i) { kernels::bound_triangle(p, i); },
+        "bound_triangles", count,
+        [=] __device__(std::int64_t i) {
+            kernels::bound_triangle(p, i / p.triangle_count, i % p.triangle_count);
+        },
         stream);
 }
 

@@ -66,10 +66,11 @@ struct BoxBuilder {
     }
 };
 
-/// index: view * T + triangle. Fills boxes[index].
-ITEM3D_HOST_DEVICE inline void bound_triangle(const RasterParameters& p, std::int64_t index) {
-    const float* clip = p.positions_clip + 4 * p.vertices * (index / p.triangle_count);
-    const std::int32_t* corners = p.triangles + 3 * (index % p.triangle_count);
+/// Fills and returns boxes[view * T + triangle].
+ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std::int64_t view,
+                                                  std::int64_t triangle) {
+    const float* clip = p.positions_clip + 4 * p.vertices * view;
+    const std::int32_t* corners = p.triangles + 3 * triangle;
     const float* v[3];
     float near_distance[3];
     int in_front = 0;
@@ -101,7 +102,8 @@ ITEM3D_HOST_DEVICE inline void bound_triangle(const RasterParameters& p, std::in
         }
         box = builder.pixels(p.width, p.height);
     }
-    p.boxes[index] = box;
+    p.boxes[view * p.triangle_count + triangle] = box;
+    return box;
 }
 
 /// Edge functions of one triangle, all positive inside.
@@ -166,6 +168,8 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
         largest_w = v[i][3] > largest_w ? v[i][3] : largest_w;
     }
 
+    // Divisions wait for the first fragment: most of a million triangles have none.
+    double inverse_determinant = 0, low_inverse = 0, high_inverse = 0;
     const double step_x = 2.0 / p.width, step_y = 2.0 / p.height;
     const bool wide = box.x1 - box.x0 > 8;
     for (int y = y0; y < y1; ++y) {
@@ -202,14 +206,19 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
             if (!inside) continue;
             const double sum = e[0] + e[1] + e[2];
             if (!(sum > 0)) continue;
-            double inverse_w = sum / edges.determinant;
+            if (inverse_determinant == 0) {
+                inverse_determinant = 1.0 / edges.determinant;
+                low_inverse = 1.0 / largest_w;
+                high_inverse = 1.0 / least_w;
+            }
+            double inverse_w = sum * inverse_determinant;
             if (crosses_near) {
                 if (e[0] * near_distance[0] + e[1] * near_distance[1] + e[2] * near_distance[2] < 0)
                     continue;
             } else {
                 // Slivers: rounding must not push them in front of everything else.
-                if (inverse_w * largest_w < 1) inverse_w = 1.0 / largest_w;
-                if (inverse_w * least_w > 1) inverse_w = 1.0 / least_w;
+                inverse_w = inverse_w < low_inverse ? low_inverse : inverse_w;
+                inverse_w = inverse_w > high_inverse ? high_inverse : inverse_w;
             }
             visit(row_pixel + x, static_cast<float>(inverse_w), e, sum);
         }
