@@ -107,18 +107,51 @@ struct SampleTexture : torch::autograd::Function<SampleTexture> {
     }
 };
 
+/// [2H, 2W, C] -> [H, W, C], the mean of 2 x 2 texels.
+struct HalveTexture : torch::autograd::Function<HalveTexture> {
+    static torch::Tensor forward(AutogradContext*, const torch::Tensor& fine) {
+        torch::Tensor coarse =
+            torch::empty({fine.size(0) / 2, fine.size(1) / 2, fine.size(2)}, fine.options());
+        const auto width = static_cast<int>(fine.size(1)),
+                   channels = static_cast<int>(fine.size(2));
+        const float* in = fine.const_data_ptr<float>();
+        float* out = coarse.data_ptr<float>();
+        parallel_for(
+            "halve_texture", coarse.size(0) * coarse.size(1),
+            [=](std::int64_t i) { kernels::halve_texture(in, width, channels, i, out); }, 16384);
+        return coarse;
+    }
+    static tensor_list backward(AutogradContext*, tensor_list gradients) {
+        const torch::Tensor coarse = gradients[0].contiguous();
+        torch::Tensor fine = torch::empty({2 * coarse.size(0), 2 * coarse.size(1), coarse.size(2)},
+                                          coarse.options());
+        const auto width = static_cast<int>(fine.size(1)),
+                   channels = static_cast<int>(fine.size(2));
+        const float* in = coarse.const_data_ptr<float>();
+        float* out = fine.data_ptr<float>();
+        parallel_for(
+            "halve_texture backward", coarse.size(0) * coarse.size(1),
+            [=](std::int64_t i) { kernels::halve_texture_backward(in, width, channels, i, out); },
+            16384);
+        return {fine};
+    }
+};
+
 }  // namespace
 
 std::vector<torch::Tensor> texture_pyramid(const torch::Tensor& texture) {
     std::vector<torch::Tensor> levels{texture.contiguous()};
     while (levels.size() < kernels::max_texture_levels &&
            std::max(levels.back().size(0), levels.back().size(1)) > 1) {
-        const torch::Tensor fine = levels.back().permute({2, 0, 1}).unsqueeze(0);
-        const std::int64_t height = std::max<std::int64_t>(1, fine.size(2) / 2);
-        const std::int64_t width = std::max<std::int64_t>(1, fine.size(3) / 2);
-        const bool even = fine.size(2) == 2 * height && fine.size(3) == 2 * width;
-        const torch::Tensor coarse =
-            even ? torch::avg_pool2d(fine, 2) : torch::adaptive_avg_pool2d(fine, {height, width});
+        const torch::Tensor& fine = levels.back();
+        const std::int64_t height = std::max<std::int64_t>(1, fine.size(0) / 2);
+        const std::int64_t width = std::max<std::int64_t>(1, fine.size(1) / 2);
+        if (fine.size(0) == 2 * height && fine.size(1) == 2 * width && fine.is_cpu()) {
+            levels.push_back(HalveTexture::apply(fine));
+            continue;
+        }
+        const torch::Tensor planes = fine.permute({2, 0, 1}).unsqueeze(0);
+        const torch::Tensor coarse = torch::adaptive_avg_pool2d(planes, {height, width});
         levels.push_back(coarse.squeeze(0).permute({1, 2, 0}).contiguous());
     }
     return levels;

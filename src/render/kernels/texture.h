@@ -46,6 +46,13 @@ struct TextureTaps {
     float x, y;  ///< fractions towards the right and down
 };
 
+/// The largest whole number that is not above |value| < 2^62. Old x86-64 has no instruction for
+/// floor().
+ITEM3D_HOST_DEVICE inline std::int64_t whole_below(double value) {
+    const auto whole = static_cast<std::int64_t>(value);
+    return whole - (value < static_cast<double>(whole) ? 1 : 0);
+}
+
 ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureLevel& level, float u, float v,
                                                    TextureWrap wrap_u, TextureWrap wrap_v) {
     const auto coordinate = [](float value, int size) {
@@ -56,20 +63,22 @@ ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureLevel& level, fl
         return static_cast<double>(value) * size - 0.5;
     };
     const double x = coordinate(u, level.width), y = coordinate(v, level.height);
-    const double floor_x = std::floor(x), floor_y = std::floor(y);
-    const float fx = static_cast<float>(x - floor_x), fy = static_cast<float>(y - floor_y);
-    const auto wrapped = [](double i, int size, TextureWrap wrap) {
-        // Reduced in double first: an integer cannot hold 1e6 repeats of a large texture.
+    const std::int64_t left = whole_below(x), top = whole_below(y);
+    const float fx = static_cast<float>(x - static_cast<double>(left));
+    const float fy = static_cast<float>(y - static_cast<double>(top));
+    const auto wrapped = [](std::int64_t i, int size, TextureWrap wrap) {
+        if (i >= 0 && i < size) return static_cast<int>(i);
+        // Reduced in 64 bits first: 32 cannot hold 1e6 repeats of a large texture.
         if (wrap == TextureWrap::clamp_to_edge)
             i = i < -1 ? -1 : (i > size ? size : i);
         else
-            i -= std::floor(i / (2.0 * size)) * (2.0 * size);
+            i %= 2 * static_cast<std::int64_t>(size);
         return wrap_texel(static_cast<int>(i), size, wrap);
     };
-    const int x0 = wrapped(floor_x, level.width, wrap_u);
-    const int x1 = wrapped(floor_x + 1, level.width, wrap_u);
-    const int y0 = wrapped(floor_y, level.height, wrap_v);
-    const int y1 = wrapped(floor_y + 1, level.height, wrap_v);
+    const int x0 = wrapped(left, level.width, wrap_u);
+    const int x1 = wrapped(left + 1, level.width, wrap_u);
+    const int y0 = wrapped(top, level.height, wrap_v);
+    const int y1 = wrapped(top + 1, level.height, wrap_v);
     const std::int64_t row0 = static_cast<std::int64_t>(y0) * level.width;
     const std::int64_t row1 = static_cast<std::int64_t>(y1) * level.width;
     return {{row0 + x0, row0 + x1, row1 + x0, row1 + x1},
@@ -139,19 +148,57 @@ ITEM3D_HOST_DEVICE inline void for_each_lookup(const TextureParameters& p, std::
     }
 }
 
-ITEM3D_HOST_DEVICE inline void texture_forward(const TextureParameters& p, std::int64_t index,
-                                               float* values) {
-    float* out = values + index * p.channels;
-    for (int c = 0; c < p.channels; ++c)
+/// Channels: their number where it is known when compiling, else 0.
+template <int Channels>
+ITEM3D_HOST_DEVICE inline void texture_sum(const TextureParameters& p, std::int64_t index,
+                                           float* values) {
+    const int channels = Channels > 0 ? Channels : p.channels;
+    float* out = values + index * channels;
+    for (int c = 0; c < channels; ++c)
         out[c] = 0;
     for_each_lookup(p, index, [&](const TextureLevel& level, const TextureTaps& taps, float share) {
-        for (int c = 0; c < p.channels; ++c) {
+        for (int c = 0; c < channels; ++c) {
             float sum = 0;
             for (int k = 0; k < 4; ++k)
-                sum += taps.weight[k] * level.texels[taps.texel[k] * p.channels + c];
+                sum += taps.weight[k] * level.texels[taps.texel[k] * channels + c];
             out[c] += share * sum;
         }
     });
+}
+
+ITEM3D_HOST_DEVICE inline void texture_forward(const TextureParameters& p, std::int64_t index,
+                                               float* values) {
+    switch (p.channels) {
+        case 3:
+            return texture_sum<3>(p, index, values);
+        case 4:
+            return texture_sum<4>(p, index, values);
+        default:
+            return texture_sum<0>(p, index, values);
+    }
+}
+
+/// A level half as large: the means of 2 x 2 texels. index: y * width / 2 + x of the new level.
+ITEM3D_HOST_DEVICE inline void halve_texture(const float* fine, int fine_width, int channels,
+                                             std::int64_t index, float* coarse) {
+    const std::int64_t width = fine_width / 2, y = index / width, x = index % width;
+    const float* above = fine + (2 * y * fine_width + 2 * x) * channels;
+    const float* below = above + static_cast<std::int64_t>(fine_width) * channels;
+    float* out = coarse + index * channels;
+    for (int c = 0; c < channels; ++c)
+        out[c] = 0.25f * ((above[c] + above[c + channels]) + (below[c] + below[c + channels]));
+}
+
+/// The gradient of the four texels that coarse texel `index` is the mean of.
+ITEM3D_HOST_DEVICE inline void halve_texture_backward(const float* coarse_gradient, int fine_width,
+                                                      int channels, std::int64_t index,
+                                                      float* fine_gradient) {
+    const std::int64_t width = fine_width / 2, y = index / width, x = index % width;
+    float* above = fine_gradient + (2 * y * fine_width + 2 * x) * channels;
+    float* below = above + static_cast<std::int64_t>(fine_width) * channels;
+    const float* in = coarse_gradient + index * channels;
+    for (int c = 0; c < channels; ++c)
+        above[c] = above[c + channels] = below[c] = below[c + channels] = 0.25f * in[c];
 }
 
 /// Adds to the levels' gradients, each from its `first` on.
