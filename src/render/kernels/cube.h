@@ -50,16 +50,39 @@ ITEM3D_HOST_DEVICE inline float texel_centre(int i, int size) {
     return (2 * i + 1) / static_cast<float>(size) - 1.0f;
 }
 
-/// Four texels of a [6, size, size] map with bilinear weights and the weights' derivatives by the
-/// texel coordinates x, y.
+/// Four texels of a [6, size, size] map with bilinear weights.
 struct CubeTaps {
     std::int32_t texel[4];
     float weight[4];
-    float weight_x[4];
-    float weight_y[4];
-    Vec3 gradient_x;  ///< of texel coordinate x by direction
-    Vec3 gradient_y;
+    // For cube_direction_gradient():
+    int face;
+    int corner;  ///< the tap outside of a cube's corner, whose weight the others share; -1: none
+    float s, t;  ///< face coordinates of the direction
+    float x, y;  ///< fractions towards the right and down
+    float texels_by;  ///< texels on the face for a unit of direction along s or t
 };
+
+/// Face coordinates of a direction, times `major`.
+struct FaceCoordinates {
+    float s, t, major;
+};
+
+ITEM3D_HOST_DEVICE inline FaceCoordinates face_coordinates(int face, Vec3 d) {
+    switch (face) {
+        case 0:
+            return {-d.z, -d.y, d.x};
+        case 1:
+            return {d.z, -d.y, -d.x};
+        case 2:
+            return {d.x, d.z, d.y};
+        case 3:
+            return {d.x, -d.z, -d.y};
+        case 4:
+            return {d.x, -d.y, d.z};
+        default:
+            return {-d.x, -d.y, -d.z};
+    }
+}
 
 /// The texel beyond the edge of a face: x or y (not both) is -1 or size.
 ITEM3D_HOST_DEVICE inline std::int32_t texel_over_edge(const CubeFrame& frame, int x, int y,
@@ -82,43 +105,47 @@ ITEM3D_HOST_DEVICE inline std::int32_t texel_over_edge(const CubeFrame& frame, i
 
 ITEM3D_HOST_DEVICE inline CubeTaps cube_taps(Vec3 d, int size) {
     CubeTaps taps;
-    const int face = cube_face(d);
-    const CubeFrame frame = cube_frame(face);
-    const float inverse = 1.0f / glm::dot(frame.normal, d);
-    const float s = glm::dot(frame.s, d) * inverse, t = glm::dot(frame.t, d) * inverse;
-    const float half = 0.5f * size;
-    taps.gradient_x = (frame.s - s * frame.normal) * (half * inverse);
-    taps.gradient_y = (frame.t - t * frame.normal) * (half * inverse);
+    taps.face = cube_face(d);
+    taps.corner = -1;
+    const FaceCoordinates on_face = face_coordinates(taps.face, d);
+    const float inverse = 1.0f / on_face.major, half = 0.5f * size;
+    taps.s = on_face.s * inverse;
+    taps.t = on_face.t * inverse;
+    taps.texels_by = half * inverse;
 
-    const float x = s * half + half - 0.5f, y = t * half + half - 0.5f;
+    const float x = taps.s * half + half - 0.5f, y = taps.t * half + half - 0.5f;
     const int x0 = static_cast<int>(x + 1.0f) - 1, y0 = static_cast<int>(y + 1.0f) - 1;
-    const float fx = x - x0, fy = y - y0;
-    const float wx[2] = {1 - fx, fx}, wy[2] = {1 - fy, fy};
-    int corner = -1;
+    taps.x = x - x0;
+    taps.y = y - y0;
+    taps.weight[0] = (1 - taps.x) * (1 - taps.y);
+    taps.weight[1] = taps.x * (1 - taps.y);
+    taps.weight[2] = (1 - taps.x) * taps.y;
+    taps.weight[3] = taps.x * taps.y;
+    if (x0 >= 0 && y0 >= 0 && x0 + 1 < size && y0 + 1 < size) {
+        taps.texel[0] = (taps.face * size + y0) * size + x0;
+        taps.texel[1] = taps.texel[0] + 1;
+        taps.texel[2] = taps.texel[0] + size;
+        taps.texel[3] = taps.texel[2] + 1;
+        return taps;
+    }
+    const CubeFrame frame = cube_frame(taps.face);
     for (int i = 0; i < 4; ++i) {
         const int column = x0 + (i & 1), row = y0 + (i >> 1);
         const bool out_x = column < 0 || column >= size, out_y = row < 0 || row >= size;
-        taps.weight[i] = wx[i & 1] * wy[i >> 1];
-        taps.weight_x[i] = ((i & 1) ? 1.0f : -1.0f) * wy[i >> 1];
-        taps.weight_y[i] = ((i >> 1) ? 1.0f : -1.0f) * wx[i & 1];
         if (out_x && out_y) {
-            corner = i;
+            taps.corner = i;
             taps.texel[i] = 0;
         } else if (out_x || out_y) {
             taps.texel[i] = texel_over_edge(frame, column, row, size);
         } else {
-            taps.texel[i] = (face * size + row) * size + column;
+            taps.texel[i] = (taps.face * size + row) * size + column;
         }
     }
-    if (corner >= 0) {
+    if (taps.corner >= 0) {
         // Three texels meet at a cube's corner; the fourth is their mean.
-        for (int i = 0; i < 4; ++i) {
-            if (i == corner) continue;
-            taps.weight[i] += taps.weight[corner] / 3;
-            taps.weight_x[i] += taps.weight_x[corner] / 3;
-            taps.weight_y[i] += taps.weight_y[corner] / 3;
-        }
-        taps.weight[corner] = taps.weight_x[corner] = taps.weight_y[corner] = 0;
+        const float share = taps.weight[taps.corner] / 3;
+        for (int i = 0; i < 4; ++i)
+            taps.weight[i] = i == taps.corner ? 0.0f : taps.weight[i] + share;
     }
     return taps;
 }
@@ -135,14 +162,18 @@ ITEM3D_HOST_DEVICE inline Vec3 cube_value(const float* map, const CubeTaps& taps
 /// Gradient by the direction of dot(gradient, cube_value).
 ITEM3D_HOST_DEVICE inline Vec3 cube_direction_gradient(const float* map, const CubeTaps& taps,
                                                        Vec3 gradient) {
-    float by_x = 0, by_y = 0;
+    float value[4], total = 0;
     for (int i = 0; i < 4; ++i) {
         const float* texel = map + 3 * taps.texel[i];
-        const float value = glm::dot(gradient, Vec3(texel[0], texel[1], texel[2]));
-        by_x += taps.weight_x[i] * value;
-        by_y += taps.weight_y[i] * value;
+        value[i] = gradient.x * texel[0] + gradient.y * texel[1] + gradient.z * texel[2];
+        total += value[i];
     }
-    return by_x * taps.gradient_x + by_y * taps.gradient_y;
+    if (taps.corner >= 0) value[taps.corner] = (total - value[taps.corner]) / 3;
+    const float by_x = (1 - taps.y) * (value[1] - value[0]) + taps.y * (value[3] - value[2]);
+    const float by_y = (1 - taps.x) * (value[2] - value[0]) + taps.x * (value[3] - value[1]);
+    const CubeFrame frame = cube_frame(taps.face);
+    return taps.texels_by *
+           (by_x * (frame.s - taps.s * frame.normal) + by_y * (frame.t - taps.t * frame.normal));
 }
 
 /// first: where the map's gradient begins in `sums`.
