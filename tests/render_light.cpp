@@ -179,6 +179,81 @@ TEST(Equirectangular, GradientIsTheTranspose) {
                       torch::rand({64, 128, 3}));
 }
 
+TEST(AdjustLight, IsThatOfImages) {
+    torch::manual_seed(5);
+    const torch::Tensor map = torch::rand({4, 16, 3});
+    for (const float degrees : {0.0f, 33.0f, -100.0f, 360.0f, 765.0f}) {
+        const Image expected = adjust_light(to_image(map), degrees, -1.5f);
+        const torch::Tensor found = adjust_light(map, torch::tensor(degrees), torch::tensor(-1.5f));
+        EXPECT_LT((found - to_tensor(expected)).abs().max().item<float>(), 2e-5f) << degrees;
+    }
+}
+
+TEST(AdjustLight, GradientsByTexelsAngleAndExposure) {
+    torch::manual_seed(6);
+    const auto real = torch::TensorOptions().dtype(torch::kFloat64);
+    const std::array<torch::Tensor, 3> at = {torch::rand({4, 16, 3}, real),
+                                             torch::tensor(40.0, real), torch::tensor(0.7, real)};
+    const torch::Tensor weights = torch::randn({4, 16, 3}, real);
+    const auto loss = [&](const std::array<torch::Tensor, 3>& x) {
+        return (adjust_light(x[0], x[1], x[2]) * weights).sum();
+    };
+    std::array<torch::Tensor, 3> leaves;
+    for (std::size_t i = 0; i < 3; ++i)
+        leaves[i] = at[i].clone().set_requires_grad(true);
+    loss(leaves).backward();
+    constexpr double step = 1e-6;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::int64_t k = 0; k < at[i].numel(); k += 7) {
+            auto low = at, high = at;
+            low[i] = at[i].clone();
+            high[i] = at[i].clone();
+            low[i].view(-1)[k] -= step;
+            high[i].view(-1)[k] += step;
+            const double slope = (loss(high) - loss(low)).item<double>() / (2 * step);
+            EXPECT_NEAR(leaves[i].grad().view(-1)[k].item<double>(), slope, 1e-7) << i << ' ' << k;
+        }
+    }
+}
+
+/// The picture of a lit sphere, by the light's angle and exposure: all the way through the cube,
+/// the prefilter and the shading.
+TEST(AdjustLight, GradientsThroughThePicture) {
+    torch::manual_seed(7);
+    const Model sphere = make_unit_sphere(32, 16);
+    const Geometry geometry = Geometry::from_model(sphere);
+    const std::vector<Camera> cameras{testing::front_camera()};
+    const Raster raster = rasterize(geometry, cameras, 24, 24);
+    const Surface surface = interpolate_surface(geometry, raster, cameras);
+    MaterialSample material;
+    material.base_color = torch::rand({surface.count(), 3});
+    material.orm = torch::tensor({1.0f, 0.4f, 0.5f}).repeat({surface.count(), 1});
+    const torch::Tensor map = to_tensor(make_light_preset("studio", 64));
+    const torch::Tensor weights = torch::rand({surface.count(), 3}, torch::kFloat64);
+    const auto loss = [&](const torch::Tensor& degrees, const torch::Tensor& exposure) {
+        const EnvironmentLight light =
+            prefilter(equirectangular_to_cube(adjust_light(map, degrees, exposure), 32));
+        return (shade(surface, material, light).to(torch::kFloat64) * weights).mean();
+    };
+    // In the middle between two columns: the interpolation's slope jumps at them.
+    const float angle = 360.0f / 128 * 10.5f;
+    torch::Tensor degrees = torch::tensor(angle).set_requires_grad(true);
+    torch::Tensor exposure = torch::tensor(0.3f).set_requires_grad(true);
+    loss(degrees, exposure).backward();
+    const auto slope = [&](float by_degrees, float by_exposure) {
+        const auto at = [&](float sign) {
+            return loss(torch::tensor(angle + sign * by_degrees),
+                        torch::tensor(0.3f + sign * by_exposure))
+                .item<double>();
+        };
+        return (at(1) - at(-1)) / (2.0 * (by_degrees + by_exposure));
+    };
+    const double by_degrees = slope(0.8f, 0), by_exposure = slope(0, 0.05f);
+    EXPECT_NEAR(degrees.grad().item<double>(), by_degrees, 0.01 * std::abs(by_degrees));
+    EXPECT_NEAR(exposure.grad().item<double>(), by_exposure, 0.01 * std::abs(by_exposure));
+    EXPECT_GT(std::abs(by_degrees), 1e-5);
+}
+
 TEST(Prefilter, KeepsAConstant) {
     const EnvironmentLight light = prefilter(torch::full({6, 32, 32, 3}, 0.7f));
     const std::vector<float> roughness{0.08f, 0.5f, 0.63f, 0.79f, 1.0f};

@@ -19,6 +19,12 @@ struct EnvironmentLight {
 /// [H, 2H, 3] equirectangular linear radiance -> [6, size, size, 3], differentiable.
 torch::Tensor equirectangular_to_cube(const torch::Tensor& equirectangular, int size);
 
+/// The light of scene/environment.h's adjust_light, differentiable: [H, W, 3] equirectangular
+/// radiance turned around +Y by `degrees` and multiplied by 2^exposure (scalar tensors). Columns
+/// are interpolated, so the derivative by the angle is that of the line between two of them.
+torch::Tensor adjust_light(const torch::Tensor& equirectangular, const torch::Tensor& degrees,
+                           const torch::Tensor& exposure);
+
 /// Differentiable in `cube` [6, S, S, 3]. S is a power of two in [16, 1024]; the chain halves S
 /// down to 32 with two lobes a resolution, roughness 0.08 .. 0.5 in equal ratios, then stays there
 /// for 0.5, 0.63, 0.79 and 1.

@@ -87,4 +87,22 @@ torch::Tensor equirectangular_to_cube(const torch::Tensor& equirectangular, int 
     return EquirectangularToCube::apply(map, static_cast<std::int64_t>(size));
 }
 
+torch::Tensor adjust_light(const torch::Tensor& equirectangular, const torch::Tensor& degrees,
+                           const torch::Tensor& exposure) {
+    ITEM3D_CHECK(equirectangular.dim() == 3 && equirectangular.size(1) >= 1,
+                 "adjust_light: equirectangular must be [H, W, C]");
+    ITEM3D_CHECK(degrees.numel() == 1 && exposure.numel() == 1,
+                 "adjust_light: degrees and exposure are scalars");
+    const std::int64_t width = equirectangular.size(1);
+    const torch::Tensor source =
+        torch::arange(width, equirectangular.options()) - degrees * (width / 360.0);
+    const torch::Tensor floor = source.detach().floor();
+    const torch::Tensor left = torch::remainder(floor, width).to(torch::kInt64);
+    const torch::Tensor right = torch::remainder(floor + 1, width).to(torch::kInt64);
+    const torch::Tensor weight = (source - floor).view({1, width, 1});
+    const torch::Tensor turned = (1 - weight) * equirectangular.index_select(1, left) +
+                                 weight * equirectangular.index_select(1, right);
+    return turned * torch::exp2(exposure);
+}
+
 }  // namespace item3d
