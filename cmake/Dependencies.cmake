@@ -21,7 +21,9 @@ endif()
 
 add_library(item3d_warnings INTERFACE)
 target_link_libraries(item3d_warnings INTERFACE item3d_options)
-target_compile_options(item3d_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror)
+target_compile_options(item3d_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
+    # How vectors are passed between files; ours are inlined.
+    -Wno-psabi)
 
 if(NOT ITEM3D_LOADERS_ONLY)
     include(LibTorch)

@@ -218,6 +218,18 @@ TEST(Render, MaskedAndBlendedLayersShowWhatLiesBehind) {
     expect_rows(centre().unsqueeze(0), {1, 0, 0, 1});
 }
 
+TEST(Render, UnlitMaterialsShowTheirBaseColorInAnyLight) {
+    Model model = quad_model();
+    model.materials[0].base_color_factor = Vec4(0.2f, 0.4f, 0.6f, 1);
+    model.materials[0].unlit = true;
+    for (const float radiance : {0.0f, 1.0f, 20.0f}) {
+        const EnvironmentLight light = prefilter(torch::full({6, 16, 16, 3}, radiance));
+        const torch::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
+                                             light, {front_camera(5, 0.5f)}, small_picture());
+        expect_rows(picture[0][8][12].unsqueeze(0), {0.2f, 0.4f, 0.6f, 1});
+    }
+}
+
 TEST(Render, AViewThatSeesNothingIsEmpty) {
     const Model model = quad_model();
     Camera away = front_camera(3);

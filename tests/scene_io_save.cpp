@@ -281,6 +281,23 @@ TEST(SaveModel, ReplacesSpecularGlossiness) {
     EXPECT_GE(material.base_color_texture, 0);
 }
 
+TEST(SaveModel, UnlitMaterialsStayUnlitUntilTheyAreEdited) {
+    const fs::path folder = fresh_folder("unlit");
+    Model model = load_model(data_folder() / "gltf" / "vertex_colors_u8.glb");
+    EXPECT_FALSE(model.materials[0].unlit);
+    model.materials[0].unlit = true;
+    model.source.reset();
+    save_model(folder / "a.gltf", model);
+    const auto json = read_gltf_file(folder / "a.gltf").json;
+    EXPECT_EQ(json["extensionsUsed"], nlohmann::json::array({"KHR_materials_unlit"}));
+    const Model unlit = load_model(folder / "a.gltf");
+    EXPECT_TRUE(unlit.materials[0].unlit);
+    ModelEdit edit;
+    edit.materials[0].base_color = checkered_image(4, 4, 3);
+    save_model(folder / "b.gltf", unlit, edit);
+    EXPECT_FALSE(load_model(folder / "b.gltf").materials[0].unlit);
+}
+
 TEST(SaveModel, KeepsTheTextureTransformWhenTheLayoutStays) {
     const fs::path folder = fresh_folder("transform");
     const Model model = load_model(data_folder() / "gltf" / "texcoord1_transform.glb");

@@ -1,6 +1,7 @@
 #include "item3d/edit/scene.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/progress.h"
 #include "item3d/scene/io/load.h"
 
 namespace item3d {
@@ -32,6 +33,12 @@ EditScene load_scene(const EditRequest& request) {
     EditScene scene;
     scene.model = load_model(request.model);
     scene.materials = select_materials(scene.model, settings.material);
+    for (const int index : scene.materials) {
+        Material& material = scene.model.materials[static_cast<std::size_t>(index)];
+        if (material.unlit)
+            note("material '" + material.name + "' is unlit; edited, it is a surface in light");
+        material.unlit = false;
+    }
     scene.channels = edited_channels(settings);
     scene.geometry = Geometry::from_model(scene.model, device);
     scene.sphere = bounding_sphere(scene.model);

@@ -92,62 +92,107 @@ SplitKernel split_kernel(const ZonalKernel& kernel, float at) {
     return split;
 }
 
-using AddRow = void (*)(const ZonalKernel&, const kernels::ZonalRow&, kernels::ZonalSums&);
+using Gather = void (*)(const kernels::ZonalParameters&, std::int64_t);
 
 #if defined(__x86_64__) && defined(__GNUC__)
-// The rows take nearly all of the time, and eight lanes halve it.
+// The sums take nearly all of the time, and eight lanes halve it.
 template <bool Cosine>
-__attribute__((target("avx2,fma"))) void zonal_row_avx2(const ZonalKernel& kernel,
-                                                        const kernels::ZonalRow& row,
-                                                        kernels::ZonalSums& sums) {
-    kernels::zonal_row<Cosine>(kernel, row, sums);
+__attribute__((target("avx2,fma"))) void zonal_gather_avx2(const kernels::ZonalParameters& p,
+                                                           std::int64_t index) {
+    kernels::zonal_gather<Cosine>(p, index);
 }
 template <bool Cosine>
-AddRow fastest_row() {
+Gather fastest_gather() {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
-               ? zonal_row_avx2<Cosine>
-               : kernels::zonal_row<Cosine>;
+               ? zonal_gather_avx2<Cosine>
+               : kernels::zonal_gather<Cosine>;
 }
 #else
 template <bool Cosine>
-AddRow fastest_row() {
-    return kernels::zonal_row<Cosine>;
+Gather fastest_gather() {
+    return kernels::zonal_gather<Cosine>;
 }
 #endif
 
-/// Sums [6, R, R, 4] of the kernel over flux [6, S, S, 4].
-torch::Tensor zonal_sums(const torch::Tensor& flux, int out_size, const ZonalKernel& kernel) {
-    const torch::Tensor planes = flux.permute({3, 0, 1, 2}).contiguous();
-    const int size = static_cast<int>(planes.size(2));
+/// flux [6, S, S, 4] as ZonalParameters::source wants it.
+torch::Tensor turned_planes(const torch::Tensor& flux_) {
+    const torch::Tensor flux = flux_.contiguous();
+    const auto size = static_cast<int>(flux.size(1));
+    const std::int64_t plane = kernels::zonal_plane(size);
+    torch::Tensor planes = torch::empty({6, 4, plane});
+    const float* in = flux.const_data_ptr<float>();
+    float* out = planes.data_ptr<float>();
+    const std::int64_t face_texels = static_cast<std::int64_t>(size) * size;
+    parallel_for(
+        "turn_planes", 36 * static_cast<std::int64_t>(size),
+        [=](std::int64_t i) {
+            const auto row = static_cast<int>(i % size), face = static_cast<int>(i / size % 6);
+            const auto to = static_cast<int>(i / size / 6);
+            const kernels::TurnedFace turned = kernels::turned_face(to, face, size);
+            const float* source = in + 4 * (turned.face * face_texels + turned.first +
+                                            static_cast<std::int64_t>(row) * turned.row_step);
+            float* target = out + 4 * plane * to + (face * size + row) * kernels::zonal_row(size);
+            for (int column = 0; column < size; ++column)
+                for (int c = 0; c < 4; ++c)
+                    target[plane * c + column] = source[4 * turned.column_step * column + c];
+        },
+        16);
+    return planes;
+}
+
+/// Sums [6, R, R, 4] of the kernel over turned_planes().
+torch::Tensor zonal_sums(const torch::Tensor& planes, int size, int out_size,
+                         const ZonalKernel& kernel) {
     torch::Tensor out = torch::empty({6, out_size, out_size, 4}, torch::kFloat32);
     std::vector<float> centres(static_cast<std::size_t>(size));
     for (int i = 0; i < size; ++i)
         centres[static_cast<std::size_t>(i)] = kernels::texel_centre(i, size);
     std::vector<float> inverse_lengths;
+    inverse_lengths.reserve(centres.size() * centres.size());
     for (const float t : centres)
         for (const float s : centres)
             inverse_lengths.push_back(1 / std::sqrt(1 + s * s + t * t));
-    const kernels::ZonalParameters parameters{
-        kernel,         planes.const_data_ptr<float>(), size, out.data_ptr<float>(), out_size,
-        centres.data(), inverse_lengths.data()};
-    const AddRow add_row = kernel.cosine ? fastest_row<true>() : fastest_row<false>();
+    const float reach = kernel.reach();
+    // The corners of a face are 54.7 degrees off its centre.
+    const float farthest = reach + 0.9554f;
+    const kernels::ZonalParameters parameters{kernel,
+                                              planes.const_data_ptr<float>(),
+                                              size,
+                                              out.data_ptr<float>(),
+                                              out_size,
+                                              centres.data(),
+                                              inverse_lengths.data(),
+                                              std::sin(std::min(reach, 0.5f * pi)),
+                                              farthest < pi ? std::cos(farthest) : -1.0f};
+    const Gather gather = kernel.cosine ? fastest_gather<true>() : fastest_gather<false>();
+    // In squares, whose neighbourhoods in 24 planes stay in a core's cache.
+    constexpr std::int64_t square = 16;
+    const std::int64_t across = out_size / square;
     parallel_for(
-        "zonal_gather", 6 * static_cast<std::int64_t>(out_size) * out_size,
-        [=](std::int64_t i) { kernels::zonal_gather(parameters, i, add_row); }, 64);
+        "zonal_gather", static_cast<std::int64_t>(out_size) * out_size,
+        [=](std::int64_t i) {
+            const std::int64_t tile = i / (square * square), within = i % (square * square);
+            const std::int64_t row = tile / across * square + within / square;
+            const std::int64_t column = tile % across * square + within % square;
+            gather(parameters, row * out_size + column);
+        },
+        square);
     return out;
 }
 
-/// flux [6, S, S, 4] -> its sums under the kernel [6, R, R, 4].
+/// flux [6, S, S, 4] and its turned_planes() -> its sums under the kernel [6, R, R, 4].
 struct ZonalSum : torch::autograd::Function<ZonalSum> {
     static torch::Tensor forward(AutogradContext* context, const torch::Tensor& flux,
-                                 std::int64_t out_size, const ZonalKernel& kernel) {
+                                 const torch::Tensor& planes, std::int64_t out_size,
+                                 const ZonalKernel& kernel) {
         context->saved_data["size"] = flux.size(1);
         std::vector<double> numbers{kernel.cosine ? 1.0 : 0.0, kernel.alpha2_1, kernel.floor,
                                     kernel.inner, kernel.outer};
         numbers.insert(numbers.end(), kernel.inner_cap, kernel.inner_cap + 3);
         numbers.insert(numbers.end(), kernel.outer_cap, kernel.outer_cap + 3);
         context->saved_data["kernel"] = numbers;
-        return zonal_sums(flux, static_cast<int>(out_size), kernel);
+        return zonal_sums(planes, static_cast<int>(flux.size(1)), static_cast<int>(out_size),
+                          kernel);
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const std::vector<double> k = context->saved_data["kernel"].toDoubleVector();
@@ -159,9 +204,9 @@ struct ZonalSum : torch::autograd::Function<ZonalSum> {
                                  {number(5), number(6), number(7)},
                                  number(4),
                                  {number(8), number(9), number(10)}};
-        return {
-            zonal_sums(gradients[0], static_cast<int>(context->saved_data["size"].toInt()), kernel),
-            torch::Tensor(), torch::Tensor()};
+        return {zonal_sums(turned_planes(gradients[0]), static_cast<int>(gradients[0].size(1)),
+                           static_cast<int>(context->saved_data["size"].toInt()), kernel),
+                torch::Tensor(), torch::Tensor(), torch::Tensor()};
     }
 };
 
@@ -222,17 +267,24 @@ torch::Tensor mean_radiance(const torch::Tensor& sums) {
     return sums.narrow(3, 0, 3) / sums.narrow(3, 3, 1).detach().clamp_min(1e-30f);
 }
 
+/// A resolution of the environment.
+struct FluxLevel {
+    torch::Tensor flux;    ///< [6, S, S, 4] radiance times solid angle, and the solid angle
+    torch::Tensor planes;  ///< turned_planes(flux), for all lobes
+    std::int64_t size() const { return flux.size(1); }
+};
+
 /// Sums over a level of the chain at its own resolution, far texels on coarser levels down to
 /// `last`.
-torch::Tensor multilevel_sums(const std::vector<torch::Tensor>& chain, std::size_t level,
+torch::Tensor multilevel_sums(const std::vector<FluxLevel>& chain, std::size_t level,
                               std::size_t last, const ZonalKernel& kernel) {
-    const torch::Tensor& flux = chain[level];
+    const auto& [flux, planes] = chain[level];
     const std::int64_t size = flux.size(1);
     const float near = near_texels * 2 / static_cast<float>(size);
     if (level == last || near * near >= 0.7f * kernel.outer)
-        return ZonalSum::apply(flux, size, kernel);
+        return ZonalSum::apply(flux, planes, size, kernel);
     const SplitKernel split = split_kernel(kernel, near * near);
-    return ZonalSum::apply(flux, size, split.near) +
+    return ZonalSum::apply(flux, planes, size, split.near) +
            UpsampleCube::apply(multilevel_sums(chain, level + 1, last, split.rest));
 }
 
@@ -254,18 +306,20 @@ EnvironmentLight prefilter(const torch::Tensor& cube_) {
                  "S = " +
                      std::to_string(size) + " and " + std::to_string(cube.size(2)));
 
-    // Radiance times solid angle, and the solid angle.
     const torch::Tensor angles = texel_solid_angles(size).unsqueeze(-1).expand({6, size, size, 1});
-    std::vector<torch::Tensor> chain{torch::cat({cube * angles, angles}, 3)};
-    while (chain.back().size(1) > coarsest_size) {
-        const std::int64_t half = chain.back().size(1) / 2;
-        chain.push_back(chain.back().reshape({6, half, 2, half, 2, 4}).sum({2, 4}));
+    std::vector<FluxLevel> chain{{torch::cat({cube * angles, angles}, 3), {}}};
+    while (chain.back().size() > coarsest_size) {
+        const std::int64_t half = chain.back().size() / 2;
+        chain.push_back({chain.back().flux.reshape({6, half, 2, half, 2, 4}).sum({2, 4}), {}});
     }
+    for (FluxLevel& level : chain)
+        level.planes = turned_planes(level.flux.detach());
     const std::size_t smallest = chain.size() - (size > coarsest_size ? 2 : 1);  // 32 texels
 
     EnvironmentLight light;
-    light.diffuse = mean_radiance(ZonalSum::apply(chain[smallest > 0 ? smallest - 1 : 0],
-                                                  std::int64_t{diffuse_size}, cosine_kernel()));
+    const FluxLevel& diffuse = chain[smallest > 0 ? smallest - 1 : 0];
+    light.diffuse = mean_radiance(
+        ZonalSum::apply(diffuse.flux, diffuse.planes, std::int64_t{diffuse_size}, cosine_kernel()));
     const auto add = [&](std::size_t level, std::size_t last, float roughness) {
         light.specular.push_back(
             mean_radiance(multilevel_sums(chain, level, last, ggx_kernel(roughness, kept_energy))));

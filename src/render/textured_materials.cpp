@@ -52,8 +52,8 @@ struct MaterialTextures {
     Material factors;
     MaterialTexture base_color, metallic_roughness, occlusion, normal, emissive;
     bool emits() const {
-        return std::max({factors.emissive_factor.x, factors.emissive_factor.y,
-                         factors.emissive_factor.z}) > 0;
+        return factors.unlit || std::max({factors.emissive_factor.x, factors.emissive_factor.y,
+                                          factors.emissive_factor.z}) > 0;
     }
     bool transparent() const { return factors.alpha != Material::Alpha::opaque; }
 };
@@ -129,7 +129,11 @@ MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& mate
             sample.normal = row({0, 0, 1}, device).expand({count, 3});
         }
     }
-    if (any_emissive) {
+    if (factors.unlit) {
+        // Shown by itself, and black to the light.
+        sample.emissive = sample.base_color;
+        sample.orm = sample.orm * row({0, 1, 1}, device);
+    } else if (any_emissive) {
         const Vec3 emissive = factors.emissive_factor;
         sample.emissive = row({emissive.x, emissive.y, emissive.z}, device).expand({count, 3});
         if (material.emissive.defined())

@@ -46,6 +46,8 @@ struct Material {
     enum class Alpha { opaque, mask, blend } alpha = Alpha::opaque;
     float alpha_cutoff = 0.5f;
     bool double_sided = false;
+    /// The base colour is shown as it is, in any light (KHR_materials_unlit).
+    bool unlit = false;
 };
 
 /// The triangles of one primitive of one node, in world space (node transforms applied).

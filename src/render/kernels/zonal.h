@@ -16,6 +16,16 @@
 
 namespace item3d::kernels {
 
+inline constexpr int zonal_lanes = 8;
+/// Written as a vector: the compiler does not make one of the kernel's selections by itself.
+using Lanes = float __attribute__((vector_size(4 * zonal_lanes)));
+
+[[gnu::always_inline]] inline Lanes load_lanes(const float* values) {
+    Lanes lanes;
+    __builtin_memcpy(&lanes, values, sizeof lanes);
+    return lanes;
+}
+
 /// A kernel of c = n.l, written over d = 2 (1 - c), the squared chord:
 ///   k(d) = max(0, profile(c) - floor), or within a cap d < inner the parabola `inner_cap`,
 ///          less the parabola `outer_cap`; 0 from `outer` on.
@@ -30,21 +40,22 @@ struct ZonalKernel {
     float outer;
     float outer_cap[3];
 
-    template <bool Cosine>
-    ITEM3D_HOST_DEVICE float profile(float c) const {
+    /// Real: float, or Lanes of them.
+    template <bool Cosine, typename Real>
+    [[gnu::always_inline]] Real profile(Real c) const {
         if constexpr (Cosine) return c;
-        const float d = 0.5f * (1 + c) * alpha2_1 + 1;
+        const Real d = 0.5f * (1 + c) * alpha2_1 + 1;
         return c / (d * d);
     }
-    template <bool Cosine>
-    ITEM3D_HOST_DEVICE float value(float c) const {
-        if constexpr (Cosine) return c > 0 ? c : 0.0f;
-        const float d = 2 - 2 * c;
-        const float above = profile<Cosine>(c) - floor;
-        const float kernel = above > 0 ? above : 0.0f;
-        const float cap = inner_cap[0] + d * (inner_cap[1] + d * inner_cap[2]);
-        const float rest = outer_cap[0] + d * (outer_cap[1] + d * outer_cap[2]);
-        return d < outer ? (d < inner ? cap : kernel) - rest : 0.0f;
+    template <bool Cosine, typename Real>
+    [[gnu::always_inline]] Real value(Real c) const {
+        if constexpr (Cosine) return c > 0 ? c : Real{};
+        const Real d = 2 - 2 * c;
+        const Real above = profile<Cosine>(c) - floor;
+        const Real kernel = above > 0 ? above : Real{};
+        const Real cap = inner_cap[0] + d * (inner_cap[1] + d * inner_cap[2]);
+        const Real rest = outer_cap[0] + d * (outer_cap[1] + d * outer_cap[2]);
+        return d < outer ? (d < inner ? cap : kernel) - rest : Real{};
     }
     /// Half angle of the cone outside which k = 0.
     ITEM3D_HOST_DEVICE float reach() const {
@@ -55,13 +66,41 @@ struct ZonalKernel {
 
 struct ZonalParameters {
     ZonalKernel kernel;
-    const float* source;           ///< [4, 6, S, S] planes
-    int source_size;               ///< S
+    /// [6, 4, 6 * S, S], rows and planes padded: four planes of the map, turned for each face of
+    /// the output so that this face becomes face 0 (see turned_face). The kernel's values are then
+    /// those of all six.
+    const float* source;
+    int source_size;               ///< S, a multiple of zonal_lanes
     float* out;                    ///< [6, R, R, 4]: sums over the source of k times each plane
     int out_size;                  ///< R
     const float* centres;          ///< [S] texel_centre(i, S)
-    const float* inverse_lengths;  ///< [S, S] of the texels\' directions on a face
+    const float* inverse_lengths;  ///< [S, S] of the texels' directions on a face
+    float sine;                    ///< of the kernel's half angle, at most 1
+    float face_cut;  ///< faces whose centre is farther from n (cosine) are out of reach
 };
+
+/// How the texels of a face lie when the cube is turned so that face `to` becomes face 0.
+struct TurnedFace {
+    int face;                   ///< where the texels come from
+    int column_step, row_step;  ///< the source's index by a column and by a row of the turned face
+    int first;                  ///< the source's index at the turned face's texel (0, 0)
+};
+ITEM3D_HOST_DEVICE inline TurnedFace turned_face(int to, int face, int size) {
+    const CubeFrame from = cube_frame(0), target = cube_frame(to), turned = cube_frame(face);
+    const auto turn = [&](Vec3 d) {
+        return glm::dot(from.s, d) * target.s + glm::dot(from.t, d) * target.t +
+               glm::dot(from.normal, d) * target.normal;
+    };
+    const Vec3 s = turn(turned.s), t = turn(turned.t), normal = turn(turned.normal);
+    const int source = cube_face(normal);
+    const CubeFrame frame = cube_frame(source);
+    // Each of these is -1, 0 or 1: the source's s and t by the turned face's.
+    const auto whole = [](float value) { return value > 0.5f ? 1 : (value < -0.5f ? -1 : 0); };
+    const int ss = whole(glm::dot(frame.s, s)), st = whole(glm::dot(frame.s, t));
+    const int ts = whole(glm::dot(frame.t, s)), tt = whole(glm::dot(frame.t, t));
+    const int first_column = ss + st < 0 ? size - 1 : 0, first_row = ts + tt < 0 ? size - 1 : 0;
+    return {source, ss + ts * size, st + tt * size, first_row * size + first_column};
+}
 
 /// Half-open range of texels of a face whose coordinate can be within a cone. along, normal: the
 /// cone axis' components along that coordinate and the face's normal; sine: of the cone's half
@@ -91,96 +130,103 @@ ITEM3D_HOST_DEVICE inline TexelRange cone_range(float along, float normal, float
     if (low > 1 || high < -1) return {0, 0};
     low = low < -1 ? -1.0f : low;
     high = high > 1 ? 1.0f : high;
-    int begin = static_cast<int>(std::floor((low + 1) * 0.5f * size - 0.51f));
-    int end = static_cast<int>(std::ceil((high + 1) * 0.5f * size - 0.49f)) + 1;
-    begin = begin < 0 ? 0 : begin;
-    end = end > size ? size : end;
-    return {begin, end};
+    // Truncation is floor() and ceil() here: what is below 0 is cut off.
+    const int begin = static_cast<int>((low + 1) * 0.5f * size - 0.51f);
+    const int end = static_cast<int>((high + 1) * 0.5f * size + 0.51f) + 1;
+    return {begin < 0 ? 0 : begin, end > size ? size : end};
 }
 
-inline constexpr int zonal_lanes = 8;
+/// Floats from a row to the next, and from a plane to the next: sizes are powers of two, and
+/// without padding all rows and planes would compete for the same lines of the cache.
+inline std::int64_t zonal_row(int size) {
+    return size + 16;
+}
+inline std::int64_t zonal_plane(int size) {
+    return 6 * size * zonal_row(size) + 48;
+}
 
-/// Sums over every eighth texel, so that rows need no sum across lanes.
-struct ZonalSums {
-    float lane[4][zonal_lanes] = {};
-};
+/// Kernel values of a few rows of texels, and what they weigh, for all faces of the output.
+struct ZonalBatch {
+    static constexpr int most_weights = 4096, most_rows = 128;
+    Lanes weights[most_weights / zonal_lanes];
+    std::int64_t first[most_rows];  ///< index into a plane
+    int groups[most_rows];          ///< of lanes
+    int rows = 0, used = 0;
+    Lanes sums[6][4] = {};  ///< a sum for every eighth texel
 
-/// One row of texels of a face. The planes' and the tables' rows have a multiple of eight texels;
-/// those outside the cone add nothing, so a range may be rounded out to whole groups of lanes.
-struct ZonalRow {
-    const float* centres;
-    const float* inverse_lengths;
-    const float* planes[4];
-    float along, rest;  ///< n.l = (along * centre + rest) * inverse_length
-    int begin, end;
-};
-template <bool Cosine>
-[[gnu::always_inline]] ITEM3D_HOST_DEVICE inline void zonal_row(const ZonalKernel& kernel_,
-                                                                const ZonalRow& row,
-                                                                ZonalSums& sums) {
-    // Copies: the compiler makes vectors of the lanes only if nothing there can be aliased.
-    const ZonalKernel kernel = kernel_;
-    const float along = row.along, rest = row.rest;
-    for (int i = row.begin / zonal_lanes * zonal_lanes; i < row.end; i += zonal_lanes) {
-        const float* centres = row.centres + i;
-        const float* inverse_lengths = row.inverse_lengths + i;
-        float k[zonal_lanes];
-#pragma omp simd
-        for (int lane = 0; lane < zonal_lanes; ++lane) {
-            const float c = (along * centres[lane] + rest) * inverse_lengths[lane];
-            k[lane] = kernel.value<Cosine>(c);
+    [[gnu::always_inline]] void add(const ZonalParameters& p) {
+        const std::int64_t plane = zonal_plane(p.source_size);
+        for (int face = 0; face < 6; ++face) {
+            const float* source = p.source + 4 * plane * face;
+            Lanes a = sums[face][0], b = sums[face][1], c = sums[face][2], d = sums[face][3];
+            const Lanes* k = weights;
+            for (int row = 0; row < rows; ++row) {
+                const float* values = source + first[row];
+                for (int group = 0; group < groups[row]; ++group, ++k, values += zonal_lanes) {
+                    a += *k * load_lanes(values);
+                    b += *k * load_lanes(values + plane);
+                    c += *k * load_lanes(values + 2 * plane);
+                    d += *k * load_lanes(values + 3 * plane);
+                }
+            }
+            sums[face][0] = a;
+            sums[face][1] = b;
+            sums[face][2] = c;
+            sums[face][3] = d;
         }
-        for (int plane = 0; plane < 4; ++plane) {
-            const float* values = row.planes[plane] + i;
-#pragma omp simd
-            for (int lane = 0; lane < zonal_lanes; ++lane)
-                sums.lane[plane][lane] += k[lane] * values[lane];
-        }
+        rows = used = 0;
     }
-}
+};
 
-/// index: texel of the output. `add_row` is zonal_row, or a version of it for the processor at
-/// hand.
-template <typename AddRow>
-ITEM3D_HOST_DEVICE inline void zonal_gather(const ZonalParameters& p, std::int64_t index,
-                                            const AddRow& add_row) {
-    const int out_face = static_cast<int>(index / (p.out_size * p.out_size));
-    const int out_row = static_cast<int>(index / p.out_size % p.out_size);
-    const int out_column = static_cast<int>(index % p.out_size);
-    const Vec3 n = glm::normalize(cube_direction(out_face, texel_centre(out_column, p.out_size),
-                                                 texel_centre(out_row, p.out_size)));
-    const std::int64_t size = p.source_size, plane = 6 * size * size;
-    const float reach = p.kernel.reach(), sine = std::sin(reach < 0.5f * pi ? reach : 0.5f * pi);
-    // The corners of a face are 54.7 degrees off its centre.
-    const float farthest = reach + 0.9554f;
-    const float face_cut = farthest < pi ? std::cos(farthest) : -1.0f;
-    ZonalSums sums;
+/// One texel of all faces of the output; index: row * R + column. Rows and tables have a multiple
+/// of eight texels, and those outside the cone add nothing, so ranges are rounded out to whole
+/// groups of lanes.
+template <bool Cosine>
+[[gnu::always_inline]] inline void zonal_gather(const ZonalParameters& p, std::int64_t index) {
+    const Vec3 n = glm::normalize(
+        cube_direction(0, texel_centre(static_cast<int>(index % p.out_size), p.out_size),
+                       texel_centre(static_cast<int>(index / p.out_size), p.out_size)));
+    const int size = p.source_size;
+    // Copies: the compiler makes vectors of the lanes only if nothing there can be aliased.
+    const ZonalKernel kernel = p.kernel;
+    ZonalBatch batch;
     for (int face = 0; face < 6; ++face) {
         const CubeFrame frame = cube_frame(face);
         const float normal = glm::dot(frame.normal, n);
-        if (normal < face_cut) continue;
+        if (normal < p.face_cut) continue;
         const float along_s = glm::dot(frame.s, n), along_t = glm::dot(frame.t, n);
-        const TexelRange rows = cone_range(along_t, normal, sine, p.source_size);
+        const TexelRange rows = cone_range(along_t, normal, p.sine, size);
         if (rows.begin >= rows.end) continue;
-        const TexelRange columns = cone_range(along_s, normal, sine, p.source_size);
-        ZonalRow line;
-        line.centres = p.centres;
-        line.along = along_s;
-        line.begin = columns.begin;
-        line.end = columns.end;
+        const TexelRange columns = cone_range(along_s, normal, p.sine, size);
+        if (columns.begin >= columns.end) continue;
+        const int first = columns.begin / zonal_lanes * zonal_lanes;
+        const int groups = (columns.end - first + zonal_lanes - 1) / zonal_lanes;
         for (int row = rows.begin; row < rows.end; ++row) {
-            line.inverse_lengths = p.inverse_lengths + row * size;
-            line.rest = along_t * p.centres[row] + normal;
-            for (int c = 0; c < 4; ++c)
-                line.planes[c] = p.source + c * plane + (face * size + row) * size;
-            add_row(p.kernel, line, sums);
+            if (batch.rows == ZonalBatch::most_rows ||
+                zonal_lanes * (batch.used + groups) > ZonalBatch::most_weights)
+                batch.add(p);
+            const float rest = along_t * p.centres[row] + normal;
+            const float* lengths = p.inverse_lengths + row * size + first;
+            const float* centres = p.centres + first;
+            for (int i = 0; i < groups; ++i) {
+                const Lanes c = (along_s * load_lanes(centres + i * zonal_lanes) + rest) *
+                                load_lanes(lengths + i * zonal_lanes);
+                batch.weights[batch.used++] = kernel.value<Cosine>(c);
+            }
+            batch.first[batch.rows] = (face * size + row) * zonal_row(size) + first;
+            batch.groups[batch.rows++] = groups;
         }
     }
-    for (int c = 0; c < 4; ++c) {
-        float sum = 0;
-        for (int lane = 0; lane < zonal_lanes; ++lane)
-            sum += sums.lane[c][lane];
-        p.out[4 * index + c] = sum;
+    batch.add(p);
+    for (int face = 0; face < 6; ++face) {
+        float* out =
+            p.out + 4 * (face * static_cast<std::int64_t>(p.out_size) * p.out_size + index);
+        for (int c = 0; c < 4; ++c) {
+            float sum = 0;
+            for (int lane = 0; lane < zonal_lanes; ++lane)
+                sum += batch.sums[face][c][lane];
+            out[c] = sum;
+        }
     }
 }
 

@@ -5,6 +5,8 @@
 #include "item3d/scene/io/image_formats.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 namespace item3d {
 namespace {
@@ -37,9 +39,7 @@ class GltfMaker {
             add_material(static_cast<int>(i));
         for (std::size_t i = 0; i < model_.primitives.size(); ++i)
             add_primitive(static_cast<int>(i));
-        if (uses_emissive_strength_) {
-            json_["extensionsUsed"] = Json::array({"KHR_materials_emissive_strength"});
-        }
+        if (!extensions_used_.empty()) json_["extensionsUsed"] = extensions_used_;
         builder_.finish();
         auto document = std::make_shared<SourceDocument>();
         document->path = model_.name.empty() ? "model.glb" : model_.name + ".glb";
@@ -115,9 +115,9 @@ class GltfMaker {
                           material.emissive_factor.z});
             json["emissiveFactor"] = list_of(material.emissive_factor / strength);
             if (strength > 1.0f) {
-                json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] =
-                    strength;
-                uses_emissive_strength_ = true;
+                constexpr const char* name = "KHR_materials_emissive_strength";
+                json["extensions"][name]["emissiveStrength"] = strength;
+                extensions_used_.insert(name);
             }
         }
         if (material.alpha == Material::Alpha::blend) json["alphaMode"] = "BLEND";
@@ -126,6 +126,10 @@ class GltfMaker {
             json["alphaCutoff"] = material.alpha_cutoff;
         }
         if (material.double_sided) json["doubleSided"] = true;
+        if (material.unlit && !edit) {
+            json["extensions"]["KHR_materials_unlit"] = Json::object();
+            extensions_used_.insert("KHR_materials_unlit");
+        }
         append(json_, "materials", std::move(json));
     }
 
@@ -186,7 +190,7 @@ class GltfMaker {
     Json json_ = Json::object();
     GltfBuilder builder_;
     std::map<int, std::size_t> textures_;
-    bool uses_emissive_strength_ = false;
+    std::set<std::string> extensions_used_;
 };
 
 }  // namespace

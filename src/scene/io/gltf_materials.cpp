@@ -70,6 +70,7 @@ class MaterialReader {
         if (alpha == "BLEND") material.alpha = Material::Alpha::blend;
         material.alpha_cutoff = static_cast<float>(source.number("alphaCutoff", 0.5));
         material.double_sided = source.boolean("doubleSided", false);
+        material.unlit = extension(source, "KHR_materials_unlit").has_value();
         if (with_textures) read_textures(source, material);
         return material;
     }

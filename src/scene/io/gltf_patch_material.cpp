@@ -131,6 +131,8 @@ void patch_material(const SourceDocument& document, const Json& original, const 
             pbr["roughnessFactor"] = 1.0 - old.value("glossinessFactor", 1.0);
         }
         drop_extension(material, "KHR_materials_pbrSpecularGlossiness");
+        // What was edited is a surface in light.
+        drop_extension(material, "KHR_materials_unlit");
         if (!material.contains("pbrMetallicRoughness")) {
             material["pbrMetallicRoughness"] = Json::object();
         }
