@@ -3,6 +3,7 @@
 #include "item3d/core/math.h"
 #include "item3d/core/parallel.h"
 #include "item3d/core/progress.h"
+#include "item3d/core/words.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -84,6 +85,11 @@ TEST(ParallelFor, NestedLoopsRunOnTheThreadThatCallsThem) {
     });
     for (const auto& visit : visits)
         ASSERT_EQ(visit.load(), 1);
+}
+
+TEST(Words, AreRunsOfLettersAndOfDigits) {
+    EXPECT_EQ(prompt_words("A 3d-render!"), (std::vector<std::string>{"a", "3", "d", "render"}));
+    EXPECT_TRUE(prompt_words(" .,").empty());
 }
 
 TEST(Progress, DurationsAreRoundedBeforeTheyAreSplit) {

@@ -1,5 +1,4 @@
 // Words, captions and tokens.
-#include "item3d/core/words.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/lights.h"
 #include "item3d/prior/tokenizer_training.h"
@@ -116,7 +115,6 @@ TEST(PriorVocabulary, NamesUnknownAndWeakWords) {
     ASSERT_EQ(vocabulary.words_of("colors").size(), 2u);
     EXPECT_FLOAT_EQ(vocabulary.words_of("colors")[0].base_color->x, .7f);
     EXPECT_TRUE(PriorVocabulary().warning("anything at all", true).empty());
-    EXPECT_EQ(prompt_words("A 3d-render!"), (Words{"a", "3", "d", "render"}));
 }
 
 }  // namespace

@@ -64,9 +64,10 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
         ->delimiter(',');
     setting<std::string>(command, options, "--metallic", "metallic",
                          "auto: edit metallic where a sentence names a metal; always: in any case");
-    setting<std::string>(command, options, "--detail", "detail",
-                         "Draw grain, veins or blades after the edit. auto: where the target names "
-                         "a material that the prior has them for; off; always");
+    setting<std::string>(
+        command, options, "--detail", "detail",
+        "Draw veins, mottling or tufts after the edit. auto: where the target names "
+        "a material that the prior has them for; off; always");
     setting<std::vector<std::string>>(command, options, "--material", "material",
                                       "Edit only the materials of these names")
         ->delimiter(',');

@@ -14,7 +14,7 @@ namespace {
 constexpr float degrees = pi / 180.0f;
 constexpr int light_rotations = 6;
 
-// Streams of the edit's seed; the guidance uses 1 and 5.
+// Streams of the edit's seed; the guidance uses 1 and 5, render_view 6, the detail stage 7.
 enum Stream : std::uint64_t { camera_stream = 2, background_stream = 3, light_stream = 4 };
 
 Random iteration_random(std::uint64_t seed, Stream stream, std::int64_t iteration) {

@@ -46,8 +46,8 @@ struct TextureTaps {
     float x, y;  ///< fractions towards the right and down
 };
 
-/// The largest whole number that is not above |value| < 2^62. Old x86-64 has no instruction for
-/// floor().
+/// The largest whole number that is not above `value`, which must be far below 2^63 in size. Old
+/// x86-64 has no instruction for floor().
 ITEM3D_HOST_DEVICE inline std::int64_t whole_below(double value) {
     const auto whole = static_cast<std::int64_t>(value);
     return whole - (value < static_cast<double>(whole) ? 1 : 0);
