@@ -31,9 +31,11 @@ struct PictureSize {
     int height = 0;
 };
 
+/// Pixels of a picture's side.
+inline constexpr int largest_side = 16384;
+
 /// "WxH", or one number for a square. Throws UsageError that names `option`.
 inline PictureSize parse_size(const std::string& text, const std::string& option = "--size") {
-    constexpr int largest_side = 16384;
     PictureSize size;
     const char* end = text.data() + text.size();
     const auto width = std::from_chars(text.data(), end, size.width);

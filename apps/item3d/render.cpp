@@ -41,6 +41,7 @@ struct RenderCommand : CommonOptions {
     std::string channel = "shaded";
     std::string background = "none";
     std::string occlusion = "none";
+    int samples = 0;  ///< along each side of a pixel; 0: 2, or 1 where that is too large to draw
 };
 
 std::string lower_extension(const fs::path& path) {
@@ -102,6 +103,16 @@ std::vector<Camera> choose_cameras(const RenderCommand& options, const Model& mo
     return cameras;
 }
 
+int choose_samples(const RenderCommand& options, PictureSize size) {
+    const int most = largest_side / std::max(size.width, size.height);
+    if (options.samples == 0) return std::min(2, most);
+    if (options.samples > most) {
+        throw UsageError(fmt::format("--samples {}: with this --size at most {}", options.samples,
+                                     most));
+    }
+    return options.samples;
+}
+
 /// World-space normal with the material's normal map applied, [P, 3].
 torch::Tensor shading_normal(const Surface& surface, const MaterialSample& sample) {
     if (!sample.normal.defined()) return surface.normal;
@@ -126,6 +137,7 @@ class Painter {
     Painter(const RenderCommand& options, const Model& model, torch::Device device)
         : channel_(options.channel),
           size_(parse_size(options.size)),
+          samples_(choose_samples(options, size_)),
           geometry_(Geometry::from_model(model, device)),
           materials_(model, device) {
         if (options.background != "none") {
@@ -152,6 +164,7 @@ class Painter {
         RenderOptions options;
         options.width = size_.width;
         options.height = size_.height;
+        options.supersampling = samples_;
         options.background = background_;
         options.occlusion = occlusion_;
         return to_image(render(geometry_, materials_, light_, {camera}, options)[0].cpu());
@@ -232,6 +245,7 @@ class Painter {
 
     std::string channel_;
     PictureSize size_;
+    int samples_;
     std::optional<Vec3> background_;
     Geometry geometry_;
     TexturedMaterials materials_;
@@ -322,6 +336,11 @@ void add_render_command(CLI::App& app) {
                    "Darken what the model hides from light all around it; --occlusion=light: from "
                    "this light, so that its sun casts shadows. Multiplies an occlusion texture")
         ->check(CLI::IsMember({"none", "ambient", "light"}));
+    command
+        ->add_option("--samples", options->samples,
+                     "So many along each side of a shaded pixel: more make finer edges and take "
+                     "longer (2, or 1 for pictures too large for that)")
+        ->check(CLI::Range(1, 16));
     command
         ->add_option("--background", options->background,
                      "A colour by name, #rrggbb, or none for a transparent picture")

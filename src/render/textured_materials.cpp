@@ -1,4 +1,6 @@
 #include "item3d/core/error.h"
+#include "item3d/core/math.h"
+#include "item3d/core/parallel.h"
 #include "item3d/render/textured.h"
 
 #include <algorithm>
@@ -19,30 +21,58 @@ struct MaterialTexture {
     }
 };
 
-/// channels: 3 or 4. Grey images fill all colours; a missing alpha is 1.
-torch::Tensor with_channels(const torch::Tensor& image, std::int64_t channels) {
-    const std::int64_t have = image.size(2);
-    const bool alpha = have == 2 || have >= 4;
-    const std::int64_t colors = have >= 3 ? 3 : 1;
-    torch::Tensor rgb = image.narrow(2, 0, colors).expand({image.size(0), image.size(1), 3});
-    if (channels == 3) return rgb;
-    return torch::cat({rgb, alpha ? image.narrow(2, have >= 4 ? 3 : 1, 1)
-                                  : torch::ones({image.size(0), image.size(1), 1})},
-                      2);
+/// sRGB to linear light. Most images have 256 values, and a power for each of an 8K texture's
+/// 200 million would take seconds.
+class SrgbDecoder {
+  public:
+    SrgbDecoder() {
+        for (std::size_t i = 0; i < table_.size(); ++i)
+            table_[i] = srgb_to_linear(byte_value(i));
+    }
+    float operator()(float encoded) const {
+        if (encoded >= 0 && encoded <= 1) {
+            const auto nearest = static_cast<std::size_t>(encoded * 255 + 0.5f);
+            if (byte_value(nearest) == encoded) return table_[nearest];
+        }
+        return srgb_to_linear(encoded);
+    }
+
+  private:
+    static float byte_value(std::size_t byte) { return static_cast<float>(byte) / 255.0f; }
+    std::array<float, 256> table_;
+};
+
+/// [H, W, channels], in one pass. channels: 3 or 4. Grey images fill all colours; a missing alpha
+/// is 1.
+torch::Tensor linear_texels(const Image& image, int channels, bool srgb) {
+    torch::Tensor texels = torch::empty({image.height, image.width, channels}, torch::kFloat32);
+    const int have = image.channels;
+    const int alpha = have == 2 ? 1 : (have >= 4 ? 3 : -1);
+    const SrgbDecoder decoder;
+    const float* in = image.pixels.data();
+    float* out = texels.data_ptr<float>();
+    parallel_for(
+        "linear_texels", static_cast<std::int64_t>(image.width) * image.height,
+        [=, &decoder](std::int64_t i) {
+            const float* pixel = in + i * have;
+            float* texel = out + i * channels;
+            for (int c = 0; c < 3; ++c) {
+                const float value = pixel[have >= 3 ? c : 0];
+                texel[c] = srgb ? decoder(value) : value;
+            }
+            if (channels == 4) texel[3] = alpha < 0 ? 1.0f : pixel[alpha];
+        },
+        65536);
+    return texels;
 }
 
-MaterialTexture load_texture(const Model& model, int index, std::int64_t channels, bool srgb,
+MaterialTexture load_texture(const Model& model, int index, int channels, bool srgb,
                              torch::Device device) {
     MaterialTexture texture;
     if (index < 0 || index >= static_cast<int>(model.textures.size())) return texture;
     const Texture& source = model.textures[static_cast<std::size_t>(index)];
     if (source.image.empty()) return texture;
-    torch::Tensor texels = with_channels(to_tensor(source.image), channels);
-    if (srgb) {
-        torch::Tensor linear = srgb_to_linear(texels.narrow(2, 0, 3));
-        texels = channels == 4 ? torch::cat({linear, texels.narrow(2, 3, 1)}, 2) : linear;
-    }
-    texture.levels = texture_pyramid(texels.to(device));
+    texture.levels = texture_pyramid(linear_texels(source.image, channels, srgb).to(device));
     texture.wrap_u = source.wrap_u;
     texture.wrap_v = source.wrap_v;
     return texture;

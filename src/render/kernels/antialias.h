@@ -72,6 +72,7 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
     const std::int64_t view = pixel / (static_cast<std::int64_t>(p.width) * p.height);
     const float* clip = p.positions_clip + 4 * view * p.vertices;
     std::int64_t t = near_here ? here : there;
+    const std::int64_t last = near_here ? there : here;
     int entered = -1;  // the corner that faces the edge through which the walk came
     for (int step = 0; step < most_steps; ++step) {
         const std::int32_t* corners = p.triangles + 3 * t;
@@ -117,6 +118,8 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
             return true;
         }
         t = neighbour / 3;
+        // One surface from centre to centre, as nearly everywhere on fine meshes.
+        if (t == last) return false;
         entered = neighbour % 3;
     }
     return false;

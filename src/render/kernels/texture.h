@@ -113,13 +113,18 @@ ITEM3D_HOST_DEVICE inline TextureFilter texture_filter(const TextureParameters& 
     minor = minor > 1 ? minor : 1.0f;
     const float least = major / most_texture_probes;
     minor = minor > least ? minor : least;
-    TextureFilter filter;
+    TextureFilter filter = sharp;
     filter.probes = static_cast<int>(std::ceil(major / minor - 1e-3f));
     filter.probes = filter.probes < 1 ? 1 : filter.probes;
-    const float angle = 0.5f * std::atan2(xy, half);
-    const float step = major / static_cast<float>(filter.probes);
-    filter.step_u = step * std::cos(angle) / width;
-    filter.step_v = step * std::sin(angle) / height;
+    if (filter.probes > 1) {
+        // The longer axis lies at half the angle whose cosine is half / spread.
+        const float cosine = half / spread;
+        const float along = std::sqrt(0.5f * (cosine > -1 ? 1 + cosine : 0.0f));
+        const float across = std::sqrt(0.5f * (cosine < 1 ? 1 - cosine : 0.0f));
+        const float step = major / static_cast<float>(filter.probes);
+        filter.step_u = step * along / width;
+        filter.step_v = step * (xy < 0 ? -across : across) / height;
+    }
     float level = std::log2(minor);
     const auto last = static_cast<float>(p.level_count - 1);
     level = level < last ? level : last;

@@ -1,11 +1,12 @@
-// item3d render --occlusion: off unless asked for, and of use where something is hidden.
+// item3d render --occlusion and --samples: off or usual unless asked for, and of use where something
+// is hidden or has edges.
 #include "cli_support.h"
 
 namespace item3d::testing {
 namespace {
 
 /// A floor with a wall on it.
-class OcclusionProgram : public Program {
+class RenderProgram : public Program {
   protected:
     void SetUp() override {
         Program::SetUp();
@@ -24,7 +25,7 @@ class OcclusionProgram : public Program {
     fs::path corner_;
 };
 
-TEST_F(OcclusionProgram, ChangesThePictureOnlyWhereAsked) {
+TEST_F(RenderProgram, ChangesThePictureOnlyWhereAsked) {
     const std::string plain = picture("plain", "");
     EXPECT_EQ(picture("none", "--occlusion=none"), plain);
     const std::string ambient = picture("ambient", "--occlusion");
@@ -34,7 +35,17 @@ TEST_F(OcclusionProgram, ChangesThePictureOnlyWhereAsked) {
     EXPECT_NE(light, picture("noon", "--occlusion --light noon"));
 }
 
-TEST_F(OcclusionProgram, IsOfShadedPicturesAlone) {
+TEST_F(RenderProgram, SamplesChangeEdgesAndFitTheSize) {
+    const std::string usual = picture("usual", "");
+    EXPECT_EQ(picture("two", "--samples 2"), usual);
+    EXPECT_NE(picture("four", "--samples 4"), usual);
+    const Result result = run("render " + quoted(corner_) + " -o " + quoted(folder_ / "p.png") +
+                              " --size 8192x2 --samples 3");
+    EXPECT_EQ(result.code, 2);
+    EXPECT_NE(result.error.find("at most 2"), std::string::npos) << result.error;
+}
+
+TEST_F(RenderProgram, IsOfShadedPicturesAlone) {
     const std::string rest = quoted(corner_) + " -o " + quoted(folder_ / "p.png");
     EXPECT_EQ(run("render --occlusion --channel depth " + rest).code, 2);
     EXPECT_EQ(run("render --occlusion=much " + rest).code, 2);
