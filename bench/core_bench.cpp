@@ -54,33 +54,39 @@ void gather_rows(benchmark::State& state) {
 }
 BENCHMARK(gather_rows)->Arg(1)->Arg(16)->Arg(256)->ArgName("MiB")->UseRealTime();
 
-template <int Chains>
+constexpr int chains = 10;  // enough to hide the latency, few enough for 16 registers
+constexpr int steps = 4096;
+
+/// chains * steps multiply-adds of a vector.
+template <typename Vector>
 inline __attribute__((always_inline)) float multiply_add_chains(float x) {
-    float chain[Chains];
-    for (int k = 0; k < Chains; ++k)
-        chain[k] = x + static_cast<float>(k);
-    for (int step = 0; step < 4096; ++step)
-        for (int k = 0; k < Chains; ++k)
-            chain[k] = chain[k] * x + 0.5f;
+    const Vector factor = Vector{} + x, half = Vector{} + 0.5f;
+    Vector chain[chains];
+    for (int k = 0; k < chains; ++k)
+        chain[k] = factor + static_cast<float>(k);
+    for (int step = 0; step < steps; ++step)
+#pragma GCC unroll 10
+        for (int k = 0; k < chains; ++k)
+            chain[k] = chain[k] * factor + half;
     float sum = 0;
-    for (int k = 0; k < Chains; ++k)
-        sum += chain[k];
+    for (int k = 0; k < chains; ++k)
+        sum += chain[k][0];
     return sum;
 }
 
-constexpr int plain_chains = 48, wide_chains = 96;  // enough to hide an addition's latency
-
+using Vector4 [[gnu::vector_size(16)]] = float;
 float multiply_add_plain(float x) {
-    return multiply_add_chains<plain_chains>(x);
+    return multiply_add_chains<Vector4>(x);
 }
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__)
+using Vector8 [[gnu::vector_size(32)]] = float;
 __attribute__((target("avx2,fma"))) float multiply_add_avx2(float x) {
-    return multiply_add_chains<wide_chains>(x);
+    return multiply_add_chains<Vector8>(x);
 }
 #endif
 
-void multiply_add(benchmark::State& state, float (*run)(float), int chains) {
+void multiply_add(benchmark::State& state, float (*run)(float), int lanes) {
     constexpr std::int64_t count = 256;
     std::vector<float> sums(count);
     float* out = sums.data();
@@ -91,12 +97,12 @@ void multiply_add(benchmark::State& state, float (*run)(float), int chains) {
         benchmark::ClobberMemory();
     }
     state.counters["flops"] =
-        benchmark::Counter(static_cast<double>(state.iterations() * count * 4096 * 2 * chains),
+        benchmark::Counter(static_cast<double>(state.iterations() * count * steps * 2 * chains * lanes),
                            benchmark::Counter::kIsRate);
 }
-BENCHMARK_CAPTURE(multiply_add, sse2, multiply_add_plain, plain_chains)->UseRealTime();
-#if defined(__x86_64__) && defined(__GNUC__)
-BENCHMARK_CAPTURE(multiply_add, avx2, multiply_add_avx2, wide_chains)->UseRealTime();
+BENCHMARK_CAPTURE(multiply_add, sse2, multiply_add_plain, 4)->UseRealTime();
+#if defined(__x86_64__)
+BENCHMARK_CAPTURE(multiply_add, avx2, multiply_add_avx2, 8)->UseRealTime();
 #endif
 
 }  // namespace

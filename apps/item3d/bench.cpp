@@ -1,4 +1,5 @@
 // item3d bench: how fast this machine is at what item3d does.
+#include "bench_guidance.h"
 #include "bench_render.h"
 #include "command.h"
 #include "item3d/core/error.h"
@@ -185,6 +186,7 @@ void add_bench_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bench", "Measure how fast this machine is");
     command->require_subcommand(1);
     add_bench_render(*command);
+    add_bench_guidance(*command);
 }
 
 }  // namespace item3d

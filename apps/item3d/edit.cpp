@@ -118,7 +118,7 @@ void add_edit_command(CLI::App& app) {
     command->add_option("--prior", request.prior,
                         "Diffusion model in the diffusers layout; without it, the embedded one");
     command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
-    command->add_option("--precision", request.precision, "Of the networks: auto, fp32 or bf16")
+    command->add_option("--precision", request.precision, "Of the networks: auto, fp32, bf16 or (CUDA) fp16")
         ->capture_default_str();
     add_settings(*command, *options);
     command->callback([options] {

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/models/precision.h"
 #include "item3d/scene/io/load.h"
 
 namespace item3d {
@@ -9,16 +10,6 @@ namespace {
 
 // A prior that sees few pixels needs no fine reflections, and coarse ones prefilter in a moment.
 constexpr int small_picture = 128;
-
-torch::Dtype choose_precision(const std::string& name, torch::Device device) {
-    if (name == "fp32") return torch::kFloat32;
-    if (name == "bf16") return torch::kBFloat16;
-    if (name == "auto") {
-        const bool fast_bf16 = device.is_cuda() || __builtin_cpu_supports("avx512bf16");
-        return fast_bf16 ? torch::kBFloat16 : torch::kFloat32;
-    }
-    throw InputError("--precision", "'" + name + "' is not known", "choose auto, fp32 or bf16");
-}
 
 }  // namespace
 

@@ -1,0 +1,22 @@
+// Which floating-point type a network computes in.
+#pragma once
+
+#include <torch/types.h>
+
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// "auto", "fp32", "bf16", "fp16".
+const std::vector<std::string>& precision_names();
+
+/// auto: bf16 where the device computes in it (any CUDA device, CPUs with AVX512-BF16), else fp32.
+/// Throws InputError on an unknown name, and on fp16 on the CPU, whose kernels are slower than
+/// fp32's and overflow in Stable Diffusion's autoencoder.
+torch::Dtype choose_precision(const std::string& name, torch::Device device);
+
+/// "fp32", "bf16" or "fp16".
+std::string precision_name(torch::Dtype dtype);
+
+}  // namespace item3d
