@@ -49,6 +49,16 @@ TEST_F(Program, WhatCannotBeWrittenIsNamed) {
     EXPECT_FALSE(fs::exists(folder_ / "full.exr"));
 }
 
+TEST_F(Program, ADeviceThatIsNotThereIsFour) {
+    // No device is visible to this run, whatever the machine has.
+    const std::string hidden = "CUDA_VISIBLE_DEVICES= ";
+    const std::string to = " --device cuda -o " + quoted(folder_ / "out");
+    expect_error("render " + quoted(cube_) + to, 4, "--device cuda", hidden);
+    expect_error("edit " + quoted(cube_) + " --from 'a grey cube' --to 'a red cube'" + to, 4,
+                 "--device cuda", hidden);
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
 TEST_F(Program, QuietIsQuiet) {
     const Result result =
         run("render " + quoted(cube_) + " --quiet --size 32x32 -o " + quoted(folder_ / "p.png"));

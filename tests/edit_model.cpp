@@ -6,9 +6,11 @@
 #include "item3d/edit/edit.h"
 #include "item3d/edit/material_source.h"
 #include "item3d/edit/metals.h"
+#include "item3d/render/cuda/module.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 
+#include <ATen/Context.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -237,6 +239,32 @@ TEST_F(EditTest, metallic_is_left_alone_where_no_metal_is_named) {
     EXPECT_FALSE(is_edited("a wooden cube", "auto"));
     EXPECT_TRUE(is_edited("a wooden cube", "always"));
     EXPECT_TRUE(is_edited("a copper cube", "auto"));
+}
+
+TEST_F(EditTest, a_device_edits_as_the_cpu_does) {
+    if (!cuda::cuda_available())
+        GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with";
+    at::globalContext().setAllowTF32CuDNN(false);
+    std::vector<Image> colors;
+    for (const torch::Device device :
+         {torch::Device(torch::kCPU), torch::Device(torch::kCUDA, 0)}) {
+        EditRequest edit = request(device.is_cuda() ? "cuda" : "cpu", 2);
+        edit.device = device;
+        edit.settings.detail = "always";
+        edit.settings.detail_views = 1;
+        // Stopped and resumed, so that the checkpoint goes to the device and back.
+        edit.stop_after = 1;
+        EXPECT_THROW(edit_model(edit), Interrupted);
+        edit.stop_after = 0;
+        edit.resume = true;
+        EXPECT_EQ(edit_model(edit)["device"], device.is_cuda() ? "cuda" : "cpu");
+        colors.push_back(base_color_of(edit.output / "model.glb"));
+    }
+    ASSERT_EQ(colors[0].pixels.size(), colors[1].pixels.size());
+    double apart = 0;
+    for (std::size_t i = 0; i < colors[0].pixels.size(); ++i)
+        apart += std::abs(colors[0].pixels[i] - colors[1].pixels[i]);
+    EXPECT_LT(apart / static_cast<double>(colors[0].pixels.size()), 0.01);
 }
 
 TEST(Metals, are_found_as_whole_words) {

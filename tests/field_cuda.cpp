@@ -1,7 +1,11 @@
 // The neural texture's operations on the CPU and on a CUDA device; the comparisons are skipped
 // where there is no device.
+#include "field_models.h"
+#include "item3d/core/progress.h"
 #include "item3d/field/adam.h"
+#include "item3d/field/bake.h"
 #include "item3d/field/cuda/module.h"
+#include "item3d/field/fit.h"
 #include "item3d/field/hash_grid.h"
 
 #include <gtest/gtest.h>
@@ -123,6 +127,39 @@ TEST(CudaFieldDevice, AdamIsTheCpus) {
         results.push_back(torch::cat({dense.detach().flatten(), sparse.detach().flatten()}));
     }
     EXPECT_LT(relative_error(results[1], results[0]), 1e-4);
+}
+
+/// Fitted on either device, the field has the source's colours there; and what is baked from a
+/// field that was not changed is the source to the bit.
+TEST(CudaFieldDevice, FitsAndBakesAsTheCpu) {
+    SKIP_WITHOUT_DEVICE();
+    set_verbosity(Verbosity::quiet);
+    const Model model = testing::make_model(testing::make_sphere());
+    std::vector<double> quality;
+    for (const torch::Device device :
+         {torch::Device(torch::kCPU), torch::Device(torch::kCUDA, 0)}) {
+        const Geometry geometry = Geometry::from_model(model, device);
+        const TexturedMaterials materials(model, device);
+        const FieldSpace space(model, {0}, device);
+        const Atlas atlas = make_atlas(model, space, {0}, 64);
+        NeuralTexture field(suggest_field_options(geometry, space, 64));
+        field->to(device);
+        FitOptions fit;
+        fit.steps = 40;
+        fit.batch = 1024;
+        fit.show_progress = false;
+        quality.push_back(fit_to_materials(field, geometry, space, materials, fit).base_color_psnr);
+        NeuralTexture before = snapshot(field);
+        EXPECT_EQ(before->table().device(), device);
+        BakeOptions bake_options;
+        bake_options.show_progress = false;
+        const ModelEdit edit =
+            bake({model, geometry, materials, space, atlas}, before, field, bake_options);
+        const int texture = model.materials[0].base_color_texture;
+        EXPECT_EQ(edit.materials.at(0).base_color->pixels,
+                  model.textures[static_cast<std::size_t>(texture)].image.pixels);
+    }
+    EXPECT_NEAR(quality[1], quality[0], 1.0);
 }
 
 }  // namespace

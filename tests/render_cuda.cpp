@@ -2,6 +2,7 @@
 // are skipped, and what the device's way of summing and drawing must give is checked on the CPU.
 #include "item3d/core/error.h"
 #include "item3d/render/cuda/module.h"
+#include "item3d/render/textured.h"
 #include "item3d/render/topology.h"
 #include "render_support.h"
 
@@ -217,6 +218,47 @@ TEST(CudaKernels, GatheredBlendsAreTheCpus) {
     EXPECT_TRUE(torch::equal(by_clip, leaf.positions_clip.grad()));
 }
 
+/// Texels that many pixels look up, summed in two passes and from the last pixel to the first.
+TEST(CudaKernels, TexelGradientsInTwoPassesAreTheCpus) {
+    constexpr std::int64_t count = 600;
+    torch::manual_seed(6);
+    const torch::Tensor uv = 3 * torch::rand({count, 2}) - 1;
+    const torch::Tensor footprint = 0.2f * torch::randn({count, 4});
+    const torch::Tensor weights = torch::randn({count, 3});
+    std::vector<torch::Tensor> levels = texture_pyramid(torch::rand({16, 8, 3}));
+    for (torch::Tensor& level : levels)
+        level.set_requires_grad(true);
+    (sample_texture(levels, uv, footprint) * weights).sum().backward();
+
+    kernels::TextureParameters p{};
+    p.level_count = static_cast<int>(levels.size());
+    p.channels = 3;
+    p.uv = uv.const_data_ptr<float>();
+    p.footprint = footprint.const_data_ptr<float>();
+    std::vector<torch::Tensor> expected;
+    std::int64_t total = 0;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        p.levels[i] = {levels[i].const_data_ptr<float>(), static_cast<int>(levels[i].size(0)),
+                       static_cast<int>(levels[i].size(1)), total};
+        total += levels[i].numel();
+        expected.push_back(levels[i].grad().flatten());
+    }
+    std::vector<std::uint32_t> largest(static_cast<std::size_t>(total), 0);
+    std::vector<unsigned long long> fixed(static_cast<std::size_t>(total), 0);
+    Accumulator accumulator;
+    accumulator.bits = accumulator_bits(4 * kernels::most_texture_probes * count);
+    accumulator.largest = largest.data();
+    for (int pass = 0; pass < 2; ++pass) {
+        for (std::int64_t i = count; i-- > 0;)
+            kernels::texture_backward(p, i, weights.const_data_ptr<float>(), accumulator);
+        accumulator.fixed = fixed.data();
+    }
+    const torch::Tensor found = torch::empty({total});
+    for (std::int64_t i = 0; i < total; ++i)
+        finish_sum({largest.data(), fixed.data(), accumulator.bits, found.data_ptr<float>()}, i);
+    EXPECT_LT(relative_error(found, torch::cat(expected)), 1e-5);
+}
+
 /// Sets LibTorch's switch while it lives.
 struct Deterministic {
     explicit Deterministic(bool on) {
@@ -268,17 +310,14 @@ Rendered render_scene(const Scene& scene, torch::Device device) {
         testing::unit_rows(torch::randn({count, 3}) * 0.2f + torch::tensor({0.0f, 0.0f, 1.0f})));
     const EnvironmentLight light{light_maps[0], {light_maps[1], light_maps[2]}, {0.1f, 0.6f}};
     const torch::Tensor radiance = shade(surface, material, light);
-    // LibTorch's own scatter, so that only the operations of this test are compared.
-    const torch::Tensor picture =
-        torch::zeros({2 * scene.height * scene.width, 3}, radiance.options())
-            .index_copy(0, surface.pixel, radiance)
-            .view({2, scene.height, scene.width, 3});
+    const torch::Tensor background = leaf(torch::rand({3}));
+    const torch::Tensor picture = scatter(radiance, surface, raster, background);
     const torch::Tensor smooth = antialias(picture, raster, geometry);
     (smooth * weights).sum().backward();
     Rendered rendered{smooth.detach().cpu(), {}};
     for (const torch::Tensor& input :
          {geometry.positions, geometry.normals, light_maps[0], light_maps[1], light_maps[2],
-          material.base_color, material.orm, material.normal})
+          material.base_color, material.orm, material.normal, background})
         rendered.gradients.push_back(input.grad().cpu());
     return rendered;
 }
@@ -299,6 +338,73 @@ TEST(CudaDevice, PicturesAndGradientsAreTheCpus) {
         for (std::size_t i = 0; i < cpu.gradients.size(); ++i)
             EXPECT_TRUE(torch::equal(device.gradients[i], again.gradients[i])) << "gradient " << i;
     }
+}
+
+/// A texture, its mip levels, and lookups in them, with gradients by texels and by UV.
+Rendered sample_pyramid(torch::Device device) {
+    torch::manual_seed(12);
+    const auto leaf = [&](const torch::Tensor& tensor) {
+        return tensor.to(device).detach().clone().set_requires_grad(true);
+    };
+    const torch::Tensor texture = leaf(torch::rand({32, 64, 4}));
+    const torch::Tensor uv = leaf(3 * torch::rand({5000, 2}) - 1);
+    const torch::Tensor footprint = 0.05f * torch::randn({5000, 4});
+    const torch::Tensor weights = torch::randn({5000, 4});
+    const torch::Tensor values = sample_texture(texture_pyramid(texture), uv, footprint.to(device),
+                                                Wrap::repeat, Wrap::mirrored_repeat);
+    (values * weights.to(device)).sum().backward();
+    return {values.detach().cpu(), {texture.grad().cpu(), uv.grad().cpu()}};
+}
+
+TEST(CudaDevice, TextureLookupsAreTheCpus) {
+    SKIP_WITHOUT_DEVICE();
+    const Rendered cpu = sample_pyramid(torch::kCPU);
+    for (const bool deterministic : {false, true}) {
+        const Deterministic guard(deterministic);
+        const Rendered device = sample_pyramid(torch::Device(torch::kCUDA, 0));
+        EXPECT_LT(relative_error(device.picture, cpu.picture), 1e-4);
+        EXPECT_LT(relative_error(device.gradients[0], cpu.gradients[0]), 1e-3);
+        EXPECT_LT(relative_error(device.gradients[1], cpu.gradients[1]), 1e-3);
+    }
+}
+
+/// Two layers, one of them half transparent, of a texture whose size is no power of two.
+TEST(CudaDevice, PicturesOfTexturedModelsAreTheCpus) {
+    SKIP_WITHOUT_DEVICE();
+    torch::manual_seed(13);
+    Model model = make_unit_sphere(24, 48);
+    model.textures.push_back(
+        {"noise", to_image(torch::rand({30, 50, 4})), 8, Wrap::repeat, Wrap::clamp_to_edge});
+    Material glass;
+    glass.base_color_texture = 0;
+    glass.alpha = Material::Alpha::blend;
+    Material lamp;
+    lamp.emissive_factor = Vec3(0.2f, 0.1f, 0.0f);
+    lamp.metallic_roughness_texture = 0;
+    model.materials = {glass, lamp};
+    Primitive inner = model.primitives[0];
+    for (Vec3& position : inner.positions)
+        position = 0.6f * position;
+    model.primitives[0].material = 0;
+    inner.material = 1;
+    model.primitives.push_back(inner);
+    const EnvironmentLight light{testing::smooth_cube(16),
+                                 {testing::smooth_cube(32, 4), testing::smooth_cube(16, 5)},
+                                 {0.1f, 0.6f}};
+    RenderOptions options;
+    options.width = 80;
+    options.height = 64;
+    options.background = Vec3(0.2f, 0.3f, 0.4f);
+    std::vector<torch::Tensor> pictures;
+    for (const torch::Device device :
+         {torch::Device(torch::kCPU), torch::Device(torch::kCUDA, 0)}) {
+        const torch::NoGradGuard no_gradients;
+        pictures.push_back(render(Geometry::from_model(model, device),
+                                  TexturedMaterials(model, device), light.to(device),
+                                  {front_camera(3), front_camera(2.2f, 0.6f)}, options)
+                               .cpu());
+    }
+    EXPECT_LT(relative_error(pictures[1], pictures[0]), 1e-3);
 }
 
 TEST(CudaDevice, EquirectangularMapsAreTheCpus) {

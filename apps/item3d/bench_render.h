@@ -45,7 +45,7 @@ BenchScene sphere_scene(int squares);
 RenderTimes time_render(const BenchScene& scene, const Image& light, PictureSize size,
                         torch::Device device, int repeats);
 
-/// Prefiltering of an environment of size x size texels a face.
-StageTime time_prefilter(int size, torch::Device device, int repeats);
+/// Prefiltering of an environment of size x size texels a face, which is done on the CPU alone.
+StageTime time_prefilter(int size, int repeats);
 
 }  // namespace item3d

@@ -2,10 +2,10 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/render/cuda/module.h"
 
 #include <ATen/Parallel.h>
 #include <omp.h>
-#include <torch/cuda.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -13,6 +13,29 @@
 #include <fstream>
 
 namespace item3d {
+namespace {
+
+/// A CUDA device is of use where there are both LibTorch's half for it and our own kernels. A
+/// module that is missing, or from another build, is an error only where the user asked for it.
+torch::Device choose_device(const std::string& name) {
+    const torch::Device cpu(torch::kCPU), first_cuda(torch::kCUDA, 0);
+    if (name == "cpu") return cpu;
+    if (!cuda::cuda_available()) {
+        if (name == "auto") return cpu;
+        throw ResourceError(
+            "--device cuda: this build or machine has no CUDA device; use --device cpu or auto");
+    }
+    try {
+        cuda::render_table();
+    } catch (const ResourceError& error) {
+        if (name != "auto") throw;
+        warn(std::string("computing on the CPU: ") + error.what());
+        return cpu;
+    }
+    return first_cuda;
+}
+
+}  // namespace
 
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description,
                       CommonOptions& options) {
@@ -39,12 +62,7 @@ torch::Device start_command(const CommonOptions& options) {
     at::set_num_threads(threads);
     install_interrupt_handler();
 
-    if (options.device == "cuda" && !torch::cuda::is_available()) {
-        throw ResourceError(
-            "--device cuda: this build or machine has no CUDA device; use --device cpu or auto");
-    }
-    const bool use_cuda = options.device != "cpu" && torch::cuda::is_available();
-    return use_cuda ? torch::Device(torch::kCUDA) : torch::Device(torch::kCPU);
+    return choose_device(options.device);
 }
 
 std::string command_line() {

@@ -84,8 +84,7 @@ void warn_of_words(const EditRequest& request, const EditSettings& settings) {
 
 void run_edit(EditCommandOptions& options) {
     EditRequest& request = options.request;
-    start_command(options);
-    request.device = options.device;
+    request.device = start_command(options);
     if (request.prior.empty()) request.prior = assets_folder() / "prior";
     options.overrides["from"] = options.from;
     options.overrides["to"] = options.to;

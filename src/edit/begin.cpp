@@ -34,6 +34,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     EditState state;
     state.field = NeuralTexture(suggest_field_options(
         scene.geometry, *scene.space, finest_texture(scene, settings.texture_size), settings.seed));
+    state.field->to(scene.device);
     state.guidance =
         make_guidance(scene.prior, settings.from, settings.to, guidance_options(settings));
     state.optimizer.add_group({state.field->table()}, adam_options(settings));

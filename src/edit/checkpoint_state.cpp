@@ -140,7 +140,8 @@ bool load_state(const EditRequest& request, EditState& state) {
         reader.parameters("detail.before.", state.detail.before);
         state.detail.optimizer.load_state(reader.with_prefix("detail.optimizer."));
         if (reader.has("detail.targets"))
-            state.detail.targets = reader.get("detail.targets").split(1);
+            state.detail.targets =
+                reader.get("detail.targets").to(state.field->table().device()).split(1);
     }
     state.direction_length = to_floats(reader.get("curve.direction_length"));
     state.adjustment_loss = to_floats(reader.get("curve.adjustment_loss"));

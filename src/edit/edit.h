@@ -5,6 +5,7 @@
 #include "item3d/edit/settings.h"
 
 #include <nlohmann/json.hpp>
+#include <torch/types.h>
 
 #include <filesystem>
 #include <string>
@@ -19,7 +20,7 @@ struct EditRequest {
     bool resume = false;
     /// Stop as an interrupt would when this many iterations are done; 0: run to the end.
     int stop_after = 0;
-    std::string device = "cpu";
+    torch::Device device = torch::kCPU;
     std::string precision = "auto";  ///< of the networks: auto, fp32, bf16
     std::string command;             ///< as typed, for edit.json and the resume hint
 };

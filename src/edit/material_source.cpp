@@ -45,17 +45,18 @@ std::vector<int> select_materials(const Model& model, const std::vector<std::str
 
 MaterialSource::MaterialSource(const Model& model, const TexturedMaterials& textured,
                                const FieldSpace& space, const std::vector<int>& edited_materials,
-                               ChannelMask channels)
-    : textured_(textured),
-      space_(space),
-      is_edited_(torch::zeros({static_cast<std::int64_t>(model.materials.size())}, torch::kBool)),
-      orm_is_edited_(torch::tensor({channels.occlusion, channels.roughness, channels.metallic})),
-      channels_(channels) {
+                               ChannelMask channels, torch::Device device)
+    : textured_(textured), space_(space), channels_(channels) {
+    torch::Tensor is_edited =
+        torch::zeros({static_cast<std::int64_t>(model.materials.size())}, torch::kBool);
     for (const int index : edited_materials)
-        is_edited_[index] = true;
+        is_edited[index] = true;
     for (const Primitive& primitive : model.primitives) {
-        all_edited_ = all_edited_ && is_edited_[primitive.material].item<bool>();
+        all_edited_ = all_edited_ && is_edited[primitive.material].item<bool>();
     }
+    is_edited_ = is_edited.to(device);
+    orm_is_edited_ =
+        torch::tensor({channels.occlusion, channels.roughness, channels.metallic}).to(device);
 }
 
 MaterialSample MaterialSource::sample(const Surface& surface, NeuralTexture& field) const {
@@ -65,7 +66,7 @@ MaterialSample MaterialSource::sample(const Surface& surface, NeuralTexture& fie
     }();
     const MaterialSample edited = field->forward(space_.positions(surface));
     const torch::Tensor here = all_edited_
-                                   ? torch::ones({1, 1}, torch::kBool)
+                                   ? torch::ones({1, 1}, is_edited_.options())
                                    : is_edited_.index_select(0, surface.material).unsqueeze(1);
     if (channels_.base_color)
         own.base_color = torch::where(here, edited.base_color, own.base_color);

@@ -31,9 +31,10 @@ std::vector<int> select_materials(const Model& model, const std::vector<std::str
 /// channels that are kept.
 class MaterialSource {
   public:
-    /// `textured` and `space` must outlive this.
+    /// `textured` and `space` must outlive this. device: theirs and that of the surfaces to come.
     MaterialSource(const Model& model, const TexturedMaterials& textured, const FieldSpace& space,
-                   const std::vector<int>& edited_materials, ChannelMask channels);
+                   const std::vector<int>& edited_materials, ChannelMask channels,
+                   torch::Device device = torch::kCPU);
     /// Differentiable in the field's parameters.
     MaterialSample sample(const Surface& surface, NeuralTexture& field) const;
 

@@ -18,15 +18,16 @@ constexpr float elevation = 0.32f;
 constexpr float field_of_view = 0.6f;
 const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
 
-/// [N, H, W, 4] linear, premultiplied.
+/// [N, H, W, 4] linear, premultiplied. On the light's device.
 torch::Tensor draw(const Model& model, const EnvironmentLight& light,
                    const std::vector<Camera>& cameras, int pixels) {
     const torch::NoGradGuard no_grad;
     RenderOptions options;
     options.width = pixels;
     options.height = pixels;
-    const Geometry geometry = Geometry::from_model(model);
-    const TexturedMaterials materials(model);
+    const torch::Device device = light.diffuse.device();
+    const Geometry geometry = Geometry::from_model(model, device);
+    const TexturedMaterials materials(model, device);
     std::vector<torch::Tensor> pictures;  // one view at a time keeps memory low
     for (const Camera& camera : cameras) {
         pictures.push_back(render(geometry, materials, light, {camera}, options));
@@ -73,7 +74,7 @@ double detail_kept(const torch::Tensor& before, const torch::Tensor& after) {
 
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
                          const EditedModel& edited) {
-    const EnvironmentLight light = prefilter(load_light(request.settings.light), 256);
+    const EnvironmentLight light = prefilter(load_light(request.settings.light), 256, scene.device);
     const auto cameras = turntable(scene.model.bounds(), view_count, elevation, field_of_view);
     const torch::Tensor before = draw(scene.model, light, cameras, view_pixels);
     const torch::Tensor after = draw(edited.model, light, cameras, view_pixels);

@@ -25,7 +25,7 @@ void Preview::update(NeuralTexture& field) {
     const Raster raster = rasterize(scene_.geometry, cameras_, picture_size, picture_size);
     const Surface surface = interpolate_surface(scene_.geometry, raster, cameras_);
     const MaterialSample material = scene_.source->sample(surface, field);
-    const torch::Tensor background = torch::full({3}, background_gray);
+    const torch::Tensor background = torch::full({3}, background_gray, scene_.device);
     torch::Tensor pictures =
         scatter(shade(surface, material, scene_.lights->front()), surface, raster, background);
     pictures = linear_to_srgb(antialias(pictures, raster, scene_.geometry).clamp(0, 1));

@@ -20,7 +20,8 @@ torch::Tensor offsets(const torch::Tensor& positions, const EditScene& scene,
     Random random(settings.seed, spread_stream, options.spread_draw);
     auto generator = at::detail::createCPUGenerator(random.bits());
     const float pixel = 2 * scene.sphere.radius / static_cast<float>(settings.resolution);
-    return options.spread * pixel * torch::randn(positions.sizes(), generator, torch::kFloat32);
+    const torch::Tensor directions = torch::randn(positions.sizes(), generator, torch::kFloat32);
+    return options.spread * pixel * directions.to(positions.device());
 }
 
 }  // namespace
@@ -48,6 +49,7 @@ View render_view(const EditScene& scene, const EditSettings& settings, NeuralTex
 
     const torch::Tensor background =
         sample_backgrounds(settings.background, options.count, settings.seed, options.iteration)
+            .to(scene.device)
             .view({options.count, 1, 1, 3})
             .expand({options.count, size, size, 3});
     torch::Tensor picture = scatter(radiance, surface, raster, background);

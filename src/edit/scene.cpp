@@ -14,14 +14,11 @@ constexpr int small_picture = 128;
 }  // namespace
 
 EditScene load_scene(const EditRequest& request) {
-    if (request.device != "cpu" && request.device != "auto") {
-        throw ResourceError("--device " + request.device +
-                            ": this build runs on the CPU only; leave --device out");
-    }
-    const torch::Device device = torch::kCPU;
+    const torch::Device device = request.device;
     const EditSettings& settings = request.settings;
 
     EditScene scene;
+    scene.device = device;
     scene.model = load_model(request.model);
     scene.materials = select_materials(scene.model, settings.material);
     for (const int index : scene.materials) {
@@ -33,11 +30,11 @@ EditScene load_scene(const EditRequest& request) {
     scene.channels = edited_channels(settings);
     scene.geometry = Geometry::from_model(scene.model, device);
     scene.sphere = bounding_sphere(scene.model);
-    scene.space = std::make_unique<FieldSpace>(scene.model, scene.materials);
+    scene.space = std::make_unique<FieldSpace>(scene.model, scene.materials, device);
     scene.atlas = make_atlas(scene.model, *scene.space, scene.materials, settings.texture_size);
     scene.textured = std::make_unique<TexturedMaterials>(scene.model, device);
     scene.source = std::make_unique<MaterialSource>(scene.model, *scene.textured, *scene.space,
-                                                    scene.materials, scene.channels);
+                                                    scene.materials, scene.channels, device);
     scene.lights = std::make_unique<LightRig>(
         settings.light, settings.resolution <= small_picture ? 64 : 256, device);
     scene.precision = choose_precision(request.precision, device);

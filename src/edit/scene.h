@@ -27,6 +27,7 @@ struct EditScene {
     std::unique_ptr<LightRig> lights;
     std::shared_ptr<Pipeline> prior;
     torch::Dtype precision = torch::kFloat32;
+    torch::Device device = torch::kCPU;  ///< where all tensors of the edit are
 };
 
 EditScene load_scene(const EditRequest& request);

@@ -60,7 +60,7 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Stag
                     {"prior", request.prior.string()},
                     {"guidance", settings.guidance},
                     {"seed", settings.seed},
-                    {"device", "cpu"},
+                    {"device", scene.device.is_cuda() ? "cuda" : "cpu"},
                     {"precision", scene.precision == torch::kBFloat16 ? "bf16" : "fp32"},
                     {"threads", at::get_num_threads()},
                     {"iterations", settings.iterations},

@@ -27,7 +27,7 @@ std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std:
                                    std::int64_t iteration);
 
 /// Linear RGB backgrounds [count, 3]: one colour (see parse_color), or another grey each time for
-/// "vary". Throws InputError.
+/// "vary". On the CPU. Throws InputError.
 torch::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
                                  std::int64_t iteration);
 

@@ -28,9 +28,10 @@ Target make_target(const Surface& surface, const TexturedMaterials& materials) {
     Target target;
     target.base_color = linear_to_srgb(own.base_color.clamp(0.0f, 1.0f));
     target.orm = own.orm.clamp(0.0f, 1.0f);
-    target.normal = own.normal.defined()
-                        ? own.normal
-                        : torch::tensor({0.0f, 0.0f, 1.0f}).expand_as(own.base_color);
+    target.normal =
+        own.normal.defined()
+            ? own.normal
+            : torch::tensor({0.0f, 0.0f, 1.0f}, own.base_color.options()).expand_as(own.base_color);
     return target;
 }
 

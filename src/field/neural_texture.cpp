@@ -58,20 +58,22 @@ NeuralTextureImpl::NeuralTextureImpl(const NeuralTextureOptions& options)
     }
     const MaterialRanges& r = options.ranges;
     const float slope = r.normal_slope;
-    low_ = torch::tensor({r.base_color[0], r.base_color[0], r.base_color[0], r.occlusion[0],
-                          r.roughness[0], r.metallic[0], -slope, -slope});
-    high_ = torch::tensor({r.base_color[1], r.base_color[1], r.base_color[1], r.occlusion[1],
-                           r.roughness[1], r.metallic[1], slope, slope});
+    low_ = register_buffer(
+        "low", torch::tensor({r.base_color[0], r.base_color[0], r.base_color[0], r.occlusion[0],
+                              r.roughness[0], r.metallic[0], -slope, -slope}));
+    high_ = register_buffer(
+        "high", torch::tensor({r.base_color[1], r.base_color[1], r.base_color[1], r.occlusion[1],
+                               r.roughness[1], r.metallic[1], slope, slope}));
+    const Vec3 origin = options.bounds[0];
+    origin_ = register_buffer("origin", torch::tensor({origin.x, origin.y, origin.z}));
     ITEM3D_CHECK(torch::all(high_ >= low_).item<bool>(), "a material range is empty");
 }
 
 MaterialSample NeuralTextureImpl::forward(const torch::Tensor& positions) {
-    const Vec3 low = options_.bounds[0];
-    const Vec3 size = options_.bounds[1] - low;
+    const Vec3 size = options_.bounds[1] - options_.bounds[0];
     // One scale for all axes: cells are cubes.
     const float extent = std::max({size.x, size.y, size.z, 1e-20f});
-    const torch::Tensor points =
-        (positions - torch::tensor({low.x, low.y, low.z})) * (1.0f / extent);
+    const torch::Tensor points = (positions - origin_) * (1.0f / extent);
     torch::Tensor x = encode(grid_, points, table_);
     for (std::size_t i = 0; i < weights_.size(); ++i) {
         x = torch::linear(x, weights_[i], biases_[i]);
@@ -101,6 +103,7 @@ std::vector<torch::Tensor> NeuralTextureImpl::network_parameters() const {
 NeuralTexture snapshot(const NeuralTexture& field) {
     const torch::NoGradGuard no_grad;
     NeuralTexture copy(field->options());
+    copy->to(field->table().device());
     auto targets = copy->named_parameters();
     for (const auto& source : field->named_parameters()) {
         targets[source.key()].copy_(source.value());

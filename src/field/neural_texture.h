@@ -41,7 +41,8 @@ struct NeuralTextureOptions {
 };
 
 /// A hash grid and a network with two hidden layers. Parameters: "table", the grid's features with
-/// sparse gradients (for Adam of adam.h), and "weight0", "bias0", ... of the network.
+/// sparse gradients (for Adam of adam.h), and "weight0", "bias0", ... of the network. Made on the
+/// CPU; to(device) moves it.
 class NeuralTextureImpl : public torch::nn::Module {
   public:
     explicit NeuralTextureImpl(const NeuralTextureOptions& options);
@@ -68,10 +69,12 @@ class NeuralTextureImpl : public torch::nn::Module {
     std::vector<torch::Tensor> weights_;  ///< [out, in] each
     std::vector<torch::Tensor> biases_;   ///< [out]
     torch::Tensor low_, high_;            ///< [8] ranges of the outputs
+    torch::Tensor origin_;                ///< [3] the lower corner of the bounds
 };
 TORCH_MODULE(NeuralTexture);
 
-/// A copy that training leaves alone: what the field was, to compare with what it has become.
+/// A copy that training leaves alone, on the same device: what the field was, to compare with what
+/// it has become.
 NeuralTexture snapshot(const NeuralTexture& field);
 
 }  // namespace item3d

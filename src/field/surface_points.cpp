@@ -42,7 +42,7 @@ Surface surface_at(const Geometry& geometry, const torch::Tensor& triangle,
         return vector / torch::sqrt(vector.square().sum(1, true)).clamp_min(1e-12);
     };
     Surface surface;
-    surface.pixel = torch::arange(triangle.size(0), torch::kInt64);
+    surface.pixel = torch::arange(triangle.size(0), triangle.options());
     surface.position = interpolate(geometry.positions);
     surface.normal = unit(interpolate(geometry.normals));
     surface.tangent = interpolate(geometry.tangents);
@@ -54,7 +54,8 @@ Surface surface_at(const Geometry& geometry, const torch::Tensor& triangle,
     return surface;
 }
 
-FieldSpace::FieldSpace(const Model& model, const std::vector<int>& materials) {
+FieldSpace::FieldSpace(const Model& model, const std::vector<int>& materials,
+                       torch::Device device) {
     std::map<std::pair<int, int>, int> seen;
     std::vector<torch::Tensor> transforms;
     bounds_ = {Vec3(1e30f), Vec3(-1e30f)};
@@ -87,7 +88,7 @@ FieldSpace::FieldSpace(const Model& model, const std::vector<int>& materials) {
         }
     }
     ITEM3D_CHECK(any, "no primitive has one of the edited materials");
-    transforms_ = torch::stack(transforms);
+    transforms_ = torch::stack(transforms).to(device);
 }
 
 torch::Tensor FieldSpace::positions(const Surface& surface) const {
@@ -99,9 +100,9 @@ torch::Tensor FieldSpace::positions(const Surface& surface) const {
 
 SurfaceSampler::SurfaceSampler(const Geometry& geometry, const FieldSpace& space)
     : geometry_(geometry) {
-    const torch::Tensor positions = geometry.positions.detach().contiguous();
-    const torch::Tensor corners = geometry.triangles.contiguous();
-    const torch::Tensor owners = geometry.triangle_primitive.contiguous();
+    const torch::Tensor positions = geometry.positions.detach().cpu().contiguous();
+    const torch::Tensor corners = geometry.triangles.cpu().contiguous();
+    const torch::Tensor owners = geometry.triangle_primitive.cpu().contiguous();
     const float* p = positions.data_ptr<float>();
     const std::int32_t* triangle = corners.data_ptr<std::int32_t>();
     const std::int32_t* primitive = owners.data_ptr<std::int32_t>();
@@ -139,7 +140,8 @@ Surface SurfaceSampler::sample(std::int64_t count, Random& random) const {
         b[2 * i] = static_cast<float>(1.0 - root);
         b[2 * i + 1] = static_cast<float>(v);
     }
-    return surface_at(geometry_, triangle, barycentrics);
+    const torch::Device device = geometry_.positions.device();
+    return surface_at(geometry_, triangle.to(device), barycentrics.to(device));
 }
 
 }  // namespace item3d

@@ -23,8 +23,9 @@ Surface surface_at(const Geometry& geometry, const torch::Tensor& triangle,
 /// a texture in the file, so they must share a material at each of their points.
 class FieldSpace {
   public:
-    /// materials: indices of the materials that are edited.
-    FieldSpace(const Model& model, const std::vector<int>& materials);
+    /// materials: indices of the materials that are edited. device: of the surfaces to come.
+    FieldSpace(const Model& model, const std::vector<int>& materials,
+               torch::Device device = torch::kCPU);
 
     /// [P, 3]: surface.position, moved from instances to their first.
     torch::Tensor positions(const Surface& surface) const;
@@ -45,7 +46,8 @@ class FieldSpace {
         transforms_;  ///< [primitives, 4, 3]: (x, y, z, 1) times it is the first's position
 };
 
-/// Draws points uniformly by area from the first instances of edited materials.
+/// Draws points uniformly by area from the first instances of edited materials: on the CPU, for the
+/// same points everywhere. Surfaces are on the geometry's device.
 class SurfaceSampler {
   public:
     SurfaceSampler(const Geometry& geometry, const FieldSpace& space);

@@ -45,7 +45,7 @@ TexelEvaluator::TexelEvaluator(const BakeScene& scene, int material, int width, 
             remade.primitives.push_back(
                 edit == scene.atlas.primitives.end() ? primitive : apply(edit->second, primitive));
         }
-        atlas_geometry_ = Geometry::from_model(remade);
+        atlas_geometry_ = Geometry::from_model(remade, scene.geometry.positions.device());
     }
 }
 
@@ -65,15 +65,18 @@ torch::Tensor TexelEvaluator::frame_change(const Surface& surface, const torch::
 torch::Tensor TexelEvaluator::pack(const MaterialSample& sample,
                                    const torch::Tensor& rotation) const {
     const std::int64_t count = sample.base_color.size(0);
-    torch::Tensor normal = sample.normal.defined()
-                               ? sample.normal
-                               : torch::tensor({0.0f, 0.0f, 1.0f}).expand({count, 3});
+    torch::Tensor normal =
+        sample.normal.defined()
+            ? sample.normal
+            : torch::tensor({0.0f, 0.0f, 1.0f}, sample.base_color.options()).expand({count, 3});
     if (rotation.defined()) normal = torch::matmul(rotation, normal.unsqueeze(2)).squeeze(2);
-    const torch::Tensor alpha =
-        sample.alpha.defined() ? sample.alpha.unsqueeze(1) : torch::ones({count, 1});
+    const torch::Tensor alpha = sample.alpha.defined()
+                                    ? sample.alpha.unsqueeze(1)
+                                    : torch::ones({count, 1}, sample.base_color.options());
     return torch::cat(
                {sample.base_color.clamp(0.0f, 1.0f), sample.orm.clamp(0.0f, 1.0f), normal, alpha},
                1)
+        .cpu()
         .contiguous();
 }
 
@@ -116,8 +119,10 @@ std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture&
     first_sample.push_back(triangle.size());
 
     const torch::NoGradGuard no_grad;
-    const torch::Tensor triangles = torch::tensor(triangle, torch::kInt64);
-    const torch::Tensor weights = torch::tensor(barycentrics, torch::kFloat32).view({-1, 2});
+    const torch::Device device = scene_.geometry.positions.device();
+    const torch::Tensor triangles = torch::tensor(triangle, torch::kInt64).to(device);
+    const torch::Tensor weights =
+        torch::tensor(barycentrics, torch::kFloat32).view({-1, 2}).to(device);
     const Surface surface = surface_at(scene_.geometry, triangles, weights);
     const torch::Tensor rotation = frame_change(surface, triangles, weights);
     const torch::Tensor positions = scene_.space.positions(surface);

@@ -38,7 +38,8 @@ class TexelEvaluator {
 
   private:
     TexelMaterial read(const float* row) const;
-    /// [P, 10] of a sample at `surface`; rotation [P, 3, 3] or undefined goes to the normals.
+    /// [P, 10] on the CPU, of a sample at `surface`; rotation [P, 3, 3] or undefined goes to the
+    /// normals.
     torch::Tensor pack(const MaterialSample& sample, const torch::Tensor& rotation) const;
     torch::Tensor frame_change(const Surface& surface, const torch::Tensor& triangle,
                                const torch::Tensor& barycentrics) const;

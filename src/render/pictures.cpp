@@ -3,6 +3,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
+#include "item3d/render/cuda/module.h"
+#include "item3d/render/kernels/scatter.h"
 #include "item3d/render/shade.h"
 
 #include <torch/csrc/autograd/custom_function.h>
@@ -22,28 +24,28 @@ struct Scatter : torch::autograd::Function<Scatter> {
                                  std::int64_t pixels) {
         const std::int64_t channels = values.size(1),
                            stride = background.size(0) == 1 ? 0 : channels;
-        torch::Tensor out = torch::empty({pixels, channels}, torch::kFloat32);
-        float* picture = out.data_ptr<float>();
-        const float* behind = background.const_data_ptr<float>();
-        const float* in_front = values.const_data_ptr<float>();
-        const std::int64_t* index = pixel.const_data_ptr<std::int64_t>();
-        parallel_for(
-            "scatter background", pixels,
-            [=](std::int64_t i) {
-                for (std::int64_t c = 0; c < channels; ++c)
-                    picture[i * channels + c] = behind[i * stride + c];
-            },
-            65536);
-        parallel_for(
-            "scatter", values.size(0),
-            [=](std::int64_t i) {
-                for (std::int64_t c = 0; c < channels; ++c)
-                    picture[index[i] * channels + c] = in_front[i * channels + c];
-            },
-            65536);
+        torch::Tensor picture = torch::empty({pixels, channels}, values.options());
+        const kernels::ScatterParameters p{values.const_data_ptr<float>(),
+                                           background.const_data_ptr<float>(),
+                                           pixel.const_data_ptr<std::int64_t>(),
+                                           channels,
+                                           stride,
+                                           picture.data_ptr<float>()};
+        if (values.is_cuda()) {
+            const cuda::RenderTable& table = cuda::render_table();
+            cuda::run(table.scatter_background, p, pixels, values.device());
+            cuda::run(table.scatter_values, p, values.size(0), values.device());
+        } else {
+            parallel_for(
+                "scatter background", pixels,
+                [=](std::int64_t i) { kernels::scatter_background(p, i); }, 65536);
+            parallel_for(
+                "scatter", values.size(0), [=](std::int64_t i) { kernels::scatter_value(p, i); },
+                65536);
+        }
         context->save_for_backward({pixel});
         context->saved_data["uniform"] = background.size(0) == 1 && pixels != 1;
-        return out;
+        return picture;
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const torch::Tensor pixel = context->get_saved_variables()[0];
@@ -62,18 +64,20 @@ struct Scatter : torch::autograd::Function<Scatter> {
 
 torch::Tensor scatter(const torch::Tensor& values_, const Surface& surface, const Raster& raster,
                       const torch::Tensor& background_) {
+    const torch::Device device = operation_device("scatter", values_);
     const std::int64_t count = surface.count();
     const torch::Tensor values =
-        checked("scatter", "values", values_, torch::kFloat32, {count, -1});
+        checked("scatter", "values", values_, torch::kFloat32, {count, -1}, device);
+    const torch::Tensor pixel =
+        checked("scatter", "surface.pixel", surface.pixel, torch::kInt64, {count}, device);
     const std::int64_t channels = values.size(1);
     const std::int64_t views = raster.views(), height = raster.height(), width = raster.width();
     const bool uniform = background_.defined() && background_.dim() == 1;
     const torch::Tensor background =
-        uniform ? checked("scatter", "background", background_, torch::kFloat32, {channels})
+        uniform ? checked("scatter", "background", background_, torch::kFloat32, {channels}, device)
                 : checked("scatter", "background", background_, torch::kFloat32,
-                          {views, height, width, channels});
-    return Scatter::apply(values, background.reshape({-1, channels}), surface.pixel,
-                          views * height * width)
+                          {views, height, width, channels}, device);
+    return Scatter::apply(values, background.reshape({-1, channels}), pixel, views * height * width)
         .reshape({views, height, width, channels});
 }
 

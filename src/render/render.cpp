@@ -50,8 +50,9 @@ torch::Tensor render_view(const Geometry& geometry, const TexturedMaterials& mat
     }
     if (options.background) {
         const Vec3 color = *options.background;
-        picture = picture +
-                  (1 - picture.narrow(3, 3, 1)) * torch::tensor({color.x, color.y, color.z, 1.0f});
+        const torch::Tensor behind =
+            torch::tensor({color.x, color.y, color.z, 1.0f}, picture.options());
+        picture = picture + (1 - picture.narrow(3, 3, 1)) * behind;
     }
     picture = antialias(picture, first, geometry);
     if (samples == 1) return picture;

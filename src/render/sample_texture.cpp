@@ -1,6 +1,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
+#include "item3d/render/cuda/module.h"
 #include "item3d/render/kernels/texture.h"
 #include "item3d/render/textured.h"
 
@@ -50,17 +51,43 @@ TextureParameters texture_parameters(const tensor_list& inputs, const SampleSett
     return p;
 }
 
+/// [total]: the gradients of all levels, one after the other.
+torch::Tensor texel_gradient(const TextureParameters& p, const float* value_gradient,
+                             std::int64_t count, std::int64_t total) {
+    const torch::Tensor gradient = torch::zeros({total});
+    Accumulator sums;
+    sums.values = gradient.data_ptr<float>();
+    // One thread, for the same bytes again; buffers of many threads would cost more to sum.
+    for (std::int64_t i = 0; i < count; ++i)
+        kernels::texture_backward(p, i, value_gradient, sums);
+    return gradient;
+}
+
+torch::Tensor texel_gradient_on_cuda(const TextureParameters& p, const float* value_gradient,
+                                     std::int64_t count, std::int64_t total, torch::Device device) {
+    // A level of one texel gets all four taps of each probe.
+    const std::int64_t most_terms = 4 * kernels::most_texture_probes * count;
+    return cuda::sum_on_device(total, most_terms, device, [&](const Accumulator& sums) {
+        cuda::run(cuda::render_table().texture_backward,
+                  {p, nullptr, value_gradient, nullptr, sums}, count, device);
+    });
+}
+
 struct SampleTexture : torch::autograd::Function<SampleTexture> {
     static torch::Tensor forward(AutogradContext* context, at::TensorList inputs_,
                                  const SampleSettings& settings) {
         const tensor_list inputs = inputs_.vec();
         const std::int64_t count = inputs[0].size(0);
-        torch::Tensor values = torch::empty({count, inputs[1].size(2)}, torch::kFloat32);
+        torch::Tensor values = torch::empty({count, inputs[1].size(2)}, inputs[0].options());
         float* out = values.data_ptr<float>();
         const TextureParameters p = texture_parameters(inputs, settings);
-        parallel_for(
-            "sample_texture", count,
-            [&p, out](std::int64_t i) { kernels::texture_forward(p, i, out); }, 4096);
+        if (values.is_cuda())
+            cuda::run(cuda::render_table().texture, {p, out, nullptr, nullptr, {}}, count,
+                      values.device());
+        else
+            parallel_for(
+                "sample_texture", count,
+                [&p, out](std::int64_t i) { kernels::texture_forward(p, i, out); }, 4096);
         tensor_list saved = inputs;
         saved.push_back(settings.footprint);
         context->save_for_backward(saved);
@@ -78,14 +105,19 @@ struct SampleTexture : torch::autograd::Function<SampleTexture> {
         const torch::Tensor gradient = gradients[0].contiguous();
         const float* in = gradient.const_data_ptr<float>();
         const std::int64_t count = inputs[0].size(0);
+        const torch::Device device = gradient.device();
         tensor_list results(inputs.size() + 1);
         if (context->needs_input_grad(0)) {
             results[0] = torch::empty_like(inputs[0]);
             float* out = results[0].data_ptr<float>();
-            parallel_for(
-                "sample_texture by uv", count,
-                [&p, in, out](std::int64_t i) { kernels::texture_uv_backward(p, i, in, out); },
-                4096);
+            if (device.is_cuda())
+                cuda::run(cuda::render_table().texture_uv_backward, {p, nullptr, in, out, {}},
+                          count, device);
+            else
+                parallel_for(
+                    "sample_texture by uv", count,
+                    [&p, in, out](std::int64_t i) { kernels::texture_uv_backward(p, i, in, out); },
+                    4096);
         }
         bool texels = false;
         for (std::size_t i = 1; i < inputs.size(); ++i)
@@ -94,12 +126,9 @@ struct SampleTexture : torch::autograd::Function<SampleTexture> {
         std::int64_t total = 0;
         for (std::size_t i = 1; i < inputs.size(); ++i)
             total += inputs[i].numel();
-        const torch::Tensor by_texels = torch::zeros({total});
-        Accumulator sums;
-        sums.values = by_texels.data_ptr<float>();
-        // One thread, for the same bytes again; buffers of many threads would cost more to sum.
-        for (std::int64_t i = 0; i < count; ++i)
-            kernels::texture_backward(p, i, in, sums);
+        const torch::Tensor by_texels = device.is_cuda()
+                                            ? texel_gradient_on_cuda(p, in, count, total, device)
+                                            : texel_gradient(p, in, count, total);
         for (std::size_t i = 1; i < inputs.size(); ++i)
             results[i] =
                 by_texels.narrow(0, p.levels[i - 1].first, inputs[i].numel()).view_as(inputs[i]);
@@ -112,27 +141,32 @@ struct HalveTexture : torch::autograd::Function<HalveTexture> {
     static torch::Tensor forward(AutogradContext*, const torch::Tensor& fine) {
         torch::Tensor coarse =
             torch::empty({fine.size(0) / 2, fine.size(1) / 2, fine.size(2)}, fine.options());
-        const auto width = static_cast<int>(fine.size(1)),
-                   channels = static_cast<int>(fine.size(2));
-        const float* in = fine.const_data_ptr<float>();
-        float* out = coarse.data_ptr<float>();
-        parallel_for(
-            "halve_texture", coarse.size(0) * coarse.size(1),
-            [=](std::int64_t i) { kernels::halve_texture(in, width, channels, i, out); }, 16384);
+        const kernels::HalveParameters p{fine.const_data_ptr<float>(),
+                                         static_cast<int>(fine.size(1)),
+                                         static_cast<int>(fine.size(2)), coarse.data_ptr<float>()};
+        const std::int64_t count = coarse.size(0) * coarse.size(1);
+        if (fine.is_cuda())
+            cuda::run(cuda::render_table().halve_texture, p, count, fine.device());
+        else
+            parallel_for(
+                "halve_texture", count, [=](std::int64_t i) { kernels::halve_texture(p, i); },
+                16384);
         return coarse;
     }
     static tensor_list backward(AutogradContext*, tensor_list gradients) {
         const torch::Tensor coarse = gradients[0].contiguous();
         torch::Tensor fine = torch::empty({2 * coarse.size(0), 2 * coarse.size(1), coarse.size(2)},
                                           coarse.options());
-        const auto width = static_cast<int>(fine.size(1)),
-                   channels = static_cast<int>(fine.size(2));
-        const float* in = coarse.const_data_ptr<float>();
-        float* out = fine.data_ptr<float>();
-        parallel_for(
-            "halve_texture backward", coarse.size(0) * coarse.size(1),
-            [=](std::int64_t i) { kernels::halve_texture_backward(in, width, channels, i, out); },
-            16384);
+        const kernels::HalveParameters p{coarse.const_data_ptr<float>(),
+                                         static_cast<int>(fine.size(1)),
+                                         static_cast<int>(fine.size(2)), fine.data_ptr<float>()};
+        const std::int64_t count = coarse.size(0) * coarse.size(1);
+        if (fine.is_cuda())
+            cuda::run(cuda::render_table().halve_texture_backward, p, count, fine.device());
+        else
+            parallel_for(
+                "halve_texture backward", count,
+                [=](std::int64_t i) { kernels::halve_texture_backward(p, i); }, 16384);
         return {fine};
     }
 };
@@ -146,7 +180,7 @@ std::vector<torch::Tensor> texture_pyramid(const torch::Tensor& texture) {
         const torch::Tensor& fine = levels.back();
         const std::int64_t height = std::max<std::int64_t>(1, fine.size(0) / 2);
         const std::int64_t width = std::max<std::int64_t>(1, fine.size(1) / 2);
-        if (fine.size(0) == 2 * height && fine.size(1) == 2 * width && fine.is_cpu()) {
+        if (fine.size(0) == 2 * height && fine.size(1) == 2 * width) {
             levels.push_back(HalveTexture::apply(fine));
             continue;
         }
@@ -163,14 +197,15 @@ torch::Tensor sample_texture(const std::vector<torch::Tensor>& levels, const tor
     ITEM3D_CHECK(!levels.empty() && levels.size() <= kernels::max_texture_levels &&
                      levels[0].dim() == 3 && levels[0].numel() > 0,
                  "sample_texture: 1 to 16 levels of a texture [H, W, C] with texels");
-    tensor_list inputs{checked(op, "uv", uv_, torch::kFloat32, {-1, 2})};
+    const torch::Device device = operation_device(op, uv_);
+    tensor_list inputs{checked(op, "uv", uv_, torch::kFloat32, {-1, 2}, device)};
     for (const torch::Tensor& level : levels)
         inputs.push_back(
-            checked(op, "texture", level, torch::kFloat32, {-1, -1, levels[0].size(2)}));
+            checked(op, "texture", level, torch::kFloat32, {-1, -1, levels[0].size(2)}, device));
     SampleSettings settings{{}, kernel_wrap(wrap_u), kernel_wrap(wrap_v)};
     if (footprint.defined())
-        settings.footprint =
-            checked(op, "footprint", footprint.detach(), torch::kFloat32, {inputs[0].size(0), 4});
+        settings.footprint = checked(op, "footprint", footprint.detach(), torch::kFloat32,
+                                     {inputs[0].size(0), 4}, device);
     return SampleTexture::apply(at::TensorList(inputs), settings);
 }
 

@@ -78,8 +78,31 @@ MaterialTexture load_texture(const Model& model, int index, int channels, bool s
     return texture;
 }
 
+torch::Tensor row(std::initializer_list<float> values, torch::Device device) {
+    return torch::tensor(std::vector<float>(values)).to(device);
+}
+
+/// A material's factors as rows on the device, moved there once and not at each lookup.
+struct FactorRows {
+    torch::Tensor base_color;          ///< [4]
+    torch::Tensor roughness_metallic;  ///< [2]
+    torch::Tensor normal_scale;        ///< [3]
+    torch::Tensor emissive;            ///< [3]
+
+    FactorRows(const Material& material, torch::Device device)
+        : base_color(row({material.base_color_factor.x, material.base_color_factor.y,
+                          material.base_color_factor.z, material.base_color_factor.w},
+                         device)),
+          roughness_metallic(row({material.roughness_factor, material.metallic_factor}, device)),
+          normal_scale(row({material.normal_scale, material.normal_scale, 1}, device)),
+          emissive(row(
+              {material.emissive_factor.x, material.emissive_factor.y, material.emissive_factor.z},
+              device)) {}
+};
+
 struct MaterialTextures {
     Material factors;
+    FactorRows rows;
     MaterialTexture base_color, metallic_roughness, occlusion, normal, emissive;
     bool emits() const {
         return factors.unlit || std::max({factors.emissive_factor.x, factors.emissive_factor.y,
@@ -88,14 +111,12 @@ struct MaterialTextures {
     bool transparent() const { return factors.alpha != Material::Alpha::opaque; }
 };
 
-torch::Tensor row(std::initializer_list<float> values, torch::Device device) {
-    return torch::tensor(std::vector<float>(values)).to(device);
-}
-
 }  // namespace
 
 struct TexturedMaterials::State {
     std::vector<MaterialTextures> materials;
+    torch::Tensor flat_normal;  ///< [3] where a material has no normal texture
+    torch::Tensor unlit_orm;    ///< [3] what orm is multiplied by, to be black to the light
     bool any_normal = false, any_emissive = false, any_alpha = false;
 
     /// Of all points of a surface: its UV, footprints and colours alone are looked at.
@@ -105,9 +126,10 @@ struct TexturedMaterials::State {
 TexturedMaterials::TexturedMaterials(const Model& model, torch::Device device) {
     const torch::NoGradGuard no_gradient;
     auto state = std::make_shared<State>();
+    state->flat_normal = row({0, 0, 1}, device);
+    state->unlit_orm = row({0, 1, 1}, device);
     for (const Material& material : model.materials) {
-        MaterialTextures textures;
-        textures.factors = material;
+        MaterialTextures textures{material, FactorRows(material, device), {}, {}, {}, {}, {}};
         textures.base_color = load_texture(model, material.base_color_texture, 4, true, device);
         textures.metallic_roughness =
             load_texture(model, material.metallic_roughness_texture, 3, false, device);
@@ -129,17 +151,15 @@ bool TexturedMaterials::has_alpha() const {
 MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& material,
                                                     const Surface& surface) const {
     const Material& factors = material.factors;
-    const torch::Device device = surface.uv.device();
+    const FactorRows& rows = material.rows;
     const std::int64_t count = surface.uv.size(0);
 
-    const Vec4 base = factors.base_color_factor;
-    torch::Tensor base_color = surface.color * row({base.x, base.y, base.z, base.w}, device);
+    torch::Tensor base_color = surface.color * rows.base_color;
     if (material.base_color.defined()) base_color = base_color * material.base_color.at(surface);
 
     MaterialSample sample;
     sample.base_color = base_color.narrow(1, 0, 3).clamp(0, 1);
-    torch::Tensor roughness_metallic =
-        row({factors.roughness_factor, factors.metallic_factor}, device).expand({count, 2});
+    torch::Tensor roughness_metallic = rows.roughness_metallic.expand({count, 2});
     if (material.metallic_roughness.defined())
         roughness_metallic =
             roughness_metallic * material.metallic_roughness.at(surface).narrow(1, 1, 2);
@@ -151,21 +171,18 @@ MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& mate
 
     if (any_normal) {
         if (material.normal.defined()) {
-            const torch::Tensor scale =
-                row({factors.normal_scale, factors.normal_scale, 1}, device);
-            const torch::Tensor normal = (2 * material.normal.at(surface) - 1) * scale;
+            const torch::Tensor normal = (2 * material.normal.at(surface) - 1) * rows.normal_scale;
             sample.normal = normal / normal.norm(2, 1, true).clamp_min(1e-6f);
         } else {
-            sample.normal = row({0, 0, 1}, device).expand({count, 3});
+            sample.normal = flat_normal.expand({count, 3});
         }
     }
     if (factors.unlit) {
         // Shown by itself, and black to the light.
         sample.emissive = sample.base_color;
-        sample.orm = sample.orm * row({0, 1, 1}, device);
+        sample.orm = sample.orm * unlit_orm;
     } else if (any_emissive) {
-        const Vec3 emissive = factors.emissive_factor;
-        sample.emissive = row({emissive.x, emissive.y, emissive.z}, device).expand({count, 3});
+        sample.emissive = rows.emissive.expand({count, 3});
         if (material.emissive.defined())
             sample.emissive = sample.emissive * material.emissive.at(surface);
     }

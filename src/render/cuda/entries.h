@@ -24,11 +24,15 @@ int equirectangular(const kernels::EquirectangularParameters& p, std::int64_t co
 int equirectangular_backward(const kernels::EquirectangularParameters& p, std::int64_t count,
                              Stream stream);
 int uv_footprints(const kernels::FootprintParameters& p, std::int64_t count, Stream stream);
+int scatter_background(const kernels::ScatterParameters& p, std::int64_t count, Stream stream);
+int scatter_values(const kernels::ScatterParameters& p, std::int64_t count, Stream stream);
 int finish_sums(const FinishSumsParameters& p, std::int64_t count, Stream stream);
 
 // texture.cu
 int texture(const TextureLaunchParameters& p, std::int64_t count, Stream stream);
 int texture_backward(const TextureLaunchParameters& p, std::int64_t count, Stream stream);
 int texture_uv_backward(const TextureLaunchParameters& p, std::int64_t count, Stream stream);
+int halve_texture(const kernels::HalveParameters& p, std::int64_t count, Stream stream);
+int halve_texture_backward(const kernels::HalveParameters& p, std::int64_t count, Stream stream);
 
 }  // namespace item3d::cuda

@@ -54,6 +54,17 @@ int uv_footprints(const kernels::FootprintParameters& p, std::int64_t count, Str
         stream);
 }
 
+int scatter_background(const kernels::ScatterParameters& p, std::int64_t count, Stream stream) {
+    return launch(
+        "scatter background", count,
+        [=] __device__(std::int64_t i) { kernels::scatter_background(p, i); }, stream);
+}
+
+int scatter_values(const kernels::ScatterParameters& p, std::int64_t count, Stream stream) {
+    return launch(
+        "scatter", count, [=] __device__(std::int64_t i) { kernels::scatter_value(p, i); }, stream);
+}
+
 int finish_sums(const FinishSumsParameters& p, std::int64_t count, Stream stream) {
     return launch(
         "finish_sums", count, [=] __device__(std::int64_t i) { finish_sum(p, i); }, stream);
@@ -84,6 +95,10 @@ constexpr RenderTable table{{table_version, sizeof(RenderTable)},
                             texture,
                             texture_backward,
                             texture_uv_backward,
+                            halve_texture,
+                            halve_texture_backward,
+                            scatter_background,
+                            scatter_values,
                             finish_sums};
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "item3d/render/kernels/interpolate.h"
 #include "item3d/render/kernels/project.h"
 #include "item3d/render/kernels/raster.h"
+#include "item3d/render/kernels/scatter.h"
 #include "item3d/render/kernels/shade.h"
 #include "item3d/render/kernels/texture.h"
 
@@ -29,7 +30,7 @@ struct TableHeader {
 };
 
 /// To be raised by whoever changes a table or the parameters of one of its kernels.
-inline constexpr std::uint32_t table_version = 1;
+inline constexpr std::uint32_t table_version = 2;
 
 /// A texture lookup and its gradients, with what each of them reads and writes.
 struct TextureLaunchParameters {
@@ -60,6 +61,10 @@ struct RenderTable {
     Kernel<TextureLaunchParameters> texture;
     Kernel<TextureLaunchParameters> texture_backward;
     Kernel<TextureLaunchParameters> texture_uv_backward;
+    Kernel<kernels::HalveParameters> halve_texture;           ///< count: coarse texels
+    Kernel<kernels::HalveParameters> halve_texture_backward;  ///< count: coarse texels
+    Kernel<kernels::ScatterParameters> scatter_background;    ///< count: pixels
+    Kernel<kernels::ScatterParameters> scatter_values;        ///< count: values
     Kernel<FinishSumsParameters> finish_sums;
 };
 

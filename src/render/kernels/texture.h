@@ -183,25 +183,33 @@ ITEM3D_HOST_DEVICE inline void texture_forward(const TextureParameters& p, std::
     }
 }
 
-/// A level half as large: the means of 2 x 2 texels. index: y * width / 2 + x of the new level.
-ITEM3D_HOST_DEVICE inline void halve_texture(const float* fine, int fine_width, int channels,
-                                             std::int64_t index, float* coarse) {
-    const std::int64_t width = fine_width / 2, y = index / width, x = index % width;
-    const float* above = fine + (2 * y * fine_width + 2 * x) * channels;
-    const float* below = above + static_cast<std::int64_t>(fine_width) * channels;
-    float* out = coarse + index * channels;
+/// From a level to the next, whose texels are the means of 2 x 2.
+struct HalveParameters {
+    const float* in;  ///< the fine level [2H, 2W, C]; backwards the coarse one's gradient [H, W, C]
+    int fine_width;   ///< 2W
+    int channels;     ///< C
+    float* out;       ///< the coarse level; backwards the fine one's gradient
+};
+
+/// index: y * W + x of the coarse level.
+ITEM3D_HOST_DEVICE inline void halve_texture(const HalveParameters& p, std::int64_t index) {
+    const int channels = p.channels;
+    const std::int64_t width = p.fine_width / 2, y = index / width, x = index % width;
+    const float* above = p.in + (2 * y * p.fine_width + 2 * x) * channels;
+    const float* below = above + static_cast<std::int64_t>(p.fine_width) * channels;
+    float* out = p.out + index * channels;
     for (int c = 0; c < channels; ++c)
         out[c] = 0.25f * ((above[c] + above[c + channels]) + (below[c] + below[c + channels]));
 }
 
 /// The gradient of the four texels that coarse texel `index` is the mean of.
-ITEM3D_HOST_DEVICE inline void halve_texture_backward(const float* coarse_gradient, int fine_width,
-                                                      int channels, std::int64_t index,
-                                                      float* fine_gradient) {
-    const std::int64_t width = fine_width / 2, y = index / width, x = index % width;
-    float* above = fine_gradient + (2 * y * fine_width + 2 * x) * channels;
-    float* below = above + static_cast<std::int64_t>(fine_width) * channels;
-    const float* in = coarse_gradient + index * channels;
+ITEM3D_HOST_DEVICE inline void halve_texture_backward(const HalveParameters& p,
+                                                      std::int64_t index) {
+    const int channels = p.channels;
+    const std::int64_t width = p.fine_width / 2, y = index / width, x = index % width;
+    float* above = p.out + (2 * y * p.fine_width + 2 * x) * channels;
+    float* below = above + static_cast<std::int64_t>(p.fine_width) * channels;
+    const float* in = p.in + index * channels;
     for (int c = 0; c < channels; ++c)
         above[c] = above[c + channels] = below[c] = below[c + channels] = 0.25f * in[c];
 }

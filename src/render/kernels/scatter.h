@@ -1,0 +1,30 @@
+// Values at covered pixels into pictures.
+#pragma once
+
+#include "item3d/core/host_device.h"
+
+#include <cstdint>
+
+namespace item3d::kernels {
+
+struct ScatterParameters {
+    const float* values;             ///< [P, C]
+    const float* background;         ///< [pixels, C], or [C] for one colour
+    const std::int64_t* pixel;       ///< [P], no pixel twice
+    std::int64_t channels;           ///< C
+    std::int64_t background_stride;  ///< from one pixel's background to the next one's: C, or 0
+    float* picture;                  ///< [pixels, C]
+};
+
+ITEM3D_HOST_DEVICE inline void scatter_background(const ScatterParameters& p, std::int64_t pixel) {
+    for (std::int64_t c = 0; c < p.channels; ++c)
+        p.picture[pixel * p.channels + c] = p.background[pixel * p.background_stride + c];
+}
+
+/// To be run after scatter_background() of all pixels.
+ITEM3D_HOST_DEVICE inline void scatter_value(const ScatterParameters& p, std::int64_t index) {
+    for (std::int64_t c = 0; c < p.channels; ++c)
+        p.picture[p.pixel[index] * p.channels + c] = p.values[index * p.channels + c];
+}
+
+}  // namespace item3d::kernels
