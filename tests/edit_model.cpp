@@ -21,6 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Asked before any test has LibTorch look for a device, which it does once.
+const bool has_device = cuda::cuda_available();
+
 class EditTest : public testing::Test {
   protected:
     void SetUp() override {
@@ -242,7 +245,7 @@ TEST_F(EditTest, metallic_is_left_alone_where_no_metal_is_named) {
 }
 
 TEST_F(EditTest, a_device_edits_as_the_cpu_does) {
-    if (!cuda::cuda_available())
+    if (!has_device)
         GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with";
     at::globalContext().setAllowTF32CuDNN(false);
     std::vector<Image> colors;

@@ -16,8 +16,11 @@
 namespace item3d {
 namespace {
 
-#define SKIP_WITHOUT_DEVICE()    \
-    if (!cuda::cuda_available()) \
+/// Asked before any test has LibTorch look for a device, which it does once.
+const bool has_device = cuda::cuda_available();
+
+#define SKIP_WITHOUT_DEVICE() \
+    if (!has_device)          \
     GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with"
 
 double relative_error(const torch::Tensor& found, const torch::Tensor& expected) {

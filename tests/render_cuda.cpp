@@ -18,8 +18,11 @@ namespace {
 
 using testing::front_camera;
 
-#define SKIP_WITHOUT_DEVICE()    \
-    if (!cuda::cuda_available()) \
+/// Asked before any test has LibTorch look for a device, which it does once.
+const bool has_device = cuda::cuda_available();
+
+#define SKIP_WITHOUT_DEVICE() \
+    if (!has_device)          \
     GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with"
 
 /// Two layers of a sphere that lie over each other, and the cameras that look at them.
