@@ -127,6 +127,7 @@ BENCHMARK(prefilter_cube)
     ->Args({128, 0})
     ->Args({256, 0})
     ->Args({512, 0})
+    ->Args({512, 1})
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -62,8 +62,8 @@ TEST(Reference, Irradiance) {
             (shade(surface, white, diffuse_only).reshape_as(reference) - reference).abs();
         std::printf("[ irradiance %s: mean error %.5f, largest %.5f of 1 ]\n", name,
                     error.mean().item<float>(), error.max().item<float>());
-        EXPECT_LT(error.mean().item<float>(), 0.0015) << name;
-        EXPECT_LT(error.max().item<float>(), 0.02) << name;
+        EXPECT_LT(error.mean().item<float>(), 0.0005) << name;
+        EXPECT_LT(error.max().item<float>(), 0.003) << name;
     }
 }
 
@@ -109,8 +109,8 @@ TEST(Reference, GradientOfABaseColourTexture) {
     std::printf("[ texture gradient: cosine %.5f, relative error %.4f; picture %.4f ]\n", cosine,
                 relative, image_error);
     EXPECT_GT(cosine, 0.999);
-    EXPECT_LT(relative, 0.03);
-    EXPECT_LT(image_error, 0.01);
+    EXPECT_LT(relative, 0.005);
+    EXPECT_LT(image_error, 0.005);
 }
 
 TEST(Reference, Spheres) {
@@ -157,7 +157,7 @@ TEST(Reference, Spheres) {
                     "scattering %.3f, %.3f ]\n",
                     light_name, metallic, roughness, single[0], single[1], multiple[0],
                     multiple[1]);
-                EXPECT_LT(single[0], 0.16);
+                EXPECT_LT(single[0], 0.14);
             }
         }
     }

@@ -10,7 +10,7 @@ namespace item3d {
 /// An environment made ready for shading. Cube faces are in OpenGL's order +X -X +Y -Y +Z -Z;
 /// [6, S, S, 3] linear radiance. All tensors carry gradients back to what `prefilter` was given.
 struct EnvironmentLight {
-    torch::Tensor diffuse;                ///< [6, 32, 32, 3] irradiance / pi
+    torch::Tensor diffuse;                ///< [6, 128, 128, 3] irradiance / pi
     std::vector<torch::Tensor> specular;  ///< GGX-prefiltered chain, finest first
     std::vector<float> roughness;         ///< perceptual roughness of each level
     EnvironmentLight to(torch::Device device) const;
