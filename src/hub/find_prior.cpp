@@ -1,0 +1,48 @@
+#include "item3d/hub/find_prior.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/hub/cache.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+namespace item3d {
+
+namespace fs = std::filesystem;
+
+fs::path installed_priors_folder() {
+    if (const char* data = std::getenv("XDG_DATA_HOME"); data && *data)
+        return fs::path(data) / "item3d" / "priors";
+    const char* home = std::getenv("HOME");
+    return fs::path(home ? home : "") / ".local" / "share" / "item3d" / "priors";
+}
+
+fs::path find_prior(const std::string& name) {
+    if (name.empty() || name == "embedded") return assets_folder() / "prior";
+    if (fs::is_directory(name)) return name;
+
+    if (name.find('/') == std::string::npos) {
+        const fs::path installed = installed_priors_folder() / name;
+        if (name != "." && name != ".." && fs::is_directory(installed)) return installed;
+        throw InputError(name,
+                         fmt::format("no prior of that name: no such folder, and none in {}",
+                                     installed_priors_folder().string()),
+                         "name a folder in the diffusers layout, 'embedded', or org/name of the "
+                         "Hugging Face hub");
+    }
+    const auto repository = RepositoryName::parse(name);
+    if (!repository)
+        throw InputError(name, "no such folder",
+                         "name a folder in the diffusers layout (it holds model_index.json)");
+    const CachedRepository cached(hub_cache_folder(), repository->name);
+    if (!cached.exists())
+        throw InputError(name,
+                         fmt::format("no such folder, and not in the Hugging Face cache {}",
+                                     hub_cache_folder().string()),
+                         "try: item3d prior pull " + name);
+    return cached.find_snapshot(repository->revision_or_main());
+}
+
+}  // namespace item3d

@@ -1,0 +1,155 @@
+#include "item3d/hub/selection.h"
+
+#include "item3d/core/error.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <set>
+
+namespace item3d {
+namespace {
+
+using Paths = std::vector<std::string>;
+
+bool contains(const Paths& files, const std::string& path) {
+    return std::find(files.begin(), files.end(), path) != files.end();
+}
+
+/// Formats that are read by running what they hold.
+bool is_pickle(const std::string& path) {
+    for (const char* extension : {".bin", ".ckpt", ".pt", ".pth", ".pkl"})
+        if (path.ends_with(extension)) return true;
+    return false;
+}
+
+/// Files directly in a part's folder that are neither weights nor their indexes.
+bool is_description(const std::string& name) {
+    return (name.ends_with(".json") && name.find(".index") == std::string::npos) ||
+           name == "merges.txt";
+}
+
+/// The stem of a network's weights; "" for parts without any.
+std::string weights_stem(const std::string& part) {
+    if (part == "unet" || part == "vae") return "diffusion_pytorch_model";
+    if (part.starts_with("text_encoder")) return "model";
+    return "";
+}
+
+constexpr const char* used_parts[] = {
+    "scheduler", "text_encoder", "text_encoder_2", "tokenizer", "tokenizer_2", "unet", "vae"};
+
+/// Adds the weights of one variant; false when there are none.
+bool add_weights(const std::string& stem, const std::string& variant, const Paths& files,
+                 FileSelection& selection) {
+    const std::string infix = variant.empty() ? "" : "." + variant;
+    if (const std::string single = stem + infix + ".safetensors"; contains(files, single)) {
+        selection.files.push_back(single);
+        return true;
+    }
+    for (const std::string& index : {stem + infix + ".safetensors.index.json",
+                                     stem + ".safetensors.index" + infix + ".json"}) {
+        if (!contains(files, index)) continue;
+        selection.indexes.push_back(index);
+        return true;
+    }
+    return false;
+}
+
+[[noreturn]] void throw_no_weights(const std::string& repository, const std::string& part,
+                                   const Paths& files) {
+    for (const std::string& path : files)
+        if (path.starts_with(part + "/") && is_pickle(path))
+            throw InputError(repository,
+                             fmt::format("{} has only pickled weights ({}), which run code when "
+                                         "they are read",
+                                         part, path),
+                             "choose a repository or --revision that has safetensors");
+    throw InputError(repository, part + " has no weights as safetensors",
+                     "choose a repository or --revision that has them");
+}
+
+}  // namespace
+
+void check_layout(const std::string& repository, const Paths& files) {
+    if (contains(files, "model_index.json")) return;
+    const auto found = std::find_if(files.begin(), files.end(), [](const std::string& path) {
+        return is_pickle(path) || path.ends_with(".safetensors");
+    });
+    if (found == files.end())
+        throw InputError(repository, "has no model_index.json and no weights",
+                         "name a text-to-image model in the diffusers layout");
+    if (std::none_of(files.begin(), files.end(),
+                     [](const std::string& path) { return path.ends_with(".safetensors"); }))
+        throw InputError(repository,
+                         fmt::format("has only pickled weights ({}), which run code when they are "
+                                     "read",
+                                     *found),
+                         "choose a repository in the diffusers layout with safetensors");
+    throw InputError(
+        repository, fmt::format("has {} but no model_index.json: not the diffusers layout", *found),
+        "choose a repository that holds the same model in the diffusers layout");
+}
+
+FileSelection select_files(const std::string& repository, const std::string& model_index,
+                           const Paths& files, const std::string& variant) {
+    const nlohmann::json index = nlohmann::json::parse(model_index, nullptr, false);
+    if (!index.is_object())
+        throw InputError(repository + "/model_index.json", "is not a JSON object");
+
+    FileSelection selection;
+    selection.files.push_back("model_index.json");
+    if (contains(files, "prior.json")) selection.files.push_back("prior.json");
+    bool has_network = false, has_variant = false;
+    for (const std::string part : used_parts) {
+        const auto entry = index.find(part);
+        if (entry == index.end() || !entry->is_array() || entry->size() != 2 ||
+            !(*entry)[1].is_string())
+            continue;
+        for (const std::string& path : files)
+            if (path.starts_with(part + "/") && is_description(path.substr(part.size() + 1)) &&
+                path.find('/', part.size() + 1) == std::string::npos)
+                selection.files.push_back(path);
+        const std::string stem = weights_stem(part);
+        if (stem.empty()) continue;
+        has_network = true;
+        const std::string path = part + "/" + stem;
+        const std::string other = variant.empty() ? "fp16" : "";
+        if (add_weights(path, variant, files, selection))
+            has_variant = true;
+        else if (!add_weights(path, other, files, selection))
+            throw_no_weights(repository, part, files);
+    }
+    if (!has_network)
+        throw InputError(repository + "/model_index.json", "names no part that item3d knows",
+                         "name a Stable Diffusion model in the diffusers layout");
+    if (!variant.empty() && !has_variant)
+        throw InputError(repository, "has no " + variant + " variant", "leave out --variant");
+    return selection;
+}
+
+Paths shards_of_index(const std::string& repository, const std::string& index,
+                      const std::string& text, const Paths& files) {
+    const std::string subject = repository + "/" + index;
+    const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    if (!json.is_object() || !json.contains("weight_map") || !json["weight_map"].is_object())
+        throw InputError(subject, "expected a weight_map of tensors and files");
+    const std::string folder = index.substr(0, index.rfind('/') + 1);
+    std::set<std::string> shards;
+    for (const auto& [tensor, file] : json["weight_map"].items()) {
+        const std::string name = file.is_string() ? file.get<std::string>() : "";
+        if (name.empty() || name.find_first_of("/\\") != std::string::npos || name == "..")
+            throw InputError(subject, fmt::format("'{}' is not a file beside the index", name));
+        if (!contains(files, folder + name))
+            throw InputError(subject,
+                             fmt::format("names the shard {}, which the repository lacks", name),
+                             "choose another repository or --revision");
+        if (!name.ends_with(".safetensors"))
+            throw InputError(subject, fmt::format("'{}' is not a safetensors file", name));
+        shards.insert(folder + name);
+    }
+    return {shards.begin(), shards.end()};
+}
+
+}  // namespace item3d
