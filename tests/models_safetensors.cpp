@@ -5,9 +5,11 @@
 #include "item3d/models/weights.h"
 #include "models_testing.h"
 
+#include <torch/nn/init.h>
 #include <torch/nn/modules/linear.h>
 
 #include <cstring>
+#include <fstream>
 
 namespace item3d {
 namespace {
@@ -148,10 +150,79 @@ TEST(Weights, FindsShardsThroughTheIndexAndStaysInTheFolder) {
     write_file(folder.path() / "m.safetensors.index.json",
                R"({"weight_map":{"weight":"../m-1.safetensors"}})");
     EXPECT_THROW(Weights::open(folder.path(), "m"), InputError);
-    write_file(folder.path() / "m.safetensors.index.json",
-               R"({"weight_map":{"weight":"m-9.safetensors"}})");
-    EXPECT_THROW(Weights::open(folder.path(), "m"), InputError);
+    const auto message = [&](const std::string& index) {
+        write_file(folder.path() / "m.safetensors.index.json", index);
+        return message_of<InputError>([&] { Weights::open(folder.path(), "m"); });
+    };
+    EXPECT_NE(message(R"({"weight_map":{"weight":"m-9.safetensors"}})")
+                  .find("index.json: names the shard m-9.safetensors, which is not there"),
+              std::string::npos);
+    EXPECT_NE(message(R"({"weight_map":{"weight":"m-1.safetensors","scale":"m-1.safetensors"}})")
+                  .find("m-1.safetensors: tensor 'scale', which the index promises, is missing"),
+              std::string::npos);
+    EXPECT_NE(message(R"({"weight_map":{"weight":"m-2.safetensors","bias":"m-1.safetensors"}})")
+                  .find("which the index promises, is missing"),
+              std::string::npos);
     EXPECT_THROW(Weights::open(folder.path(), "other"), InputError);
+}
+
+TEST(Weights, PicklesAreNamedAndNotRead) {
+    const TemporaryFolder folder;
+    write_file(folder.path() / "diffusion_pytorch_model.bin", "anything");
+    const std::string message =
+        message_of<InputError>([&] { Weights::open(folder.path(), "diffusion_pytorch_model"); });
+    EXPECT_NE(message.find("diffusion_pytorch_model.bin: is a pickle"), std::string::npos);
+    EXPECT_NE(message.find("safetensors"), std::string::npos);
+}
+
+TEST(Weights, ALinkThatLeadsNowhereIsNamed) {
+    const TemporaryFolder folder;
+    std::filesystem::create_symlink("../blobs/gone", folder.path() / "m.safetensors");
+    EXPECT_NE(message_of<InputError>([&] {
+                  Weights::open(folder.path(), "m");
+              }).find("m.safetensors: links to a file that is not there"),
+              std::string::npos);
+}
+
+TEST(Weights, EveryFloatingPointTypeIsConverted) {
+    const TemporaryFolder folder;
+    const torch::Tensor weight = torch::arange(6.0f).reshape({2, 3}) / 4;
+    for (const auto stored : {torch::kFloat32, torch::kFloat16, torch::kBFloat16, torch::kFloat64})
+        for (const auto wanted : {torch::kFloat32, torch::kFloat16, torch::kBFloat16}) {
+            save_safetensors(folder.path() / "m.fp16.safetensors",
+                             {{"weight", weight.to(stored)}, {"bias", torch::ones(2)}});
+            torch::nn::Linear linear(3, 2);
+            load_parameters(*linear, Weights::open(folder.path(), "m"), torch::kCPU, wanted);
+            EXPECT_EQ(linear->weight.scalar_type(), wanted);
+            EXPECT_TRUE(linear->weight.equal(weight.to(wanted)));
+        }
+}
+
+TEST(Weights, MetaComparesAndReadsNothing) {
+    const TemporaryFolder folder;
+    save_safetensors(folder.path() / "m.safetensors",
+                     {{"weight", torch::ones({2, 3})}, {"bias", torch::ones(2)}});
+    auto linear = without_initial_values([] { return torch::nn::Linear(3, 2); });
+    torch::nn::init::constant_(linear->weight, 5);
+    load_parameters(*linear, Weights::open(folder.path(), "m"), torch::kMeta);
+    EXPECT_EQ(linear->weight.sum().item<float>(), 30);
+    torch::nn::Linear wide(4, 2);
+    EXPECT_THROW(load_parameters(*wide, Weights::open(folder.path(), "m"), torch::kMeta),
+                 InputError);
+}
+
+TEST(Weights, WithoutInitialValuesTheMemoryIsLeftAlone) {
+    // A gibibyte that is never written: pages that nobody touches take no room.
+    const auto resident = [] {
+        std::ifstream file("/proc/self/statm");
+        std::int64_t size = 0, pages = 0;
+        file >> size >> pages;
+        return pages * ::sysconf(_SC_PAGESIZE);
+    };
+    const auto before = resident();
+    const auto linear = without_initial_values([] { return torch::nn::Linear(16384, 16384); });
+    EXPECT_EQ(linear->weight.numel(), 16384 * 16384);
+    EXPECT_LT(resident() - before, std::int64_t(64) << 20);
 }
 
 TEST(Weights, MessagesNameTheTensor) {
@@ -173,6 +244,7 @@ TEST(Weights, MessagesNameTheTensor) {
         std::string::npos);
     EXPECT_NE(load({{"weight", weight}, {"bias", bias.to(torch::kInt64)}}).find("'bias' is not"),
               std::string::npos);
+    EXPECT_NE(load({{"scale", bias}}).find("(and 2 more tensors do not fit)"), std::string::npos);
 }
 
 }  // namespace

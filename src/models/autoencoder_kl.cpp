@@ -299,11 +299,11 @@ std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folde
     if (tiny) {
         const auto values = AutoencoderTinyConfig::from_config(config);
         check_plausible(weights, values.least_parameters());
-        result = std::make_shared<AutoencoderTiny>(values);
+        result = without_initial_values([&] { return std::make_shared<AutoencoderTiny>(values); });
     } else {
         const auto values = AutoencoderKLConfig::from_config(config);
         check_plausible(weights, values.least_parameters());
-        result = std::make_shared<AutoencoderKL>(values);
+        result = without_initial_values([&] { return std::make_shared<AutoencoderKL>(values); });
     }
     load_parameters(*result, weights, device, dtype);
     result->eval();

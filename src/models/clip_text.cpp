@@ -185,7 +185,7 @@ ClipTextModel load_clip_text(const std::filesystem::path& folder, torch::Device 
         return bare == "embeddings.position_ids" ? "" : bare;  // a constant that old files hold
     });
     check_plausible(weights, config.least_parameters());
-    ClipTextModel model(config);
+    auto model = without_initial_values([&] { return ClipTextModel(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();
     return model;

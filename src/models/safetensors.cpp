@@ -187,22 +187,31 @@ std::int64_t SafeTensors::total_elements() const {
     return total;
 }
 
-torch::Tensor SafeTensors::tensor(const std::string& name) const {
+const SafeTensors::Entry& SafeTensors::entry(const std::string& name) const {
     const auto found = entries_.find(name);
     if (found == entries_.end())
         throw InputError(path_.string(), fmt::format("tensor '{}' is missing", name));
-    const Entry& entry = found->second;
-    std::uint8_t* bytes = map_->bytes + data_start_ + entry.begin;
-    const auto options = torch::TensorOptions().dtype(entry.dtype);
-    if (entry.begin == entry.end) return torch::empty(entry.shape, options);
-    if (reinterpret_cast<std::uintptr_t>(bytes) % torch::elementSize(entry.dtype) != 0) {
+    return found->second;
+}
+
+TensorInfo SafeTensors::info(const std::string& name) const {
+    const Entry& found = entry(name);
+    return {found.dtype, found.shape};
+}
+
+torch::Tensor SafeTensors::tensor(const std::string& name) const {
+    const Entry& found = entry(name);
+    std::uint8_t* bytes = map_->bytes + data_start_ + found.begin;
+    const auto options = torch::TensorOptions().dtype(found.dtype);
+    if (found.begin == found.end) return torch::empty(found.shape, options);
+    if (reinterpret_cast<std::uintptr_t>(bytes) % torch::elementSize(found.dtype) != 0) {
         // The format does not promise alignment; kernels expect it.
-        torch::Tensor copy = torch::empty(entry.shape, options);
-        std::memcpy(copy.data_ptr(), bytes, entry.end - entry.begin);
+        torch::Tensor copy = torch::empty(found.shape, options);
+        std::memcpy(copy.data_ptr(), bytes, found.end - found.begin);
         return copy;
     }
     return torch::from_blob(
-        bytes, entry.shape, [map = map_](void*) {}, options);
+        bytes, found.shape, [map = map_](void*) {}, options);
 }
 
 NamedTensors SafeTensors::tensors() const {

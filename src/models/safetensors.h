@@ -15,6 +15,12 @@
 
 namespace item3d {
 
+/// What a file's header says of a tensor.
+struct TensorInfo {
+    torch::Dtype dtype;
+    std::vector<std::int64_t> shape;
+};
+
 using NamedTensors = std::vector<std::pair<std::string, torch::Tensor>>;
 
 /// One open file. Tensors that it hands out share its memory map and keep it alive; writing to one
@@ -34,6 +40,8 @@ class SafeTensors {
     /// The header's "__metadata__" strings.
     const std::map<std::string, std::string>& metadata() const { return metadata_; }
 
+    /// Of one tensor, without touching its bytes. Throws InputError when absent.
+    TensorInfo info(const std::string& name) const;
     /// A view of the file's bytes, in the file's own type. Throws InputError when absent.
     torch::Tensor tensor(const std::string& name) const;
     /// All of them, in the order of names().
@@ -49,6 +57,7 @@ class SafeTensors {
     struct Map;
 
     void read_header(const std::string& header, std::uint64_t data_size);
+    const Entry& entry(const std::string& name) const;
 
     std::filesystem::path path_;
     std::shared_ptr<Map> map_;

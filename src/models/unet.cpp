@@ -219,7 +219,7 @@ UNet2DCondition load_unet(const std::filesystem::path& folder, torch::Device dev
     const auto config = UNet2DConditionConfig::from_config(Config::read(folder / "config.json"));
     const Weights weights = Weights::open(folder, "diffusion_pytorch_model");
     check_plausible(weights, config.least_parameters());
-    UNet2DCondition unet(config);
+    auto unet = without_initial_values([&] { return UNet2DCondition(config); });
     load_parameters(*unet, weights, device, dtype);
     unet->eval();
     return unet;

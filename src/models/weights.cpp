@@ -9,26 +9,90 @@
 namespace item3d {
 namespace {
 
-std::string shape_text(const torch::Tensor& tensor) {
-    return fmt::format("[{}]", fmt::join(tensor.sizes().vec(), ", "));
+namespace fs = std::filesystem;
+
+std::string shape_text(c10::IntArrayRef shape) {
+    return fmt::format("[{}]", fmt::join(shape.vec(), ", "));
 }
 
-std::vector<std::filesystem::path> shards_of(const std::filesystem::path& index) {
+/// Shard of each tensor, as an index tells it.
+std::map<std::string, std::string> read_index(const fs::path& index) {
     const Config config = Config::read(index);
     if (!config.has("weight_map") || !config.json()["weight_map"].is_object())
         config.fail("weight_map", "an object of tensor and file names");
-    std::set<std::string> names;
+    std::map<std::string, std::string> shards;
     for (const auto& [tensor, file] : config.json()["weight_map"].items()) {
         if (!file.is_string()) config.fail("weight_map", "an object of tensor and file names");
-        const std::filesystem::path name = file.get<std::string>();
-        if (name.empty() || name.filename() != name)
+        const fs::path name = file.get<std::string>();
+        if (name.empty() || name.filename() != name || name == ".." || name == ".")
             config.reject("weight_map", "'" + name.string() + "' is not a file beside the index");
-        names.insert(name.string());
+        shards[tensor] = name.string();
     }
-    std::vector<std::filesystem::path> files;
-    for (const std::string& name : names)
-        files.push_back(index.parent_path() / name);
-    return files;
+    return shards;
+}
+
+/// True when the file is there. Throws when it is a link that leads nowhere, as caches leave them.
+bool is_there(const fs::path& path) {
+    if (fs::exists(path)) return true;
+    if (fs::is_symlink(path))
+        throw InputError(path.string(), "links to a file that is not there",
+                         "fetch it again (item3d prior pull)");
+    return false;
+}
+
+/// The file of `folder` that holds weights as pickles; "" when none does.
+std::string find_pickle(const fs::path& folder) {
+    std::error_code code;
+    for (const auto& entry : fs::directory_iterator(folder, code))
+        for (const char* extension : {".bin", ".ckpt", ".pt", ".pth"})
+            if (entry.path().extension() == extension) return entry.path().string();
+    return "";
+}
+
+/// What keeps tensors from their places. All are looked at before the first is told.
+class Misfits {
+  public:
+    void add(const std::string& file, const std::string& problem) {
+        if (count_++ > 0) return;
+        file_ = file;
+        problem_ = problem;
+    }
+    void throw_if_any() const {
+        if (count_ == 0) return;
+        const std::string more =
+            count_ == 1 ? "" : fmt::format(" (and {} more tensors do not fit)", count_ - 1);
+        throw InputError(file_, problem_ + more, "the weights do not belong to this config.json");
+    }
+
+  private:
+    int count_ = 0;
+    std::string file_;
+    std::string problem_;
+};
+
+/// Throws unless the tensors of `weights` are those of `places`.
+void compare(const std::map<std::string, torch::Tensor*>& places, const Weights& weights) {
+    Misfits misfits;
+    for (const auto& [name, target] : places) {
+        if (!weights.contains(name)) {
+            misfits.add(weights.subject(), fmt::format("tensor '{}' of shape {} is missing", name,
+                                                       shape_text(target->sizes())));
+            continue;
+        }
+        const TensorInfo found = weights.info(name);
+        if (found.shape != target->sizes())
+            misfits.add(weights.file_of(name),
+                        fmt::format("tensor '{}': expected shape {}, found {}", name,
+                                    shape_text(target->sizes()), shape_text(found.shape)));
+        else if (!c10::isFloatingType(found.dtype))
+            misfits.add(weights.file_of(name),
+                        fmt::format("tensor '{}' is not of floating point", name));
+    }
+    for (const std::string& name : weights.names())
+        if (places.count(name) == 0)
+            misfits.add(weights.file_of(name),
+                        fmt::format("tensor '{}' has no place in the network", name));
+    misfits.throw_if_any();
 }
 
 }  // namespace
@@ -40,21 +104,42 @@ Weights Weights::open_file(const std::filesystem::path& file) {
     return weights;
 }
 
-Weights Weights::open(const std::filesystem::path& folder, const std::string& stem) {
+Weights Weights::open_index(const fs::path& index) {
+    Weights weights;
+    weights.subject_ = index.string();
+    const auto shard_of = read_index(index);
+    std::set<std::string> shards;
+    for (const auto& [tensor, shard] : shard_of)
+        shards.insert(shard);
+    for (const std::string& shard : shards) {
+        const fs::path path = index.parent_path() / shard;
+        if (!is_there(path))
+            throw InputError(index.string(),
+                             fmt::format("names the shard {}, which is not there", shard),
+                             "fetch the weights again");
+        weights.add(SafeTensors::open(path));
+    }
+    for (const auto& [tensor, shard] : shard_of)
+        if (!weights.contains(tensor) ||
+            weights.files_[weights.place(tensor).file].path().filename() != shard)
+            throw InputError(
+                (index.parent_path() / shard).string(),
+                fmt::format("tensor '{}', which the index promises, is missing", tensor),
+                "fetch the weights again");
+    return weights;
+}
+
+Weights Weights::open(const fs::path& folder, const std::string& stem) {
     for (const char* variant : {"", ".fp16"}) {
         const auto single = folder / (stem + variant + ".safetensors");
-        if (std::filesystem::exists(single)) return open_file(single);
+        if (is_there(single)) return open_file(single);
         for (const auto& name : {stem + variant + ".safetensors.index.json",
-                                 stem + ".safetensors.index" + variant + ".json"}) {
-            const auto index = folder / name;
-            if (!std::filesystem::exists(index)) continue;
-            Weights weights;
-            weights.subject_ = index.string();
-            for (const auto& shard : shards_of(index))
-                weights.add(SafeTensors::open(shard));
-            return weights;
-        }
+                                 stem + ".safetensors.index" + variant + ".json"})
+            if (is_there(folder / name)) return open_index(folder / name);
     }
+    if (const std::string pickle = find_pickle(folder); !pickle.empty())
+        throw InputError(pickle, "is a pickle, which runs code when it is read; it is not",
+                         "download or convert the weights to safetensors");
     throw InputError((folder / (stem + ".safetensors")).string(),
                      "no weights are here (a file, an index of shards, or an fp16 variant)",
                      "download or convert them to safetensors");
@@ -86,11 +171,19 @@ std::vector<std::string> Weights::names() const {
     return result;
 }
 
-torch::Tensor Weights::tensor(const std::string& name) const {
+const Weights::Place& Weights::place(const std::string& name) const {
     const auto found = places_.find(name);
     if (found == places_.end())
         throw InputError(subject_, fmt::format("tensor '{}' is missing", name));
-    return files_[found->second.file].tensor(found->second.name);
+    return found->second;
+}
+
+torch::Tensor Weights::tensor(const std::string& name) const {
+    return files_[place(name).file].tensor(place(name).name);
+}
+
+TensorInfo Weights::info(const std::string& name) const {
+    return files_[place(name).file].info(place(name).name);
 }
 
 std::string Weights::file_of(const std::string& name) const {
@@ -108,36 +201,19 @@ std::int64_t Weights::total_elements() const {
 void load_parameters(torch::nn::Module& module, const Weights& weights, torch::Device device,
                      torch::Dtype dtype) {
     const torch::NoGradGuard no_grad;
-    std::set<std::string> used;
-    const auto load = [&](const std::string& name, torch::Tensor& target) {
-        if (!weights.contains(name))
-            throw InputError(
-                weights.subject(),
-                fmt::format("tensor '{}' of shape {} is missing", name, shape_text(target)),
-                "the weights do not belong to this config.json");
-        const torch::Tensor source = weights.tensor(name);
-        if (source.sizes() != target.sizes())
-            throw InputError(weights.file_of(name),
-                             fmt::format("tensor '{}': expected shape {}, found {}", name,
-                                         shape_text(target), shape_text(source)),
-                             "the weights do not belong to this config.json");
-        if (!source.is_floating_point())
-            throw InputError(weights.file_of(name),
-                             fmt::format("tensor '{}' is not of floating point", name));
-        target.set_data(source.to(device, dtype));
-        used.insert(name);
-    };
-    for (auto& parameter : module.named_parameters()) {
-        load(parameter.key(), parameter.value());
+    std::map<std::string, torch::Tensor*> places;
+    auto parameters = module.named_parameters();
+    auto buffers = module.named_buffers();
+    for (auto& parameter : parameters) {
         parameter.value().set_requires_grad(false);
+        places[parameter.key()] = &parameter.value();
     }
-    for (auto& buffer : module.named_buffers())
-        load(buffer.key(), buffer.value());
-    for (const std::string& name : weights.names())
-        if (used.count(name) == 0)
-            throw InputError(weights.file_of(name),
-                             fmt::format("tensor '{}' has no place in the network", name),
-                             "the weights do not belong to this config.json");
+    for (auto& buffer : buffers)
+        places[buffer.key()] = &buffer.value();
+    compare(places, weights);
+    if (device.is_meta()) return;
+    for (const auto& [name, target] : places)
+        target->set_data(weights.tensor(name).to(device, dtype));
 }
 
 NamedTensors module_tensors(const torch::nn::Module& module, torch::Dtype dtype,
