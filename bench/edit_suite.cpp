@@ -15,6 +15,7 @@
 #include "item3d/edit/surface_means.h"
 #include "item3d/evaluate/color.h"
 #include "item3d/evaluate/html.h"
+#include "item3d/hub/find_prior.h"
 #include "item3d/prior/vocabulary.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
@@ -224,14 +225,14 @@ int main(int argc, char** argv) {
     std::vector<std::string> meshes;
     CLI::App app("Runs the edits that item3d is judged by.");
     app.add_option("-o,--output", options.output, "Folder for all results")->required();
-    app.add_option("--prior", options.prior, "Prior; without it, the embedded one");
+    app.add_option("--prior", options.prior, "Prior, a folder or a name; without it, the embedded one");
     app.add_option("--mesh", meshes, "NOUN=FILE; the demo mug is always there");
     app.add_option("--only", options.only, "colors, materials or stripes");
     app.add_option("--seed", options.seed, "Seed of the edits");
     CLI11_PARSE(app, argc, argv);
     try {
         const auto assets = item3d::assets_folder();
-        if (options.prior.empty()) options.prior = assets / "prior";
+        options.prior = item3d::find_prior(options.prior.string());
         options.meshes["mug"] = assets / "demo" / "mug.glb";
         for (const std::string& mesh : meshes) {
             const auto split = mesh.find('=');

@@ -3,9 +3,9 @@
 
 #include "command.h"
 #include "item3d/core/error.h"
-#include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/hub/find_prior.h"
 #include "item3d/prior/vocabulary.h"
 
 #include <cstdio>
@@ -20,6 +20,7 @@ struct EditCommandOptions : CommonOptions {
     EditRequest request;
     std::string from;
     std::string to;
+    std::string prior;  ///< folder or name, see find_prior()
     /// Settings given on the command line; what is absent comes from the prior.
     nlohmann::json overrides = nlohmann::json::object();
 };
@@ -85,7 +86,7 @@ void warn_of_words(const EditRequest& request, const EditSettings& settings) {
 void run_edit(EditCommandOptions& options) {
     EditRequest& request = options.request;
     request.device = start_command(options);
-    if (request.prior.empty()) request.prior = assets_folder() / "prior";
+    request.prior = find_prior(options.prior);
     options.overrides["from"] = options.from;
     options.overrides["to"] = options.to;
     if (options.overrides.value("keep", nlohmann::json()) == nlohmann::json::array({"nothing"})) {
@@ -114,8 +115,9 @@ void add_edit_command(CLI::App& app) {
     command->add_option("--to", options->to, "What it shall look like")->required();
     command->add_option("-o,--output", request.output, "Folder for everything that is made")
         ->required();
-    command->add_option("--prior", request.prior,
-                        "Diffusion model in the diffusers layout; without it, the embedded one");
+    command->add_option("--prior", options->prior,
+                        "Diffusion model: a folder in the diffusers layout, or a name (item3d "
+                        "prior pull); without it, the embedded one");
     command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
     command->add_option("--precision", request.precision, "Of the networks: auto, fp32, bf16 or (CUDA) fp16")
         ->capture_default_str();

@@ -4,6 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/hub/find_prior.h"
 #include "item3d/models/pipeline.h"
 #include "item3d/prior/vocabulary.h"
 #include "item3d/render/rasterize.h"
@@ -74,8 +75,7 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
     if (command.generate.prompt.find_first_not_of(" \t\n") == std::string::npos)
         throw InputError("PROMPT", "is empty", "say what to draw, as in \"a golden vase\"");
     const std::vector<fs::path> files = choose_files(command.output, command.generate.count);
-    const fs::path prior =
-        command.prior.empty() ? assets_folder() / "prior" : fs::path(command.prior);
+    const fs::path prior = find_prior(command.prior);
     const Pipeline pipeline = Pipeline::load(prior, device);
     const std::string warning =
         PriorVocabulary::load(prior).warning(command.generate.prompt, !command.like.empty());
@@ -139,8 +139,10 @@ void add_generate_command(CLI::App& app) {
         ->add_option("-o,--output", options->output,
                      "A .png file; several pictures get numbers behind its name")
         ->required();
-    command->add_option("--prior", options->prior,
-                        "A folder in the diffusers layout; without it, the prior that comes along");
+    command->add_option(
+        "--prior", options->prior,
+        "A folder in the diffusers layout, or a name (item3d prior pull); without it, "
+        "the prior that comes along");
     command->add_option("--negative-prompt", options->generate.negative_prompt, "What not to draw");
     command->add_option("--steps", options->steps, "Denoising steps; without it, the prior's own")
         ->check(CLI::Range(1, 1000));

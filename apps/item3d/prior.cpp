@@ -1,13 +1,15 @@
-// item3d prior: train the embedded prior, and look at what it is trained on.
+// item3d prior: train the embedded prior, look at what it is trained on, fetch and verify others.
 #include "command.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/hub/find_prior.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/train.h"
 #include "item3d/prior/vocabulary.h"
 #include "item3d/scene/io/save.h"
+#include "prior_commands.h"
 
 namespace item3d {
 namespace {
@@ -128,11 +130,6 @@ struct FolderOptions : CommonOptions {
     std::string folder;
 };
 
-std::filesystem::path prior_folder(const FolderOptions& options) {
-    return options.folder.empty() ? assets_folder() / "prior"
-                                  : std::filesystem::path(options.folder);
-}
-
 void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
     const PriorVocabulary vocabulary(prior, subject);
     std::vector<std::string> kinds;
@@ -162,10 +159,14 @@ void add_folder_commands(CLI::App& app) {
     auto info = std::make_shared<FolderOptions>();
     CLI::App* command =
         add_command(app, "info", "List what a prior knows, with its accuracy a word", *info);
-    command->add_option("PRIOR", info->folder, "Its folder; without it, the embedded prior");
+    command->add_option("PRIOR", info->folder,
+                        "Its folder or name; without it, the embedded prior");
     command->callback([info] {
         start_command(*info);
-        const auto file = prior_folder(*info) / "prior.json";
+        const auto file = find_prior(info->folder) / "prior.json";
+        if (!std::filesystem::exists(file))
+            throw InputError(file.string(), "no such file: this prior does not list its words",
+                             "`item3d prior verify` says what else it is");
         const auto prior = nlohmann::json::parse(read_text(file), nullptr, false);
         if (!prior.is_object()) throw InputError(file.string(), "is not a JSON object");
         if (info->json)
@@ -176,10 +177,10 @@ void add_folder_commands(CLI::App& app) {
     auto measure = std::make_shared<FolderOptions>();
     command =
         add_command(app, "measure", "Measure a prior on held-out shapes, word by word", *measure);
-    command->add_option("PRIOR", measure->folder, "Its folder")->required();
+    command->add_option("PRIOR", measure->folder, "Its folder or name")->required();
     command->callback([measure] {
         start_command(*measure);
-        const auto prior = write_measurement(measure->folder, at::get_num_threads());
+        const auto prior = write_measurement(find_prior(measure->folder), at::get_num_threads());
         if (measure->json)
             print_json(prior);
         else
@@ -190,10 +191,12 @@ void add_folder_commands(CLI::App& app) {
 }  // namespace
 
 void add_prior_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("prior", "Train and inspect the embedded prior");
+    CLI::App* command = app.add_subcommand("prior", "Train, fetch and inspect priors");
     command->require_subcommand(1);
     add_train(*command);
     add_folder_commands(*command);
+    add_prior_pull(*command);
+    add_prior_verify(*command);
     add_pictures(*command);
 }
 

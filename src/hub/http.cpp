@@ -66,6 +66,10 @@ std::string HttpResponse::header(const std::string& name) const {
     return found == headers.end() ? "" : found->second;
 }
 
+bool HttpResponse::tells_of_file() const {
+    return !header("x-linked-etag").empty() && !header("x-linked-size").empty();
+}
+
 std::string encode_url(const std::string& text, const std::string& keep) {
     std::string result;
     for (const char c : text) {
@@ -221,7 +225,7 @@ HttpResponse HttpClient::follow(Transfer& transfer, std::string url) {
     for (int i = 0; i <= max_redirects; ++i) {
         perform(transfer, url);
         const HttpResponse& response = transfer.response;
-        const bool told = transfer.head && !response.header("x-linked-etag").empty();
+        const bool told = transfer.head && response.tells_of_file();
         if (!is_redirect(response.status) || transfer.redirect.empty() || told) {
             if (response.status == 200 || response.status == 206) transfer.start();
             return response;

@@ -25,6 +25,9 @@ struct HttpResponse {
 
     /// "" where it is absent.
     std::string header(const std::string& name) const;
+    /// True with "X-Linked-Etag" and "X-Linked-Size": the hub's own tag and size of a file, where
+    /// it redirects to storage that knows less.
+    bool tells_of_file() const;
 };
 
 class HttpClient {
@@ -36,8 +39,12 @@ class HttpClient {
     HttpClient(const HttpClient&) = delete;
     HttpClient& operator=(const HttpClient&) = delete;
 
-    /// Status and headers alone. Redirects are followed up to the first answer that tells of a file
-    /// ("X-Linked-Etag"): what it redirects to knows less.
+    // The following throw ConnectionError for what may pass (no connection, cut, too slow, 408,
+    // 429, 5xx), InputError for what will not (bad address or certificate, redirects in circles or
+    // from https to http), and Interrupted after Ctrl-C. Other statuses are returned.
+
+    /// Status and headers alone. Redirects are followed up to the first answer that
+    /// tells_of_file().
     HttpResponse head(const std::string& url);
     /// With the body in memory, at most `max_body` bytes.
     HttpResponse fetch(const std::string& url);
@@ -46,10 +53,6 @@ class HttpClient {
     HttpResponse download(const std::string& url, std::uint64_t offset,
                           const std::function<void(const HttpResponse&)>& begin,
                           const std::function<void(std::span<const std::uint8_t>)>& receive);
-
-    // All three throw ConnectionError for what may pass (no connection, cut, too slow, 408, 429,
-    // 5xx), InputError for what will not (bad address or certificate, redirects in circles or from
-    // https to http), and Interrupted after Ctrl-C. Other statuses are returned.
 
     static constexpr std::size_t max_body = std::size_t(64) << 20;
 

@@ -126,10 +126,9 @@ class Pull {
         const HttpResponse response =
             with_patience(request_.retry, [&] { return client_.head(file.url); });
         check_access(response, path);
-        const std::string linked = response.header("x-linked-etag");
-        file.etag = plain_etag(linked.empty() ? response.header("etag") : linked);
-        const std::string size =
-            response.header(linked.empty() ? "content-length" : "x-linked-size");
+        const bool linked = response.tells_of_file();
+        file.etag = plain_etag(response.header(linked ? "x-linked-etag" : "etag"));
+        const std::string size = response.header(linked ? "x-linked-size" : "content-length");
         const auto [end, error] =
             std::from_chars(size.data(), size.data() + size.size(), file.size);
         if (error != std::errc() || end != size.data() + size.size() || file.etag.size() > 200 ||

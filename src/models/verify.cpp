@@ -53,6 +53,14 @@ std::int64_t count_parameters(const torch::nn::Module& module) {
     return count;
 }
 
+/// "fp16" and the like, as --precision calls them.
+std::string name_of(torch::Dtype dtype) {
+    if (dtype == torch::kFloat32) return "fp32";
+    if (dtype == torch::kFloat16) return "fp16";
+    if (dtype == torch::kBFloat16) return "bf16";
+    return c10::toString(dtype);
+}
+
 /// Numbers that a network keeps for its gradient: the VAE's encoder on one picture, and the U-Net
 /// on one row of latents (an edit differentiates through both). By level, the tensors that a
 /// residual block keeps times channels times pixels.
@@ -63,9 +71,10 @@ struct KeptNumbers {
 
 KeptNumbers count_kept(const UNet2DConditionConfig& unet, const nlohmann::json& vae, int resolution,
                        int downscale) {
-    constexpr double kept_by_block = 6;  // input, two norms, two activations, two convolutions
-    constexpr double kept_by_transformer = 24;  // projections, two attentions, and a feed-forward
-                                                // layer of eight times the width
+    // Fitted to Stable Diffusion 1.5's layout in bf16 on the CPU: its encoder keeps 1.69 GB for 512
+    // pixels, its U-Net 0.40 GB for 256.
+    constexpr double kept_by_block = 7;
+    constexpr double kept_by_transformer = 64;
     KeptNumbers kept;
     const bool tiny = vae.contains("encoder_block_out_channels");
     const std::vector<int> channels =
@@ -177,7 +186,7 @@ class Verification {
             std::uint64_t bytes = torch::elementSize(info.dtype);
             for (const std::int64_t extent : info.shape)
                 bytes *= static_cast<std::uint64_t>(extent);
-            types.insert(c10::toString(info.dtype));
+            types.insert(name_of(info.dtype));
             part.file_bytes += bytes;
         }
         part.stored_as = fmt::format("{}", fmt::join(types, ", "));
@@ -223,7 +232,8 @@ class Verification {
     }
 
     void add_memory() {
-        constexpr std::uint64_t program_bytes = 700'000'000;  // LibTorch, model, textures, renderer
+        constexpr std::uint64_t program_bytes =
+            1'000'000'000;  // LibTorch, model, textures, renderer
         const KeptNumbers kept =
             count_kept(*unet_, vae_->config_json(), report_.resolution, vae_->downscale());
         for (const auto& [name, size] : {std::pair("fp32", 4), {"bf16", 2}, {"fp16", 2}}) {

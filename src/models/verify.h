@@ -13,7 +13,7 @@ struct PartReport {
     std::string name;              ///< "unet"
     std::string class_name;        ///< "UNet2DConditionModel"
     std::int64_t parameters = 0;   ///< 0 for parts without weights, and for those with problems
-    std::string stored_as;         ///< types of its tensors, as in "F16"; "" without weights
+    std::string stored_as;         ///< types of its tensors, as in "fp16"; "" without weights
     std::uint64_t file_bytes = 0;  ///< of its weights on the disk
 };
 
