@@ -225,7 +225,8 @@ int main(int argc, char** argv) {
     std::vector<std::string> meshes;
     CLI::App app("Runs the edits that item3d is judged by.");
     app.add_option("-o,--output", options.output, "Folder for all results")->required();
-    app.add_option("--prior", options.prior, "Prior, a folder or a name; without it, the embedded one");
+    app.add_option("--prior", options.prior,
+                   "Prior, a folder or a name; without it, the embedded one");
     app.add_option("--mesh", meshes, "NOUN=FILE; the demo mug is always there");
     app.add_option("--only", options.only, "colors, materials or stripes");
     app.add_option("--seed", options.seed, "Seed of the edits");

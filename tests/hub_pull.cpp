@@ -203,6 +203,7 @@ TEST_F(HubPull, StartsAnewWhereTheServerKnowsNoRanges) {
     hub.break_file(unet, {.no_ranges = true});
     pull(request);
     expect_whole(unet);
+    EXPECT_EQ(hub.downloads_of(unet), 1);
 }
 
 TEST_F(HubPull, WhatAnInterruptedPullLeftIsUsed) {
