@@ -3,12 +3,12 @@
 
 #include "command.h"
 #include "item3d/core/error.h"
-#include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/timing.h"
 #include "item3d/guidance/guidance.h"
 #include "item3d/guidance/noised_latents.h"
+#include "item3d/hub/find_prior.h"
 #include "item3d/models/precision.h"
 
 #include <algorithm>
@@ -33,8 +33,7 @@ double median(std::vector<double> values) {
 }
 
 void run(const BenchGuidanceCommand& options, torch::Device device) {
-    const auto folder = options.prior.empty() ? assets_folder() / "prior"
-                                              : std::filesystem::path(options.prior);
+    const auto folder = find_prior(options.prior);
     const torch::Dtype precision = choose_precision(options.precision, device);
     const double begin = seconds_now();
     const auto prior = std::make_shared<Pipeline>(Pipeline::load(folder, device, precision));
@@ -107,7 +106,7 @@ void add_bench_guidance(CLI::App& app) {
     auto options = std::make_shared<BenchGuidanceCommand>();
     CLI::App* command = add_command(
         app, "guidance", "Seconds and memory of one step of guidance with a prior", *options);
-    command->add_option("--prior", options->prior, "A prior; without it, the embedded one");
+    command->add_option("--prior", options->prior, "A folder in the diffusers layout, or a name; without it, the embedded one");
     command->add_option("--precision", options->precision, "Of the networks")
         ->check(CLI::IsMember(precision_names()))
         ->capture_default_str();
