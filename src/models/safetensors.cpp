@@ -214,6 +214,16 @@ torch::Tensor SafeTensors::tensor(const std::string& name) const {
         bytes, found.shape, [map = map_](void*) {}, options);
 }
 
+void SafeTensors::forget(const std::string& name) const {
+    const Entry& found = entry(name);
+    const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+    const auto start = reinterpret_cast<std::uintptr_t>(map_->bytes) + data_start_;
+    // Whole pages alone: at the ends are other tensors' bytes.
+    const std::uintptr_t first = (start + found.begin + page - 1) / page * page;
+    const std::uintptr_t last = (start + found.end) / page * page;
+    if (last > first) ::madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+}
+
 NamedTensors SafeTensors::tensors() const {
     NamedTensors result;
     for (const std::string& name : names_)

@@ -186,6 +186,10 @@ TensorInfo Weights::info(const std::string& name) const {
     return files_[place(name).file].info(place(name).name);
 }
 
+void Weights::forget(const std::string& name) const {
+    files_[place(name).file].forget(place(name).name);
+}
+
 std::string Weights::file_of(const std::string& name) const {
     const auto found = places_.find(name);
     return found == places_.end() ? subject_ : files_[found->second.file].path().string();
@@ -212,8 +216,12 @@ void load_parameters(torch::nn::Module& module, const Weights& weights, torch::D
         places[buffer.key()] = &buffer.value();
     compare(places, weights);
     if (device.is_meta()) return;
-    for (const auto& [name, target] : places)
-        target->set_data(weights.tensor(name).to(device, dtype));
+    for (const auto& [name, target] : places) {
+        const torch::Tensor stored = weights.tensor(name), value = stored.to(device, dtype);
+        target->set_data(value);
+        // Else a converted network would be in memory twice at the end of loading.
+        if (!value.is_alias_of(stored)) weights.forget(name);
+    }
 }
 
 NamedTensors module_tensors(const torch::nn::Module& module, torch::Dtype dtype,

@@ -33,6 +33,7 @@ class Weights {
     bool contains(const std::string& name) const { return places_.count(name) > 0; }
     torch::Tensor tensor(const std::string& name) const;
     TensorInfo info(const std::string& name) const;
+    void forget(const std::string& name) const;  ///< see SafeTensors
     /// The file that holds it, for messages.
     std::string file_of(const std::string& name) const;
     /// What messages call the whole.
