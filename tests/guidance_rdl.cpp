@@ -51,10 +51,9 @@ TEST(RelativeDirection, two_rows_equal_the_four_row_form_with_its_source_branch_
     const SafeTensors file = SafeTensors::open(step_file);
     const NoisedLatents start = recorded_start(*pipeline, file);
     const float w = 7.5f;
-    const torch::Tensor text =
+    const TextEmbedding text =
         pipeline->encode_text({"a Mallard, front view", "a toy duck, front view"});
-    const PromptPair pair =
-        predict_pair(*pipeline, start, text.narrow(0, 0, 1), text.narrow(0, 1, 1));
+    const PromptPair pair = predict_pair(*pipeline, start, text.row(0), text.row(1));
 
     EXPECT_LT(relative_error(pair.target, file.tensor("out.eps_target_cond")), tolerance);
     EXPECT_LT(relative_error(pair.source, file.tensor("out.eps_source_cond")), tolerance);

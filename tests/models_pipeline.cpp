@@ -38,7 +38,7 @@ TEST(Pipeline, ReproducesTheReference) {
         const GenerateOptions options = options_of(golden, i);
         const std::string number = "_" + std::to_string(i);
         golden.expect("prompt_ids" + number, pipeline.tokenizer->encode_batch({options.prompt}), 0);
-        golden.expect("prompt_embeds" + number, pipeline.encode_text({options.prompt}));
+        golden.expect("prompt_embeds" + number, pipeline.encode_text({options.prompt}).states);
         golden.expect("latents" + number, generate_latents(pipeline, options), 2e-4);
         golden.expect("image" + number, generate(pipeline, options), 1e-3);
     }
@@ -81,7 +81,8 @@ TEST(Pipeline, Bfloat16WeightsStayNear) {
     const Golden golden("pipeline_sd");
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
     const Pipeline half = Pipeline::load(fixture("pipeline_sd"), torch::kCPU, torch::kBFloat16);
-    const torch::Tensor latents = golden.in("latents_0"), text = pipeline.encode_text({"a duck"});
+    const torch::Tensor latents = golden.in("latents_0");
+    const TextEmbedding text = pipeline.encode_text({"a duck"});
     const torch::Tensor t = torch::tensor({300});
     const torch::Tensor wanted = pipeline.predict_noise(latents, t, text);
     const torch::Tensor actual = half.predict_noise(latents, t, text);
@@ -128,11 +129,42 @@ TEST(Pipeline, GeneratingFromAPictureWalksPartOfTheSchedule) {
     EXPECT_GT(little, 0);
     EXPECT_LT(little, much);
 
+    options.scheduler = "ddim";
     options.eta = 1;
     const torch::Tensor noisy = generate_latents(pipeline, options);
     EXPECT_TRUE(noisy.equal(generate_latents(pipeline, options)));
     options.eta = 0;
     EXPECT_GT(largest_difference(generate_latents(pipeline, options), noisy), 1e-3);
+}
+
+TEST(Pipeline, GeneratesWithEveryScheduler) {
+    set_verbosity(Verbosity::quiet);
+    const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
+    GenerateOptions options;
+    options.prompt = "a duck";
+    options.width = 24;
+    options.height = 40;
+    options.steps = 4;
+    std::vector<torch::Tensor> drawn;
+    for (const SamplerKind& kind : sampler_kinds()) {
+        options.scheduler = kind.name;
+        drawn.push_back(generate_latents(pipeline, options));
+        EXPECT_EQ(drawn.back().sizes(), (std::vector<std::int64_t>{1, 4, 5, 3}));
+        EXPECT_TRUE(torch::isfinite(drawn.back()).all().item<bool>()) << kind.name;
+        EXPECT_TRUE(drawn.back().equal(generate_latents(pipeline, options))) << kind.name;
+        for (std::size_t i = 0; i + 1 < drawn.size(); ++i)
+            EXPECT_GT(largest_difference(drawn[i], drawn.back()), 1e-4) << kind.name << " " << i;
+
+        GenerateOptions from_picture = options;
+        from_picture.image = torch::full({1, 4, 5, 3}, 0.7f);
+        from_picture.strength = 0.25;
+        const torch::Tensor little = generate_latents(pipeline, from_picture);
+        EXPECT_LT(largest_difference(little, from_picture.image),
+                  largest_difference(drawn.back(), from_picture.image))
+            << kind.name;
+    }
+    options.scheduler = "magic";
+    EXPECT_THROW(generate_latents(pipeline, options), InputError);
 }
 
 TEST(Pipeline, SaysWhatIsWrongWithAFolder) {
@@ -161,6 +193,7 @@ TEST(Pipeline, SaysWhatIsWrongWithAFolder) {
     has(change("unet/config.json", "cross_attention_dim", 64), "shape");
     has(change("unet/config.json", "layers_per_block", 2), "missing");
     has(change("scheduler/scheduler_config.json", "beta_schedule", "sigmoid"), "beta_schedule");
+    has(change("scheduler/scheduler_config.json", "_class_name", "LCMScheduler"), "_class_name");
     has(change("tokenizer/tokenizer_config.json", "model_max_length", 200),
         "max_position_embeddings");
     for (const char* file :

@@ -31,6 +31,7 @@ class Golden {
         : io_(SafeTensors::open(fixture(name) / "io.safetensors")) {}
     torch::Tensor in(const std::string& name) const { return io_.tensor("in." + name); }
     torch::Tensor out(const std::string& name) const { return io_.tensor("out." + name); }
+    bool has(const std::string& tensor) const { return io_.contains(tensor); }
 
     /// Within `tolerance` of "out.NAME", relative to max(1, max |expected|).
     void expect(const std::string& name, const torch::Tensor& actual,

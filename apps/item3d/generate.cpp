@@ -4,6 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/evaluate/contact_sheet.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/models/pipeline.h"
 #include "item3d/prior/vocabulary.h"
@@ -34,16 +35,26 @@ struct GenerateCommand : CommonOptions {
     int steps = 0;             ///< 0: the prior's
 };
 
-/// What the prior's own prior.json recommends ("generate": {"steps", "guidance_scale"}), where it
-/// has one: weights from elsewhere keep the usual defaults.
-void apply_prior_defaults(const fs::path& prior, GenerateOptions& options) {
-    if (!fs::exists(prior / "prior.json")) return;
-    const Config config = Config::read(prior / "prior.json");
-    if (!config.has("generate")) return;
-    const Config defaults(config.json().at("generate"), config.subject() + ": generate");
-    options.steps = defaults.size("steps", options.steps);
-    options.guidance_scale =
-        static_cast<float>(defaults.number("guidance_scale", options.guidance_scale));
+/// What was not said: what the prior's own prior.json recommends ("generate": {"steps",
+/// "guidance_scale"}) where it has one, else what is usual for the scheduler and for the model.
+void complete_options(const GenerateCommand& command, const fs::path& prior,
+                      const Pipeline& pipeline, GenerateOptions& options) {
+    const std::string own = pipeline.scheduler.config().sampler_name();
+    if (options.scheduler.empty()) options.scheduler = own;
+    for (const SamplerKind& kind : sampler_kinds())
+        if (kind.name == options.scheduler) options.steps = kind.usual_steps;
+    options.guidance_scale = pipeline.is_sdxl() ? 5.0f : 7.5f;
+    if (fs::exists(prior / "prior.json")) {
+        const Config config = Config::read(prior / "prior.json");
+        const Config defaults(
+            config.has("generate") ? config.json().at("generate") : nlohmann::json::object(),
+            config.subject() + ": generate");
+        if (options.scheduler == own) options.steps = defaults.size("steps", options.steps);
+        options.guidance_scale =
+            static_cast<float>(defaults.number("guidance_scale", options.guidance_scale));
+    }
+    if (command.steps > 0) options.steps = command.steps;
+    if (command.guidance_scale > 0) options.guidance_scale = command.guidance_scale;
 }
 
 /// The depth of a model from the default view, on the latents' grid: [1, 1, h, w].
@@ -56,25 +67,46 @@ torch::Tensor depth_of(const std::string& file, PictureSize size, const Pipeline
     return depth_condition(raster.depth, pipeline.downscale());
 }
 
-/// One name for each picture: `output` itself, or numbered ones of its kind.
-std::vector<fs::path> choose_files(const fs::path& output, int count) {
+/// Throws unless `output` can be a picture's file; makes its folder.
+void open_output(const fs::path& output) {
     if (output.extension() != ".png")
         throw UsageError(fmt::format("-o {}: expected the name of a .png file", output.string()));
     if (fs::is_directory(output))
         throw InputError(output.string(), "is a folder, expected a name for a picture");
     if (output.has_parent_path()) make_output_folder(output.parent_path());
-    if (count == 1) return {output};
-    std::vector<fs::path> files;
-    for (int i = 0; i < count; ++i)
+}
+
+/// A single picture is `output` itself. Several get numbers behind its name, and it becomes a sheet
+/// of them all. Returns what was written.
+std::vector<fs::path> save_pictures(const fs::path& output, const torch::Tensor& images) {
+    if (images.size(0) == 1) {
+        save_image(output, to_image(images[0].cpu()));
+        return {output};
+    }
+    std::vector<fs::path> files{output};
+    std::vector<Tile> tiles;
+    for (std::int64_t i = 0; i < images.size(0); ++i) {
         files.push_back(output.parent_path() /
                         fmt::format("{}_{:03}.png", output.stem().string(), i));
+        tiles.push_back({to_image(images[i].cpu()), ""});
+        save_image(files.back(), tiles.back().picture);
+    }
+    save_image(output, contact_sheet(tiles));
     return files;
+}
+
+std::string list_schedulers() {
+    std::string list = "Schedulers:\n";
+    for (const SamplerKind& kind : sampler_kinds())
+        list += fmt::format("  {:<16} {} ({} steps unless --steps says)\n", kind.name,
+                            kind.description, kind.usual_steps);
+    return list;
 }
 
 void run_generate(const GenerateCommand& command, torch::Device device) {
     if (command.generate.prompt.find_first_not_of(" \t\n") == std::string::npos)
         throw InputError("PROMPT", "is empty", "say what to draw, as in \"a golden vase\"");
-    const std::vector<fs::path> files = choose_files(command.output, command.generate.count);
+    open_output(command.output);
     const fs::path prior = find_prior(command.prior);
     const Pipeline pipeline = Pipeline::load(prior, device);
     const std::string warning =
@@ -82,9 +114,7 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
     if (!warning.empty()) warn(warning);
 
     GenerateOptions options = command.generate;
-    apply_prior_defaults(prior, options);
-    if (command.steps > 0) options.steps = command.steps;
-    if (command.guidance_scale > 0) options.guidance_scale = command.guidance_scale;
+    complete_options(command, prior, pipeline, options);
     const int native = pipeline.unet->config().sample_size * pipeline.downscale();
     const PictureSize size =
         command.size.empty() ? PictureSize{native, native} : parse_size(command.size);
@@ -106,21 +136,21 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
         condition = depth_of(command.like, size, pipeline);
     }
 
-    const torch::Tensor images = generate(pipeline, options, condition);
     nlohmann::json names = nlohmann::json::array();
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        save_image(files[i], to_image(images[static_cast<std::int64_t>(i)].cpu()));
-        names.push_back(files[i].string());
-        if (!command.json) fmt::print("{}\n", files[i].string());
+    for (const fs::path& file :
+         save_pictures(command.output, generate(pipeline, options, condition))) {
+        names.push_back(file.string());
+        if (!command.json) fmt::print("{}\n", file.string());
     }
     if (command.json) {
         print_json({{"files", names},
                     {"prompt", options.prompt},
-                    {"negative_prompt", options.negative_prompt},
+                    {"negative_prompt", options.negative_prompt.value_or("")},
                     {"prior", prior.string()},
                     {"like", command.like},
                     {"width", size.width},
                     {"height", size.height},
+                    {"scheduler", options.scheduler},
                     {"steps", options.steps},
                     {"guidance_scale", options.guidance_scale},
                     {"seed", options.seed}});
@@ -137,17 +167,30 @@ void add_generate_command(CLI::App& app) {
         ->required();
     command
         ->add_option("-o,--output", options->output,
-                     "A .png file; several pictures get numbers behind its name")
+                     "A .png file; of several pictures a sheet, and each with a number behind its "
+                     "name")
         ->required();
     command->add_option(
         "--prior", options->prior,
         "A folder in the diffusers layout, or a name (item3d prior pull); without it, "
         "the prior that comes along");
-    command->add_option("--negative-prompt", options->generate.negative_prompt, "What not to draw");
-    command->add_option("--steps", options->steps, "Denoising steps; without it, the prior's own")
+    command->add_option_function<std::string>(
+        "--negative-prompt",
+        [options](const std::string& text) { options->generate.negative_prompt = text; },
+        "What not to draw");
+    std::vector<std::string> schedulers;
+    for (const SamplerKind& kind : sampler_kinds())
+        schedulers.push_back(kind.name);
+    command
+        ->add_option("--scheduler", options->generate.scheduler,
+                     "How to sample, see below; without it, as the prior's folder says")
+        ->check(CLI::IsMember(schedulers));
+    command
+        ->add_option("--steps", options->steps,
+                     "Denoising steps; without it, the prior's or the scheduler's usual number")
         ->check(CLI::Range(1, 1000));
     command
-        ->add_option("--cfg", options->guidance_scale,
+        ->add_option("--guidance-scale,--cfg", options->guidance_scale,
                      "Weight of the prompt (classifier-free guidance); without it, the prior's own")
         ->check(CLI::Range(0.1f, 1000.0f));
     command->add_option("--seed", options->generate.seed, "Of the noise that it starts from")
@@ -156,9 +199,11 @@ void add_generate_command(CLI::App& app) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command->add_option("--size", options->size,
-                        "WxH in pixels; without it, the size that the prior was trained on");
+                        "WxH in pixels, multiples of 8 for most priors; without it, the size that "
+                        "the prior was trained on");
     command->add_option("--like", options->like,
                         "A model whose depth, seen as render sees it, the picture shall have");
+    command->footer(list_schedulers());
     command->callback([options] { run_generate(*options, start_command(*options)); });
 }
 

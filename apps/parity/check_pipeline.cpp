@@ -18,20 +18,24 @@ void check_pipeline(Case& golden) {
             meta.fail("prompts", "a list of [prompt, negative prompt]");
         GenerateOptions options;
         options.prompt = pair[0].get<std::string>();
-        options.negative_prompt = pair[1].is_string() ? pair[1].get<std::string>() : "";
+        if (pair[1].is_string()) options.negative_prompt = pair[1].get<std::string>();
         options.steps = meta.size("steps", 5);
         options.guidance_scale = static_cast<float>(meta.number("guidance", 7.5));
         const std::string number = "_" + std::to_string(i);
         options.latents = golden.input("latents" + number);
 
-        golden.compare("prompt_ids" + number, pipeline.tokenizer->encode_batch({options.prompt}),
-                       within::exact);
-        golden.compare("negative_prompt_ids" + number,
-                       pipeline.tokenizer->encode_batch({options.negative_prompt}), within::exact);
-        golden.compare("prompt_embeds" + number, pipeline.encode_text({options.prompt}),
-                       within::one_pass);
-        golden.compare("negative_prompt_embeds" + number,
-                       pipeline.encode_text({options.negative_prompt}), within::one_pass);
+        const auto compare_text = [&](const std::string& prefix, const std::string& pooled,
+                                      const std::string& prompt, const TextEmbedding& text) {
+            golden.compare(prefix + "prompt_ids" + number,
+                           pipeline.tokenizer->encode_batch({prompt}), within::exact);
+            golden.compare(prefix + "prompt_embeds" + number, text.states, within::one_pass);
+            if (pipeline.is_sdxl()) golden.compare(pooled + number, text.pooled, within::one_pass);
+        };
+        compare_text("", "pooled", options.prompt, pipeline.encode_text({options.prompt}));
+        const std::string negative = options.negative_prompt.value_or("");
+        compare_text(
+            "negative_", "negative_pooled", negative,
+            options.negative_prompt ? pipeline.encode_text({negative}) : pipeline.encode_no_text());
         const torch::Tensor latents = generate_latents(pipeline, options);
         golden.compare("latents" + number, latents, within::several_steps);
         const torch::Tensor decoded = pipeline.decode_image(latents);

@@ -36,10 +36,10 @@ void check_relative_direction(Case& golden) {
     compare("latents", latents);
     compare("noisy_latents", start.noisy);
 
-    const torch::Tensor text = pipeline.encode_text(
+    const TextEmbedding text = pipeline.encode_text(
         {meta.text("negative_text", ""), meta.text("text", ""), meta.text("ori_text", "")});
     const auto predict = [&](int row) {
-        return pipeline.predict_noise(start.noisy, timesteps, text.slice(0, row, row + 1));
+        return pipeline.predict_noise(start.noisy, timesteps, text.row(row));
     };
     const torch::Tensor empty = predict(0), target = predict(1), source = predict(2);
     compare("eps_uncond", empty);
@@ -64,7 +64,7 @@ void check_relative_direction(Case& golden) {
         compare_gradient(suffix, guided_target - guided_source);
     }
 
-    const PromptPair pair = predict_pair(pipeline, start, text.slice(0, 1, 2), text.slice(0, 2, 3));
+    const PromptPair pair = predict_pair(pipeline, start, text.row(1), text.row(2));
     const torch::Tensor direction = scale * (pair.target - pair.source);
     for (const auto& [name, weighting] : {std::pair("grad_latents_uncond_early", Weighting::early),
                                           std::pair("grad_latents_uncond_late", Weighting::late)})

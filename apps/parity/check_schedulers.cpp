@@ -1,37 +1,66 @@
-#include "item3d/models/ddim.h"
+#include "item3d/models/sampler.h"
 #include "parity.h"
 
 namespace item3d::parity {
 namespace {
 
-void check_ddim(Case& golden, const std::string& prefix, DdimScheduler scheduler, double eta,
-                int steps) {
+/// Noise and velocities at recorded timesteps of training.
+void check_schedule(Case& golden, const std::string& prefix, const NoiseSchedule& schedule) {
+    golden.compare(prefix + "alphas_cumprod", schedule.alphas_cumprod(), within::scheduler_step);
     const torch::Tensor sample = golden.input("sample"), noise = golden.input("noise");
-    golden.compare(prefix + "alphas_cumprod", scheduler.alphas_cumprod(), within::scheduler_step);
-    if (golden.has("in.noise_timesteps")) {
-        std::vector<torch::Tensor> noisy, velocities;
-        const torch::Tensor timesteps = golden.input("noise_timesteps");
-        for (std::int64_t i = 0; i < timesteps.size(0); ++i) {
-            const torch::Tensor rows = timesteps[i].expand({sample.size(0)});
-            noisy.push_back(scheduler.add_noise(sample, noise, rows));
-            velocities.push_back(scheduler.get_velocity(sample, noise, rows));
-        }
-        golden.compare(prefix + "add_noise", torch::stack(noisy), within::scheduler_step);
-        golden.compare(prefix + "get_velocity", torch::stack(velocities), within::scheduler_step);
+    const std::int64_t last = schedule.config().num_train_timesteps - 1;
+    std::vector<torch::Tensor> noisy, mirrored, velocities;
+    const torch::Tensor timesteps = golden.input("noise_timesteps");
+    for (std::int64_t i = 0; i < timesteps.size(0); ++i) {
+        const torch::Tensor rows = timesteps[i].expand({sample.size(0)});
+        noisy.push_back(schedule.add_noise(sample, noise, rows));
+        mirrored.push_back(schedule.add_noise(sample, noise, last - rows));
+        velocities.push_back(schedule.get_velocity(sample, noise, rows));
     }
-
-    scheduler.set_timesteps(steps);
-    golden.compare(prefix + "timesteps", torch::tensor(scheduler.timesteps()), within::exact);
-    golden.compare(prefix + "init_noise_sigma", torch::tensor({scheduler.init_noise_sigma()}),
+    golden.compare(prefix + "add_noise", torch::stack(noisy), within::scheduler_step);
+    golden.compare(prefix + "get_velocity", torch::stack(velocities), within::scheduler_step);
+    // DPMSolverMultistepScheduler counts from the wrong end until it is told the number of steps.
+    golden.compare(prefix + "add_noise_before_set_timesteps", torch::stack(mirrored),
                    within::scheduler_step);
+}
+
+void check_run(Case& golden, const std::string& prefix, const NoiseSchedule& schedule,
+               const SamplerOptions& options) {
+    const torch::Tensor sample = golden.input("sample"), noise = golden.input("noise");
     const torch::Tensor outputs = golden.input("model_outputs"), draws = golden.input("step_noise");
-    std::vector<torch::Tensor> trajectory;
-    torch::Tensor current = sample * scheduler.init_noise_sigma();
-    for (int i = 0; i < steps; ++i) {
-        current = scheduler.step(outputs[i], scheduler.timesteps()[i], current, eta, draws[i]);
+    const auto sampler = make_sampler(schedule, options);
+    std::vector<double> timesteps;
+    std::vector<torch::Tensor> scaled, trajectory, noisy;
+    torch::Tensor current = sample * sampler->initial_scale();
+    std::int64_t drawn = 0;
+    for (int i = 0; i < sampler->steps(); ++i) {
+        timesteps.push_back(sampler->timestep(i));
+        scaled.push_back(sampler->scale_input(i, current));
+        const torch::Tensor fresh = sampler->draws_noise(i) ? draws[drawn++] : torch::Tensor();
+        current = sampler->step(i, outputs[i], current, fresh);
         trajectory.push_back(current);
     }
+    // Timesteps between those of training come from logarithms of float32.
+    const bool whole = schedule.config().method != SamplerMethod::euler;
+    golden.compare(prefix + "timesteps", torch::tensor(timesteps),
+                   whole ? within::exact : within::scheduler_step);
+    golden.compare(prefix + "init_noise_sigma", torch::tensor({sampler->initial_scale()}),
+                   within::scheduler_step);
+    golden.compare(prefix + "scaled_input", torch::stack(scaled), within::scheduler_step);
     golden.compare(prefix + "prev_sample", torch::stack(trajectory), within::scheduler_step);
+    for (const int i : {0, 4, 9})
+        if (i < sampler->steps()) noisy.push_back(sampler->add_noise(i, sample, noise));
+    golden.compare(prefix + "add_noise_schedule", torch::stack(noisy), within::scheduler_step);
+    if (schedule.config().goes_by_sigma()) {
+        // add_noise of noise alone; DPM-Solver++'s samples have a variance of one.
+        std::vector<double> sigmas;
+        const torch::Tensor zero = torch::zeros({1}), one = torch::ones({1});
+        for (int i = 0; i < sampler->steps(); ++i)
+            sigmas.push_back(sampler->add_noise(i, zero, one).item<double>() /
+                             sampler->add_noise(i, one, zero).item<double>());
+        sigmas.push_back(0);
+        golden.compare(prefix + "sigmas", torch::tensor(sigmas), within::scheduler_step);
+    }
 }
 
 }  // namespace
@@ -42,15 +71,10 @@ void check_schedulers(Case& golden) {
     for (const std::string& config : meta.texts("configs", {})) {
         for (const std::string& kind : meta.texts("kinds", {})) {
             const std::string prefix = config + "." + kind + ".";
-            const auto folder = golden.folder() / config / kind;
-            const std::string name =
-                Config::read(folder / "scheduler_config.json").text("_class_name", "");
-            if (name != "DDIMScheduler") {
-                golden.skip(prefix, name + " is not implemented");
-                continue;
-            }
-            check_ddim(golden, prefix, DdimScheduler::load(folder), kind == "ddim_eta" ? 0.6 : 0.0,
-                       steps);
+            const NoiseSchedule schedule = NoiseSchedule::load(golden.folder() / config / kind);
+            check_schedule(golden, prefix, schedule);
+            check_run(golden, prefix, schedule,
+                      {.steps = steps, .eta = kind == "ddim_eta" ? 0.6 : 0.0});
         }
     }
 }

@@ -48,7 +48,8 @@ void check(Case& golden) {
     if (fs::exists(folder / "model_index.json")) {
         const std::string name = class_of_config(Config::read(folder / "model_index.json"));
         golden.set_class(name);
-        if (name == "StableDiffusionPipeline") return check_pipeline(golden);
+        if (name == "StableDiffusionPipeline" || name == "StableDiffusionXLPipeline")
+            return check_pipeline(golden);
         reject(folder / "model_index.json", name);
     }
     if (golden.has_meta()) {

@@ -55,6 +55,7 @@ torch::Tensor wanted_picture(const EditScene& scene, const EditSettings& setting
     options.image = latents;
     options.strength = first_strength + (last_strength - first_strength) * index /
                                             std::max(1, settings.detail_views - 1);
+    options.scheduler = "ddim";
     options.eta = 1;
     options.seed = mix_bits(settings.seed) + static_cast<std::uint64_t>(index);
     options.show_progress = false;

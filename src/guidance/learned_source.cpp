@@ -22,56 +22,74 @@ torch::Tensor find(const NamedTensors& state, const std::string& name) {
 
 }  // namespace
 
-LearnedSource::LearnedSource(const torch::Tensor& source, const GuidanceOptions& options)
-    : options_(options),
-      embedding_(source.detach().clone().to(torch::kFloat32)),
-      first_moment_(torch::zeros_like(embedding_)),
-      second_moment_(torch::zeros_like(embedding_)) {}
+LearnedSource::LearnedSource(const TextEmbedding& source, const GuidanceOptions& options)
+    : options_(options) {
+    const auto add = [&](const std::string& name, const torch::Tensor& start) {
+        const torch::Tensor embedding = start.detach().clone().to(torch::kFloat32);
+        parts_.push_back(
+            {name, embedding, torch::zeros_like(embedding), torch::zeros_like(embedding)});
+    };
+    add("source.", source.states);
+    if (source.pooled.defined()) add("source.pooled_", source.pooled);
+}
 
 torch::Tensor LearnedSource::predict_and_follow(const Pipeline& pipeline, const NoisedLatents& own,
                                                 std::int64_t iteration) {
     const int more = options_.adjust_samples - 1;
     const NoisedLatents latents =
         more > 0 ? join_rows(own, renoise_latents(pipeline, own, options_, iteration, more)) : own;
-    torch::Tensor embedding = embedding_.detach().requires_grad_(true);
+    std::vector<torch::Tensor> embeddings;
+    for (const Part& part : parts_)
+        embeddings.push_back(part.embedding.detach().requires_grad_(true));
+    const TextEmbedding text{embeddings[0], parts_.size() > 1 ? embeddings[1] : torch::Tensor()};
     const torch::Tensor prediction =
-        pipeline.predict_noise(latents.noisy, latents.timesteps,
-                               repeat_text(embedding, latents.noisy.size(0)), latents.condition);
+        pipeline.predict_noise(latents.noisy, latents.timesteps, text, latents.condition);
     torch::Tensor error = prediction - latents.noise;
     // An error of v is an error of eps divided by sqrt(abar); the loss is the one the model was
     // trained with.
     if (pipeline.scheduler.predicts_velocity()) error = error / latents.alphas_cumprod.sqrt();
     const torch::Tensor loss = error.square().mean();
-    const torch::Tensor gradient = torch::autograd::grad({loss}, {embedding})[0];
+    const auto gradients = torch::autograd::grad({loss}, embeddings);
     loss_ = loss.item<float>();
 
     const torch::NoGradGuard no_grad;
     ++steps_;
-    first_moment_.mul_(beta1).add_(gradient, 1 - beta1);
-    second_moment_.mul_(beta2).addcmul_(gradient, gradient, 1 - beta2);
     const double correction1 = 1 - std::pow(beta1, static_cast<double>(steps_));
     const double correction2 = 1 - std::pow(beta2, static_cast<double>(steps_));
-    embedding_ = embedding_ - options_.adjust_learning_rate / correction1 * first_moment_ /
-                                  ((second_moment_ / correction2).sqrt() + epsilon);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        Part& part = parts_[i];
+        part.first_moment.mul_(beta1).add_(gradients[i], 1 - beta1);
+        part.second_moment.mul_(beta2).addcmul_(gradients[i], gradients[i], 1 - beta2);
+        part.embedding = part.embedding - options_.adjust_learning_rate / correction1 *
+                                              part.first_moment /
+                                              ((part.second_moment / correction2).sqrt() + epsilon);
+    }
     return prediction.detach().narrow(0, 0, own.noisy.size(0));
 }
 
 NamedTensors LearnedSource::state() const {
-    return {{"source.embedding", embedding_},
-            {"source.first_moment", first_moment_},
-            {"source.second_moment", second_moment_},
-            {"source.steps", torch::tensor({steps_}, torch::kInt64)}};
+    NamedTensors state;
+    for (const Part& part : parts_) {
+        state.emplace_back(part.name + "embedding", part.embedding);
+        state.emplace_back(part.name + "first_moment", part.first_moment);
+        state.emplace_back(part.name + "second_moment", part.second_moment);
+    }
+    state.emplace_back("source.steps", torch::tensor({steps_}, torch::kInt64));
+    return state;
 }
 
 void LearnedSource::load_state(const NamedTensors& state) {
-    const torch::Tensor embedding = find(state, "source.embedding");
-    if (embedding.sizes() != embedding_.sizes()) {
-        throw InputError("checkpoint", "its source embedding has another shape than this prior's",
-                         "resume with the prior that began the edit");
+    for (Part& part : parts_) {
+        const torch::Tensor embedding = find(state, part.name + "embedding");
+        if (embedding.sizes() != part.embedding.sizes())
+            throw InputError("checkpoint",
+                             "its source embedding has another shape than this prior's",
+                             "resume with the prior that began the edit");
+        const torch::Device device = part.embedding.device();
+        part.embedding = embedding.to(device);
+        part.first_moment = find(state, part.name + "first_moment").to(device).clone();
+        part.second_moment = find(state, part.name + "second_moment").to(device).clone();
     }
-    embedding_ = embedding.to(embedding_.device());
-    first_moment_ = find(state, "source.first_moment").to(embedding_.device()).clone();
-    second_moment_ = find(state, "source.second_moment").to(embedding_.device()).clone();
     steps_ = find(state, "source.steps").item<std::int64_t>();
 }
 

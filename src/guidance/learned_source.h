@@ -10,12 +10,15 @@
 #include "item3d/guidance/guidance.h"
 #include "item3d/guidance/noised_latents.h"
 
+#include <string>
+#include <vector>
+
 namespace item3d {
 
 class LearnedSource {
   public:
-    /// source: [1, S, D], copied.
-    LearnedSource(const torch::Tensor& source, const GuidanceOptions& options);
+    /// source: one row, copied. Its pooled part, where there is one, follows too.
+    LearnedSource(const TextEmbedding& source, const GuidanceOptions& options);
 
     /// eps(source) for these latents (constant), then one step of the embedding. The step looks at
     /// options.adjust_samples noises for each of the latents, this iteration's own among them.
@@ -28,10 +31,16 @@ class LearnedSource {
     void load_state(const NamedTensors& state);
 
   private:
+    /// A tensor of the embedding and what Adam remembers about it.
+    struct Part {
+        std::string name;  ///< in a checkpoint, before that of the tensor
+        torch::Tensor embedding;
+        torch::Tensor first_moment;
+        torch::Tensor second_moment;
+    };
+
     GuidanceOptions options_;
-    torch::Tensor embedding_;
-    torch::Tensor first_moment_;
-    torch::Tensor second_moment_;
+    std::vector<Part> parts_;  ///< hidden states, and for SDXL what is pooled of them
     std::int64_t steps_ = 0;
     float loss_ = 0;
 };

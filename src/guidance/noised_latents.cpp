@@ -44,10 +44,6 @@ torch::Tensor timestep_weight(Weighting weighting, const torch::Tensor& alphas_c
     ITEM3D_CHECK(false, "unknown weighting");
 }
 
-torch::Tensor repeat_text(const torch::Tensor& text, std::int64_t rows) {
-    return text.expand({rows, text.size(1), text.size(2)});
-}
-
 torch::Tensor twice(const torch::Tensor& rows) {
     return rows.defined() ? torch::cat({rows, rows}) : rows;
 }

@@ -30,9 +30,6 @@ NoisedLatents join_rows(const NoisedLatents& first, const NoisedLatents& second)
 
 torch::Tensor timestep_weight(Weighting weighting, const torch::Tensor& alphas_cumprod);
 
-/// [rows, S, D] of one prompt's [1, S, D].
-torch::Tensor repeat_text(const torch::Tensor& text, std::int64_t rows);
-
 /// The rows twice, one after the other; an undefined tensor stays undefined.
 torch::Tensor twice(const torch::Tensor& rows);
 

@@ -9,24 +9,23 @@ RelativeDirection::RelativeDirection(std::shared_ptr<const Pipeline> pipeline,
                                      const std::string& target_prompt,
                                      const GuidanceOptions& options)
     : pipeline_(std::move(pipeline)), options_(options) {
-    const torch::Tensor text = pipeline_->encode_text({target_prompt, source_prompt});
-    target_text_ = text.narrow(0, 0, 1);
-    source_text_ = text.narrow(0, 1, 1);
+    const TextEmbedding text = pipeline_->encode_text({target_prompt, source_prompt});
+    target_text_ = text.row(0);
+    source_text_ = text.row(1);
     if (options_.adjust == "learned") {
         learned_source_.emplace(source_text_, options_);
     }
 }
 
 PromptPair predict_pair(const Pipeline& pipeline, const NoisedLatents& start,
-                        const torch::Tensor& target_text, const torch::Tensor& source_text) {
+                        const TextEmbedding& target_text, const TextEmbedding& source_text) {
     const torch::NoGradGuard no_grad;
     const std::int64_t rows = start.noisy.size(0);
     const auto both =
         pipeline
-            .predict_noise(
-                twice(start.noisy), twice(start.timesteps),
-                torch::cat({repeat_text(target_text, rows), repeat_text(source_text, rows)}),
-                twice(start.condition))
+            .predict_noise(twice(start.noisy), twice(start.timesteps),
+                           TextEmbedding::join(target_text.expand(rows), source_text.expand(rows)),
+                           twice(start.condition))
             .chunk(2);
     return {both[0], both[1]};
 }
@@ -36,8 +35,7 @@ PromptPair RelativeDirection::predict(const NoisedLatents& start, std::int64_t i
     const torch::Tensor source = learned_source_->predict_and_follow(*pipeline_, start, iteration);
     const torch::NoGradGuard no_grad;
     const torch::Tensor target =
-        pipeline_->predict_noise(start.noisy, start.timesteps,
-                                 repeat_text(target_text_, start.noisy.size(0)), start.condition);
+        pipeline_->predict_noise(start.noisy, start.timesteps, target_text_, start.condition);
     return {target, source};
 }
 

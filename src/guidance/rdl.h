@@ -18,9 +18,9 @@ struct PromptPair {
     torch::Tensor source;  ///< [N, C, h, w]
 };
 
-/// Both in one batch of two rows an image; texts are [1, S, D].
+/// Both in one batch of two rows an image; texts are one row.
 PromptPair predict_pair(const Pipeline& pipeline, const NoisedLatents& start,
-                        const torch::Tensor& target_text, const torch::Tensor& source_text);
+                        const TextEmbedding& target_text, const TextEmbedding& source_text);
 
 class RelativeDirection : public Guidance {
   public:
@@ -35,8 +35,8 @@ class RelativeDirection : public Guidance {
 
     std::shared_ptr<const Pipeline> pipeline_;
     GuidanceOptions options_;
-    torch::Tensor target_text_;  ///< [1, S, D]
-    torch::Tensor source_text_;  ///< [1, S, D]
+    TextEmbedding target_text_;  ///< one row, as the source's
+    TextEmbedding source_text_;
     std::optional<LearnedSource> learned_source_;
 };
 

@@ -9,7 +9,8 @@ ScoreDistillation::ScoreDistillation(std::shared_ptr<const Pipeline> pipeline,
                                      const GuidanceOptions& options)
     : pipeline_(std::move(pipeline)),
       options_(options),
-      text_(pipeline_->encode_text({target_prompt, ""})) {}
+      target_text_(pipeline_->encode_text({target_prompt})),
+      no_text_(pipeline_->encode_no_text()) {}
 
 GuidanceOutput ScoreDistillation::step(const GuidanceInput& input, std::int64_t iteration) {
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
@@ -17,7 +18,8 @@ GuidanceOutput ScoreDistillation::step(const GuidanceInput& input, std::int64_t 
 
     const torch::NoGradGuard no_grad;
     const double before = seconds_now();
-    const torch::Tensor text = text_.repeat_interleave(rows, 0);
+    const TextEmbedding text =
+        TextEmbedding::join(target_text_.expand(rows), no_text_.expand(rows));
     const auto predictions = pipeline_
                                  ->predict_noise(twice(start.noisy), twice(start.timesteps), text,
                                                  twice(start.condition))

@@ -16,7 +16,8 @@ class ScoreDistillation : public Guidance {
   private:
     std::shared_ptr<const Pipeline> pipeline_;
     GuidanceOptions options_;
-    torch::Tensor text_;  ///< [2, S, D] target, empty
+    TextEmbedding target_text_;  ///< one row each
+    TextEmbedding no_text_;
 };
 
 }  // namespace item3d

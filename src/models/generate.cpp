@@ -4,6 +4,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/models/pipeline.h"
+#include "item3d/models/sampler.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,21 +43,71 @@ torch::Tensor empty_latents(const Pipeline& pipeline, const GenerateOptions& opt
                         pipeline.device());
 }
 
-/// What sampling starts from when `skipped` timesteps are left out.
+/// Throws InputError for a scheduler or a number of steps that the model cannot do.
+NoiseSchedule choose_schedule(const Pipeline& pipeline, const GenerateOptions& options) {
+    SchedulerConfig config = pipeline.scheduler.config();
+    if (!options.scheduler.empty()) config = config.with_sampler(options.scheduler);
+    if (options.steps < 1 || options.steps > most_steps(config))
+        throw InputError(fmt::format("{} steps", options.steps),
+                         fmt::format("this model takes 1 to {}", most_steps(config)));
+    return NoiseSchedule(config);
+}
+
+/// How many of the steps are left out, so that no more of a picture is forgotten than was asked.
+int skipped_steps(const GenerateOptions& options) {
+    if (!options.image.defined()) return 0;
+    const auto walked = static_cast<int>(std::lround(options.steps * options.strength));
+    return options.steps - std::clamp(walked, 0, options.steps);
+}
+
 torch::Tensor starting_latents(const Pipeline& pipeline, const GenerateOptions& options,
-                               const DdimScheduler& scheduler, int skipped) {
+                               const Sampler& sampler) {
     if (options.image.defined()) {
         const torch::Tensor image = options.image.to(pipeline.device(), torch::kFloat32);
-        const torch::Tensor timesteps =
-            torch::full({image.size(0)}, scheduler.timesteps()[skipped], torch::kInt64);
-        return scheduler.add_noise(image, noise_like(image, options.seed, 0),
-                                   timesteps.to(image.device()));
+        return sampler.add_noise(0, image, noise_like(image, options.seed, 0));
     }
     const torch::Tensor noise = options.latents.defined()
                                     ? options.latents.to(pipeline.device(), torch::kFloat32)
                                     : noise_like(empty_latents(pipeline, options), options.seed, 0);
-    return noise * scheduler.init_noise_sigma();
+    return noise * sampler.initial_scale();
 }
+
+/// Classifier-free guidance (Ho and Salimans 2022): the network, asked with and without the prompt.
+class GuidedNetwork {
+  public:
+    GuidedNetwork(const Pipeline& pipeline, const GenerateOptions& options, std::int64_t rows,
+                  const torch::Tensor& condition)
+        : pipeline_(pipeline),
+          scale_(options.guidance_scale),
+          text_(pipeline.encode_text({options.prompt}).expand(rows)) {
+        if (condition.defined())
+            condition_ = condition.to(pipeline.device()).expand({rows, -1, -1, -1});
+        if (!guided()) return;
+        const TextEmbedding without = options.negative_prompt
+                                          ? pipeline.encode_text({*options.negative_prompt})
+                                          : pipeline.encode_no_text();
+        text_ = TextEmbedding::join(without.expand(rows), text_);
+        if (condition_.defined()) condition_ = torch::cat({condition_, condition_});
+    }
+
+    torch::Tensor operator()(const torch::Tensor& latents, double timestep) const {
+        const torch::Tensor input = guided() ? torch::cat({latents, latents}) : latents;
+        const torch::Tensor timesteps =
+            torch::full({input.size(0)}, timestep, torch::kFloat32).to(latents.device());
+        const torch::Tensor output = pipeline_.predict(input, timesteps, text_, condition_);
+        if (!guided()) return output;
+        const auto halves = output.chunk(2);
+        return halves[0] + scale_ * (halves[1] - halves[0]);
+    }
+
+  private:
+    bool guided() const { return scale_ != 1.0f; }
+
+    const Pipeline& pipeline_;
+    float scale_;
+    TextEmbedding text_;
+    torch::Tensor condition_;
+};
 
 }  // namespace
 
@@ -78,45 +129,23 @@ torch::Tensor generate_latents(const Pipeline& pipeline, const GenerateOptions& 
                                const torch::Tensor& condition) {
     const torch::NoGradGuard no_grad;
     ITEM3D_CHECK(options.count >= 1, "count must be at least 1");
-    DdimScheduler scheduler = pipeline.scheduler;
-    const int most = scheduler.config().num_train_timesteps;
-    if (options.steps < 1 || options.steps > most)
-        throw InputError(fmt::format("{} steps", options.steps),
-                         fmt::format("this model takes 1 to {}", most));
-    scheduler.set_timesteps(options.steps);
-
-    const double strength = options.image.defined() ? options.strength : 1.0;
-    const int skipped =
-        options.steps -
-        std::clamp(static_cast<int>(std::lround(options.steps * strength)), 0, options.steps);
+    const NoiseSchedule schedule = choose_schedule(pipeline, options);
+    const int skipped = skipped_steps(options);
     if (skipped == options.steps) return options.image.to(pipeline.device(), torch::kFloat32);
-    torch::Tensor latents = starting_latents(pipeline, options, scheduler, skipped);
-    const auto rows = latents.size(0);
-    const bool guided = options.guidance_scale != 1.0f;
-    torch::Tensor text = pipeline.encode_text({options.prompt}).expand({rows, -1, -1});
-    if (guided)
-        text = torch::cat(
-            {pipeline.encode_text({options.negative_prompt}).expand({rows, -1, -1}), text});
-    torch::Tensor extra = condition;
-    if (extra.defined()) extra = extra.to(pipeline.device()).expand({rows, -1, -1, -1});
-    if (extra.defined() && guided) extra = torch::cat({extra, extra});
+    const auto sampler = make_sampler(schedule, {options.steps, skipped, options.eta});
+    torch::Tensor latents = starting_latents(pipeline, options, *sampler);
+    const GuidedNetwork network(pipeline, options, latents.size(0), condition);
 
     std::optional<Progress> progress;
-    if (options.show_progress) progress.emplace("generate", options.steps - skipped);
-    for (int i = skipped; i < options.steps; ++i) {
-        const std::int64_t timestep = scheduler.timesteps()[i];
-        const torch::Tensor input = guided ? torch::cat({latents, latents}) : latents;
-        torch::Tensor output = pipeline.predict(
-            input, torch::full({input.size(0)}, timestep, latents.device()).to(torch::kInt64), text,
-            extra);
-        if (guided) {
-            const auto halves = output.chunk(2);
-            output = halves[0] + options.guidance_scale * (halves[1] - halves[0]);
-        }
-        const torch::Tensor fresh =
-            options.eta > 0 ? noise_like(latents, options.seed, i + 1) : torch::Tensor();
-        latents = scheduler.step(output, timestep, latents, options.eta, fresh);
-        if (progress) progress->update(i + 1 - skipped);
+    if (options.show_progress) progress.emplace("generate", sampler->steps());
+    for (int i = 0; i < sampler->steps(); ++i) {
+        const torch::Tensor output =
+            network(sampler->scale_input(i, latents), sampler->timestep(i));
+        const torch::Tensor fresh = sampler->draws_noise(i)
+                                        ? noise_like(latents, options.seed, skipped + i + 1)
+                                        : torch::Tensor();
+        latents = sampler->step(i, output, latents, fresh);
+        if (progress) progress->update(i + 1);
         if (interrupted()) throw Interrupted("generate: stopped");
     }
     return latents;

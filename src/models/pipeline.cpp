@@ -10,11 +10,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Original height and width, top and left of the crop, target height and width.
+constexpr int picture_sizes = 6;
+
 /// Convolution weights in the order that convolutions on channels-last maps want.
 void use_channels_last(torch::nn::Module& module) {
     for (torch::Tensor& parameter : module.parameters())
         if (parameter.dim() == 4)
             parameter.set_data(parameter.contiguous(torch::MemoryFormat::ChannelsLast));
+}
+
+/// False where model_index.json leaves a part out or says [null, null].
+bool names_part(const Config& index, const std::string& part) {
+    if (!index.has(part)) return false;
+    const auto& entry = index.json().at(part);
+    return !entry.is_array() || entry.empty() || !entry[0].is_null();
 }
 
 /// Throws unless model_index.json names a class that we know for `part`.
@@ -34,19 +44,28 @@ void check_part(const Config& index, const std::string& part,
     index.reject(part, "expected " + wanted + ", found " + found);
 }
 
-nlohmann::json model_index(const Autoencoder& vae) {
-    return {
+nlohmann::json model_index(const Pipeline& pipeline) {
+    nlohmann::json index = {
         {"_class_name", "StableDiffusionPipeline"},
         {"feature_extractor", {nullptr, nullptr}},
         {"image_encoder", {nullptr, nullptr}},
         {"requires_safety_checker", false},
         {"safety_checker", {nullptr, nullptr}},
-        {"scheduler", {"diffusers", "DDIMScheduler"}},
+        {"scheduler", {"diffusers", pipeline.scheduler.config().to_json().at("_class_name")}},
         {"text_encoder", {"transformers", "CLIPTextModel"}},
         {"tokenizer", {"transformers", "CLIPTokenizer"}},
         {"unet", {"diffusers", "UNet2DConditionModel"}},
-        {"vae", {"diffusers", vae.config_json().at("_class_name")}},
+        {"vae", {"diffusers", pipeline.vae->config_json().at("_class_name")}},
     };
+    if (pipeline.is_sdxl()) {
+        index["_class_name"] = "StableDiffusionXLPipeline";
+        index["text_encoder_2"] = {"transformers", "CLIPTextModelWithProjection"};
+        index["tokenizer_2"] = {"transformers", "CLIPTokenizer"};
+        index["force_zeros_for_empty_prompt"] = pipeline.force_zeros_for_empty_prompt;
+        index.erase("requires_safety_checker");
+        index.erase("safety_checker");
+    }
+    return index;
 }
 
 void write_json(const fs::path& path, const nlohmann::json& json) {
@@ -60,8 +79,7 @@ Pipeline Pipeline::load(const fs::path& folder, torch::Device device, torch::Dty
         throw InputError(folder.string(), "no such folder",
                          "name a folder in the diffusers layout (it holds model_index.json)");
     const Config index = Config::read(folder / "model_index.json");
-    if (index.has("text_encoder_2") && !index.json().at("text_encoder_2")[0].is_null())
-        index.reject("text_encoder_2", "pipelines of two text encoders (SDXL) are not supported");
+    const bool sdxl = names_part(index, "text_encoder_2");
     check_part(index, "text_encoder", {"CLIPTextModel"});
     check_part(index, "tokenizer", {"CLIPTokenizer", "CLIPTokenizerFast"});
     check_part(index, "unet", {"UNet2DConditionModel"});
@@ -70,39 +88,86 @@ Pipeline Pipeline::load(const fs::path& folder, torch::Device device, torch::Dty
     Pipeline pipeline;
     pipeline.tokenizer = std::make_shared<ClipTokenizer>(ClipTokenizer::load(folder / "tokenizer"));
     pipeline.text_encoder = load_clip_text(folder / "text_encoder", device);
+    if (sdxl) {
+        check_part(index, "text_encoder_2", {"CLIPTextModelWithProjection"});
+        check_part(index, "tokenizer_2", {"CLIPTokenizer", "CLIPTokenizerFast"});
+        pipeline.tokenizer_2 =
+            std::make_shared<ClipTokenizer>(ClipTokenizer::load(folder / "tokenizer_2"));
+        pipeline.text_encoder_2 = load_clip_text(folder / "text_encoder_2", device);
+        pipeline.force_zeros_for_empty_prompt = index.boolean("force_zeros_for_empty_prompt", true);
+    }
     pipeline.unet = load_unet(folder / "unet", device, dtype);
     pipeline.vae = load_autoencoder(folder / "vae", device, dtype);
-    pipeline.scheduler = DdimScheduler::load(folder / "scheduler");
+    pipeline.scheduler = NoiseSchedule::load(folder / "scheduler");
     use_channels_last(*pipeline.unet);
     use_channels_last(*pipeline.vae);
     pipeline.check_fit(folder);
     return pipeline;
 }
 
-void Pipeline::check_fit(const fs::path& folder) const {
-    const auto mismatch = [&](const char* part, const std::string& problem) {
-        throw InputError((folder / part / "config.json").string(), problem,
-                         "the folder mixes parts of different models");
-    };
-    const ClipTextConfig& text = text_encoder->config();
-    for (const int width : unet->config().cross_attention_dim)
-        if (width != text.hidden_size)
-            mismatch("unet", fmt::format("cross_attention_dim is {}, but the text encoder gives {}",
-                                         width, text.hidden_size));
-    if (unet->config().out_channels != vae->latent_channels() ||
-        unet->config().in_channels < vae->latent_channels())
-        mismatch("unet", fmt::format("{} to {} channels do not fit the VAE's {} latent channels",
-                                     unet->config().in_channels, unet->config().out_channels,
-                                     vae->latent_channels()));
-    if (!unet->config().addition_embed_type.empty())
-        mismatch("unet", "addition_embed_type needs a second text encoder (SDXL), not supported");
-    if (tokenizer->model_max_length() > text.max_position_embeddings)
-        mismatch("text_encoder",
+namespace {
+
+[[noreturn]] void mismatch(const fs::path& folder, const std::string& part,
+                           const std::string& problem) {
+    throw InputError((folder / part / "config.json").string(), problem,
+                     "the folder mixes parts of different models");
+}
+
+void check_tokenizer_fit(const fs::path& folder, const std::string& part,
+                         const ClipTokenizer& tokenizer, const ClipTextConfig& text) {
+    if (tokenizer.model_max_length() > text.max_position_embeddings)
+        mismatch(folder, part,
                  fmt::format("max_position_embeddings is {}, but the tokenizer pads to {}",
-                             text.max_position_embeddings, tokenizer->model_max_length()));
-    if (tokenizer->largest_id() >= text.vocab_size)
-        mismatch("text_encoder", fmt::format("vocab_size is {}, but the tokenizer has an id {}",
-                                             text.vocab_size, tokenizer->largest_id()));
+                             text.max_position_embeddings, tokenizer.model_max_length()));
+    if (tokenizer.largest_id() >= text.vocab_size)
+        mismatch(folder, part,
+                 fmt::format("vocab_size is {}, but the tokenizer has an id {}", text.vocab_size,
+                             tokenizer.largest_id()));
+}
+
+}  // namespace
+
+void Pipeline::check_fit(const fs::path& folder) const {
+    check_text_fit(folder);
+    const UNet2DConditionConfig& config = unet->config();
+    if (config.out_channels != vae->latent_channels() ||
+        config.in_channels < vae->latent_channels())
+        mismatch(folder, "unet",
+                 fmt::format("{} to {} channels do not fit the VAE's {} latent channels",
+                             config.in_channels, config.out_channels, vae->latent_channels()));
+}
+
+void Pipeline::check_text_fit(const fs::path& folder) const {
+    check_tokenizer_fit(folder, "text_encoder", *tokenizer, text_encoder->config());
+    int width_given = text_encoder->config().hidden_size;
+    int added = 0;
+    if (is_sdxl()) {
+        const ClipTextConfig& second = text_encoder_2->config();
+        if (!second.with_projection)
+            mismatch(folder, "text_encoder_2",
+                     "architectures must be CLIPTextModelWithProjection for SDXL");
+        check_tokenizer_fit(folder, "text_encoder_2", *tokenizer_2, second);
+        if (tokenizer_2->model_max_length() != tokenizer->model_max_length())
+            mismatch(folder, "text_encoder_2", "the two tokenizers pad to different lengths");
+        width_given += second.hidden_size;
+        added = second.projection_dim;
+    }
+    const UNet2DConditionConfig& config = unet->config();
+    for (const int width : config.cross_attention_dim)
+        if (width != width_given)
+            mismatch(folder, "unet",
+                     fmt::format("cross_attention_dim is {}, but the text gives {}", width,
+                                 width_given));
+    if (config.addition_embed_type.empty() == is_sdxl())
+        mismatch(folder, "unet",
+                 is_sdxl() ? "SDXL's needs addition_embed_type text_time"
+                           : "addition_embed_type needs a second text encoder (SDXL)");
+    added += picture_sizes * config.addition_time_embed_dim;
+    if (is_sdxl() && config.projection_class_embeddings_input_dim != added)
+        mismatch(folder, "unet",
+                 fmt::format("projection_class_embeddings_input_dim is {}, but pooled text and {} "
+                             "picture sizes give {}",
+                             config.projection_class_embeddings_input_dim, picture_sizes, added));
 }
 
 void save_unet(const fs::path& folder, const UNet2DCondition& unet, torch::Dtype dtype) {
@@ -132,13 +197,35 @@ void Pipeline::save(const fs::path& folder, torch::Dtype dtype) const {
     save_clip_text(folder / "text_encoder", text_encoder, dtype);
     tokenizer->save(folder / "tokenizer");
     write_json(folder / "scheduler" / "scheduler_config.json", scheduler.config().to_json());
-    write_json(folder / "model_index.json", model_index(*vae));
+    if (is_sdxl()) {
+        for (const char* part : {"text_encoder_2", "tokenizer_2"})
+            make_output_folder(folder / part);
+        save_clip_text(folder / "text_encoder_2", text_encoder_2, dtype);
+        tokenizer_2->save(folder / "tokenizer_2");
+    }
+    write_json(folder / "model_index.json", model_index(*this));
 }
 
-torch::Tensor Pipeline::encode_text(const std::vector<std::string>& prompts) const {
+TextEmbedding Pipeline::encode_text(const std::vector<std::string>& prompts) const {
     const torch::NoGradGuard no_grad;
     ClipTextModel model = text_encoder;
-    return model(tokenizer->encode_batch(prompts).to(device())).last_hidden_state;
+    const ClipTextOutput first = model(tokenizer->encode_batch(prompts).to(device()));
+    if (!is_sdxl()) return {first.last_hidden_state};
+    ClipTextModel model_2 = text_encoder_2;
+    const ClipTextOutput second = model_2(tokenizer_2->encode_batch(prompts).to(device()));
+    const auto last_but_one = [](const ClipTextOutput& output) {
+        return output.hidden_states[output.hidden_states.size() - 2];
+    };
+    return {torch::cat({last_but_one(first), last_but_one(second)}, 2), second.text_embeds};
+}
+
+TextEmbedding Pipeline::encode_no_text() const {
+    TextEmbedding text = encode_text({""});
+    if (force_zeros_for_empty_prompt) {
+        text.states.zero_();
+        text.pooled.zero_();
+    }
+    return text;
 }
 
 torch::Tensor Pipeline::encode_image(const torch::Tensor& images) const {
@@ -153,7 +240,7 @@ torch::Tensor Pipeline::decode_image(const torch::Tensor& latents) const {
 }
 
 torch::Tensor Pipeline::predict(const torch::Tensor& noisy_latents, const torch::Tensor& timesteps,
-                                const torch::Tensor& text, const torch::Tensor& condition) const {
+                                const TextEmbedding& text, const torch::Tensor& condition) const {
     const auto rows = noisy_latents.size(0);
     torch::Tensor sample = noisy_latents;
     if (const int channels = condition_channels()) {
@@ -165,14 +252,25 @@ torch::Tensor Pipeline::predict(const torch::Tensor& noisy_latents, const torch:
                      "the condition must be on the latents' grid");
         sample = torch::cat({sample, extra.to(sample.options()).expand({rows, -1, -1, -1})}, 1);
     }
+    const TextEmbedding each = text.expand(rows);
+    AddedCondition added;
+    if (is_sdxl()) added = {each.pooled, sizes_of(noisy_latents)};
     UNet2DCondition network = unet;
-    return network(sample.contiguous(torch::MemoryFormat::ChannelsLast), timesteps,
-                   text.size(0) == rows ? text : text.expand({rows, -1, -1}))
+    return network(sample.contiguous(torch::MemoryFormat::ChannelsLast), timesteps, each.states,
+                   added)
         .to(torch::kFloat32);
 }
 
+torch::Tensor Pipeline::sizes_of(const torch::Tensor& latents) const {
+    const auto height = static_cast<float>(latents.size(2) * downscale());
+    const auto width = static_cast<float>(latents.size(3) * downscale());
+    return torch::tensor({height, width, 0.0f, 0.0f, height, width})
+        .to(latents.device())
+        .expand({latents.size(0), picture_sizes});
+}
+
 torch::Tensor Pipeline::predict_noise(const torch::Tensor& noisy_latents,
-                                      const torch::Tensor& timesteps, const torch::Tensor& text,
+                                      const torch::Tensor& timesteps, const TextEmbedding& text,
                                       const torch::Tensor& condition) const {
     return scheduler.to_noise(predict(noisy_latents, timesteps, text, condition), noisy_latents,
                               timesteps);

@@ -4,13 +4,15 @@
 #include "item3d/models/autoencoder.h"
 #include "item3d/models/clip_text.h"
 #include "item3d/models/clip_tokenizer.h"
-#include "item3d/models/ddim.h"
+#include "item3d/models/noise_schedule.h"
+#include "item3d/models/text_embedding.h"
 #include "item3d/models/unet.h"
 
 #include <torch/types.h>
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,17 +20,22 @@ namespace item3d {
 
 class Pipeline {
   public:
-    /// Reads model_index.json and its sub-folders (tokenizer, text_encoder, unet, vae, scheduler).
-    /// Weights are cast once to `dtype` (text encoder and schedules stay float32). Throws
-    /// InputError naming the file for anything missing, of the wrong shape, or unsupported.
+    /// Reads model_index.json and its sub-folders (tokenizer, text_encoder, unet, vae, scheduler;
+    /// for SDXL tokenizer_2 and text_encoder_2 too). Weights are cast once to `dtype` (text
+    /// encoders and schedules stay float32). Throws InputError naming the file for anything
+    /// missing, of the wrong shape, or unsupported.
     static Pipeline load(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
                          torch::Dtype dtype = torch::kFloat32);
     /// Writes the same layout, weights as `dtype` (float32 or float16), each file atomically and
     /// model_index.json last, so that a folder that has one is whole.
     void save(const std::filesystem::path& folder, torch::Dtype dtype = torch::kFloat16) const;
 
-    /// [N, S, D] float32: last hidden states of padded and truncated prompts.
-    torch::Tensor encode_text(const std::vector<std::string>& prompts) const;
+    /// float32, of padded and truncated prompts: the last hidden states; for SDXL the last but one
+    /// of both encoders side by side, and the second encoder's projected pooled state.
+    TextEmbedding encode_text(const std::vector<std::string>& prompts) const;
+    /// One row: what classifier-free guidance goes away from when nobody says what. The empty
+    /// prompt, or zeros where model_index.json says force_zeros_for_empty_prompt (SDXL).
+    TextEmbedding encode_no_text() const;
     /// images [N, 3, H, W] in [-1, 1] -> latents [N, C, h, w], scaled (mean of the posterior);
     /// differentiable in images. float32.
     torch::Tensor encode_image(const torch::Tensor& images) const;
@@ -36,16 +43,19 @@ class Pipeline {
     torch::Tensor decode_image(const torch::Tensor& latents) const;
     /// U-Net's noise prediction eps (v-prediction is converted), float32. `condition`: extra input
     /// channels [N, c, h, w] (or one row for all), concatenated to the latents where the U-Net
-    /// takes them; left out, they are zero, which the embedded prior knows as "no depth". text: [N,
-    /// S, D] or one row for all. Differentiable in whatever asks for it.
+    /// takes them; left out, they are zero, which the embedded prior knows as "no depth". text: N
+    /// rows or one for all. SDXL is told that the picture is neither scaled nor cropped.
+    /// Differentiable in whatever asks for it.
     torch::Tensor predict_noise(const torch::Tensor& noisy_latents, const torch::Tensor& timesteps,
-                                const torch::Tensor& text,
+                                const TextEmbedding& text,
                                 const torch::Tensor& condition = {}) const;
 
     /// What predict_noise converts: the U-Net's own output, of the scheduler's prediction_type.
     torch::Tensor predict(const torch::Tensor& noisy_latents, const torch::Tensor& timesteps,
-                          const torch::Tensor& text, const torch::Tensor& condition = {}) const;
+                          const TextEmbedding& text, const torch::Tensor& condition = {}) const;
 
+    /// True with a second text encoder.
+    bool is_sdxl() const { return !text_encoder_2.is_empty(); }
     int latent_channels() const;
     int condition_channels() const;  ///< in_channels - latent_channels (1: depth)
     int downscale() const;           ///< image pixels a latent cell (4 or 8)
@@ -53,12 +63,17 @@ class Pipeline {
 
     std::shared_ptr<ClipTokenizer> tokenizer;
     ClipTextModel text_encoder{nullptr};
+    std::shared_ptr<ClipTokenizer> tokenizer_2;  ///< of SDXL, as is the encoder
+    ClipTextModel text_encoder_2{nullptr};
+    bool force_zeros_for_empty_prompt = false;
     UNet2DCondition unet{nullptr};
     std::shared_ptr<Autoencoder> vae;
-    DdimScheduler scheduler;
+    NoiseSchedule scheduler;
 
   private:
     void check_fit(const std::filesystem::path& folder) const;
+    void check_text_fit(const std::filesystem::path& folder) const;
+    torch::Tensor sizes_of(const torch::Tensor& latents) const;
 };
 
 /// Parts of a pipeline's folder, each into a sub-folder that must exist; for trainings that write
@@ -77,7 +92,8 @@ torch::Tensor depth_condition(const torch::Tensor& depth, int downscale);
 
 struct GenerateOptions {
     std::string prompt;
-    std::string negative_prompt;
+    std::optional<std::string> negative_prompt;  ///< without one: encode_no_text()
+    std::string scheduler;  ///< a name of sampler_kinds(); empty: the folder's own
     int steps = 30;
     float guidance_scale = 7.5f;
     int width = 0;  ///< pixels, a multiple of downscale(); 0: the U-Net's sample_size
@@ -90,14 +106,15 @@ struct GenerateOptions {
     /// 2022).
     torch::Tensor image;
     double strength = 1;
-    /// 0: DDIM; 1: fresh noise in each step, as DDPM. Small priors draw more detail with it.
+    /// Of scheduler "ddim" alone. 1: fresh noise in each step, as DDPM; small priors draw more
+    /// detail with it.
     double eta = 0;
     bool show_progress = true;
 };
 
-/// DDIM sampling with classifier-free guidance; images [count, H, W, 3] in [0, 1] (sRGB).
-/// condition: [1 or count, c, h, w], see predict_noise. Throws InputError for a size or a number of
-/// steps that the model cannot do, Interrupted after Ctrl-C.
+/// Sampling with classifier-free guidance; images [count, H, W, 3] in [0, 1] (sRGB).
+/// condition: [1 or count, c, h, w], see predict_noise. Throws InputError for a size, a scheduler
+/// or a number of steps that the model cannot do, Interrupted after Ctrl-C.
 torch::Tensor generate(const Pipeline& pipeline, const GenerateOptions& options,
                        const torch::Tensor& condition = {});
 /// The same up to the scaled latents [count, C, h, w], before decoding.

@@ -153,7 +153,7 @@ class Measurement {
         const auto rows = static_cast<std::int64_t>(captions.size());
         const torch::Tensor image = example.image.permute({2, 0, 1}).unsqueeze(0) * 2 - 1;
         const torch::Tensor latents = pipeline_.encode_image(image).expand({rows, -1, -1, -1});
-        const torch::Tensor text = pipeline_.encode_text(captions);
+        const TextEmbedding text = pipeline_.encode_text(captions);
         torch::Tensor condition;
         // With the depth the noun hardly matters: objects are told by the picture alone.
         if (pipeline_.condition_channels() == 1) {

@@ -37,7 +37,7 @@ void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencod
     tokenizer.save(folder / "tokenizer");
     save_autoencoder(folder / "vae", autoencoder);
     write_json(folder / "scheduler" / "scheduler_config.json",
-               DdimConfig::stable_diffusion("v_prediction").to_json());
+               SchedulerConfig::stable_diffusion("v_prediction").to_json());
     write_json(folder / "model_index.json", model_index());
 }
 

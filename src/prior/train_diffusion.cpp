@@ -3,7 +3,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
-#include "item3d/models/ddim.h"
+#include "item3d/models/noise_schedule.h"
 #include "item3d/models/safetensors.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/replicas.h"
@@ -67,7 +67,7 @@ class Shuffle {
 /// v-prediction loss on the pictures of one replica's batch. Everything random depends on
 /// (seed, step, rank) alone.
 torch::Tensor diffusion_loss(Networks& networks, const LatentData& data,
-                             const DdimScheduler& schedule, const std::vector<std::int64_t>& rows,
+                             const NoiseSchedule& schedule, const std::vector<std::int64_t>& rows,
                              std::uint64_t seed, std::int64_t step, int rank) {
     const auto count = static_cast<std::int64_t>(rows.size());
     Random random(seed, 0xd1ff00 + static_cast<std::uint64_t>(rank),
@@ -244,7 +244,7 @@ class Trainer {
     const LatentData& data_;
     TrainSettings settings_;
     nlohmann::json so_far_;
-    DdimScheduler schedule_{DdimConfig::stable_diffusion("v_prediction")};
+    NoiseSchedule schedule_{SchedulerConfig::stable_diffusion("v_prediction")};
     std::vector<Networks> networks_;
     Networks exported_;
     std::unique_ptr<FlatModel> exported_flat_;

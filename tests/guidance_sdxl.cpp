@@ -1,0 +1,79 @@
+#include "item3d/guidance/guidance.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace item3d {
+namespace {
+
+std::shared_ptr<const Pipeline> load_sdxl() {
+    return std::make_shared<Pipeline>(
+        Pipeline::load(std::filesystem::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sdxl"));
+}
+
+GuidanceInput random_pictures(std::uint64_t seed) {
+    torch::manual_seed(seed);
+    GuidanceInput input;
+    input.images = torch::rand({2, 3, 32, 32}).requires_grad_(true);
+    return input;
+}
+
+torch::Tensor find(const NamedTensors& state, const std::string& name) {
+    for (const auto& [key, tensor] : state)
+        if (key == name) return tensor;
+    ADD_FAILURE() << "no " << name;
+    return torch::zeros({1});
+}
+
+}  // namespace
+
+TEST(GuidanceSdxl, every_method_reaches_the_pictures) {
+    const auto pipeline = load_sdxl();
+    for (const auto& [method, adjust] :
+         {std::pair{"rdl", "off"}, std::pair{"rdl", "learned"}, std::pair{"sds", "off"}}) {
+        GuidanceOptions options;
+        options.method = method;
+        options.adjust = adjust;
+        const auto guidance = make_guidance(pipeline, "a red bowl", "a stone statue", options);
+        const GuidanceInput input = random_pictures(1);
+        const GuidanceOutput output = guidance->step(input, 0);
+        output.latents.backward(output.latents_gradient);
+        EXPECT_TRUE(torch::isfinite(input.images.grad()).all().item<bool>()) << method;
+        EXPECT_GT(input.images.grad().abs().max().item<float>(), 0.0f) << method;
+    }
+}
+
+TEST(GuidanceSdxl, the_pooled_part_of_a_prompt_counts) {
+    const auto pipeline = load_sdxl();
+    TextEmbedding text = pipeline->encode_text({"a red bowl"});
+    const torch::Tensor latents = torch::zeros({1, 4, 4, 4}), t = torch::tensor({500});
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor before = pipeline->predict_noise(latents, t, text);
+    text.pooled = text.pooled + 1;
+    EXPECT_FALSE(torch::allclose(pipeline->predict_noise(latents, t, text), before));
+}
+
+TEST(GuidanceSdxl, the_learned_source_moves_both_parts_and_survives_a_checkpoint) {
+    const auto pipeline = load_sdxl();
+    const auto guidance = make_guidance(pipeline, "a red bowl", "a stone statue", {});
+    const TextEmbedding start = pipeline->encode_text({"a red bowl"});
+    const GuidanceInput input = random_pictures(4);
+    const float before = guidance->step(input, 0).adjustment_loss;
+    float after = 0;
+    for (int i = 0; i < 30; ++i)
+        after = guidance->step(input, 0).adjustment_loss;
+    EXPECT_LT(after, before);
+    NamedTensors copy;
+    for (const auto& [name, tensor] : guidance->state())
+        copy.emplace_back(name, tensor.clone());
+    EXPECT_FALSE(torch::allclose(find(copy, "source.embedding"), start.states));
+    EXPECT_FALSE(torch::allclose(find(copy, "source.pooled_embedding"), start.pooled));
+
+    const auto resumed = make_guidance(pipeline, "a red bowl", "a stone statue", {});
+    resumed->load_state(copy);
+    EXPECT_TRUE(torch::equal(guidance->step(input, 1).latents_gradient,
+                             resumed->step(input, 1).latents_gradient));
+}
+
+}  // namespace item3d
