@@ -5,7 +5,7 @@
 #include "item3d/models/autoencoder.h"
 #include "item3d/models/clip_text.h"
 #include "item3d/models/clip_tokenizer.h"
-#include "item3d/models/ddim.h"
+#include "item3d/models/noise_schedule.h"
 #include "item3d/models/safetensors.h"
 #include "item3d/models/unet.h"
 #include "item3d/models/weights.h"
@@ -158,7 +158,7 @@ class Verification {
             return;
         }
         if (part.name == "scheduler") {
-            report_.prediction_type = DdimScheduler::load(folder).config().prediction_type;
+            report_.prediction_type = NoiseSchedule::load(folder).config().prediction_type;
             return;
         }
         if (part.name == "unet") {

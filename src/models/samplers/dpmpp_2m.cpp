@@ -43,9 +43,8 @@ class Dpmpp2m : public Sampler {
         SigmaSteps steps;
         if (config.use_karras_sigmas) {
             steps = karras_steps(training, training.back(), training.front(), count);
-            if (config.beta_schedule != "squaredcos_cap_v2")
-                for (double& timestep : steps.timesteps)
-                    timestep = round_to_even(timestep);
+            for (double& timestep : steps.timesteps)
+                timestep = round_to_even(timestep);
             return steps;
         }
         // The picture itself is the last of one point more, except where the last step is given.
