@@ -198,9 +198,14 @@ TEST(SchedulerConfig, RefusesByKeyWhatItCannotDo) {
     expect_key("PNDMScheduler", "skip_prk_steps", false);
     expect_key("PNDMScheduler", "prediction_type", "sample");
     EXPECT_NE(complaint({{"beta_end", 2}}).find("beta_start"), std::string::npos);
-    const std::string unknown = complaint({{"_class_name", "UniPCMultistepScheduler"}});
+    const std::string unknown = complaint({{"_class_name", "FlowMatchHeunDiscreteScheduler"}});
     EXPECT_NE(unknown.find("_class_name"), std::string::npos) << unknown;
     EXPECT_NE(unknown.find("EulerDiscreteScheduler"), std::string::npos) << unknown;
+
+    // Trained with the same noise as the classes that we sample by.
+    const auto relative = SchedulerConfig::from_json(
+        {{"_class_name", "UniPCMultistepScheduler"}, {"solver_type", "bh2"}});
+    EXPECT_EQ(relative.method, SamplerMethod::dpmpp_2m);
 
     SchedulerConfig zero_snr = SchedulerConfig::stable_diffusion("v_prediction");
     zero_snr.rescale_betas_zero_snr = true;

@@ -9,7 +9,8 @@
 namespace item3d {
 namespace {
 
-/// Classes of diffusers.
+/// Classes of diffusers. The first of a method is its own; others are trained with the same noise,
+/// and sampled by the nearest method that we have.
 const std::vector<std::pair<std::string, SamplerMethod>>& class_names() {
     static const std::vector<std::pair<std::string, SamplerMethod>> names = {
         {"DDIMScheduler", SamplerMethod::ddim},
@@ -17,6 +18,13 @@ const std::vector<std::pair<std::string, SamplerMethod>>& class_names() {
         {"EulerDiscreteScheduler", SamplerMethod::euler},
         {"DPMSolverMultistepScheduler", SamplerMethod::dpmpp_2m},
         {"PNDMScheduler", SamplerMethod::pndm},
+        {"EulerAncestralDiscreteScheduler", SamplerMethod::euler},
+        {"HeunDiscreteScheduler", SamplerMethod::euler},
+        {"KDPM2DiscreteScheduler", SamplerMethod::euler},
+        {"LMSDiscreteScheduler", SamplerMethod::euler},
+        {"DEISMultistepScheduler", SamplerMethod::dpmpp_2m},
+        {"DPMSolverSinglestepScheduler", SamplerMethod::dpmpp_2m},
+        {"UniPCMultistepScheduler", SamplerMethod::dpmpp_2m},
     };
     return names;
 }
@@ -95,7 +103,11 @@ SchedulerConfig SchedulerConfig::from_json(const nlohmann::json& json, const std
 SchedulerConfig SchedulerConfig::from_config(const Config& config) {
     SchedulerConfig result;
     result.method = read_method(config);
-    refuse_variants(config, result.method);
+    if (config.text("_class_name", class_name(result.method)) == class_name(result.method))
+        refuse_variants(config, result.method);
+    else
+        note(fmt::format("{} is not one of ours: pictures are sampled by {}",
+                         config.text("_class_name", ""), class_name(result.method)));
     const bool ddim = result.method == SamplerMethod::ddim;
     result.num_train_timesteps = config.size("num_train_timesteps", result.num_train_timesteps);
     if (result.num_train_timesteps > 100'000) config.fail("num_train_timesteps", "at most 100000");
