@@ -1,4 +1,4 @@
-#include "item3d/models/unet.h"
+#include "item3d/models/unet_config.h"
 
 #include <cmath>
 
@@ -52,6 +52,58 @@ void check_unsupported(const Config& config) {
 
 }  // namespace
 
+void UNetEncoderConfig::read(const Config& config) {
+    check_unsupported(config);
+    in_channels = config.size("in_channels", 4);
+    block_out_channels = config.sizes("block_out_channels", block_out_channels);
+    const std::size_t count = block_out_channels.size();
+    if (count > 8) config.fail("block_out_channels", "at most 8 blocks");
+    down_block_types = config.texts("down_block_types", down_block_types);
+    check_block_types(config, "down_block_types", down_block_types, "DownBlock2D",
+                      "CrossAttnDownBlock2D", count);
+    layers_per_block = config.sizes("layers_per_block", {2}, count);
+    transformer_layers_per_block = config.sizes("transformer_layers_per_block", {1}, count);
+    cross_attention_dim = config.sizes("cross_attention_dim", {1280}, count);
+    // diffusers falls back from num_attention_heads to attention_head_dim, a misnomer that
+    // published configs rely on.
+    const char* heads =
+        config.has("num_attention_heads") ? "num_attention_heads" : "attention_head_dim";
+    attention_head_dim = config.sizes(heads, {8}, count);
+    norm_num_groups = config.size("norm_num_groups", 32);
+    norm_eps = config.number("norm_eps", 1e-5);
+    use_linear_projection = config.boolean("use_linear_projection", false);
+    flip_sin_to_cos = config.boolean("flip_sin_to_cos", true);
+    freq_shift = config.number("freq_shift", 0);
+    downsample_padding = config.integer("downsample_padding", 1);
+    if (downsample_padding != 0 && downsample_padding != 1)
+        config.fail("downsample_padding", "0 or 1");
+    mid_block_scale_factor = config.number("mid_block_scale_factor", 1);
+    addition_embed_type = config.text("addition_embed_type", "");
+    if (addition_embed_type == "text_time") {
+        addition_time_embed_dim = config.size("addition_time_embed_dim", 0);
+        projection_class_embeddings_input_dim =
+            config.size("projection_class_embeddings_input_dim", 0);
+    } else if (!addition_embed_type.empty()) {
+        config.fail("addition_embed_type", "null or \"text_time\"");
+    }
+
+    for (std::size_t i = 0; i < count; ++i) {
+        const int channels = block_out_channels[i];
+        if (channels > 16384) config.fail("block_out_channels", "at most 16384 channels");
+        if (layers_per_block[i] > 16) config.fail("layers_per_block", "at most 16");
+        if (transformer_layers_per_block[i] > 64)
+            config.fail("transformer_layers_per_block", "at most 64");
+        if (channels % norm_num_groups != 0)
+            config.fail("norm_num_groups", "a divisor of every block's channels");
+        if (channels % attention_head_dim[i] != 0)
+            config.fail(heads, "divisors of the blocks' channels (they are numbers of heads)");
+    }
+    if (block_out_channels[0] % 2 != 0)
+        config.fail("block_out_channels", "an even first entry (it is the time embedding's width)");
+    if (count > 1 && freq_shift >= block_out_channels[0] / 2)
+        config.fail("freq_shift", "less than half of the first block's channels");
+}
+
 UNet2DConditionConfig UNet2DConditionConfig::from_json(const nlohmann::json& json,
                                                        const std::string& subject) {
     return from_config(Config(json, subject));
@@ -60,64 +112,15 @@ UNet2DConditionConfig UNet2DConditionConfig::from_json(const nlohmann::json& jso
 UNet2DConditionConfig UNet2DConditionConfig::from_config(const Config& config) {
     if (config.text("_class_name", "UNet2DConditionModel") != "UNet2DConditionModel")
         config.fail("_class_name", "UNet2DConditionModel");
-    check_unsupported(config);
-
     UNet2DConditionConfig result;
+    result.read(config);
     if (config.has("sample_size"))  // [height, width] or one number
         result.sample_size = config.sizes("sample_size", {64})[0];
-    result.in_channels = config.size("in_channels", 4);
     result.out_channels = config.size("out_channels", 4);
-    result.block_out_channels = config.sizes("block_out_channels", result.block_out_channels);
-    const std::size_t count = result.block_out_channels.size();
-    if (count > 8) config.fail("block_out_channels", "at most 8 blocks");
-    result.down_block_types = config.texts("down_block_types", result.down_block_types);
     result.up_block_types = config.texts("up_block_types", result.up_block_types);
-    check_block_types(config, "down_block_types", result.down_block_types, "DownBlock2D",
-                      "CrossAttnDownBlock2D", count);
     check_block_types(config, "up_block_types", result.up_block_types, "UpBlock2D",
-                      "CrossAttnUpBlock2D", count);
-    result.layers_per_block = config.sizes("layers_per_block", {2}, count);
-    result.transformer_layers_per_block = config.sizes("transformer_layers_per_block", {1}, count);
-    result.cross_attention_dim = config.sizes("cross_attention_dim", {1280}, count);
-    // diffusers falls back from num_attention_heads to attention_head_dim, a misnomer that
-    // published configs rely on.
-    const char* heads =
-        config.has("num_attention_heads") ? "num_attention_heads" : "attention_head_dim";
-    result.attention_head_dim = config.sizes(heads, {8}, count);
-    result.norm_num_groups = config.size("norm_num_groups", 32);
-    result.norm_eps = config.number("norm_eps", 1e-5);
-    result.use_linear_projection = config.boolean("use_linear_projection", false);
-    result.flip_sin_to_cos = config.boolean("flip_sin_to_cos", true);
-    result.freq_shift = config.number("freq_shift", 0);
+                      "CrossAttnUpBlock2D", result.block_out_channels.size());
     result.center_input_sample = config.boolean("center_input_sample", false);
-    result.downsample_padding = config.integer("downsample_padding", 1);
-    if (result.downsample_padding != 0 && result.downsample_padding != 1)
-        config.fail("downsample_padding", "0 or 1");
-    result.mid_block_scale_factor = config.number("mid_block_scale_factor", 1);
-    result.addition_embed_type = config.text("addition_embed_type", "");
-    if (result.addition_embed_type == "text_time") {
-        result.addition_time_embed_dim = config.size("addition_time_embed_dim", 0);
-        result.projection_class_embeddings_input_dim =
-            config.size("projection_class_embeddings_input_dim", 0);
-    } else if (!result.addition_embed_type.empty()) {
-        config.fail("addition_embed_type", "null or \"text_time\"");
-    }
-
-    for (std::size_t i = 0; i < count; ++i) {
-        const int channels = result.block_out_channels[i];
-        if (channels > 16384) config.fail("block_out_channels", "at most 16384 channels");
-        if (result.layers_per_block[i] > 16) config.fail("layers_per_block", "at most 16");
-        if (result.transformer_layers_per_block[i] > 64)
-            config.fail("transformer_layers_per_block", "at most 64");
-        if (channels % result.norm_num_groups != 0)
-            config.fail("norm_num_groups", "a divisor of every block's channels");
-        if (channels % result.attention_head_dim[i] != 0)
-            config.fail(heads, "divisors of the blocks' channels (they are numbers of heads)");
-    }
-    if (result.block_out_channels[0] % 2 != 0)
-        config.fail("block_out_channels", "an even first entry (it is the time embedding's width)");
-    if (count > 1 && result.freq_shift >= result.block_out_channels[0] / 2)
-        config.fail("freq_shift", "less than half of the first block's channels");
     return result;
 }
 
@@ -156,7 +159,7 @@ nlohmann::json UNet2DConditionConfig::to_json() const {
     return json;
 }
 
-double UNet2DConditionConfig::least_parameters() const {
+double UNetEncoderConfig::least_parameters() const {
     double total = 0;
     for (int i = 0; i < blocks(); ++i) {
         const double channels = block_out_channels[i];
