@@ -1,6 +1,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
+#include "item3d/models/depth_condition.h"
 #include "item3d/models/pipeline.h"
 #include "models_testing.h"
 

@@ -52,6 +52,10 @@ void check(Case& golden) {
             return check_pipeline(golden);
         reject(folder / "model_index.json", name);
     }
+    if (fs::exists(folder / "controlnet" / "config.json")) {
+        golden.set_class("ControlNetModel");
+        return check_controlnet(golden);
+    }
     if (golden.has_meta()) {
         const Config meta = golden.meta();
         if (meta.has("kinds") && meta.has("configs")) {
@@ -61,6 +65,14 @@ void check(Case& golden) {
         if (meta.has("pipeline") && golden.has("out.noisy_latents")) {
             golden.set_class("relative direction");
             return check_relative_direction(golden);
+        }
+        if (meta.has("files") && meta.has("lora_scales")) {
+            golden.set_class("LoRA");
+            return check_lora(golden);
+        }
+        if (meta.has("files") && meta.has("pipeline")) {
+            golden.set_class("textual inversion");
+            return check_textual_inversion(golden);
         }
         if (meta.has("texts") && has_tokenizer(folder)) {
             golden.set_class("CLIPTokenizer");

@@ -79,5 +79,8 @@ void check_clip_tokenizer(Case& golden);
 void check_pipeline(Case& golden);
 void check_schedulers(Case& golden);
 void check_relative_direction(Case& golden);
+void check_controlnet(Case& golden);
+void check_lora(Case& golden);
+void check_textual_inversion(Case& golden);
 
 }  // namespace item3d::parity

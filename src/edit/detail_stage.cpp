@@ -4,6 +4,7 @@
 #include "item3d/edit/optimize.h"
 #include "item3d/edit/render_view.h"
 #include "item3d/edit/safekeeping.h"
+#include "item3d/models/depth_condition.h"
 
 #include <torch/nn/functional/pooling.h>
 
@@ -50,6 +51,7 @@ torch::Tensor wanted_picture(const EditScene& scene, const EditSettings& setting
     const torch::Tensor latents = prior.encode_image(view.images * 2 - 1);
     GenerateOptions options;
     options.prompt = settings.to;
+    options.negative_prompt = settings.negative_prompt;
     options.steps = sampling_steps;
     options.guidance_scale = guidance_scale;
     options.image = latents;
@@ -59,10 +61,7 @@ torch::Tensor wanted_picture(const EditScene& scene, const EditSettings& setting
     options.eta = 1;
     options.seed = mix_bits(settings.seed) + static_cast<std::uint64_t>(index);
     options.show_progress = false;
-    torch::Tensor depth;
-    if (prior.condition_channels() == 1) {
-        depth = depth_condition(view.depth, static_cast<int>(view.depth.size(1) / latents.size(2)));
-    }
+    const torch::Tensor depth = condition_of_depth(prior, view.depth, latents);
     const torch::Tensor sampled = generate_latents(prior, options, depth);
     // The difference of two decoded pictures: what the autoencoder loses cancels out.
     const torch::Tensor change = (prior.decode_image(sampled) - prior.decode_image(latents)) / 2;

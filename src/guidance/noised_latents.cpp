@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
+#include "item3d/models/depth_condition.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 
@@ -74,13 +75,7 @@ NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input
     result.weight = timestep_weight(options.weighting, result.alphas_cumprod);
     result.noisy = result.alphas_cumprod.sqrt() * result.latents.detach() +
                    (1 - result.alphas_cumprod).sqrt() * result.noise;
-    if (pipeline.condition_channels() == 1) {
-        ITEM3D_CHECK(input.depth.defined(), "this prior's U-Net takes depth, and none was given");
-        // Depth may be finer than the pictures (drawn at twice their size and averaged).
-        const std::int64_t cells = result.latents.size(2);
-        result.condition =
-            depth_condition(input.depth, static_cast<int>(input.depth.size(1) / cells)).to(device);
-    }
+    result.condition = condition_of_depth(pipeline, input.depth, result.latents);
     return result;
 }
 

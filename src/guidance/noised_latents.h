@@ -12,7 +12,7 @@ struct NoisedLatents {
     torch::Tensor timesteps;       ///< [N] int64
     torch::Tensor alphas_cumprod;  ///< [N, 1, 1, 1] abar_t
     torch::Tensor weight;          ///< [N, 1, 1, 1] omega(t)
-    torch::Tensor condition;       ///< [N, 1, h, w] depth, or undefined
+    torch::Tensor condition;       ///< of Pipeline::predict_noise; undefined: none
     double seconds_encode = 0;
 };
 

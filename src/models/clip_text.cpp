@@ -118,6 +118,21 @@ torch::Tensor ClipTextModelImpl::skip_layers(const ClipTextOutput& output, int s
     return final_layer_norm_(output.hidden_states[output.hidden_states.size() - 1 - skip]);
 }
 
+void ClipTextModelImpl::set_token_embeddings(std::int64_t first_id, const torch::Tensor& rows) {
+    const torch::Tensor& table = token_embedding_->weight;
+    ITEM3D_CHECK(rows.dim() == 2 && rows.size(1) == table.size(1) && first_id >= 0,
+                 "rows must be [count, hidden_size]");
+    const torch::NoGradGuard no_grad;
+    const std::int64_t end = first_id + rows.size(0);
+    torch::Tensor larger = torch::zeros({std::max(end, table.size(0)), table.size(1)},
+                                        table.options().requires_grad(false));
+    larger.slice(0, 0, table.size(0)).copy_(table);
+    larger.slice(0, first_id, end).copy_(rows);
+    token_embedding_->weight.set_data(larger);
+    token_embedding_->options.num_embeddings(larger.size(0));
+    config_.vocab_size = static_cast<int>(larger.size(0));
+}
+
 ClipTextConfig ClipTextConfig::from_json(const nlohmann::json& json, const std::string& subject) {
     return from_config(Config(json, subject));
 }

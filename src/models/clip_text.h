@@ -59,6 +59,10 @@ class ClipTextModelImpl : public torch::nn::Module {
     /// What diffusers gives for clip_skip = `skip` (0: the last hidden state).
     torch::Tensor skip_layers(const ClipTextOutput& output, int skip);
 
+    /// Sets the embeddings of the tokens from `first_id` on, [count, hidden_size]; the table grows
+    /// where it ends before.
+    void set_token_embeddings(std::int64_t first_id, const torch::Tensor& rows);
+
     const ClipTextConfig& config() const { return config_; }
 
   private:

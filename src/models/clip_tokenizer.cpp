@@ -195,7 +195,12 @@ void ClipTokenizer::save(const std::filesystem::path& folder) const {
 
 std::vector<int> ClipTokenizer::encode(const std::string& text) const {
     std::vector<int> ids{bos_id()};
-    const auto special = [&](int id) { ids.push_back(id); };
+    const auto special = [&](int id) {
+        const auto found = placeholder_lengths_.find(id);
+        const int count = found == placeholder_lengths_.end() ? 1 : found->second;
+        for (int i = 0; i < count; ++i)
+            ids.push_back(id + i);
+    };
     cut_at_specials(
         text, raw_specials_,
         [&](const std::string& piece) {
@@ -231,6 +236,35 @@ torch::Tensor ClipTokenizer::encode_batch(const std::vector<std::string>& texts,
             rows[i][j] = ids[j];
     }
     return result;
+}
+
+int ClipTokenizer::add_placeholder(const std::string& token, int count,
+                                   const std::string& subject) {
+    ITEM3D_CHECK(count >= 1, "a placeholder stands for one id at least");
+    if (strip_white_space(token).empty())
+        throw InputError(subject, "its token is blank", "give it one, as FILE:TOKEN");
+    std::vector<std::string> names{token};
+    for (int i = 1; i < count; ++i)
+        names.push_back(fmt::format("{}_{}", token, i));
+    const auto is_taken = [&](const std::string& name) {
+        const std::string normalized = normalize_for_clip(name);
+        return id_of_.count(name) > 0 ||
+               std::any_of(normalized_specials_.begin(), normalized_specials_.end(),
+                           [&](const auto& special) { return special.first == normalized; });
+    };
+    for (const std::string& name : names)
+        if (is_taken(name))
+            throw InputError(subject, fmt::format("the tokenizer has a token '{}' already", name),
+                             "give it another, as FILE:TOKEN");
+    const int first = largest_id_ + 1;
+    for (const std::string& name : names) {
+        ++largest_id_;
+        id_of_[name] = largest_id_;
+        token_of_[largest_id_] = name;
+        normalized_specials_.emplace_back(normalize_for_clip(name), largest_id_);
+    }
+    placeholder_lengths_[first] = count;
+    return first;
 }
 
 std::vector<std::string> ClipTokenizer::split_words(const std::string& text) {

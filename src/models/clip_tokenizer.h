@@ -58,6 +58,12 @@ class ClipTokenizer {
     /// Lower-cased text with one space between tokens' words.
     std::string decode(const std::vector<int>& ids, bool skip_special_tokens = true) const;
 
+    /// Adds a token for learned vectors, found in the lower-cased text before BPE. It stands for
+    /// `count` new ids, TOKEN_1, TOKEN_2, ... for the second, third, ... of them alone (as
+    /// diffusers names them). Returns the first id. Throws InputError (naming `subject`) where the
+    /// token is blank or there already.
+    int add_placeholder(const std::string& token, int count, const std::string& subject);
+
     /// The pieces that BPE works on: normalised words, numbers, runs of punctuation.
     static std::vector<std::string> split_words(const std::string& text);
 
@@ -86,6 +92,8 @@ class ClipTokenizer {
     std::unordered_map<int, std::string> token_of_;
     std::unordered_map<std::uint64_t, Merge> merges_;  ///< by both ids
     std::vector<std::pair<std::string, int>> raw_specials_, normalized_specials_;
+    std::unordered_map<int, int>
+        placeholder_lengths_;  ///< ids that stand for several, by the first
     int largest_id_ = 0;
 };
 

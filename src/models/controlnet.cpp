@@ -54,8 +54,8 @@ class ControlNetImpl::PictureEmbedding : public nn::Module {
             append(blocks, blocks_, conv3x3(channels[i], channels[i + 1], 2));
         }
         register_module("blocks", blocks);
-        conv_out_ = register_module("conv_out",
-                                    conv3x3(channels.back(), config.block_out_channels[0]));
+        conv_out_ =
+            register_module("conv_out", conv3x3(channels.back(), config.block_out_channels[0]));
     }
     torch::Tensor forward(const torch::Tensor& picture) {
         torch::Tensor x = torch::silu(conv_in_(picture));
@@ -71,8 +71,8 @@ class ControlNetImpl::PictureEmbedding : public nn::Module {
 
 ControlNetImpl::ControlNetImpl(const ControlNetConfig& config)
     : UNetEncoderImpl(config), config_(config) {
-    picture_embedding_ = register_module("controlnet_cond_embedding",
-                                         std::make_shared<PictureEmbedding>(config_));
+    picture_embedding_ =
+        register_module("controlnet_cond_embedding", std::make_shared<PictureEmbedding>(config_));
     make_outputs();
 }
 

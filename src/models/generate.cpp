@@ -1,4 +1,4 @@
-// Pictures from a prompt: depth_condition() and generate() of pipeline.h.
+// Pictures from a prompt: generate() of pipeline.h.
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace item3d {
@@ -110,20 +109,6 @@ class GuidedNetwork {
 };
 
 }  // namespace
-
-torch::Tensor depth_condition(const torch::Tensor& depth, int downscale) {
-    ITEM3D_CHECK(depth.dim() == 3, "depth must be [N, H, W]");
-    const torch::NoGradGuard no_grad;
-    const float infinity = std::numeric_limits<float>::infinity();
-    const torch::Tensor covered = depth > 0;
-    const torch::Tensor disparity = torch::where(covered, 1 / depth.clamp_min(1e-6), 0.0);
-    const torch::Tensor near = disparity.amax({1, 2}, true);
-    const torch::Tensor far =
-        disparity.masked_fill(covered.logical_not(), infinity).amin({1, 2}, true);
-    const torch::Tensor relative = (disparity - far) / (near - far).clamp_min(1e-6);
-    const torch::Tensor image = torch::where(covered, 0.2 + 0.8 * relative, -1.0);
-    return torch::avg_pool2d(image.unsqueeze(1), downscale, downscale, 0, /*ceil_mode=*/true);
-}
 
 torch::Tensor generate_latents(const Pipeline& pipeline, const GenerateOptions& options,
                                const torch::Tensor& condition) {

@@ -13,13 +13,6 @@ namespace fs = std::filesystem;
 /// Original height and width, top and left of the crop, target height and width.
 constexpr int picture_sizes = 6;
 
-/// Convolution weights in the order that convolutions on channels-last maps want.
-void use_channels_last(torch::nn::Module& module) {
-    for (torch::Tensor& parameter : module.parameters())
-        if (parameter.dim() == 4)
-            parameter.set_data(parameter.contiguous(torch::MemoryFormat::ChannelsLast));
-}
-
 /// False where model_index.json leaves a part out or says [null, null].
 bool names_part(const Config& index, const std::string& part) {
     if (!index.has(part)) return false;
@@ -73,6 +66,12 @@ void write_json(const fs::path& path, const nlohmann::json& json) {
 }
 
 }  // namespace
+
+void use_channels_last(torch::nn::Module& module) {
+    for (torch::Tensor& parameter : module.parameters())
+        if (parameter.dim() == 4)
+            parameter.set_data(parameter.contiguous(torch::MemoryFormat::ChannelsLast));
+}
 
 Pipeline Pipeline::load(const fs::path& folder, torch::Device device, torch::Dtype dtype) {
     if (!fs::is_directory(folder))
@@ -243,6 +242,13 @@ torch::Tensor Pipeline::predict(const torch::Tensor& noisy_latents, const torch:
                                 const TextEmbedding& text, const torch::Tensor& condition) const {
     const auto rows = noisy_latents.size(0);
     torch::Tensor sample = noisy_latents;
+    const TextEmbedding each = text.expand(rows);
+    UNetResiduals residuals;
+    if (!controlnet.is_empty() && condition.defined()) {
+        ControlNet network = controlnet;
+        residuals = network(sample, timesteps, each.states, condition.expand({rows, -1, -1, -1}),
+                            controlnet_scale);
+    }
     if (const int channels = condition_channels()) {
         torch::Tensor extra = condition;
         if (!extra.defined())
@@ -252,12 +258,11 @@ torch::Tensor Pipeline::predict(const torch::Tensor& noisy_latents, const torch:
                      "the condition must be on the latents' grid");
         sample = torch::cat({sample, extra.to(sample.options()).expand({rows, -1, -1, -1})}, 1);
     }
-    const TextEmbedding each = text.expand(rows);
     AddedCondition added;
     if (is_sdxl()) added = {each.pooled, sizes_of(noisy_latents)};
     UNet2DCondition network = unet;
     return network(sample.contiguous(torch::MemoryFormat::ChannelsLast), timesteps, each.states,
-                   added)
+                   added, residuals)
         .to(torch::kFloat32);
 }
 

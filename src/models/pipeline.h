@@ -4,6 +4,7 @@
 #include "item3d/models/autoencoder.h"
 #include "item3d/models/clip_text.h"
 #include "item3d/models/clip_tokenizer.h"
+#include "item3d/models/controlnet.h"
 #include "item3d/models/noise_schedule.h"
 #include "item3d/models/text_embedding.h"
 #include "item3d/models/unet.h"
@@ -45,7 +46,8 @@ class Pipeline {
     /// channels [N, c, h, w] (or one row for all), concatenated to the latents where the U-Net
     /// takes them; left out, they are zero, which the embedded prior knows as "no depth". text: N
     /// rows or one for all. SDXL is told that the picture is neither scaled nor cropped.
-    /// Differentiable in whatever asks for it.
+    /// Differentiable in whatever asks for it. With a ControlNet, `condition` is its picture [N, 3,
+    /// H, W]; left out, the ControlNet is not asked.
     torch::Tensor predict_noise(const torch::Tensor& noisy_latents, const torch::Tensor& timesteps,
                                 const TextEmbedding& text,
                                 const torch::Tensor& condition = {}) const;
@@ -69,12 +71,17 @@ class Pipeline {
     UNet2DCondition unet{nullptr};
     std::shared_ptr<Autoencoder> vae;
     NoiseSchedule scheduler;
+    ControlNet controlnet{nullptr};  ///< may be empty; see models/pipeline_extras.h
+    double controlnet_scale = 1;
 
   private:
     void check_fit(const std::filesystem::path& folder) const;
     void check_text_fit(const std::filesystem::path& folder) const;
     torch::Tensor sizes_of(const torch::Tensor& latents) const;
 };
+
+/// Puts convolution weights in the order that convolutions on channels-last maps want.
+void use_channels_last(torch::nn::Module& module);
 
 /// Parts of a pipeline's folder, each into a sub-folder that must exist; for trainings that write
 /// one part after another. Weights are written as `dtype`.
@@ -84,11 +91,6 @@ void save_autoencoder(const std::filesystem::path& folder, const Autoencoder& au
                       torch::Dtype dtype = torch::kFloat16);
 void save_clip_text(const std::filesystem::path& folder, const ClipTextModel& model,
                     torch::Dtype dtype = torch::kFloat16);
-
-/// Depth as the U-Net's fifth channel wants it: z-depth [N, H, W] (0: nothing there) -> [N, 1, h,
-/// w] on the latents' grid: disparity scaled an image to 0.2 (far) .. 1 (near), background -1,
-/// averaged over each latent cell.
-torch::Tensor depth_condition(const torch::Tensor& depth, int downscale);
 
 struct GenerateOptions {
     std::string prompt;

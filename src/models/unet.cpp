@@ -29,9 +29,9 @@ void UNet2DConditionImpl::make_up_blocks() {
         UNetLevel level;
         for (int j = 0; j < layers; ++j) {
             const int skip = j + 1 == layers ? below : out;
-            level.resnets.push_back(ResnetBlock(
-                ResnetBlockImpl::Options{channels + skip, out, config_.time_channels(),
-                                         config_.norm_num_groups, config_.norm_eps}));
+            level.resnets.push_back(
+                ResnetBlock(ResnetBlockImpl::Options{channels + skip, out, config_.time_channels(),
+                                                     config_.norm_num_groups, config_.norm_eps}));
             if (config_.up_block_types[i] == "CrossAttnUpBlock2D")
                 level.attentions.push_back(SpatialTransformer(SpatialTransformerImpl::Options{
                     out, config_.cross_attention_dim[mirrored],

@@ -72,9 +72,8 @@ void UNetEncoderImpl::make_down_blocks() {
         const int out = config.block_out_channels[i];
         UNetLevel level;
         for (int j = 0; j < config.layers_per_block[i]; ++j) {
-            level.resnets.push_back(ResnetBlock(
-                ResnetBlockImpl::Options{channels, out, config.time_channels(),
-                                         config.norm_num_groups, config.norm_eps}));
+            level.resnets.push_back(ResnetBlock(ResnetBlockImpl::Options{
+                channels, out, config.time_channels(), config.norm_num_groups, config.norm_eps}));
             if (config.down_block_types[i] == "CrossAttnDownBlock2D")
                 level.attentions.push_back(SpatialTransformer(SpatialTransformerImpl::Options{
                     out, config.cross_attention_dim[i], config.attention_head_dim[i],
@@ -92,9 +91,12 @@ void UNetEncoderImpl::make_down_blocks() {
 void UNetEncoderImpl::make_mid_block() {
     const UNetEncoderConfig& config = encoder_config_;
     const int channels = config.block_out_channels.back();
-    const ResnetBlockImpl::Options resnet{channels,        channels,
-                                          config.time_channels(), config.norm_num_groups,
-                                          config.norm_eps, config.mid_block_scale_factor};
+    const ResnetBlockImpl::Options resnet{channels,
+                                          channels,
+                                          config.time_channels(),
+                                          config.norm_num_groups,
+                                          config.norm_eps,
+                                          config.mid_block_scale_factor};
     mid_.resnets = {ResnetBlock(resnet), ResnetBlock(resnet)};
     mid_.attentions = {SpatialTransformer(SpatialTransformerImpl::Options{
         channels, config.cross_attention_dim.back(), config.attention_head_dim.back(),

@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/models/pipeline.h"
+#include "item3d/models/depth_condition.h"
 #include "item3d/prior/polygonize.h"
 #include "item3d/prior/shapes.h"
 #include "item3d/prior/workers.h"

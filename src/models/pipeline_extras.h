@@ -1,0 +1,29 @@
+// What a user may add to a pipeline that is loaded: LoRA, learned tokens, a ControlNet, another
+// autoencoder.
+#pragma once
+
+#include "item3d/models/pipeline.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+struct PipelineExtras {
+    std::vector<std::string> lora;       ///< FILE or FILE:SCALE
+    std::vector<std::string> embedding;  ///< FILE or FILE:TOKEN
+    std::string controlnet;              ///< folder of a depth ControlNet; "": none
+    float controlnet_scale = 1;          ///< of its residuals
+    std::string vae;                     ///< folder of another autoencoder; "": the pipeline's own
+};
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PipelineExtras, lora, embedding, controlnet,
+                                                controlnet_scale, vae)
+
+/// Changes the pipeline's networks, in the types that they have. Throws InputError that names the
+/// file or option for what cannot be read or does not fit this pipeline.
+void apply_extras(Pipeline& pipeline, const PipelineExtras& extras);
+
+}  // namespace item3d
