@@ -133,6 +133,22 @@ TEST_F(EditProgram, WhatItCannotUseIsThreeAndNothingIsLeft) {
     EXPECT_FALSE(fs::exists(folder_ / "out" / "model.glb"));
 }
 
+TEST_F(EditProgram, WhatIsAddedToThePriorIsNamedWhereItCannotBeUsed) {
+    expect_error(edit(to("out") + " --lora /nowhere.safetensors:0.5"), 3, "/nowhere.safetensors");
+    std::ofstream(folder_ / "word.pt") << "PK";
+    expect_error(edit(to("out") + " --embedding " + quoted(folder_ / "word.pt")), 3, "pickle");
+    expect_error(edit(to("out") + " --controlnet '" ITEM3D_TEST_DATA "/models/vae_tiny'"), 3,
+                 "ControlNetModel");
+    const std::string draw = "generate 'a duck' --steps 1 --size 32 -o " +
+                             quoted(folder_ / "p.png") + " --prior '" + prior() +
+                             "' --controlnet '" ITEM3D_TEST_DATA "/models/controlnet_depth'";
+    expect_error(draw, 3, "--like");
+    const Result drawn = run(draw + " --vae '" ITEM3D_TEST_DATA "/models/vae_tiny' --like " +
+                             quoted(cube_) + " --json");
+    EXPECT_EQ(drawn.code, 0) << drawn.error;
+    EXPECT_NE(drawn.out.find("vae_tiny"), std::string::npos) << drawn.out;
+}
+
 TEST_F(EditProgram, BrokenPriorsAreThreeAndNamed) {
     expect_error(edit(to("out"), "/nowhere/prior"), 3, "/nowhere/prior");
 

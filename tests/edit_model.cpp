@@ -197,6 +197,42 @@ TEST_F(EditTest, a_checkpoint_of_other_settings_is_refused) {
     EXPECT_THROW(edit_model(edit), InputError);
 }
 
+TEST_F(EditTest, what_is_added_to_the_prior_changes_the_edit_and_is_kept_in_mind) {
+    const std::string lora = (folder_ / "style.safetensors").string();
+    const std::string layer = "lora_unet_mid_block_attentions_0_proj_in";
+    save_safetensors(lora, {{layer + ".lora_down.weight", torch::ones({1, 16})},
+                            {layer + ".lora_up.weight", torch::ones({16, 1})}});
+    const fs::path models = fs::path(ITEM3D_TEST_DATA) / "models";
+    EditRequest edit = request("out", 2);
+    edit.settings.detail = "always";
+    edit.settings.detail_views = 1;
+    edit_model(edit);
+    const Bytes plain = read_bytes(edit.output / "model.glb");
+
+    edit.settings.lora = {lora + ":0.5"};
+    edit.settings.embedding = {(models / "textual_inversion/learned_embeds.safetensors").string()};
+    edit.settings.controlnet = (models / "controlnet_depth").string();
+    edit.settings.vae = (models / "vae_tiny").string();
+    edit.settings.to = "a <cat-toy> cube";
+    edit.settings.negative_prompt = "grey";
+    const nlohmann::json summary = edit_model(edit);
+    EXPECT_NE(plain, read_bytes(edit.output / "model.glb"));
+    EXPECT_EQ(summary["settings"]["lora"], nlohmann::json::array({lora + ":0.5"}));
+    EXPECT_EQ(summary["settings"]["controlnet_scale"], 1);
+
+    edit.resume = true;
+    edit_model(edit);
+    EditRequest other = edit;
+    other.settings.lora = {lora};
+    EXPECT_THROW(edit_model(other), InputError);
+    other = edit;
+    other.settings.controlnet_scale = 0.5f;
+    EXPECT_THROW(edit_model(other), InputError);
+    other = edit;
+    other.settings.vae.clear();
+    EXPECT_THROW(edit_model(other), InputError);
+}
+
 TEST_F(EditTest, a_broken_checkpoint_is_refused) {
     EditRequest edit = request("out", 2);
     fs::create_directories(edit.output);

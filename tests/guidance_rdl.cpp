@@ -101,6 +101,32 @@ TEST(Guidance, the_same_two_prompts_have_no_direction) {
     EXPECT_LT(guidance->step(random_input(1), 0).latents_gradient.abs().max().item<float>(), 1e-4f);
 }
 
+TEST(Guidance, a_negative_prompt_takes_the_empty_ones_place_in_sds_and_cancels_in_rdl) {
+    const auto pipeline = load_pipeline();
+    const GuidanceInput input = random_input(3);
+    const auto gradient = [&](const std::string& method, const std::string& negative) {
+        GuidanceOptions options;
+        options.method = method;
+        options.negative_prompt = negative;
+        return make_guidance(pipeline, "a toy duck", "a Mallard", options)
+            ->step(input, 4)
+            .latents_gradient;
+    };
+    EXPECT_TRUE(gradient("rdl", "grey").equal(gradient("rdl", "")));
+
+    const NoisedLatents start = noise_latents(*pipeline, input, {}, 4);
+    const auto predict = [&](const std::string& prompt) {
+        return pipeline->predict_noise(start.noisy, start.timesteps,
+                                       pipeline->encode_text({prompt}));
+    };
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor base = predict("grey");
+    const torch::Tensor wanted =
+        start.weight * (base + 7.5f * (predict("a Mallard") - base) - start.noise);
+    EXPECT_LT(relative_error(gradient("sds", "grey"), wanted), 1e-4);
+    EXPECT_GT(relative_error(gradient("sds", ""), wanted), 1e-3);
+}
+
 TEST(Guidance, latents_carry_gradients_to_the_images) {
     const auto guidance = make_guidance(load_pipeline(), "a red mug", "a blue mug", {});
     const GuidanceInput input = random_input(2);

@@ -24,7 +24,7 @@ TEST(ControlNet, ReproducesTheReference) {
                        golden.in("encoder_hidden_states"), golden.in("controlnet_cond"), scale);
     };
     const UNetResiduals whole = residuals(1);
-    ASSERT_EQ(whole.down.size(), 6);
+    ASSERT_EQ(whole.down.size(), 6u);
     for (std::size_t i = 0; i < whole.down.size(); ++i)
         golden.expect("down_" + std::to_string(i), whole.down[i], 5e-5);
     golden.expect("mid", whole.mid, 5e-5);

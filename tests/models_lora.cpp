@@ -101,10 +101,10 @@ TEST(Lora, KnowsTheOriginalNamesOfStableDiffusion) {
         {"up_blocks_3_attentions_2_proj_in", "up_blocks.3.attentions.2.proj_in"},
     };
     for (const auto& [name, module] : known) {
-        ASSERT_EQ(names.count(name), 1) << name;
+        ASSERT_EQ(names.count(name), 1u) << name;
         EXPECT_EQ(names.at(name), module);
     }
-    EXPECT_EQ(names.count("conv_norm_out"), 0);  // a vector, not a matrix
+    EXPECT_EQ(names.count("conv_norm_out"), 0u);  // a vector, not a matrix
 }
 
 TEST(Lora, SeveralFilesAddUpInFloat32BeforeTheCast) {

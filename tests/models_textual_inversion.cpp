@@ -58,7 +58,7 @@ TEST(TextualInversion, TeachesBothEncodersOfAPair) {
         const torch::Tensor table = parameters["embeddings.token_embedding.weight"];
         const int id = pipeline->tokenizer->encode("style")[1];
         EXPECT_TRUE(table[id].eq(pipeline == &first ? 0.5 : -0.5).all().item<bool>());
-        EXPECT_EQ(pipeline->tokenizer->encode("a style").size(), 5);
+        EXPECT_EQ(pipeline->tokenizer->encode("a style").size(), 5u);
     }
     save_safetensors(path, {{"clip_l", torch::ones({2, 32})}, {"clip_g", torch::ones({1, 32})}});
     EXPECT_THROW(add_embedding(path, "other", pair), InputError);

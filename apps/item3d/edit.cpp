@@ -2,6 +2,7 @@
 #include "item3d/edit/edit.h"
 
 #include "command.h"
+#include "extras_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
@@ -41,6 +42,9 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
     setting<float>(command, options, "--anchor", "anchor",
                    "Pull towards the target's own score, added to rdl; 0: none, 1: strong");
     setting<float>(command, options, "--cfg", "cfg", "Weight of classifier-free guidance");
+    setting<std::string>(command, options, "--negative-prompt", "negative_prompt",
+                         "What not to show: sds pushes away from it, and so does the detail stage. "
+                         "Meaningless for rdl's direction, in which it cancels");
     setting<int>(command, options, "--iterations", "iterations", "Steps of the optimisation");
     setting<int>(command, options, "--batch", "batch", "Views in each step");
     setting<int>(command, options, "--resolution", "resolution",
@@ -95,6 +99,13 @@ void run_edit(EditCommandOptions& options) {
     request.settings = resolve_settings(request.prior, options.overrides);
     warn_of_words(request, request.settings);
 
+    if (!request.settings.negative_prompt.empty() && request.settings.guidance == "rdl" &&
+        !wants_detail(request.settings)) {
+        warn(
+            "--negative-prompt has no effect: it cancels in rdl's direction, and no detail stage "
+            "follows");
+    }
+
     const nlohmann::json summary = edit_model(request);
     if (options.json) {
         print_json(summary);
@@ -122,6 +133,7 @@ void add_edit_command(CLI::App& app) {
     command->add_option("--precision", request.precision, "Of the networks: auto, fp32, bf16 or (CUDA) fp16")
         ->capture_default_str();
     add_settings(*command, *options);
+    add_extras_options(*command, options->overrides);
     command->callback([options] {
         options->request.command = command_line();
         run_edit(*options);

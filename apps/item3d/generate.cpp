@@ -1,12 +1,14 @@
 // item3d generate: pictures that a prior draws from a prompt, on the depth of a model if given one.
 #include "command.h"
+#include "extras_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/evaluate/contact_sheet.h"
 #include "item3d/hub/find_prior.h"
-#include "item3d/models/pipeline.h"
+#include "item3d/models/depth_condition.h"
+#include "item3d/models/pipeline_extras.h"
 #include "item3d/prior/vocabulary.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/render/shade.h"
@@ -31,8 +33,9 @@ struct GenerateCommand : CommonOptions {
     std::string prior;
     std::string size;
     std::string like;
-    float guidance_scale = 0;  ///< 0: the prior's
-    int steps = 0;             ///< 0: the prior's
+    float guidance_scale = 0;                          ///< 0: the prior's
+    int steps = 0;                                     ///< 0: the prior's
+    nlohmann::json extras = nlohmann::json::object();  ///< what of PipelineExtras is given
 };
 
 /// What was not said: what the prior's own prior.json recommends ("generate": {"steps",
@@ -57,14 +60,19 @@ void complete_options(const GenerateCommand& command, const fs::path& prior,
     if (command.guidance_scale > 0) options.guidance_scale = command.guidance_scale;
 }
 
-/// The depth of a model from the default view, on the latents' grid: [1, 1, h, w].
+/// The depth of a model from the default view, as the pipeline takes it.
 torch::Tensor depth_of(const std::string& file, PictureSize size, const Pipeline& pipeline) {
     const Model model = load_model(file);
     const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
     const Camera camera = default_view(model, aspect);
     const Raster raster = rasterize(Geometry::from_model(model, pipeline.device()), {camera},
                                     size.width, size.height);
-    return depth_condition(raster.depth, pipeline.downscale());
+    // Sizes that the model cannot make are rounded up here and refused by generate().
+    const int cell = pipeline.downscale();
+    const auto cells = [&](int pixels) { return (pixels + cell - 1) / cell; };
+    return condition_of_depth(
+        pipeline, raster.depth,
+        torch::empty({1, 1, cells(size.height), cells(size.width)}, pipeline.device()));
 }
 
 /// Throws unless `output` can be a picture's file; makes its folder.
@@ -108,7 +116,9 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
         throw InputError("PROMPT", "is empty", "say what to draw, as in \"a golden vase\"");
     open_output(command.output);
     const fs::path prior = find_prior(command.prior);
-    const Pipeline pipeline = Pipeline::load(prior, device);
+    Pipeline pipeline = Pipeline::load(prior, device);
+    const auto extras = command.extras.get<PipelineExtras>();
+    apply_extras(pipeline, extras);
     const std::string warning =
         PriorVocabulary::load(prior).warning(command.generate.prompt, !command.like.empty());
     if (!warning.empty()) warn(warning);
@@ -130,9 +140,12 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
                                      channels),
                          "use a text-to-image or depth-to-image model");
     }
+    if (command.like.empty() && !extras.controlnet.empty())
+        throw InputError("--controlnet", "has no depth to look at", "name a model with --like");
     if (!command.like.empty()) {
-        if (channels != 1)
-            throw InputError(prior.string(), "its U-Net takes no depth", "leave out --like");
+        if (!takes_depth(pipeline))
+            throw InputError(prior.string(), "its U-Net takes no depth",
+                             "leave out --like, or add a depth ControlNet with --controlnet");
         condition = depth_of(command.like, size, pipeline);
     }
 
@@ -153,7 +166,8 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
                     {"scheduler", options.scheduler},
                     {"steps", options.steps},
                     {"guidance_scale", options.guidance_scale},
-                    {"seed", options.seed}});
+                    {"seed", options.seed},
+                    {"extras", extras}});
     }
 }
 
@@ -203,6 +217,7 @@ void add_generate_command(CLI::App& app) {
                         "the prior was trained on");
     command->add_option("--like", options->like,
                         "A model whose depth, seen as render sees it, the picture shall have");
+    add_extras_options(*command, options->extras);
     command->footer(list_schedulers());
     command->callback([options] { run_generate(*options, start_command(*options)); });
 }

@@ -40,6 +40,7 @@ EditScene load_scene(const EditRequest& request) {
     scene.precision = choose_precision(request.precision, device);
     scene.prior =
         std::make_shared<Pipeline>(Pipeline::load(request.prior, device, scene.precision));
+    apply_extras(*scene.prior, settings);
     return scene;
 }
 

@@ -89,6 +89,7 @@ GuidanceOptions guidance_options(const EditSettings& settings) {
     options.method = settings.guidance;
     options.adjust = settings.adjust;
     options.guidance_scale = settings.cfg;
+    options.negative_prompt = settings.negative_prompt;
     options.anchor = settings.anchor;
     options.adjust_learning_rate = settings.adjust_learning_rate;
     options.adjust_samples = settings.adjust_samples;

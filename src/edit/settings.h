@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/guidance/guidance.h"
+#include "item3d/models/pipeline_extras.h"
 
 #include <nlohmann/json.hpp>
 
@@ -13,10 +14,13 @@
 namespace item3d {
 
 /// Every setting that changes the result. Defaults are for Stable Diffusion at 512 pixels; a prior
-/// brings its own in prior.json ("defaults"), and the command line overrides both.
-struct EditSettings {
+/// brings its own in prior.json ("defaults"), and the command line overrides both. What is added to
+/// the prior is among them, under its own names.
+struct EditSettings : PipelineExtras {
     std::string from;
     std::string to;
+    /// What the picture shall not show: for sds's guidance and the detail stage.
+    std::string negative_prompt;
     std::string guidance = "rdl";
     std::string adjust = "learned";
     float anchor = 0.0f;
@@ -44,12 +48,11 @@ struct EditSettings {
     std::uint64_t seed = 0;
 };
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(EditSettings, from, to, guidance, adjust, anchor,
-                                                cfg, adjust_learning_rate, adjust_samples,
-                                                iterations, batch, resolution, learning_rate,
-                                                metallic, metallic_start, detail, detail_words,
-                                                detail_views, timesteps, weighting, light,
-                                                background, texture_size, keep, material, seed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
+    EditSettings, lora, embedding, controlnet, controlnet_scale, vae, from, to, negative_prompt,
+    guidance, adjust, anchor, cfg, adjust_learning_rate, adjust_samples, iterations, batch,
+    resolution, learning_rate, metallic, metallic_start, detail, detail_words, detail_views,
+    timesteps, weighting, light, background, texture_size, keep, material, seed)
 
 /// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- overrides. Throws InputError
 /// when a value is of the wrong type or out of range.

@@ -20,7 +20,9 @@ struct GuidanceOptions {
     std::string method = "rdl";      ///< one of guidance_methods()
     std::string adjust = "learned";  ///< "off" or "learned"; only rdl has a direction to adjust
     float guidance_scale = 7.5f;     ///< w of classifier-free guidance
-    float anchor = 0.0f;             ///< lambda of anchored RDL: adds lambda (eps_target - eps)
+    /// What sds's classifier-free guidance starts from; it cancels in rdl's direction.
+    std::string negative_prompt;
+    float anchor = 0.0f;  ///< lambda of anchored RDL: adds lambda (eps_target - eps)
     float adjust_learning_rate = 0.03f;
     int adjust_samples = 1;      ///< noises that each step of the learned source looks at
     float min_timestep = 0.02f;  ///< as a fraction of the training timesteps
@@ -32,7 +34,7 @@ struct GuidanceOptions {
 /// Renders of one iteration.
 struct GuidanceInput {
     torch::Tensor images;  ///< [N, 3, H, W] sRGB in [0, 1]; what the gradient is with respect to
-    torch::Tensor depth;   ///< [N, H, W] z-depth, 0: background; read where the U-Net takes depth
+    torch::Tensor depth;   ///< [N, H, W] z-depth, 0: background; read where the prior takes depth
 };
 
 struct GuidanceOutput {

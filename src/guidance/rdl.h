@@ -1,8 +1,9 @@
 // Relative direction (ITEM3D, section 3.3), in its two-row form:
 //   g = omega(t) [ w (eps(y_target) - eps(y_source)) + lambda (eps(y_target) - eps) ].
 // With eps^w(y) = eps(empty) + w (eps(y) - eps(empty)) in both branches, the unconditional term of
-// eps^w(y_target) - eps^w(y_source) cancels, so two U-Net rows an image are enough. lambda is the
-// anchor (--anchor): a pull to the target's own score that plain RDL (lambda 0) lacks.
+// eps^w(y_target) - eps^w(y_source) cancels, so two U-Net rows an image are enough; a negative
+// prompt in place of the empty one cancels as well. lambda is the anchor (--anchor): a pull to the
+// target's own score that plain RDL (lambda 0) lacks.
 #pragma once
 
 #include "item3d/guidance/guidance.h"

@@ -10,7 +10,9 @@ ScoreDistillation::ScoreDistillation(std::shared_ptr<const Pipeline> pipeline,
     : pipeline_(std::move(pipeline)),
       options_(options),
       target_text_(pipeline_->encode_text({target_prompt})),
-      no_text_(pipeline_->encode_no_text()) {}
+      no_text_(options.negative_prompt.empty()
+                   ? pipeline_->encode_no_text()
+                   : pipeline_->encode_text({options.negative_prompt})) {}
 
 GuidanceOutput ScoreDistillation::step(const GuidanceInput& input, std::int64_t iteration) {
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);

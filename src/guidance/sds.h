@@ -1,6 +1,6 @@
 // Score distillation sampling (Poole et al. 2022, DreamFusion), the baseline:
-//   g = omega(t) (eps^w(y_target) - eps),  eps^w(y) = eps(empty) + w (eps(y) - eps(empty)).
-// The source prompt is not used.
+//   g = omega(t) (eps^w(y_target) - eps),  eps^w(y) = eps(n) + w (eps(y) - eps(n))
+// with the negative prompt n, empty by default. The source prompt is not used.
 #pragma once
 
 #include "item3d/guidance/guidance.h"
@@ -17,7 +17,7 @@ class ScoreDistillation : public Guidance {
     std::shared_ptr<const Pipeline> pipeline_;
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row each
-    TextEmbedding no_text_;
+    TextEmbedding no_text_;      ///< or the negative prompt
 };
 
 }  // namespace item3d
