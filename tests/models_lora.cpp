@@ -108,7 +108,7 @@ TEST(Lora, KnowsTheOriginalNamesOfStableDiffusion) {
 }
 
 TEST(Lora, SeveralFilesAddUpInFloat32BeforeTheCast) {
-    const UNet2DCondition unet = lora_unet();
+    UNet2DCondition unet = lora_unet();
     unet->to(torch::kBFloat16);
     const torch::Tensor before = weight_of(unet, query).clone();
     // One part is too small to change the weight's bfloat16 alone.

@@ -38,14 +38,13 @@ constexpr std::array<std::pair<const char*, LoraNetwork>, 7> beginnings = {{
     {"lora_te2_", LoraNetwork::text_encoder_2},
 }};
 
-constexpr std::array<std::pair<const char*, const char*>, 9> other_kinds = {{
+constexpr std::array<std::pair<const char*, const char*>, 8> other_kinds = {{
     {".hada_", "LoHa"},
     {".lokr_", "LoKr"},
     {".dora_scale", "DoRA"},
     {".lora_magnitude_vector", "DoRA"},
     {".oft_", "OFT"},
     {".lora_mid.", "LoCon with a Tucker core"},
-    {".diff", "weight differences"},
     {".ia3_", "IA3"},
     {".on_input", "IA3"},
 }};
@@ -182,7 +181,7 @@ std::optional<LoraTensorName> parse_lora_name(const std::string& name) {
 std::string other_adapter_kind(const std::string& name) {
     for (const auto& [part, kind] : other_kinds)
         if (name.find(part) != std::string::npos) return kind;
-    return "";
+    return name.ends_with(".diff") || name.ends_with(".diff_b") ? "weight differences" : "";
 }
 
 LoraSpellings unet_spellings(const UNet2DConditionImpl& unet) {
