@@ -7,6 +7,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/find_prior.h"
+#include "item3d/models/precision.h"
 #include "item3d/prior/vocabulary.h"
 
 #include <cstdio>
@@ -130,7 +131,14 @@ void add_edit_command(CLI::App& app) {
                         "Diffusion model: a folder in the diffusers layout, or a name (item3d "
                         "prior pull); without it, the embedded one");
     command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
-    command->add_option("--precision", request.precision, "Of the networks: auto, fp32, bf16 or (CUDA) fp16")
+    command->add_option("--precision", request.precision, "Of the networks")
+        ->check(CLI::IsMember(precision_names()))
+        ->capture_default_str();
+    command
+        ->add_option("--memory", request.memory,
+                     "low takes less memory and more time; auto takes low where the usual does not "
+                     "fit")
+        ->check(CLI::IsMember({"auto", "low", "high"}))
         ->capture_default_str();
     add_settings(*command, *options);
     add_extras_options(*command, options->overrides);

@@ -31,7 +31,7 @@ nlohmann::json to_json(const PriorReport& report) {
     nlohmann::json memory = nlohmann::json::object();
     for (const MemoryReport& entry : report.memory)
         memory[entry.precision] = {{"weights", entry.weights},
-                                   {"edit_peak_estimate", entry.edit_peak_estimate}};
+                                   {"edit_peak_estimate", entry.edit_peak_estimate()}};
     return {{"folder", report.folder},
             {"pipeline", report.pipeline_class},
             {"usable", report.usable()},
@@ -61,7 +61,7 @@ void print_report(const PriorReport& report) {
     if (!report.memory.empty()) fmt::print("\n");
     for (const MemoryReport& memory : report.memory)
         fmt::print("  {}: {} of weights; an edit's peak is about {} (an estimate)\n",
-                   memory.precision, readable(memory.weights), readable(memory.edit_peak_estimate));
+                   memory.precision, readable(memory.weights), readable(memory.edit_peak_estimate()));
     if (report.usable()) fmt::print("\nusable\n");
 }
 

@@ -21,7 +21,8 @@ struct EditRequest {
     /// Stop as an interrupt would when this many iterations are done; 0: run to the end.
     int stop_after = 0;
     torch::Device device = torch::kCPU;
-    std::string precision = "auto";  ///< of the networks: auto, fp32, bf16
+    std::string precision = "auto";  ///< of the networks: auto, fp32, bf16, fp16
+    std::string memory = "auto";     ///< auto, low (less memory, more time), high
     std::string command;             ///< as typed, for edit.json and the resume hint
 };
 

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/edit/memory.h"
 #include "item3d/models/precision.h"
 #include "item3d/scene/io/load.h"
 
@@ -19,6 +20,8 @@ EditScene load_scene(const EditRequest& request) {
 
     EditScene scene;
     scene.device = device;
+    scene.precision = choose_precision(request.precision, device);
+    const bool low_memory = wants_low_memory(request, scene.precision, device);
     scene.model = load_model(request.model);
     scene.materials = select_materials(scene.model, settings.material);
     for (const int index : scene.materials) {
@@ -37,10 +40,13 @@ EditScene load_scene(const EditRequest& request) {
                                                     scene.materials, scene.channels, device);
     scene.lights = std::make_unique<LightRig>(
         settings.light, settings.resolution <= small_picture ? 64 : 256, device);
-    scene.precision = choose_precision(request.precision, device);
     scene.prior =
         std::make_shared<Pipeline>(Pipeline::load(request.prior, device, scene.precision));
     apply_extras(*scene.prior, settings);
+    if (low_memory) {
+        scene.prior->vae->recompute_in_backward(true);
+        scene.prior->free_text_encoders({settings.from, settings.to, settings.negative_prompt});
+    }
     return scene;
 }
 

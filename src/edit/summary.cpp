@@ -3,6 +3,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/version.h"
 #include "item3d/edit/outputs.h"
+#include "item3d/models/precision.h"
 
 #include <ATen/Parallel.h>
 #include <torch/types.h>
@@ -61,7 +62,7 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Stag
                     {"guidance", settings.guidance},
                     {"seed", settings.seed},
                     {"device", scene.device.is_cuda() ? "cuda" : "cpu"},
-                    {"precision", scene.precision == torch::kBFloat16 ? "bf16" : "fp32"},
+                    {"precision", precision_name(scene.precision)},
                     {"threads", at::get_num_threads()},
                     {"iterations", settings.iterations},
                     {"settings", settings},

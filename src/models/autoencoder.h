@@ -22,6 +22,10 @@ class Autoencoder : public torch::nn::Module {
     /// Unscaled latents -> images [N, 3, H, W], about [-1, 1], not clamped.
     virtual torch::Tensor decode(const torch::Tensor& latents) = 0;
 
+    /// While on, a gradient through encode() takes less memory and more time, where the network is
+    /// large enough for that to matter.
+    virtual void recompute_in_backward(bool on) { (void)on; }
+
     /// The U-Net sees (latent - shift_factor) * scaling_factor.
     virtual double scaling_factor() const = 0;
     virtual double shift_factor() const = 0;
@@ -108,6 +112,7 @@ class AutoencoderKL : public Autoencoder {
     LatentDistribution encode_distribution(const torch::Tensor& images);
     torch::Tensor encode(const torch::Tensor& images) override;
     torch::Tensor decode(const torch::Tensor& latents) override;
+    void recompute_in_backward(bool on) override;
     double scaling_factor() const override { return config_.scaling_factor; }
     double shift_factor() const override { return config_.shift_factor; }
     int latent_channels() const override { return config_.latent_channels; }

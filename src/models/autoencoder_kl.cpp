@@ -1,6 +1,7 @@
 #include "item3d/core/error.h"
 #include "item3d/models/autoencoder.h"
 #include "item3d/models/unet_blocks.h"
+#include "item3d/models/recompute.h"
 #include "item3d/models/weights.h"
 
 #include <algorithm>
@@ -102,12 +103,15 @@ class AutoencoderKL::Encoder : public nn::Module {
     torch::Tensor forward(const torch::Tensor& images) {
         torch::Tensor x = conv_in_(images.to(conv_in_->weight.scalar_type()));
         for (Level& level : levels_) {
-            for (ResnetBlock& block : level.resnets)
-                x = block(x);
+            for (const ResnetBlock& block : level.resnets)
+                x = recompute ? recomputed([block](const torch::Tensor& y) { return block->forward(y); }, x)
+                              : block->forward(x);
             if (level.down) x = level.down(x);
         }
         return conv_out_(torch::silu(conv_norm_out_(mid_block_->forward(x))));
     }
+
+    bool recompute = false;  ///< see recompute.h
 
   private:
     struct Level {
@@ -196,6 +200,10 @@ LatentDistribution AutoencoderKL::encode_distribution(const torch::Tensor& image
 
 torch::Tensor AutoencoderKL::encode(const torch::Tensor& images) {
     return encode_distribution(images).mean;
+}
+
+void AutoencoderKL::recompute_in_backward(bool on) {
+    encoder_->recompute = on;
 }
 
 torch::Tensor AutoencoderKL::decode(const torch::Tensor& latents) {

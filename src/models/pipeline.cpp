@@ -205,7 +205,29 @@ void Pipeline::save(const fs::path& folder, torch::Dtype dtype) const {
     write_json(folder / "model_index.json", model_index(*this));
 }
 
+void Pipeline::free_text_encoders(const std::vector<std::string>& prompts) {
+    std::map<std::string, TextEmbedding> encoded{{"", encode_text({""})}};
+    for (const std::string& prompt : prompts)
+        encoded[prompt] = encode_text({prompt});
+    encoded_ = std::move(encoded);
+    for (ClipTextModel* encoder : {&text_encoder, &text_encoder_2}) {
+        if (encoder->is_empty()) continue;
+        for (torch::Tensor& parameter : (*encoder)->parameters())
+            parameter.set_data(torch::empty({0}, parameter.options()));
+    }
+}
+
 TextEmbedding Pipeline::encode_text(const std::vector<std::string>& prompts) const {
+    if (!encoded_.empty()) {
+        TextEmbedding known;
+        for (const std::string& prompt : prompts) {
+            const auto found = encoded_.find(prompt);
+            ITEM3D_CHECK(found != encoded_.end(), "'" + prompt + "' was not encoded in time");
+            known = known.states.defined() ? TextEmbedding::join(known, found->second)
+                                           : found->second;
+        }
+        return known;
+    }
     const torch::NoGradGuard no_grad;
     ClipTextModel model = text_encoder;
     const ClipTextOutput first = model(tokenizer->encode_batch(prompts).to(device()));
@@ -219,12 +241,10 @@ TextEmbedding Pipeline::encode_text(const std::vector<std::string>& prompts) con
 }
 
 TextEmbedding Pipeline::encode_no_text() const {
-    TextEmbedding text = encode_text({""});
-    if (force_zeros_for_empty_prompt) {
-        text.states.zero_();
-        text.pooled.zero_();
-    }
-    return text;
+    const TextEmbedding text = encode_text({""});
+    if (!force_zeros_for_empty_prompt) return text;
+    return {torch::zeros_like(text.states),
+            text.pooled.defined() ? torch::zeros_like(text.pooled) : torch::Tensor()};
 }
 
 torch::Tensor Pipeline::encode_image(const torch::Tensor& images) const {

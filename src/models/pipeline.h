@@ -12,6 +12,7 @@
 #include <torch/types.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,6 +38,9 @@ class Pipeline {
     /// One row: what classifier-free guidance goes away from when nobody says what. The empty
     /// prompt, or zeros where model_index.json says force_zeros_for_empty_prompt (SDXL).
     TextEmbedding encode_no_text() const;
+    /// Encodes these prompts and no text, and lets the encoders go. From then on encode_text() knows
+    /// these alone; the pipeline cannot be saved any more.
+    void free_text_encoders(const std::vector<std::string>& prompts);
     /// images [N, 3, H, W] in [-1, 1] -> latents [N, C, h, w], scaled (mean of the posterior);
     /// differentiable in images. float32.
     torch::Tensor encode_image(const torch::Tensor& images) const;
@@ -75,6 +79,8 @@ class Pipeline {
     double controlnet_scale = 1;
 
   private:
+    std::map<std::string, TextEmbedding> encoded_;  ///< by free_text_encoders(), a row each
+
     void check_fit(const std::filesystem::path& folder) const;
     void check_text_fit(const std::filesystem::path& folder) const;
     torch::Tensor sizes_of(const torch::Tensor& latents) const;

@@ -239,13 +239,18 @@ class Verification {
         for (const auto& [name, size] : {std::pair("fp32", 4), {"bf16", 2}, {"fp16", 2}}) {
             MemoryReport memory;
             memory.precision = name;
-            for (const PartReport& part : report_.parts)
-                memory.weights +=
-                    static_cast<std::uint64_t>(part.parameters) *
-                    static_cast<std::uint64_t>(part.name.starts_with("text") ? 4 : size);
-            memory.edit_peak_estimate =
-                memory.weights + program_bytes +
-                static_cast<std::uint64_t>((kept.encoder + kept.unet) * size);
+            for (const PartReport& part : report_.parts) {
+                const bool text = part.name.starts_with("text");
+                const std::uint64_t bytes = static_cast<std::uint64_t>(part.parameters) *
+                                            static_cast<std::uint64_t>(text ? 4 : size);
+                memory.weights += bytes;
+                if (text) memory.text_encoders += bytes;
+            }
+            memory.program = program_bytes;
+            memory.kept_by_gradients = static_cast<std::uint64_t>((kept.encoder + kept.unet) * size);
+            // Of each residual block its input, and of one block all.
+            memory.kept_when_low =
+                static_cast<std::uint64_t>((0.4 * kept.encoder + kept.unet) * size);
             report_.memory.push_back(memory);
         }
     }

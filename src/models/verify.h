@@ -21,9 +21,14 @@ struct PartReport {
 struct MemoryReport {
     std::string precision;      ///< "fp32", "bf16" or "fp16"
     std::uint64_t weights = 0;  ///< exact; the text encoders stay fp32
-    /// With one picture of the U-Net's own size in each step: weights, what the gradients keep, and
-    /// the program. An estimate, of the right order.
-    std::uint64_t edit_peak_estimate = 0;
+    std::uint64_t text_encoders = 0;  ///< their part of it
+    // Estimates, of the right order:
+    std::uint64_t program = 0;            ///< everything that is not the prior's
+    std::uint64_t kept_by_gradients = 0;  ///< of one picture of the U-Net's own size
+    std::uint64_t kept_when_low = 0;      ///< the same with the encoder's values computed again
+
+    /// With one such picture in each step.
+    std::uint64_t edit_peak_estimate() const { return weights + program + kept_by_gradients; }
 };
 
 struct PriorReport {
