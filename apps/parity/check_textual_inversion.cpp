@@ -24,7 +24,7 @@ void check_textual_inversion(Case& golden) {
                    within::exact);
     const std::vector<std::string> prompts = meta.texts("prompts", {});
     golden.compare("input_ids", pipeline.tokenizer->encode_batch(prompts), within::exact);
-    golden.compare("last_hidden_state", pipeline.encode_text(prompts), within::one_pass);
+    golden.compare("last_hidden_state", pipeline.encode_text(prompts).states, within::one_pass);
 }
 
 }  // namespace item3d::parity

@@ -263,11 +263,13 @@ torch::Tensor Pipeline::predict(const torch::Tensor& noisy_latents, const torch:
     const auto rows = noisy_latents.size(0);
     torch::Tensor sample = noisy_latents;
     const TextEmbedding each = text.expand(rows);
+    AddedCondition added;
+    if (is_sdxl()) added = {each.pooled, sizes_of(noisy_latents)};
     UNetResiduals residuals;
     if (!controlnet.is_empty() && condition.defined()) {
         ControlNet network = controlnet;
         residuals = network(sample, timesteps, each.states, condition.expand({rows, -1, -1, -1}),
-                            controlnet_scale);
+                            controlnet_scale, added);
     }
     if (const int channels = condition_channels()) {
         torch::Tensor extra = condition;
@@ -278,8 +280,6 @@ torch::Tensor Pipeline::predict(const torch::Tensor& noisy_latents, const torch:
                      "the condition must be on the latents' grid");
         sample = torch::cat({sample, extra.to(sample.options()).expand({rows, -1, -1, -1})}, 1);
     }
-    AddedCondition added;
-    if (is_sdxl()) added = {each.pooled, sizes_of(noisy_latents)};
     UNet2DCondition network = unet;
     return network(sample.contiguous(torch::MemoryFormat::ChannelsLast), timesteps, each.states,
                    added, residuals)

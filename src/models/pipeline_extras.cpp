@@ -31,13 +31,15 @@ void add_loras(Pipeline& pipeline, const std::vector<std::string>& arguments) {
     std::vector<LoraFile> files;
     for (const std::string& argument : arguments)
         files.push_back(parse_lora(argument));
-    fuse_loras(files, {pipeline.unet, pipeline.text_encoder});
+    fuse_loras(files, {pipeline.unet, pipeline.text_encoder, pipeline.text_encoder_2});
 }
 
 void add_embeddings(Pipeline& pipeline, const std::vector<std::string>& arguments) {
+    std::vector<TextEncoderPair> encoders{{pipeline.tokenizer, pipeline.text_encoder}};
+    if (pipeline.is_sdxl()) encoders.push_back({pipeline.tokenizer_2, pipeline.text_encoder_2});
     for (const std::string& argument : arguments) {
         const AdapterArgument parts = split_adapter_argument(argument);
-        add_embedding(parts.file, parts.rest, {{pipeline.tokenizer, pipeline.text_encoder}});
+        add_embedding(parts.file, parts.rest, encoders);
     }
 }
 
