@@ -1,7 +1,7 @@
 #include "item3d/models/clip_text.h"
 
 #include "item3d/core/error.h"
-#include "item3d/models/attention.h"
+#include "item3d/models/clip_layer.h"
 #include "item3d/models/weights.h"
 
 #include <limits>
@@ -13,42 +13,6 @@ namespace {
 const std::string prefix = "text_model.";
 
 }  // namespace
-
-/// Pre-norm transformer layer with causal self-attention.
-class ClipTextModelImpl::Layer : public nn::Module {
-  public:
-    explicit Layer(const ClipTextConfig& config)
-        : heads_(config.num_attention_heads), quick_(config.hidden_act == "quick_gelu") {
-        const int width = config.hidden_size;
-        const auto norm = nn::LayerNormOptions({width}).eps(config.layer_norm_eps);
-        norm1_ = register_module("layer_norm1", nn::LayerNorm(norm));
-        norm2_ = register_module("layer_norm2", nn::LayerNorm(norm));
-        auto attention = std::make_shared<nn::Module>("attention");
-        query_ = attention->register_module("q_proj", nn::Linear(width, width));
-        key_ = attention->register_module("k_proj", nn::Linear(width, width));
-        value_ = attention->register_module("v_proj", nn::Linear(width, width));
-        output_ = attention->register_module("out_proj", nn::Linear(width, width));
-        register_module("self_attn", attention);
-        auto mlp = std::make_shared<nn::Module>("mlp");
-        feed_in_ = mlp->register_module("fc1", nn::Linear(width, config.intermediate_size));
-        feed_out_ = mlp->register_module("fc2", nn::Linear(config.intermediate_size, width));
-        register_module("mlp", mlp);
-    }
-    torch::Tensor forward(torch::Tensor x, const torch::Tensor& mask) {
-        const torch::Tensor normed = norm1_(x);
-        x = x + output_(attention(query_(normed), key_(normed), value_(normed), heads_, mask));
-        const torch::Tensor hidden = feed_in_(norm2_(x));
-        return x +
-               feed_out_(quick_ ? hidden * torch::sigmoid(1.702 * hidden) : torch::gelu(hidden));
-    }
-
-  private:
-    int heads_;
-    bool quick_;
-    nn::LayerNorm norm1_{nullptr}, norm2_{nullptr};
-    nn::Linear query_{nullptr}, key_{nullptr}, value_{nullptr}, output_{nullptr};
-    nn::Linear feed_in_{nullptr}, feed_out_{nullptr};
-};
 
 ClipTextModelImpl::ClipTextModelImpl(const ClipTextConfig& config) : config_(config) {
     const int width = config_.hidden_size;
@@ -65,7 +29,9 @@ ClipTextModelImpl::ClipTextModelImpl(const ClipTextConfig& config) : config_(con
     }
     nn::ModuleList layers;
     for (int i = 0; i < config_.num_hidden_layers; ++i) {
-        layers_.push_back(std::make_shared<Layer>(config_));
+        layers_.push_back(ClipLayer(ClipLayerOptions{width, config_.intermediate_size,
+                                                     config_.num_attention_heads,
+                                                     config_.hidden_act, config_.layer_norm_eps}));
         layers->push_back(layers_.back());
     }
     auto encoder = std::make_shared<nn::Module>("encoder");
@@ -98,8 +64,8 @@ ClipTextOutput ClipTextModelImpl::forward(const torch::Tensor& input_ids,
 
     ClipTextOutput output;
     output.hidden_states.push_back(x);
-    for (const auto& layer : layers_) {
-        x = layer->forward(x, mask);
+    for (auto& layer : layers_) {
+        x = layer(x, mask);
         output.hidden_states.push_back(x);
     }
     output.last_hidden_state = final_layer_norm_(x);

@@ -1,6 +1,7 @@
 // CLIP's text encoder (Radford et al. 2021) as transformers' CLIPTextModel lays it out.
 #pragma once
 
+#include "item3d/models/clip_layer.h"
 #include "item3d/models/config.h"
 
 #include <torch/nn/modules/container/modulelist.h>
@@ -66,10 +67,9 @@ class ClipTextModelImpl : public torch::nn::Module {
     const ClipTextConfig& config() const { return config_; }
 
   private:
-    class Layer;
     ClipTextConfig config_;
     torch::nn::Embedding token_embedding_{nullptr}, position_embedding_{nullptr};
-    std::vector<std::shared_ptr<Layer>> layers_;
+    std::vector<ClipLayer> layers_;
     torch::nn::LayerNorm final_layer_norm_{nullptr};
     torch::nn::Linear text_projection_{nullptr};
 };

@@ -148,6 +148,11 @@ std::vector<std::string> Config::texts(const std::string& key,
     return result;
 }
 
+Config Config::part(const std::string& key) const {
+    if (!has(key)) fail(key, "an object");
+    return Config(values_.at(key), subject_ + ": " + key);
+}
+
 int Config::size(const std::string& key, int fallback) const {
     const int result = integer(key, fallback);
     if (result < 1) fail(key, "at least 1");

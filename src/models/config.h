@@ -36,6 +36,9 @@ class Config {
     std::vector<std::string> texts(const std::string& key,
                                    const std::vector<std::string>& fallback) const;
 
+    /// The object under a key. Throws InputError when there is none.
+    Config part(const std::string& key) const;
+
     /// As integer(), and at least one.
     int size(const std::string& key, int fallback) const;
     std::vector<int> sizes(const std::string& key, const std::vector<int>& fallback,

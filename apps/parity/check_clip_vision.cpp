@@ -1,0 +1,56 @@
+#include "item3d/models/clip_model.h"
+#include "item3d/models/clip_vision.h"
+#include "parity.h"
+
+namespace item3d::parity {
+
+void check_clip_vision(Case& golden) {
+    ClipVisionWithProjection model = load_clip_vision(golden.folder());
+    const ClipVisionOutput output = model(golden.input("pixel_values"));
+    golden.compare("image_embeds", model->project(output), within::one_pass);
+    golden.compare("last_hidden_state", output.last_hidden_state, within::one_pass);
+    golden.compare("hidden_states_0", output.hidden_states.front(), within::one_pass);
+    golden.compare("hidden_states_penultimate",
+                   output.hidden_states[output.hidden_states.size() - 2], within::one_pass);
+}
+
+void check_clip_model(Case& golden) {
+    ClipModel model = load_clip_model(golden.folder());
+    const auto unit = [](const torch::Tensor& x) { return x / x.norm(2, {-1}, true); };
+    const torch::Tensor ids = golden.input("input_ids");
+    const torch::Tensor text = model->text_features(ids);
+    golden.compare("text_features", text, within::one_pass);
+    golden.compare("text_features_masked",
+                   model->text_features(ids, golden.input("attention_mask")), within::one_pass);
+    golden.compare("text_embeds", unit(text), within::one_pass);
+
+    torch::Tensor pixels = golden.input("pixel_values").clone();
+    {
+        const torch::AutoGradMode gradients(true);
+        pixels.requires_grad_();
+        const torch::Tensor embeds = unit(model->image_features(pixels));
+        (embeds * golden.input("cotangent")).sum().backward();
+    }
+    golden.compare("grad_pixel_values", pixels.grad(), within::one_pass);
+    const torch::Tensor image = model->image_features(pixels);
+    golden.compare("image_features", image, within::one_pass);
+    golden.compare("image_embeds", unit(image), within::one_pass);
+    const torch::Tensor logits = model->logit_scale() * unit(image).matmul(unit(text).t());
+    golden.compare("logits_per_image", logits, within::one_pass);
+    golden.compare("logits_per_text", logits.t(), within::one_pass);
+    golden.compare("logit_scale_exp", model->logit_scale().reshape({1}), within::one_pass);
+
+    const ClipVisionOutput vision = model->vision()(pixels);
+    golden.compare("vision_last_hidden_state", vision.last_hidden_state, within::one_pass);
+    golden.compare("vision_pooler_output", vision.pooled, within::one_pass);
+
+    const auto pictures = compare_image_processors(golden);
+    if (golden.has("out.png_image_features")) {
+        const auto count = golden.expected("png_image_features").size(0);
+        golden.compare("png_image_features",
+                       model->image_features(torch::cat(pictures).narrow(0, 0, count)),
+                       within::one_pass);
+    }
+}
+
+}  // namespace item3d::parity

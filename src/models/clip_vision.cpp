@@ -1,0 +1,116 @@
+#include "item3d/models/clip_vision.h"
+
+#include "item3d/core/error.h"
+#include "item3d/models/weights.h"
+
+namespace item3d {
+namespace nn = torch::nn;
+
+ClipVisionModelImpl::ClipVisionModelImpl(const ClipVisionConfig& config) : config_(config) {
+    const int width = config_.hidden_size;
+    auto embeddings = std::make_shared<nn::Module>("embeddings");
+    class_embedding_ = embeddings->register_parameter("class_embedding", torch::zeros({width}));
+    patch_embedding_ = embeddings->register_module(
+        "patch_embedding",
+        nn::Conv2d(nn::Conv2dOptions(config_.num_channels, width, config_.patch_size)
+                       .stride(config_.patch_size)
+                       .bias(false)));
+    position_embedding_ =
+        embeddings->register_module("position_embedding", nn::Embedding(config_.tokens(), width));
+    register_module("embeddings", embeddings);
+    const auto norm = nn::LayerNormOptions({width}).eps(config_.layer_norm_eps);
+    pre_norm_ = register_module("pre_layrnorm", nn::LayerNorm(norm));  // the files' own spelling
+    nn::ModuleList layers;
+    for (int i = 0; i < config_.num_hidden_layers; ++i) {
+        layers_.push_back(ClipLayer(ClipLayerOptions{width, config_.intermediate_size,
+                                                     config_.num_attention_heads,
+                                                     config_.hidden_act, config_.layer_norm_eps}));
+        layers->push_back(layers_.back());
+    }
+    auto encoder = std::make_shared<nn::Module>("encoder");
+    encoder->register_module("layers", layers.ptr());
+    register_module("encoder", encoder);
+    post_norm_ = register_module("post_layernorm", nn::LayerNorm(norm));
+}
+
+ClipVisionOutput ClipVisionModelImpl::forward(const torch::Tensor& pixel_values) {
+    ITEM3D_CHECK(pixel_values.dim() == 4 && pixel_values.size(2) == config_.image_size &&
+                     pixel_values.size(3) == config_.image_size,
+                 "pixel_values must be [N, C, image_size, image_size]");
+    const torch::Tensor patches =  // [N, S - 1, D]
+        patch_embedding_(pixel_values.to(class_embedding_.scalar_type()))
+            .flatten(2)
+            .transpose(1, 2);
+    const torch::Tensor token = class_embedding_.expand({patches.size(0), 1, -1});
+    torch::Tensor x = pre_norm_(torch::cat({token, patches}, 1) + position_embedding_->weight);
+
+    ClipVisionOutput output;
+    output.hidden_states.push_back(x);
+    for (auto& layer : layers_) {
+        x = layer(x);
+        output.hidden_states.push_back(x);
+    }
+    output.last_hidden_state = x;
+    output.pooled = post_norm_(x.select(1, 0));
+    return output;
+}
+
+ClipVisionWithProjectionImpl::ClipVisionWithProjectionImpl(const ClipVisionConfig& config) {
+    vision_ = register_module("vision_model", ClipVisionModel(config));
+    projection_ = register_module(
+        "visual_projection",
+        nn::Linear(nn::LinearOptions(config.hidden_size, config.projection_dim).bias(false)));
+}
+
+ClipVisionConfig ClipVisionConfig::from_config(const Config& config) {
+    ClipVisionConfig result;
+    result.hidden_size = config.size("hidden_size", result.hidden_size);
+    result.intermediate_size = config.size("intermediate_size", result.intermediate_size);
+    result.num_hidden_layers = config.size("num_hidden_layers", result.num_hidden_layers);
+    result.num_attention_heads = config.size("num_attention_heads", result.num_attention_heads);
+    result.image_size = config.size("image_size", result.image_size);
+    result.patch_size = config.size("patch_size", result.patch_size);
+    result.hidden_act = config.text("hidden_act", result.hidden_act);
+    result.layer_norm_eps = config.number("layer_norm_eps", result.layer_norm_eps);
+    result.projection_dim = config.size("projection_dim", result.projection_dim);
+    config.expect("num_channels", 3);
+    if (result.hidden_act != "quick_gelu" && result.hidden_act != "gelu")
+        config.fail("hidden_act", "quick_gelu or gelu");
+    if (result.hidden_size % result.num_attention_heads != 0)
+        config.fail("num_attention_heads", "a divisor of hidden_size");
+    if (result.num_hidden_layers > 256) config.fail("num_hidden_layers", "at most 256");
+    if (result.image_size > 4096) config.fail("image_size", "at most 4096");
+    if (result.patch_size > result.image_size) config.fail("patch_size", "at most image_size");
+    return result;
+}
+
+int ClipVisionConfig::tokens() const {
+    const int side = image_size / patch_size;
+    return side * side + 1;
+}
+
+double ClipVisionConfig::least_parameters() const {
+    const double width = hidden_size;
+    return width * (tokens() + 3.0 * patch_size * patch_size) +
+           num_hidden_layers * (4 * width * width + 2 * width * intermediate_size);
+}
+
+ClipVisionWithProjection load_clip_vision(const std::filesystem::path& folder, torch::Device device,
+                                          torch::Dtype dtype) {
+    const Config json = Config::read(folder / "config.json");
+    for (const std::string& name : json.texts("architectures", {}))
+        if (name != "CLIPVisionModelWithProjection")
+            json.fail("architectures", "CLIPVisionModelWithProjection");
+    const auto config = ClipVisionConfig::from_config(json);
+    Weights weights = Weights::open(folder, "model");
+    weights.rename([](const std::string& name) -> std::string {
+        return name.ends_with("embeddings.position_ids") ? "" : name;  // a constant of old files
+    });
+    check_plausible(weights, config.least_parameters());
+    ClipVisionWithProjection model(config);
+    load_parameters(*model, weights, device, dtype);
+    model->eval();
+    return model;
+}
+
+}  // namespace item3d
