@@ -6,59 +6,11 @@
 #include "item3d/models/text_normalization.h"
 
 #include <algorithm>
-#include <queue>
-#include <sstream>
 
 namespace item3d {
 namespace {
 
 const std::string word_end = "</w>";
-
-std::uint64_t pair_key(int left, int right) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(left)) << 32 |
-           static_cast<std::uint32_t>(right);
-}
-
-/// Cuts `text` at the leftmost, there longest, special tokens: calls plain(piece) and special(id).
-template <typename Plain, typename Special>
-void cut_at_specials(const std::string& text,
-                     const std::vector<std::pair<std::string, int>>& specials, const Plain& plain,
-                     const Special& special) {
-    std::size_t begin = 0;
-    while (begin < text.size()) {
-        std::size_t at = std::string::npos;
-        const std::pair<std::string, int>* best = nullptr;
-        for (const auto& candidate : specials) {
-            const std::size_t found = text.find(candidate.first, begin);
-            if (found == std::string::npos) continue;
-            if (!best || found < at ||
-                (found == at && candidate.first.size() > best->first.size())) {
-                at = found;
-                best = &candidate;
-            }
-        }
-        if (!best) {
-            plain(text.substr(begin));
-            return;
-        }
-        if (at > begin) plain(text.substr(begin, at - begin));
-        special(best->second);
-        begin = at + best->first.size();
-    }
-}
-
-/// A special token is a plain string or an AddedToken object.
-SpecialToken read_special(const Config& config, const std::string& key,
-                          const SpecialToken& fallback) {
-    if (!config.has(key)) return fallback;
-    const auto& value = config.json().at(key);
-    if (value.is_string()) return {value.get<std::string>(), false};
-    const Config token(value, config.subject() + ": " + key);
-    for (const char* flag : {"lstrip", "rstrip", "single_word"})
-        token.expect(flag, false);
-    if (!token.has("content")) token.fail("content", "a string");
-    return {token.text("content", ""), token.boolean("normalized", false)};
-}
 
 nlohmann::json special_json(const SpecialToken& token) {
     if (!token.normalized) return token.content;
@@ -66,57 +18,15 @@ nlohmann::json special_json(const SpecialToken& token) {
             {"normalized", true},     {"rstrip", false},          {"single_word", false}};
 }
 
-ClipTokenizer::Vocabulary read_vocabulary(const std::filesystem::path& path) {
-    const Config config = Config::read(path);
-    ClipTokenizer::Vocabulary vocabulary;
-    for (const auto& [token, id] : config.json().items()) {
-        if (!id.is_number_integer() || id.get<double>() < 0 ||
-            id.get<double>() > Config::max_integer)
-            config.fail(token, "an id");
-        vocabulary[token] = id.get<int>();
-    }
-    return vocabulary;
-}
-
-ClipTokenizer::Merges read_merges(const std::filesystem::path& path) {
-    ClipTokenizer::Merges merges;
-    std::istringstream lines(read_text(path));
-    std::string line;
-    for (int number = 1; std::getline(lines, line); ++number) {
-        if (!line.empty() && line.back() == '\r') line.pop_back();
-        if (line.empty() || line.starts_with("#version")) continue;
-        const std::size_t space = line.find(' ');
-        if (space == std::string::npos || space == 0 || space + 1 == line.size() ||
-            line.find(' ', space + 1) != std::string::npos)
-            throw InputError(
-                path.string(),
-                fmt::format("line {}: expected two symbols and a space between", number));
-        merges.emplace_back(line.substr(0, space), line.substr(space + 1));
-    }
-    return merges;
-}
-
 }  // namespace
 
 ClipTokenizer::ClipTokenizer(Vocabulary vocabulary, Merges merges, const Options& options,
                              const std::string& subject)
-    : options_(options), id_of_(std::move(vocabulary)), merge_list_(std::move(merges)) {
-    for (const auto& [token, id] : id_of_) {
-        if (!token_of_.emplace(id, token).second)
-            throw InputError(subject, fmt::format("two tokens have id {}", id));
-        largest_id_ = std::max(largest_id_, id);
-    }
-    const auto need = [&](const std::string& token) {
-        const auto found = id_of_.find(token);
-        if (found == id_of_.end())
-            throw InputError(subject, fmt::format("token '{}' is missing", token));
-        return found->second;
-    };
-    for (std::size_t rank = 0; rank < merge_list_.size(); ++rank) {
-        const auto& [left, right] = merge_list_[rank];
-        merges_.try_emplace(pair_key(need(left), need(right)),
-                            Merge{static_cast<std::int64_t>(rank), need(left + right)});
-    }
+    : ClipTokenizer(BytePairs(std::move(vocabulary), std::move(merges), word_end, subject), options,
+                    subject) {}
+
+ClipTokenizer::ClipTokenizer(BytePairs pairs, const Options& options, const std::string& subject)
+    : options_(options), pairs_(std::move(pairs)) {
     if (options_.model_max_length < 2)
         throw InputError(subject, "model_max_length must leave room for the start and end tokens");
 
@@ -129,7 +39,8 @@ ClipTokenizer::ClipTokenizer(Vocabulary vocabulary, Merges merges, const Options
         normalized[token.content] = token.normalized;
     for (const auto& [content, after] : normalized) {
         if (content.empty()) throw InputError(subject, "a special token is empty");
-        const int id = need(content);
+        const int id = pairs_.id_of(content);
+        if (id < 0) throw InputError(subject, fmt::format("token '{}' is missing", content));
         if (after)
             normalized_specials_.emplace_back(normalize_for_clip(content), id);
         else
@@ -147,38 +58,22 @@ ClipTokenizer ClipTokenizer::load(const std::filesystem::path& folder,
     for (const char* name : {"special_tokens_map.json", "tokenizer_config.json"}) {
         if (!std::filesystem::exists(folder / name)) continue;
         const Config config = Config::read(folder / name);
-        options.bos = read_special(config, "bos_token", options.bos);
-        options.eos = read_special(config, "eos_token", options.eos);
-        options.unk = read_special(config, "unk_token", options.unk);
-        options.pad = read_special(config, "pad_token", options.pad);
+        options.bos = read_special_token(config, "bos_token", options.bos);
+        options.eos = read_special_token(config, "eos_token", options.eos);
+        options.unk = read_special_token(config, "unk_token", options.unk);
+        options.pad = read_special_token(config, "pad_token", options.pad);
         if (config.has("model_max_length") && config.number("model_max_length", 0) < 1e5)
             options.model_max_length = config.size("model_max_length", 77);
-        if (config.has("added_tokens_decoder")) {  // newer files list all of them, by id
-            const Config added(config.json().at("added_tokens_decoder"),
-                               config.subject() + ": added_tokens_decoder");
-            for (const auto& [id, token] : added.json().items())
-                options.additional.push_back(read_special(added, id, {}));
-        }
+        for (const auto& [id, token] : read_added_tokens(config))
+            options.additional.push_back(token);
     }
-    return ClipTokenizer(read_vocabulary(vocabulary_folder / "vocab.json"),
-                         read_merges(vocabulary_folder / "merges.txt"), options,
+    return ClipTokenizer(BytePairs::load(vocabulary_folder, word_end), options,
                          (vocabulary_folder / "vocab.json").string());
 }
 
 void ClipTokenizer::save(const std::filesystem::path& folder) const {
-    std::vector<std::pair<int, std::string>> tokens(token_of_.begin(), token_of_.end());
-    std::sort(tokens.begin(), tokens.end());
     make_output_folder(folder);
-    nlohmann::ordered_json vocabulary = nlohmann::ordered_json::object();
-    for (const auto& [id, token] : tokens)
-        vocabulary[token] = id;
-    write_atomically(folder / "vocab.json", vocabulary.dump());
-
-    std::string merges = "#version: 0.2\n";
-    for (const auto& [left, right] : merge_list_)
-        merges += left + " " + right + "\n";
-    write_atomically(folder / "merges.txt", merges);
-
+    pairs_.save(folder);
     const nlohmann::json specials = {{"bos_token", special_json(options_.bos)},
                                      {"eos_token", special_json(options_.eos)},
                                      {"pad_token", special_json(options_.pad)},
@@ -248,7 +143,7 @@ int ClipTokenizer::add_placeholder(const std::string& token, int count,
         names.push_back(fmt::format("{}_{}", token, i));
     const auto is_taken = [&](const std::string& name) {
         const std::string normalized = normalize_for_clip(name);
-        return id_of_.count(name) > 0 ||
+        return pairs_.id_of(name) >= 0 ||
                std::any_of(normalized_specials_.begin(), normalized_specials_.end(),
                            [&](const auto& special) { return special.first == normalized; });
     };
@@ -256,13 +151,9 @@ int ClipTokenizer::add_placeholder(const std::string& token, int count,
         if (is_taken(name))
             throw InputError(subject, fmt::format("the tokenizer has a token '{}' already", name),
                              "give it another, as FILE:TOKEN");
-    const int first = largest_id_ + 1;
-    for (const std::string& name : names) {
-        ++largest_id_;
-        id_of_[name] = largest_id_;
-        token_of_[largest_id_] = name;
-        normalized_specials_.emplace_back(normalize_for_clip(name), largest_id_);
-    }
+    const int first = pairs_.largest_id() + 1;
+    for (const std::string& name : names)
+        normalized_specials_.emplace_back(normalize_for_clip(name), pairs_.add_token(name));
     placeholder_lengths_[first] = count;
     return first;
 }
@@ -273,85 +164,25 @@ std::vector<std::string> ClipTokenizer::split_words(const std::string& text) {
 
 void ClipTokenizer::append_plain(const std::string& text, std::vector<int>& ids) const {
     for (const std::string& word : split_for_clip(text))
-        append_word(word, ids);
-}
-
-void ClipTokenizer::append_word(const std::string& bytes, std::vector<int>& ids) const {
-    // A doubly linked list of symbols and a queue of the merges that its neighbours allow: linear
-    // in the word's length but for a logarithm, because prompts may be hostile.
-    struct Symbol {
-        int id;
-        int previous, next;
-        bool gone = false;
-    };
-    struct Candidate {
-        std::int64_t rank;
-        int at, id;
-        bool operator<(const Candidate& other) const {  // the queue's top is its largest
-            return std::pair(rank, at) > std::pair(other.rank, other.at);
-        }
-    };
-    std::vector<Symbol> symbols;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-        std::string symbol = byte_symbols()[static_cast<std::uint8_t>(bytes[i])];
-        if (i + 1 == bytes.size()) symbol += word_end;
-        const auto found = id_of_.find(symbol);
-        const int at = static_cast<int>(i);
-        symbols.push_back({found == id_of_.end() ? unk_id() : found->second, at - 1,
-                           i + 1 == bytes.size() ? -1 : at + 1});
-    }
-
-    const auto merge_at = [&](int at) -> const Merge* {
-        if (at < 0 || symbols[at].next < 0) return nullptr;
-        const auto found = merges_.find(pair_key(symbols[at].id, symbols[symbols[at].next].id));
-        return found == merges_.end() ? nullptr : &found->second;
-    };
-    std::priority_queue<Candidate> queue;
-    const auto consider = [&](int at) {
-        if (const Merge* merge = merge_at(at)) queue.push({merge->rank, at, merge->id});
-    };
-    for (int i = 0; i < static_cast<int>(symbols.size()); ++i)
-        consider(i);
-    while (!queue.empty()) {
-        const Candidate top = queue.top();
-        queue.pop();
-        if (symbols[top.at].gone) continue;
-        const Merge* merge = merge_at(top.at);
-        if (!merge || merge->id != top.id) continue;  // a neighbour was merged meanwhile
-        Symbol& left = symbols[top.at];
-        Symbol& right = symbols[left.next];
-        left.id = merge->id;
-        left.next = right.next;
-        if (right.next >= 0) symbols[right.next].previous = top.at;
-        right.gone = true;
-        consider(left.previous);
-        consider(top.at);
-    }
-    for (const Symbol& symbol : symbols)
-        if (!symbol.gone) ids.push_back(symbol.id);
+        pairs_.append_word(word, unk_id(), ids);
 }
 
 std::string ClipTokenizer::decode(const std::vector<int>& ids, bool skip_special_tokens) const {
     std::string bytes;
     for (const int id : ids) {
-        const auto found = token_of_.find(id);
-        if (found == token_of_.end()) continue;
+        const std::string* token = pairs_.token_of(id);
+        if (!token) continue;
         const auto is_it = [&](const auto& special) { return special.second == id; };
         const bool special =
             std::any_of(raw_specials_.begin(), raw_specials_.end(), is_it) ||
             std::any_of(normalized_specials_.begin(), normalized_specials_.end(), is_it);
         if (special && skip_special_tokens) continue;
-        bytes += special ? found->second : bytes_of_symbols(found->second);
+        bytes += special ? *token : bytes_of_symbols(*token);
     }
     std::string text = to_valid_utf8(bytes);
     for (std::size_t at = 0; (at = text.find(word_end, at)) != std::string::npos; ++at)
         text.replace(at, word_end.size(), " ");
     return strip_white_space(text);
-}
-
-int ClipTokenizer::id_of(const std::string& token) const {
-    const auto found = id_of_.find(token);
-    return found == id_of_.end() ? -1 : found->second;
 }
 
 }  // namespace item3d

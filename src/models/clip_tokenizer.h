@@ -1,7 +1,8 @@
 // CLIP's byte-level BPE tokenizer, as transformers' CLIPTokenizer does it.
 #pragma once
 
-#include "item3d/models/config.h"
+#include "item3d/models/byte_pairs.h"
+#include "item3d/models/special_tokens.h"
 
 #include <torch/types.h>
 
@@ -14,17 +15,10 @@
 
 namespace item3d {
 
-/// A token that is found in the text as a whole, before BPE.
-struct SpecialToken {
-    std::string content;
-    /// True: looked for after the text was lower-cased; false: in the text as it was written.
-    bool normalized = false;
-};
-
 class ClipTokenizer {
   public:
-    using Vocabulary = std::unordered_map<std::string, int>;  ///< token -> id
-    using Merges = std::vector<std::pair<std::string, std::string>>;
+    using Vocabulary = BytePairs::Vocabulary;
+    using Merges = BytePairs::Merges;
 
     struct Options {
         SpecialToken bos{"<|startoftext|>"};
@@ -67,34 +61,26 @@ class ClipTokenizer {
     /// The pieces that BPE works on: normalised words, numbers, runs of punctuation.
     static std::vector<std::string> split_words(const std::string& text);
 
-    int bos_id() const { return id_of_.at(options_.bos.content); }
-    int eos_id() const { return id_of_.at(options_.eos.content); }
-    int pad_id() const { return id_of_.at(options_.pad.content); }
-    int unk_id() const { return id_of_.at(options_.unk.content); }
+    int bos_id() const { return pairs_.id_of(options_.bos.content); }
+    int eos_id() const { return pairs_.id_of(options_.eos.content); }
+    int pad_id() const { return pairs_.id_of(options_.pad.content); }
+    int unk_id() const { return pairs_.id_of(options_.unk.content); }
     int model_max_length() const { return options_.model_max_length; }
     /// The number of tokens, and the largest id.
-    std::size_t size() const { return id_of_.size(); }
-    int largest_id() const { return largest_id_; }
+    std::size_t size() const { return pairs_.size(); }
+    int largest_id() const { return pairs_.largest_id(); }
     /// The id of a token as vocab.json spells it ("red</w>"), or -1.
-    int id_of(const std::string& token) const;
+    int id_of(const std::string& token) const { return pairs_.id_of(token); }
 
   private:
-    struct Merge {
-        std::int64_t rank;
-        int id;
-    };
+    ClipTokenizer(BytePairs pairs, const Options& options, const std::string& subject);
     void append_plain(const std::string& text, std::vector<int>& ids) const;
-    void append_word(const std::string& bytes, std::vector<int>& ids) const;
 
     Options options_;
-    Vocabulary id_of_;
-    Merges merge_list_;
-    std::unordered_map<int, std::string> token_of_;
-    std::unordered_map<std::uint64_t, Merge> merges_;  ///< by both ids
+    BytePairs pairs_;
     std::vector<std::pair<std::string, int>> raw_specials_, normalized_specials_;
     std::unordered_map<int, int>
         placeholder_lengths_;  ///< ids that stand for several, by the first
-    int largest_id_ = 0;
 };
 
 }  // namespace item3d

@@ -37,6 +37,54 @@ int contraction_length(const icu::UnicodeString& text, int at) {
     return 0;
 }
 
+/// Appends the lower case of one letter, whatever stands beside it.
+void append_lower(icu::UnicodeString& text, UChar32 c) {
+    // U+0130 is the one letter whose lower case is two code points.
+    if (c == 0x130)
+        text.append(static_cast<UChar32>('i')).append(static_cast<UChar32>(0x307));
+    else
+        text.append(u_tolower(c));
+}
+
+bool is_control(UChar32 c) {
+    const auto other = U_GC_CC_MASK | U_GC_CF_MASK | U_GC_CS_MASK | U_GC_CO_MASK;
+    return c == 0 || c == 0xfffd || (U_GET_GC_MASK(c) & other) != 0;
+}
+
+/// BERT's idea of punctuation: also what ASCII has of symbols.
+bool is_punctuation(UChar32 c) {
+    const bool ascii = (c >= '!' && c <= '/') || (c >= ':' && c <= '@') || (c >= '[' && c <= '`') ||
+                       (c >= '{' && c <= '~');
+    return ascii || (U_GET_GC_MASK(c) & U_GC_P_MASK) != 0;
+}
+
+/// The blocks that BERT's own tokenizer lists; newer extensions are not among them.
+bool is_ideograph(UChar32 c) {
+    return (c >= 0x4e00 && c <= 0x9fff) || (c >= 0x3400 && c <= 0x4dbf) ||
+           (c >= 0x20000 && c <= 0x2a6df) || (c >= 0x2a700 && c <= 0x2b73f) ||
+           (c >= 0x2b740 && c <= 0x2b81f) || (c >= 0x2b920 && c <= 0x2ceaf) ||
+           (c >= 0xf900 && c <= 0xfaff) || (c >= 0x2f800 && c <= 0x2fa1f);
+}
+
+/// Calls f for each code point.
+template <typename F>
+void for_each_code_point(const icu::UnicodeString& text, const F& f) {
+    for (int i = 0; i < text.length(); i = text.moveIndex32(i, 1))
+        f(text.char32At(i));
+}
+
+/// The end of the run of characters from `at` on that belong.
+template <typename F>
+int end_of_run(const icu::UnicodeString& text, int at, const F& belongs) {
+    while (at < text.length() && belongs(text.char32At(at)))
+        at = text.moveIndex32(at, 1);
+    return at;
+}
+
+bool is_symbol(UChar32 c) {
+    return !is_space(c) && !is_letter(c) && !is_number(c);
+}
+
 }  // namespace
 
 std::string normalize_for_clip(const std::string& text) {
@@ -47,20 +95,13 @@ std::string normalize_for_clip(const std::string& text) {
 
     icu::UnicodeString result;
     bool after_space = false;
-    for (int i = 0; i < composed.length(); i = composed.moveIndex32(i, 1)) {
-        const UChar32 c = composed.char32At(i);
-        if (is_space(c)) {
-            if (!after_space) result.append(static_cast<UChar32>(' '));
-            after_space = true;
-            continue;
-        }
-        after_space = false;
-        // U+0130 is the one letter whose lower case is two code points.
-        if (c == 0x130)
-            result.append(static_cast<UChar32>('i')).append(static_cast<UChar32>(0x307));
-        else
-            result.append(u_tolower(c));
-    }
+    for_each_code_point(composed, [&](UChar32 c) {
+        if (!is_space(c))
+            append_lower(result, c);
+        else if (!after_space)
+            result.append(static_cast<UChar32>(' '));
+        after_space = is_space(c);
+    });
     return to_utf8(result);
 }
 
@@ -72,12 +113,6 @@ std::vector<std::string> split_for_clip(const std::string& utf8) {
         pieces.push_back(to_utf8(text.tempSubStringBetween(at, end)));
         at = end;
     };
-    const auto run = [&](const auto& belongs) {
-        int end = at;
-        while (end < text.length() && belongs(text.char32At(end)))
-            end = text.moveIndex32(end, 1);
-        return end;
-    };
     while (at < text.length()) {
         const UChar32 c = text.char32At(at);
         if (is_space(c)) {
@@ -85,12 +120,81 @@ std::vector<std::string> split_for_clip(const std::string& utf8) {
         } else if (const int length = c == '\'' ? contraction_length(text, at) : 0) {
             emit(at + length);
         } else if (is_letter(c)) {
-            emit(run(is_letter));
+            emit(end_of_run(text, at, is_letter));
         } else if (is_number(c)) {
             emit(text.moveIndex32(at, 1));
         } else {
-            emit(run([](UChar32 d) { return !is_space(d) && !is_letter(d) && !is_number(d); }));
+            emit(end_of_run(text, at, is_symbol));
         }
+    }
+    return pieces;
+}
+
+std::vector<std::string> split_for_gpt2(const std::string& utf8) {
+    const icu::UnicodeString text = icu::UnicodeString::fromUTF8(utf8);
+    std::vector<std::string> pieces;
+    for (int at = 0; at < text.length();) {
+        const int word = text[at] == ' ' ? at + 1 : at;  // a space belongs to the word behind it
+        const UChar32 c = word < text.length() ? text.char32At(word) : ' ';
+        int end = at;
+        if (text[at] == '\'' && contraction_length(text, at) > 0) {
+            end = at + contraction_length(text, at);
+        } else if (is_letter(c)) {
+            end = end_of_run(text, word, is_letter);
+        } else if (is_number(c)) {
+            end = end_of_run(text, word, is_number);
+        } else if (!is_space(c)) {
+            end = end_of_run(text, word, is_symbol);
+        } else {
+            end = end_of_run(text, at, is_space);
+            const int last = text.moveIndex32(end, -1);
+            if (end < text.length() && last > at) end = last;  // what comes next may want the last
+        }
+        pieces.push_back(to_utf8(text.tempSubStringBetween(at, end)));
+        at = end;
+    }
+    return pieces;
+}
+
+std::string normalize_for_bert(const std::string& utf8, const BertNormalization& options) {
+    icu::UnicodeString clean;
+    for_each_code_point(icu::UnicodeString::fromUTF8(utf8), [&](UChar32 c) {
+        const bool blank = is_space(c);  // tabs and line ends, which are control characters too
+        if (!blank && is_control(c)) return;
+        const bool alone = options.separate_ideographs && is_ideograph(c);
+        if (alone) clean.append(static_cast<UChar32>(' '));
+        clean.append(blank ? static_cast<UChar32>(' ') : c);
+        if (alone) clean.append(static_cast<UChar32>(' '));
+    });
+    if (options.strip_accents) {
+        UErrorCode status = U_ZERO_ERROR;
+        clean = icu::Normalizer2::getNFDInstance(status)->normalize(clean, status);
+        ITEM3D_CHECK(U_SUCCESS(status), "ICU has no normalisation data");
+    }
+    icu::UnicodeString result;
+    for_each_code_point(clean, [&](UChar32 c) {
+        if (options.strip_accents && u_charType(c) == U_NON_SPACING_MARK) return;
+        if (options.lower_case)
+            append_lower(result, c);
+        else
+            result.append(c);
+    });
+    return to_utf8(result);
+}
+
+std::vector<std::string> split_for_bert(const std::string& utf8) {
+    const icu::UnicodeString text = icu::UnicodeString::fromUTF8(utf8);
+    std::vector<std::string> pieces;
+    for (int at = 0; at < text.length();) {
+        const UChar32 c = text.char32At(at);
+        int end = text.moveIndex32(at, 1);
+        if (!is_space(c)) {
+            if (!is_punctuation(c))
+                end = end_of_run(text, at,
+                                 [](UChar32 d) { return !is_space(d) && !is_punctuation(d); });
+            pieces.push_back(to_utf8(text.tempSubStringBetween(at, end)));
+        }
+        at = end;
     }
     return pieces;
 }

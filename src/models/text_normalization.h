@@ -1,4 +1,4 @@
-// Unicode steps of CLIP's tokenizer, on UTF-8 strings.
+// Unicode steps of the tokenizers, on UTF-8 strings.
 #pragma once
 
 #include <string>
@@ -11,6 +11,21 @@ std::string normalize_for_clip(const std::string& text);
 
 /// Splits as the regular expression 's|'t|'re|'ve|'m|'ll|'d|\p{L}+|\p{N}|[^\s\p{L}\p{N}]+ matches.
 std::vector<std::string> split_for_clip(const std::string& text);
+
+/// Splits as GPT-2's regular expression matches, which keeps every character:
+/// 's|'t|'re|'ve|'m|'ll|'d| ?\p{L}+| ?\p{N}+| ?[^\s\p{L}\p{N}]+|\s+(?!\S)|\s+
+std::vector<std::string> split_for_gpt2(const std::string& text);
+
+/// BERT's: control characters go, white space becomes a space, CJK ideographs stand alone, accents
+/// go (NFD without its non-spacing marks), lower case.
+struct BertNormalization {
+    bool lower_case = true;
+    bool strip_accents = true;
+    bool separate_ideographs = true;
+};
+std::string normalize_for_bert(const std::string& text, const BertNormalization& options);
+/// Words between white space, each punctuation character by itself.
+std::vector<std::string> split_for_bert(const std::string& text);
 
 /// Ill-formed parts become U+FFFD; white space at both ends goes.
 std::string to_valid_utf8(const std::string& bytes);
