@@ -43,6 +43,10 @@ void check(Case& golden) {
         if (name == "AutoencoderTiny") return check_autoencoder_tiny(golden);
         if (name == "CLIPTextModel" || name == "CLIPTextModelWithProjection")
             return check_clip_text(golden);
+        if (name == "CLIPModel") return check_clip_model(golden);
+        if (name == "CLIPVisionModelWithProjection") return check_clip_vision(golden);
+        if (name == "BlipForConditionalGeneration") return check_blip(golden);
+        if (name == "Blip2ForConditionalGeneration") return check_blip2(golden);
         reject(folder / "config.json", name);
     }
     if (fs::exists(folder / "model_index.json")) {

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace item3d::parity {
 
@@ -71,11 +72,19 @@ class Case {
     bool compared_ = false;
 };
 
+/// The pictures that meta.json lists through each of its image processors; returns what the one in
+/// the case's own folder gave, [1, 3, h, w] each.
+std::vector<torch::Tensor> compare_image_processors(Case& golden);
+
 void check_unet(Case& golden);
 void check_autoencoder_kl(Case& golden);
 void check_autoencoder_tiny(Case& golden);
 void check_clip_text(Case& golden);
 void check_clip_tokenizer(Case& golden);
+void check_clip_vision(Case& golden);
+void check_clip_model(Case& golden);
+void check_blip(Case& golden);
+void check_blip2(Case& golden);
 void check_pipeline(Case& golden);
 void check_schedulers(Case& golden);
 void check_relative_direction(Case& golden);

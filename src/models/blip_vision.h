@@ -1,0 +1,49 @@
+// The vision transformer of BLIP (Li et al. 2022) and BLIP-2 (Li et al. 2023), as transformers'
+// BlipVisionModel and Blip2VisionModel lay it out.
+#pragma once
+
+#include "item3d/models/config.h"
+
+#include <torch/nn/module.h>
+#include <torch/nn/modules/conv.h>
+#include <torch/nn/modules/normalization.h>
+#include <torch/types.h>
+
+#include <memory>
+#include <vector>
+
+namespace item3d {
+
+struct BlipVisionConfig {
+    int hidden_size = 768;
+    int intermediate_size = 3072;
+    int num_hidden_layers = 12;
+    int num_attention_heads = 12;
+    int image_size = 384;  ///< pixels a side
+    int patch_size = 16;
+    double layer_norm_eps = 1e-5;
+
+    /// Keys that are missing keep the values of `defaults`. Throws InputError.
+    static BlipVisionConfig from_config(const Config& config, const BlipVisionConfig& defaults);
+    int tokens() const;  ///< patches and the class token
+    double least_parameters() const;
+};
+
+class BlipVisionModelImpl : public torch::nn::Module {
+  public:
+    explicit BlipVisionModelImpl(const BlipVisionConfig& config);
+    /// pixel_values [N, 3, image_size, image_size] -> [N, tokens(), hidden_size], after the final
+    /// layer norm.
+    torch::Tensor forward(const torch::Tensor& pixel_values);
+
+  private:
+    class Layer;
+    BlipVisionConfig config_;
+    torch::Tensor class_embedding_, position_embedding_;
+    torch::nn::Conv2d patch_embedding_{nullptr};
+    torch::nn::LayerNorm post_norm_{nullptr};
+    std::vector<std::shared_ptr<Layer>> layers_;
+};
+TORCH_MODULE(BlipVisionModel);
+
+}  // namespace item3d

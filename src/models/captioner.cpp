@@ -1,0 +1,132 @@
+#include "item3d/models/captioner.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/models/blip.h"
+#include "item3d/models/blip2.h"
+#include "item3d/models/caption_tokenizer.h"
+#include "item3d/models/image_processor.h"
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Everything small is read before gigabytes of weights are.
+ImageProcessor load_processor(const fs::path& folder, int image_size) {
+    const ImageProcessor processor = ImageProcessor::load(folder);
+    // Two shapes: what keeps the sides' ratio would not make squares of both.
+    for (const int width : {image_size, 2 * image_size})
+        if (processor.output_size(image_size, width) != std::array<int, 2>{image_size, image_size})
+            throw InputError((folder / "preprocessor_config.json").string(),
+                             fmt::format("does not bring pictures to the {0} x {0} pixels of "
+                                         "config.json's image_size",
+                                         image_size));
+    return processor;
+}
+
+void check_tokenizer(const fs::path& file, const CaptionTokenizer& tokenizer, int vocab_size) {
+    if (tokenizer.largest_id() >= vocab_size)
+        throw InputError(file.string(),
+                         fmt::format("has id {}, but the network knows {} tokens",
+                                     tokenizer.largest_id(), vocab_size),
+                         "the tokenizer does not belong to this model");
+}
+
+DecodingOptions decoding_options(const CaptionOptions& options) {
+    DecodingOptions result;
+    result.beams = options.beams;
+    result.max_new_tokens = options.max_new_tokens;
+    return result;
+}
+
+torch::Tensor row(const std::vector<int>& ids) {
+    return torch::tensor(std::vector<std::int64_t>(ids.begin(), ids.end())).unsqueeze(0);
+}
+
+/// The text of the first row's tokens from `begin` on.
+std::string text_of(const CaptionTokenizer& tokenizer, const Decoded& decoded, int begin) {
+    const torch::Tensor tokens = decoded.tokens[0].contiguous();
+    const auto* first = tokens.const_data_ptr<std::int64_t>();
+    return strip_white_space(
+        tokenizer.decode(std::vector<int>(first + begin, first + tokens.numel())));
+}
+
+class BlipCaptioner : public Captioner {
+  public:
+    BlipCaptioner(const fs::path& folder, const BlipConfig& config, torch::Device device,
+                  torch::Dtype dtype)
+        : tokenizer_(BertTokenizer::load(folder)),
+          processor_(load_processor(folder, config.vision.image_size)),
+          device_(device) {
+        check_tokenizer(folder / "vocab.txt", tokenizer_, config.vocab_size);
+        model_ = load_blip(folder, device, dtype);
+    }
+    std::string caption(const torch::Tensor& bytes, const CaptionOptions& options) const override {
+        // The network's own first token for [CLS], and no [SEP] yet.
+        std::vector<int> prompt = tokenizer_.encode(options.prefix);
+        prompt.front() = model_->config().bos_token_id;
+        prompt.pop_back();
+        const Decoded decoded = write_captions(model_, processor_.process(bytes).to(device_),
+                                               row(prompt), decoding_options(options));
+        return text_of(tokenizer_, decoded, 1);
+    }
+
+  private:
+    BertTokenizer tokenizer_;
+    ImageProcessor processor_;
+    torch::Device device_;
+    BlipModel model_{nullptr};
+};
+
+class Blip2Captioner : public Captioner {
+  public:
+    Blip2Captioner(const fs::path& folder, const Blip2Config& config, torch::Device device,
+                   torch::Dtype dtype)
+        : tokenizer_(Gpt2Tokenizer::load(folder)),
+          processor_(load_processor(folder, config.vision.image_size)),
+          end_token_(config.text.eos_token_id),
+          device_(device) {
+        check_tokenizer(folder / "vocab.json", tokenizer_, config.text.vocab_size);
+        const fs::path generation = folder / "generation_config.json";
+        if (fs::exists(generation))
+            end_token_ = Config::read(generation).integers("eos_token_id", {end_token_}).front();
+        model_ = load_blip2(folder, device, dtype);
+    }
+    std::string caption(const torch::Tensor& bytes, const CaptionOptions& options) const override {
+        const Blip2Config& config = model_->config();
+        std::vector<int> prompt(config.num_query_tokens, config.image_token_index);
+        for (const int id : tokenizer_.encode(options.prefix))
+            if (id != config.image_token_index) prompt.push_back(id);
+        DecodingOptions decoding = decoding_options(options);
+        decoding.end_token = end_token_;
+        const Decoded decoded = write_captions(model_, processor_.process(bytes).to(device_),
+                                               row(prompt), {}, decoding);
+        return text_of(tokenizer_, decoded, config.num_query_tokens);
+    }
+
+  private:
+    Gpt2Tokenizer tokenizer_;
+    ImageProcessor processor_;
+    int end_token_;
+    torch::Device device_;
+    Blip2Model model_{nullptr};
+};
+
+}  // namespace
+
+std::unique_ptr<Captioner> load_captioner(const fs::path& folder, torch::Device device,
+                                          torch::Dtype dtype) {
+    const Config config = Config::read(folder / "config.json");
+    const auto names = config.texts("architectures", {});
+    const std::string name = names.empty() ? "" : names.front();
+    if (name == "BlipForConditionalGeneration")
+        return std::make_unique<BlipCaptioner>(folder, BlipConfig::from_config(config), device,
+                                               dtype);
+    if (name == "Blip2ForConditionalGeneration")
+        return std::make_unique<Blip2Captioner>(folder, Blip2Config::from_config(config), device,
+                                                dtype);
+    config.fail("architectures", "BlipForConditionalGeneration or Blip2ForConditionalGeneration");
+}
+
+}  // namespace item3d

@@ -1,0 +1,34 @@
+// Sentences for pictures, by BLIP or BLIP-2.
+#pragma once
+
+#include <torch/types.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace item3d {
+
+struct CaptionOptions {
+    std::string prefix;       ///< what the caption goes on from, as in "a photo of"
+    int beams = 1;            ///< 1: greedy
+    int max_new_tokens = 30;  ///< behind the prefix
+};
+
+class Captioner {
+  public:
+    virtual ~Captioner() = default;
+    /// bytes [H, W, C] as ImageProcessor takes them. The caption, the prefix included. Throws
+    /// InputError for a prefix that is too long.
+    virtual std::string caption(const torch::Tensor& bytes,
+                                const CaptionOptions& options) const = 0;
+};
+
+/// Reads a folder of transformers' BlipForConditionalGeneration or Blip2ForConditionalGeneration
+/// (with OPT): config.json, model.*, preprocessor_config.json and the tokenizer's files. Throws
+/// InputError naming the file for anything missing or unsupported.
+std::unique_ptr<Captioner> load_captioner(const std::filesystem::path& folder,
+                                          torch::Device device = torch::kCPU,
+                                          torch::Dtype dtype = torch::kFloat32);
+
+}  // namespace item3d
