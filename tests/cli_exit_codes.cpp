@@ -7,7 +7,8 @@ namespace {
 TEST_F(Program, HelpAndVersionGoToStdout) {
     const Result help = run("--help");
     EXPECT_EQ(help.code, 0);
-    for (const char* command : {"edit", "render", "generate", "prior", "bench"}) {
+    for (const char* command :
+         {"edit", "render", "generate", "caption", "score", "prior", "bench"}) {
         EXPECT_NE(help.out.find(command), std::string::npos) << command;
         EXPECT_EQ(run(std::string(command) + " --help").code, 0) << command;
     }

@@ -130,6 +130,8 @@ void add_edit_command(CLI::App& app) {
     command->add_option("--prior", options->prior,
                         "Diffusion model: a folder in the diffusers layout, or a name (item3d "
                         "prior pull); without it, the embedded one");
+    command->add_option("--clip", request.clip,
+                        "CLIP model in the transformers layout: scores of the result, as of score");
     command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
     command->add_option("--precision", request.precision, "Of the networks")
         ->check(CLI::IsMember(precision_names()))

@@ -6,7 +6,10 @@
 #include "item3d/scene/camera.h"
 #include "item3d/scene/model.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -24,6 +27,14 @@ inline Camera default_view(const Model& model, float aspect) {
         points.insert(points.end(), primitive.positions.begin(), primitive.positions.end());
     return framing_camera(points, default_azimuth, default_elevation, default_field_of_view,
                           aspect);
+}
+
+/// ".png" of "a.PNG".
+inline std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
 }
 
 struct PictureSize {

@@ -44,13 +44,6 @@ struct RenderCommand : CommonOptions {
     int samples = 0;  ///< along each side of a pixel; 0: 2, or 1 where that is too large to draw
 };
 
-std::string lower_extension(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 /// Where the pictures go: one named file, or a folder with a file for each camera.
 struct Destination {
     fs::path path;

@@ -13,6 +13,8 @@ nlohmann::json edit_model(const EditRequest& request) {
     make_output_folder(request.output);
 
     EditScene scene = load_scene(request);
+    std::optional<Clip> clip;  // needed at the end, but a folder without one is told at once
+    if (!request.clip.empty()) clip = Clip::load(request.clip);
     times.end_stage("load");
 
     EditState state = begin_or_resume(request, scene);
@@ -29,7 +31,7 @@ nlohmann::json edit_model(const EditRequest& request) {
     const EditedModel edited = bake_and_save(request, scene, state);
     times.end_stage("bake");
 
-    const Pictures pictures = render_pictures(request, scene, edited);
+    const Pictures pictures = render_pictures(request, scene, edited, clip);
     times.end_stage("report");
 
     return write_summary(request, scene, state, times, iteration_times, edited, pictures);

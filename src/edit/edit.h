@@ -16,6 +16,7 @@ struct EditRequest {
     std::filesystem::path model;
     std::filesystem::path prior;   ///< folder in the diffusers layout
     std::filesystem::path output;  ///< folder, made when it is not there
+    std::filesystem::path clip;    ///< CLIP model that scores the result; empty: none
     EditSettings settings;
     bool resume = false;
     /// Stop as an interrupt would when this many iterations are done; 0: run to the end.

@@ -6,8 +6,10 @@
 #include "item3d/edit/scene.h"
 #include "item3d/edit/surface_means.h"
 #include "item3d/edit/timing.h"
+#include "item3d/evaluate/clip_score.h"
 #include "item3d/evaluate/report.h"
 
+#include <optional>
 #include <vector>
 
 namespace item3d {
@@ -28,11 +30,13 @@ struct Pictures {
     SurfaceMeans means_before;
     SurfaceMeans means_after;
     double detail_kept = 0;  ///< correlation of luminance detail before and after, see detail.h
+    std::optional<ClipScores> clip;
 };
 
-/// Draws the same views of both models; writes before.png, after.png and turntable.webp.
+/// Draws the same views of both models; writes before.png, after.png and turntable.webp. With
+/// `clip`, scores them too.
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
-                         const EditedModel& edited);
+                         const EditedModel& edited, const std::optional<Clip>& clip);
 
 /// Writes report.html and edit.json; returns the latter's content.
 nlohmann::json write_summary(const EditRequest& request, const EditScene& scene,

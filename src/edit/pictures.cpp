@@ -2,7 +2,7 @@
 #include "item3d/edit/outputs.h"
 #include "item3d/evaluate/animation.h"
 #include "item3d/evaluate/contact_sheet.h"
-#include "item3d/evaluate/detail.h"
+#include "item3d/evaluate/model_pictures.h"
 #include "item3d/evaluate/picture.h"
 #include "item3d/scene/environment.h"
 #include "item3d/scene/io/save.h"
@@ -14,26 +14,7 @@ constexpr int view_count = 6;
 constexpr int view_pixels = 384;
 constexpr int turntable_frames = 30;
 constexpr int turntable_pixels = 288;
-constexpr float elevation = 0.32f;
-constexpr float field_of_view = 0.6f;
 const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
-
-/// [N, H, W, 4] linear, premultiplied. On the light's device.
-torch::Tensor draw(const Model& model, const EnvironmentLight& light,
-                   const std::vector<Camera>& cameras, int pixels) {
-    const torch::NoGradGuard no_grad;
-    RenderOptions options;
-    options.width = pixels;
-    options.height = pixels;
-    const torch::Device device = light.diffuse.device();
-    const Geometry geometry = Geometry::from_model(model, device);
-    const TexturedMaterials materials(model, device);
-    std::vector<torch::Tensor> pictures;  // one view at a time keeps memory low
-    for (const Camera& camera : cameras) {
-        pictures.push_back(render(geometry, materials, light, {camera}, options));
-    }
-    return torch::cat(pictures);
-}
 
 std::vector<Image> to_pictures(const torch::Tensor& linear) {
     std::vector<Image> pictures;
@@ -61,23 +42,14 @@ std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
     return images;
 }
 
-double detail_kept(const torch::Tensor& before, const torch::Tensor& after) {
-    const auto planes = [](const torch::Tensor& linear) {
-        return linear_to_srgb(linear.narrow(3, 0, 3).clamp(0, 1))
-            .permute({0, 3, 1, 2})
-            .contiguous();
-    };
-    return detail_correlation(planes(before), planes(after), before.select(3, 3));
-}
-
 }  // namespace
 
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
-                         const EditedModel& edited) {
+                         const EditedModel& edited, const std::optional<Clip>& clip) {
     const EnvironmentLight light = prefilter(load_light(request.settings.light), 256, scene.device);
-    const auto cameras = turntable(scene.model.bounds(), view_count, elevation, field_of_view);
-    const torch::Tensor before = draw(scene.model, light, cameras, view_pixels);
-    const torch::Tensor after = draw(edited.model, light, cameras, view_pixels);
+    const auto cameras = picture_cameras(scene.model, view_count);
+    const torch::Tensor before = draw_pictures(scene.model, light, cameras, view_pixels);
+    const torch::Tensor after = draw_pictures(edited.model, light, cameras, view_pixels);
 
     Pictures pictures;
     const auto before_pictures = to_pictures(before);
@@ -88,9 +60,8 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     pictures.after = to_report(after_pictures);
 
     std::vector<Image> frames;
-    for (const Camera& camera :
-         turntable(scene.model.bounds(), turntable_frames, elevation, field_of_view)) {
-        const torch::Tensor frame = draw(edited.model, light, {camera}, turntable_pixels);
+    for (const Camera& camera : picture_cameras(scene.model, turntable_frames)) {
+        const torch::Tensor frame = draw_pictures(edited.model, light, {camera}, turntable_pixels);
         frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
     }
     pictures.turntable = {request.settings.to, encode_animation(frames)};
@@ -99,6 +70,9 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     pictures.means_before = surface_means(scene.model, scene.materials);
     pictures.means_after = surface_means(edited.model, scene.materials);
     pictures.detail_kept = detail_kept(before, after);
+    if (clip)
+        pictures.clip = clip_scores(*clip, over_white(before), over_white(after),
+                                    request.settings.from, request.settings.to);
     return pictures;
 }
 

@@ -74,13 +74,19 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Stag
                     {"seconds", seconds_json(times)},
                     {"seconds_per_iteration", iteration_json(iteration_times)},
                     {"peak_memory_bytes", peak_memory_bytes()}};
+    if (pictures.clip) {
+        json clip = pictures.clip->mean;
+        clip["model"] = request.clip.string();
+        clip["views"] = pictures.clip->views;
+        summary["scores"]["clip"] = std::move(clip);
+    }
     return summary;
 }
 
 std::vector<Score> scores_of(const Pictures& pictures) {
     const SurfaceMeans& before = pictures.means_before;
     const SurfaceMeans& after = pictures.means_after;
-    return {
+    std::vector<Score> scores = {
         {"Mean base colour", hex_color(after.base_color), "was " + hex_color(before.base_color)},
         {"Metallic", fmt::format("{:.2f}", after.metallic),
          fmt::format("was {:.2f}; 1 is bare metal", before.metallic)},
@@ -88,6 +94,15 @@ std::vector<Score> scores_of(const Pictures& pictures) {
          fmt::format("was {:.2f}; 0 is a mirror", before.roughness)},
         {"Detail kept", fmt::format("{:.2f}", pictures.detail_kept),
          "correlation of luminance detail before and after; 1 keeps every line"}};
+    if (pictures.clip) {
+        const ClipScore& clip = pictures.clip->mean;
+        scores.push_back({"CLIP, target", fmt::format("{:.3f}", clip.global),
+                          fmt::format("was {:.3f}; cosine of pictures and target sentence",
+                                      clip.global_before)});
+        scores.push_back({"CLIP, direction", fmt::format("{:.3f}", clip.directional),
+                          "cosine of what changed in the pictures and in the sentence"});
+    }
+    return scores;
 }
 
 Curve curve_of(const std::string& name, const std::vector<float>& values) {

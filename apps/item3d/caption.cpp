@@ -1,0 +1,115 @@
+// item3d caption: sentences for a picture, or for a model seen from all around.
+#include "command.h"
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/evaluate/model_pictures.h"
+#include "item3d/evaluate/picture.h"
+#include "item3d/models/captioner.h"
+#include "item3d/models/precision.h"
+#include "item3d/scene/environment.h"
+#include "item3d/scene/io/load.h"
+#include "picture_options.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+namespace {
+
+struct CaptionCommand : CommonOptions {
+    std::string input;
+    std::string captioner;
+    std::string precision = "auto";
+    std::string light = "studio";
+    int views = 4;
+    CaptionOptions caption;
+};
+
+constexpr int view_pixels = 512;
+
+torch::Tensor to_bytes(const torch::Tensor& picture) {
+    return (picture.nan_to_num(0).clamp(0, 1) * 255).round().to(torch::kUInt8);
+}
+
+/// The pictures to be captioned, bytes [H, W, C] each: one, or one a view of a model.
+std::vector<torch::Tensor> load_pictures(const CaptionCommand& options, torch::Device device) {
+    const std::string extension = lower_extension(options.input);
+    if (extension != ".glb" && extension != ".gltf" && extension != ".obj") {
+        const Image image = load_image(options.input);
+        const bool linear = extension == ".exr" || extension == ".hdr";
+        return {to_bytes(to_tensor(linear ? to_display(image) : image))};
+    }
+    const Model model = load_model(options.input);
+    const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
+    const torch::Tensor views = over_white(
+        draw_pictures(model, light, picture_cameras(model, options.views), view_pixels));
+    std::vector<torch::Tensor> pictures;
+    for (const torch::Tensor& view : views.cpu().unbind(0))
+        pictures.push_back(to_bytes(view.permute({1, 2, 0})));
+    return pictures;
+}
+
+void run_caption(const CaptionCommand& options, torch::Device device) {
+    const std::vector<torch::Tensor> pictures = load_pictures(options, device);
+    const std::unique_ptr<Captioner> captioner =
+        load_captioner(options.captioner, device, choose_precision(options.precision, device));
+
+    nlohmann::json captions = nlohmann::json::array();
+    Progress progress("caption", static_cast<std::int64_t>(pictures.size()));
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        captions.push_back(captioner->caption(pictures[i], options.caption));
+        progress.update(static_cast<std::int64_t>(i + 1));
+    }
+    progress.finish();
+    if (options.json) {
+        print_json({{"file", options.input},
+                    {"captioner", options.captioner},
+                    {"prefix", options.caption.prefix},
+                    {"beams", options.caption.beams},
+                    {"captions", captions}});
+    } else {
+        for (const auto& caption : captions)
+            fmt::print("{}\n", caption.get<std::string>());
+    }
+}
+
+}  // namespace
+
+void add_caption_command(CLI::App& app) {
+    auto options = std::make_shared<CaptionCommand>();
+    CLI::App* command =
+        add_command(app, "caption", "Describe a picture or a model in words", *options);
+    command
+        ->add_option("IMAGE|MODEL", options->input,
+                     "A .png, .jpg, .hdr or .exr picture, or a .glb, .gltf or .obj model")
+        ->required();
+    command
+        ->add_option("--captioner", options->captioner,
+                     "A folder with BLIP or BLIP-2 (OPT) in the transformers layout")
+        ->required();
+    command->add_option("--prefix", options->caption.prefix,
+                        "What the caption goes on from, as in \"a photo of\"");
+    command->add_option("--beams", options->caption.beams, "Of the beam search; 1: greedy")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    command
+        ->add_option("--max-tokens", options->caption.max_new_tokens,
+                     "Longest caption, in tokens behind the prefix")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command->add_option("--views", options->views, "Around a model: one caption for each")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command
+        ->add_option("--light", options->light,
+                     "On a model: studio, noon, sunset, overcast, night, or an .hdr or .exr file")
+        ->capture_default_str();
+    command->add_option("--precision", options->precision, "Of the networks: auto, fp32 or bf16")
+        ->capture_default_str();
+    command->callback([options] { run_caption(*options, start_command(*options)); });
+}
+
+}  // namespace item3d

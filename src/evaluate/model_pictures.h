@@ -1,0 +1,29 @@
+// Pictures of a whole model from all around, for reports, scores and captions.
+#pragma once
+
+#include "item3d/render/textured.h"
+#include "item3d/scene/camera.h"
+#include "item3d/scene/model.h"
+
+#include <torch/types.h>
+
+#include <vector>
+
+namespace item3d {
+
+/// `count` cameras around the model, a little above it.
+std::vector<Camera> picture_cameras(const Model& model, int count);
+
+/// [N, pixels, pixels, 4] linear radiance, premultiplied, on the light's device; one view at a time
+/// to keep memory low.
+torch::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
+                            const std::vector<Camera>& cameras, int pixels);
+
+/// Those over white, as networks that were trained on photographs like them best: [N, 3, H, W] sRGB
+/// in [0, 1].
+torch::Tensor over_white(const torch::Tensor& linear);
+
+/// detail_correlation (detail.h) of two such sets of pictures, where the first shows the model.
+double detail_kept(const torch::Tensor& before, const torch::Tensor& after);
+
+}  // namespace item3d
