@@ -34,7 +34,7 @@ DecodingOptions search(int beams, int tokens) {
     result.beams = beams;
     result.max_new_tokens = tokens;
     result.end_token = end_of_text;
-    result.pad_token = 9;
+    result.pad_token = 1;
     return result;
 }
 
@@ -43,7 +43,7 @@ TEST(Decoding, GreedyTakesTheLikeliestAndPads) {
         {{0.0, 1.0, 0.0, 0.0}, {0.0, 0.0, 1.0, 0.0}, {0.0, 0.0, 0.0, 1.0}, {1.0, 0.0, 0.0, 0.0}});
     Chain chain(steps);
     const Decoded decoded = decode(chain, torch::tensor({{0}, {2}}), search(1, 5));
-    EXPECT_TRUE(decoded.tokens.equal(torch::tensor({{0, 1, 2, 3}, {2, 3, 9, 9}})));
+    EXPECT_TRUE(decoded.tokens.equal(torch::tensor({{0, 1, 2, 3}, {2, 3, 1, 1}})));
     EXPECT_FALSE(decoded.scores.defined());
 }
 

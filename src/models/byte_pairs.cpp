@@ -74,8 +74,9 @@ BytePairs::BytePairs(Vocabulary vocabulary, Merges merges, std::string word_end,
 }
 
 BytePairs BytePairs::load(const std::filesystem::path& folder, const std::string& word_end) {
-    return BytePairs(read_vocabulary(folder / "vocab.json"), read_merges(folder / "merges.txt"),
-                     word_end, (folder / "vocab.json").string());
+    Vocabulary vocabulary = read_vocabulary(folder / "vocab.json");
+    return BytePairs(std::move(vocabulary), read_merges(folder / "merges.txt"), word_end,
+                     (folder / "vocab.json").string());
 }
 
 void BytePairs::save(const std::filesystem::path& folder) const {

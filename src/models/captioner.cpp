@@ -7,6 +7,8 @@
 #include "item3d/models/caption_tokenizer.h"
 #include "item3d/models/image_processor.h"
 
+#include <algorithm>
+
 namespace item3d {
 namespace {
 
@@ -44,12 +46,14 @@ torch::Tensor row(const std::vector<int>& ids) {
     return torch::tensor(std::vector<std::int64_t>(ids.begin(), ids.end())).unsqueeze(0);
 }
 
-/// The text of the first row's tokens from `begin` on.
+/// The text of the first row's tokens from `begin` on, one line.
 std::string text_of(const CaptionTokenizer& tokenizer, const Decoded& decoded, int begin) {
     const torch::Tensor tokens = decoded.tokens[0].contiguous();
     const auto* first = tokens.const_data_ptr<std::int64_t>();
-    return strip_white_space(
-        tokenizer.decode(std::vector<int>(first + begin, first + tokens.numel())));
+    std::string text = tokenizer.decode(std::vector<int>(first + begin, first + tokens.numel()));
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    return strip_white_space(text);
 }
 
 class BlipCaptioner : public Captioner {

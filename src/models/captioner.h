@@ -18,8 +18,8 @@ struct CaptionOptions {
 class Captioner {
   public:
     virtual ~Captioner() = default;
-    /// bytes [H, W, C] as ImageProcessor takes them. The caption, the prefix included. Throws
-    /// InputError for a prefix that is too long.
+    /// bytes [H, W, C] as ImageProcessor takes them. The caption in one line, the prefix
+    /// included. Throws InputError for a prefix that is too long.
     virtual std::string caption(const torch::Tensor& bytes,
                                 const CaptionOptions& options) const = 0;
 };
