@@ -96,9 +96,9 @@ void multiply_add(benchmark::State& state, float (*run)(float), int lanes) {
             [=](std::int64_t i) { out[i] = run(0.5f + 1e-6f * static_cast<float>(i)); }, 16);
         benchmark::ClobberMemory();
     }
-    state.counters["flops"] =
-        benchmark::Counter(static_cast<double>(state.iterations() * count * steps * 2 * chains * lanes),
-                           benchmark::Counter::kIsRate);
+    state.counters["flops"] = benchmark::Counter(
+        static_cast<double>(state.iterations() * count * steps * 2 * chains * lanes),
+        benchmark::Counter::kIsRate);
 }
 BENCHMARK_CAPTURE(multiply_add, sse2, multiply_add_plain, 4)->UseRealTime();
 #if defined(__x86_64__)

@@ -71,9 +71,14 @@ Section geometry_section(const Folders& folders) {
         "where both see it, and our antialiased coverage against the reference's (512 samples a "
         "pixel), with 1, 2 x 2 and 4 x 4 of our own samples a pixel: largest difference, and the "
         "share of edge pixels within 1/16.";
-    section.columns = {"view",         "mask differs at", "depth, largest",
-                       "normal, 99 %", "normal, largest", "coverage, 1 sample",
-                       "coverage, 2 x 2", "coverage, 4 x 4"};
+    section.columns = {"view",
+                       "mask differs at",
+                       "depth, largest",
+                       "normal, 99 %",
+                       "normal, largest",
+                       "coverage, 1 sample",
+                       "coverage, 2 x 2",
+                       "coverage, 4 x 4"};
     const EnvironmentLight light = prefilter(torch::ones({6, 16, 16, 3}));
     for (std::size_t v = 0; v < views.cameras.size(); ++v) {
         const int view = static_cast<int>(v);
@@ -115,21 +120,18 @@ Section geometry_section(const Folders& folders) {
                     .select(2, 3);
             const torch::Tensor error = (alpha - coverage).abs();
             const double largest = error.max().item<double>();
-            const double within = (error.masked_select(edge) <= 1.0f / 16)
-                                      .to(torch::kFloat32)
-                                      .mean()
-                                      .item<double>();
+            const double within =
+                (error.masked_select(edge) <= 1.0f / 16).to(torch::kFloat32).mean().item<double>();
             cells.push_back(fmt::format("{:.3f}, {:.1f} %", largest, 100 * within));
             by_samples[std::to_string(samples)] = {{"largest", largest},
                                                    {"within_sixteenth", within}};
         }
         const auto differs = (seen != mask).sum().item<std::int64_t>();
-        section.rows.push_back({std::to_string(view),
-                                fmt::format("{} of {}", differs, mask.sum().item<std::int64_t>()),
-                                fmt::format("{:.1e}", depth_error),
-                                fmt::format("{:.2f}°", angle_99),
-                                fmt::format("{:.2f}°", angle.max().item<double>()),
-                                cells[0], cells[1], cells[2]});
+        section.rows.push_back(
+            {std::to_string(view),
+             fmt::format("{} of {}", differs, mask.sum().item<std::int64_t>()),
+             fmt::format("{:.1e}", depth_error), fmt::format("{:.2f}°", angle_99),
+             fmt::format("{:.2f}°", angle.max().item<double>()), cells[0], cells[1], cells[2]});
         section.numbers[fmt::format("view_{:02}", view)] = {
             {"mask_differs", differs},
             {"depth", depth_error},

@@ -1,5 +1,5 @@
-// item3d render --occlusion and --samples: off or usual unless asked for, and of use where something
-// is hidden or has edges.
+// item3d render --occlusion and --samples: off or usual unless asked for, and of use where
+// something is hidden or has edges.
 #include "cli_support.h"
 
 namespace item3d::testing {

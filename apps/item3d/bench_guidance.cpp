@@ -106,7 +106,9 @@ void add_bench_guidance(CLI::App& app) {
     auto options = std::make_shared<BenchGuidanceCommand>();
     CLI::App* command = add_command(
         app, "guidance", "Seconds and memory of one step of guidance with a prior", *options);
-    command->add_option("--prior", options->prior, "A folder in the diffusers layout, or a name; without it, the embedded one");
+    command->add_option(
+        "--prior", options->prior,
+        "A folder in the diffusers layout, or a name; without it, the embedded one");
     command->add_option("--precision", options->precision, "Of the networks")
         ->check(CLI::IsMember(precision_names()))
         ->capture_default_str();

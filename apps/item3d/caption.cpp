@@ -44,8 +44,8 @@ std::vector<torch::Tensor> load_pictures(const CaptionCommand& options, torch::D
     }
     const Model model = load_model(options.input);
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
-    const torch::Tensor views = over_white(
-        draw_pictures(model, light, picture_cameras(model, options.views), view_pixels));
+    const torch::Tensor views =
+        over_white(draw_pictures(model, light, picture_cameras(model, options.views), view_pixels));
     std::vector<torch::Tensor> pictures;
     for (const torch::Tensor& view : views.cpu().unbind(0))
         pictures.push_back(to_bytes(view.permute({1, 2, 0})));

@@ -61,7 +61,8 @@ void print_report(const PriorReport& report) {
     if (!report.memory.empty()) fmt::print("\n");
     for (const MemoryReport& memory : report.memory)
         fmt::print("  {}: {} of weights; an edit's peak is about {} (an estimate)\n",
-                   memory.precision, readable(memory.weights), readable(memory.edit_peak_estimate()));
+                   memory.precision, readable(memory.weights),
+                   readable(memory.edit_peak_estimate()));
     if (report.usable()) fmt::print("\nusable\n");
 }
 

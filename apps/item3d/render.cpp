@@ -100,8 +100,8 @@ int choose_samples(const RenderCommand& options, PictureSize size) {
     const int most = largest_side / std::max(size.width, size.height);
     if (options.samples == 0) return std::min(2, most);
     if (options.samples > most) {
-        throw UsageError(fmt::format("--samples {}: with this --size at most {}", options.samples,
-                                     most));
+        throw UsageError(
+            fmt::format("--samples {}: with this --size at most {}", options.samples, most));
     }
     return options.samples;
 }

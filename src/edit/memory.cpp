@@ -62,13 +62,15 @@ bool wants_low_memory(const EditRequest& request, torch::Dtype precision, torch:
     const bool low = request.memory == "low" || (request.memory == "auto" && need.high > free);
     const double wanted = low ? need.low : need.high;
     if (wanted > free)
-        warn(fmt::format("this edit may need {:.1f} GB, and {:.1f} GB of memory are free: {}a "
-                         "smaller --resolution or --batch needs less",
-                         wanted / gigabyte, free / gigabyte, low ? "" : "--memory low or "));
+        warn(
+            fmt::format("this edit may need {:.1f} GB, and {:.1f} GB of memory are free: {}a "
+                        "smaller --resolution or --batch needs less",
+                        wanted / gigabyte, free / gigabyte, low ? "" : "--memory low or "));
     else if (low && request.memory == "auto")
-        note(fmt::format("about {:.1f} GB would not fit into the {:.1f} GB that are free: --memory "
-                         "low, which takes longer",
-                         need.high / gigabyte, free / gigabyte));
+        note(
+            fmt::format("about {:.1f} GB would not fit into the {:.1f} GB that are free: --memory "
+                        "low, which takes longer",
+                        need.high / gigabyte, free / gigabyte));
     return low;
 }
 

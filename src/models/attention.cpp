@@ -19,8 +19,8 @@ torch::Tensor attention(const torch::Tensor& query, const torch::Tensor& key,
 
     const bool needs_gradient = torch::GradMode::is_enabled() &&
                                 (q.requires_grad() || k.requires_grad() || v.requires_grad());
-    // The plain form keeps its scores for the backward pass: of Stable Diffusion's 4,096 places they
-    // would be gigabytes.
+    // The plain form keeps its scores for the backward pass: of Stable Diffusion's 4,096 places
+    // they would be gigabytes.
     constexpr std::int64_t most_scores = 1 << 24;
     const bool small = rows * heads * query.size(1) * key.size(1) <= most_scores;
     torch::Tensor result;

@@ -1,7 +1,7 @@
 #include "item3d/core/error.h"
 #include "item3d/models/autoencoder.h"
-#include "item3d/models/unet_blocks.h"
 #include "item3d/models/recompute.h"
+#include "item3d/models/unet_blocks.h"
 #include "item3d/models/weights.h"
 
 #include <algorithm>
@@ -104,8 +104,10 @@ class AutoencoderKL::Encoder : public nn::Module {
         torch::Tensor x = conv_in_(images.to(conv_in_->weight.scalar_type()));
         for (Level& level : levels_) {
             for (const ResnetBlock& block : level.resnets)
-                x = recompute ? recomputed([block](const torch::Tensor& y) { return block->forward(y); }, x)
-                              : block->forward(x);
+                x = recompute
+                        ? recomputed([block](const torch::Tensor& y) { return block->forward(y); },
+                                     x)
+                        : block->forward(x);
             if (level.down) x = level.down(x);
         }
         return conv_out_(torch::silu(conv_norm_out_(mid_block_->forward(x))));

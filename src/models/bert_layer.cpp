@@ -16,12 +16,12 @@ nn::LayerNorm layer_norm(const BertLayerOptions& options) {
 BertAttentionImpl::BertAttentionImpl(const BertLayerOptions& options, int source_width)
     : heads_(options.heads) {
     auto projections = std::make_shared<nn::Module>("projections");
-    query_ = projections->register_module("query", LoadedLinear(options.width, options.width));
-    key_ = projections->register_module("key", LoadedLinear(source_width, options.width));
-    value_ = projections->register_module("value", LoadedLinear(source_width, options.width));
+    query_ = projections->register_module("query", torch::nn::Linear(options.width, options.width));
+    key_ = projections->register_module("key", torch::nn::Linear(source_width, options.width));
+    value_ = projections->register_module("value", torch::nn::Linear(source_width, options.width));
     register_module(options.attention_name, projections);
     auto output = std::make_shared<nn::Module>("output");
-    output_ = output->register_module("dense", LoadedLinear(options.width, options.width));
+    output_ = output->register_module("dense", torch::nn::Linear(options.width, options.width));
     norm_ = output->register_module("LayerNorm", layer_norm(options));
     register_module("output", output);
 }
@@ -43,11 +43,12 @@ BertLayerImpl::BertLayerImpl(const BertLayerOptions& options) {
     if (options.memory_width > 0)
         cross_ = register_module("crossattention", BertAttention(options, options.memory_width));
     auto feed_in = std::make_shared<nn::Module>("intermediate");
-    feed_in_ = feed_in->register_module("dense", LoadedLinear(options.width, options.intermediate));
+    feed_in_ =
+        feed_in->register_module("dense", torch::nn::Linear(options.width, options.intermediate));
     register_module("intermediate" + options.suffix, feed_in);
     auto feed_out = std::make_shared<nn::Module>("output");
     feed_out_ =
-        feed_out->register_module("dense", LoadedLinear(options.intermediate, options.width));
+        feed_out->register_module("dense", torch::nn::Linear(options.intermediate, options.width));
     norm_ = feed_out->register_module("LayerNorm", layer_norm(options));
     register_module("output" + options.suffix, feed_out);
 }

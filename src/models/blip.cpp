@@ -15,10 +15,10 @@ BlipModelImpl::BlipModelImpl(const BlipConfig& config) : config_(config) {
     const int width = config_.hidden_size;
     const auto norm = nn::LayerNormOptions({width}).eps(config_.layer_norm_eps);
     auto embeddings = std::make_shared<nn::Module>("embeddings");
-    words_ =
-        embeddings->register_module("word_embeddings", LoadedEmbedding(config_.vocab_size, width));
+    words_ = embeddings->register_module("word_embeddings",
+                                         torch::nn::Embedding(config_.vocab_size, width));
     positions_ = embeddings->register_module(
-        "position_embeddings", LoadedEmbedding(config_.max_position_embeddings, width));
+        "position_embeddings", torch::nn::Embedding(config_.max_position_embeddings, width));
     embedding_norm_ = embeddings->register_module("LayerNorm", nn::LayerNorm(norm));
     nn::ModuleList layers;
     BertLayerOptions options{width,
@@ -39,7 +39,7 @@ BlipModelImpl::BlipModelImpl(const BlipConfig& config) : config_(config) {
     bert->register_module("encoder", encoder);
 
     auto transform = std::make_shared<nn::Module>("transform");
-    head_ = transform->register_module("dense", LoadedLinear(width, width));
+    head_ = transform->register_module("dense", torch::nn::Linear(width, width));
     head_norm_ = transform->register_module("LayerNorm", nn::LayerNorm(norm));
     auto predictions = std::make_shared<nn::Module>("predictions");
     head_bias_ = predictions->register_parameter("bias", torch::empty({config_.vocab_size}));
@@ -119,7 +119,7 @@ BlipModel load_blip(const std::filesystem::path& folder, torch::Device device, t
         return spare ? "" : name;
     });
     check_plausible(weights, config.least_parameters());
-    BlipModel model(config);
+    auto model = without_initial_values([&] { return BlipModel(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();
     return model;

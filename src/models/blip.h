@@ -53,10 +53,10 @@ class BlipModelImpl : public torch::nn::Module {
   private:
     BlipConfig config_;
     BlipVisionModel vision_{nullptr};
-    LoadedEmbedding words_{nullptr}, positions_{nullptr};
+    torch::nn::Embedding words_{nullptr}, positions_{nullptr};
     torch::nn::LayerNorm embedding_norm_{nullptr}, head_norm_{nullptr};
     std::vector<BertLayer> layers_;
-    LoadedLinear head_{nullptr};
+    torch::nn::Linear head_{nullptr};
     torch::Tensor head_bias_;
 };
 TORCH_MODULE(BlipModel);

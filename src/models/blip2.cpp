@@ -33,7 +33,7 @@ Blip2ModelImpl::Blip2ModelImpl(const Blip2Config& config) : config_(config) {
     register_module("qformer", module);
 
     projection_ =
-        register_module("language_projection", LoadedLinear(width, config_.text.hidden_size));
+        register_module("language_projection", torch::nn::Linear(width, config_.text.hidden_size));
     language_model_ = register_module("language_model", OptModel(config_.text));
 }
 
@@ -107,7 +107,7 @@ Blip2Model load_blip2(const std::filesystem::path& folder, torch::Device device,
         return spare ? "" : name;
     });
     check_plausible(weights, config.least_parameters());
-    Blip2Model model(config);
+    auto model = without_initial_values([&] { return Blip2Model(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();
     return model;

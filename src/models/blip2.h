@@ -59,7 +59,7 @@ class Blip2ModelImpl : public torch::nn::Module {
     torch::Tensor query_tokens_;
     torch::nn::LayerNorm query_norm_{nullptr};
     std::vector<BertLayer> query_layers_;
-    LoadedLinear projection_{nullptr};
+    torch::nn::Linear projection_{nullptr};
     OptModel language_model_{nullptr};
 };
 TORCH_MODULE(Blip2Model);

@@ -54,7 +54,7 @@ ClipModel load_clip_model(const std::filesystem::path& folder, torch::Device dev
         return name.ends_with("embeddings.position_ids") ? "" : name;  // a constant of old files
     });
     check_plausible(weights, config.text.least_parameters() + config.vision.least_parameters());
-    ClipModel model(config);
+    auto model = without_initial_values([&] { return ClipModel(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();
     return model;

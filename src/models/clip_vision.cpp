@@ -107,7 +107,7 @@ ClipVisionWithProjection load_clip_vision(const std::filesystem::path& folder, t
         return name.ends_with("embeddings.position_ids") ? "" : name;  // a constant of old files
     });
     check_plausible(weights, config.least_parameters());
-    ClipVisionWithProjection model(config);
+    auto model = without_initial_values([&] { return ClipVisionWithProjection(config); });
     load_parameters(*model, weights, device, dtype);
     model->eval();
     return model;

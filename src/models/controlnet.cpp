@@ -121,7 +121,7 @@ ControlNet load_controlnet(const std::filesystem::path& folder, torch::Device de
     const auto config = ControlNetConfig::from_config(Config::read(folder / "config.json"));
     const Weights weights = Weights::open(folder, "diffusion_pytorch_model");
     check_plausible(weights, config.least_parameters());
-    ControlNet network(config);
+    auto network = without_initial_values([&] { return ControlNet(config); });
     load_parameters(*network, weights, device, dtype);
     network->eval();
     return network;

@@ -20,14 +20,14 @@ class OptModelImpl::Layer : public nn::Module {
         const int width = config.hidden_size;
         const auto norm = [&] { return nn::LayerNorm(nn::LayerNormOptions({width})); };
         auto attention = std::make_shared<nn::Module>("attention");
-        query_ = attention->register_module("q_proj", LoadedLinear(width, width));
-        key_ = attention->register_module("k_proj", LoadedLinear(width, width));
-        value_ = attention->register_module("v_proj", LoadedLinear(width, width));
-        output_ = attention->register_module("out_proj", LoadedLinear(width, width));
+        query_ = attention->register_module("q_proj", torch::nn::Linear(width, width));
+        key_ = attention->register_module("k_proj", torch::nn::Linear(width, width));
+        value_ = attention->register_module("v_proj", torch::nn::Linear(width, width));
+        output_ = attention->register_module("out_proj", torch::nn::Linear(width, width));
         register_module("self_attn", attention);
         norm1_ = register_module("self_attn_layer_norm", norm());
-        feed_in_ = register_module("fc1", LoadedLinear(width, config.ffn_dim));
-        feed_out_ = register_module("fc2", LoadedLinear(config.ffn_dim, width));
+        feed_in_ = register_module("fc1", torch::nn::Linear(width, config.ffn_dim));
+        feed_out_ = register_module("fc2", torch::nn::Linear(config.ffn_dim, width));
         norm2_ = register_module("final_layer_norm", norm());
     }
     torch::Tensor forward(torch::Tensor x, const torch::Tensor& mask, KeyValues* cache) {
@@ -43,18 +43,19 @@ class OptModelImpl::Layer : public nn::Module {
 
   private:
     int heads_;
-    LoadedLinear query_{nullptr}, key_{nullptr}, value_{nullptr}, output_{nullptr};
-    LoadedLinear feed_in_{nullptr}, feed_out_{nullptr};
+    torch::nn::Linear query_{nullptr}, key_{nullptr}, value_{nullptr}, output_{nullptr};
+    torch::nn::Linear feed_in_{nullptr}, feed_out_{nullptr};
     nn::LayerNorm norm1_{nullptr}, norm2_{nullptr};
 };
 
 OptModelImpl::OptModelImpl(const OptConfig& config) : config_(config) {
     const int width = config_.hidden_size;
     auto decoder = std::make_shared<nn::Module>("decoder");
-    words_ = decoder->register_module("embed_tokens", LoadedEmbedding(config_.vocab_size, width));
+    words_ =
+        decoder->register_module("embed_tokens", torch::nn::Embedding(config_.vocab_size, width));
     positions_ = decoder->register_module(
         "embed_positions",
-        LoadedEmbedding(config_.max_position_embeddings + position_offset, width));
+        torch::nn::Embedding(config_.max_position_embeddings + position_offset, width));
     nn::ModuleList layers;
     for (int i = 0; i < config_.num_hidden_layers; ++i) {
         layers_.push_back(std::make_shared<Layer>(config_));

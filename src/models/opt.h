@@ -4,8 +4,9 @@
 
 #include "item3d/models/config.h"
 #include "item3d/models/key_value_cache.h"
-#include "item3d/models/loaded_layers.h"
 
+#include <torch/nn/modules/embedding.h>
+#include <torch/nn/modules/linear.h>
 #include <torch/nn/modules/normalization.h>
 #include <torch/types.h>
 
@@ -50,7 +51,7 @@ class OptModelImpl : public torch::nn::Module {
   private:
     class Layer;
     OptConfig config_;
-    LoadedEmbedding words_{nullptr}, positions_{nullptr};
+    torch::nn::Embedding words_{nullptr}, positions_{nullptr};
     std::vector<std::shared_ptr<Layer>> layers_;
     torch::nn::LayerNorm final_norm_{nullptr};
 };

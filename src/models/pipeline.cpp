@@ -223,8 +223,8 @@ TextEmbedding Pipeline::encode_text(const std::vector<std::string>& prompts) con
         for (const std::string& prompt : prompts) {
             const auto found = encoded_.find(prompt);
             ITEM3D_CHECK(found != encoded_.end(), "'" + prompt + "' was not encoded in time");
-            known = known.states.defined() ? TextEmbedding::join(known, found->second)
-                                           : found->second;
+            known =
+                known.states.defined() ? TextEmbedding::join(known, found->second) : found->second;
         }
         return known;
     }

@@ -38,8 +38,8 @@ class Pipeline {
     /// One row: what classifier-free guidance goes away from when nobody says what. The empty
     /// prompt, or zeros where model_index.json says force_zeros_for_empty_prompt (SDXL).
     TextEmbedding encode_no_text() const;
-    /// Encodes these prompts and no text, and lets the encoders go. From then on encode_text() knows
-    /// these alone; the pipeline cannot be saved any more.
+    /// Encodes these prompts and no text, and lets the encoders go. From then on encode_text()
+    /// knows these alone; the pipeline cannot be saved any more.
     void free_text_encoders(const std::vector<std::string>& prompts);
     /// images [N, 3, H, W] in [-1, 1] -> latents [N, C, h, w], scaled (mean of the posterior);
     /// differentiable in images. float32.

@@ -27,8 +27,7 @@ struct Recomputed : torch::autograd::Function<Recomputed> {
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const auto holder = context->saved_data["step"].toCapsule();
         const torch::AutoGradMode with_gradients(true);
-        const torch::Tensor x =
-            context->get_saved_variables()[0].detach().requires_grad_(true);
+        const torch::Tensor x = context->get_saved_variables()[0].detach().requires_grad_(true);
         const torch::Tensor y = static_cast<const StepHolder&>(*holder).step(x);
         return {torch::autograd::grad({y}, {x}, {gradients[0]})[0], torch::Tensor()};
     }

@@ -44,8 +44,8 @@ class SafeTensors {
     TensorInfo info(const std::string& name) const;
     /// A view of the file's bytes, in the file's own type. Throws InputError when absent.
     torch::Tensor tensor(const std::string& name) const;
-    /// Lets go of the memory that a tensor's bytes take, for who has copied them; they are read from
-    /// the file again when somebody looks.
+    /// Lets go of the memory that a tensor's bytes take, for who has copied them; they are read
+    /// from the file again when somebody looks.
     void forget(const std::string& name) const;
     /// All of them, in the order of names().
     NamedTensors tensors() const;

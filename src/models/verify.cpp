@@ -247,7 +247,8 @@ class Verification {
                 if (text) memory.text_encoders += bytes;
             }
             memory.program = program_bytes;
-            memory.kept_by_gradients = static_cast<std::uint64_t>((kept.encoder + kept.unet) * size);
+            memory.kept_by_gradients =
+                static_cast<std::uint64_t>((kept.encoder + kept.unet) * size);
             // Of each residual block its input, and of one block all.
             memory.kept_when_low =
                 static_cast<std::uint64_t>((0.4 * kept.encoder + kept.unet) * size);

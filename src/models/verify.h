@@ -19,8 +19,8 @@ struct PartReport {
 
 /// Bytes that an edit needs when the networks compute in this precision.
 struct MemoryReport {
-    std::string precision;      ///< "fp32", "bf16" or "fp16"
-    std::uint64_t weights = 0;  ///< exact; the text encoders stay fp32
+    std::string precision;            ///< "fp32", "bf16" or "fp16"
+    std::uint64_t weights = 0;        ///< exact; the text encoders stay fp32
     std::uint64_t text_encoders = 0;  ///< their part of it
     // Estimates, of the right order:
     std::uint64_t program = 0;            ///< everything that is not the prior's
