@@ -103,11 +103,12 @@ class AutoencoderKL::Encoder : public nn::Module {
     torch::Tensor forward(const torch::Tensor& images) {
         torch::Tensor x = conv_in_(images.to(conv_in_->weight.scalar_type()));
         for (Level& level : levels_) {
-            for (const ResnetBlock& block : level.resnets)
+            for (ResnetBlock& block : level.resnets)
                 x = recompute
-                        ? recomputed([block](const torch::Tensor& y) { return block->forward(y); },
+                        ? recomputed([block = block.ptr()](
+                                         const torch::Tensor& y) { return block->forward(y); },
                                      x)
-                        : block->forward(x);
+                        : block(x);
             if (level.down) x = level.down(x);
         }
         return conv_out_(torch::silu(conv_norm_out_(mid_block_->forward(x))));
