@@ -1,9 +1,11 @@
-# item3d_library(NAME [TORCH] [DEPENDS lib...] [PACKAGES target...]): one folder of src/ as one
+# item3d_library(NAME [TORCH] [UNITY] [DEPENDS lib...] [PACKAGES target...]): one folder of src/ as one
 # static library. DEPENDS is the whole list of item3d folders that this folder may include; include
 # paths come only through it, so a wrong dependency does not compile. PACKAGES are imported targets
-# of other projects; TORCH links LibTorch and uses its precompiled header.
+# of other projects; TORCH links LibTorch and uses its precompiled header; UNITY compiles several
+# files at a time, because LibTorch's templates are most of each one's compilation. Names in their
+# anonymous namespaces must then differ.
 function(item3d_library NAME)
-    cmake_parse_arguments(ARG "TORCH" "" "DEPENDS;PACKAGES" ${ARGN})
+    cmake_parse_arguments(ARG "TORCH;UNITY" "" "DEPENDS;PACKAGES" ${ARGN})
     file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cpp)
     set(TARGET item3d_${NAME})
     if(SOURCES)
@@ -27,12 +29,19 @@ function(item3d_library NAME)
         target_link_libraries(${TARGET} ${SCOPE} item3d::${DEPENDENCY})
     endforeach()
     target_link_libraries(${TARGET} ${SCOPE} ${ARG_PACKAGES})
+    if(ARG_UNITY)
+        item3d_compile_together(${TARGET})
+    endif()
     if(ARG_TORCH)
         target_link_libraries(${TARGET} ${SCOPE} item3d_torch)
         if(SOURCES)
             item3d_use_torch_headers(${TARGET})
         endif()
     endif()
+endfunction()
+
+function(item3d_compile_together TARGET)
+    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
 # item3d_program(NAME SOURCES file... [LINK target...] [INSTALL]): one executable, at the top of the

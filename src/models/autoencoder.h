@@ -120,6 +120,8 @@ class AutoencoderKL : public Autoencoder {
     nlohmann::json config_json() const override { return config_.to_json(); }
 
   private:
+    class PixelAttention;
+    class MidBlock;
     class Encoder;
     class Decoder;
     AutoencoderKLConfig config_;

@@ -12,17 +12,15 @@ namespace {
 
 constexpr double norm_epsilon = 1e-6;
 
-nn::Conv2dOptions conv3x3(int in_channels, int out_channels) {
-    return nn::Conv2dOptions(in_channels, out_channels, 3).padding(1);
-}
-
 ResnetBlock resnet(const AutoencoderKLConfig& config, int in_channels, int out_channels) {
     return ResnetBlock(ResnetBlockImpl::Options{in_channels, out_channels, 0,
                                                 config.norm_num_groups, norm_epsilon});
 }
 
+}  // namespace
+
 /// Single-head self-attention over pixels, with its own norm and residual.
-class PixelAttention : public AttentionLayerImpl {
+class AutoencoderKL::PixelAttention : public AttentionLayerImpl {
   public:
     PixelAttention(const AutoencoderKLConfig& config, int channels)
         : AttentionLayerImpl(channels, channels, 1, true) {
@@ -41,7 +39,7 @@ class PixelAttention : public AttentionLayerImpl {
 };
 
 /// resnet, attention, resnet at the lowest resolution.
-class MidBlock : public nn::Module {
+class AutoencoderKL::MidBlock : public nn::Module {
   public:
     MidBlock(const AutoencoderKLConfig& config, int channels) {
         nn::ModuleList resnets, attentions;
@@ -64,8 +62,6 @@ class MidBlock : public nn::Module {
     std::vector<ResnetBlock> resnets_;
     std::shared_ptr<PixelAttention> attention_;
 };
-
-}  // namespace
 
 class AutoencoderKL::Encoder : public nn::Module {
   public:

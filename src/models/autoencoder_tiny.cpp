@@ -1,5 +1,6 @@
 #include "item3d/core/error.h"
 #include "item3d/models/autoencoder.h"
+#include "item3d/models/unet_blocks.h"
 
 #include <torch/nn/modules/activation.h>
 #include <torch/nn/modules/linear.h>
@@ -8,14 +9,6 @@
 
 namespace item3d {
 namespace nn = torch::nn;
-namespace {
-
-nn::Conv2dOptions conv3x3(int in_channels, int out_channels) {
-    return nn::Conv2dOptions(in_channels, out_channels, 3).padding(1);
-}
-
-}  // namespace
-
 /// relu(conv(relu(conv(relu(conv(x))))) + x).
 class AutoencoderTiny::Block : public nn::Module {
   public:

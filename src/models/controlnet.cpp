@@ -7,10 +7,6 @@ namespace item3d {
 namespace nn = torch::nn;
 namespace {
 
-nn::Conv2d conv3x3(int in_channels, int out_channels, int stride = 1) {
-    return nn::Conv2d(nn::Conv2dOptions(in_channels, out_channels, 3).stride(stride).padding(1));
-}
-
 nn::Conv2d conv1x1(int channels) {
     return nn::Conv2d(nn::Conv2dOptions(channels, channels, 1));
 }
@@ -47,15 +43,16 @@ class ControlNetImpl::PictureEmbedding : public nn::Module {
   public:
     explicit PictureEmbedding(const ControlNetConfig& config) {
         const std::vector<int>& channels = config.conditioning_embedding_out_channels;
-        conv_in_ = register_module("conv_in", conv3x3(config.conditioning_channels, channels[0]));
+        conv_in_ = register_module("conv_in",
+                                   nn::Conv2d(conv3x3(config.conditioning_channels, channels[0])));
         nn::ModuleList blocks;
         for (std::size_t i = 0; i + 1 < channels.size(); ++i) {
-            append(blocks, blocks_, conv3x3(channels[i], channels[i]));
-            append(blocks, blocks_, conv3x3(channels[i], channels[i + 1], 2));
+            append(blocks, blocks_, nn::Conv2d(conv3x3(channels[i], channels[i])));
+            append(blocks, blocks_, nn::Conv2d(conv3x3(channels[i], channels[i + 1]).stride(2)));
         }
         register_module("blocks", blocks);
-        conv_out_ =
-            register_module("conv_out", conv3x3(channels.back(), config.block_out_channels[0]));
+        conv_out_ = register_module(
+            "conv_out", nn::Conv2d(conv3x3(channels.back(), config.block_out_channels[0])));
     }
     torch::Tensor forward(const torch::Tensor& picture) {
         torch::Tensor x = torch::silu(conv_in_(picture));

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/core/progress.h"
 
 #include <algorithm>
 #include <utility>

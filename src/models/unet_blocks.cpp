@@ -6,10 +6,6 @@ namespace item3d {
 namespace nn = torch::nn;
 namespace {
 
-nn::Conv2d conv3x3(int in_channels, int out_channels) {
-    return nn::Conv2d(nn::Conv2dOptions(in_channels, out_channels, 3).padding(1));
-}
-
 nn::GroupNorm group_norm(int groups, int channels, double epsilon) {
     return nn::GroupNorm(nn::GroupNormOptions(groups, channels).eps(epsilon));
 }
@@ -19,11 +15,11 @@ nn::GroupNorm group_norm(int groups, int channels, double epsilon) {
 ResnetBlockImpl::ResnetBlockImpl(const Options& options) : options_(options) {
     const int in = options.in_channels, out = options.out_channels;
     norm1_ = register_module("norm1", group_norm(options.groups, in, options.epsilon));
-    conv1_ = register_module("conv1", conv3x3(in, out));
+    conv1_ = register_module("conv1", nn::Conv2d(conv3x3(in, out)));
     if (options.time_channels > 0)
         time_emb_proj_ = register_module("time_emb_proj", nn::Linear(options.time_channels, out));
     norm2_ = register_module("norm2", group_norm(options.groups, out, options.epsilon));
-    conv2_ = register_module("conv2", conv3x3(out, out));
+    conv2_ = register_module("conv2", nn::Conv2d(conv3x3(out, out)));
     if (in != out)
         conv_shortcut_ =
             register_module("conv_shortcut", nn::Conv2d(nn::Conv2dOptions(in, out, 1)));
@@ -125,7 +121,7 @@ torch::Tensor DownsampleImpl::forward(const torch::Tensor& x) {
 }
 
 UpsampleImpl::UpsampleImpl(int channels) {
-    conv_ = register_module("conv", conv3x3(channels, channels));
+    conv_ = register_module("conv", nn::Conv2d(conv3x3(channels, channels)));
 }
 
 torch::Tensor UpsampleImpl::forward(const torch::Tensor& x, std::int64_t height,

@@ -12,6 +12,11 @@
 
 namespace item3d {
 
+/// A 3x3 convolution that keeps the size.
+inline torch::nn::Conv2dOptions conv3x3(int in_channels, int out_channels) {
+    return torch::nn::Conv2dOptions(in_channels, out_channels, 3).padding(1);
+}
+
 /// Group norm, SiLU, 3x3 convolution, twice, around a shortcut (diffusers' ResnetBlock2D).
 class ResnetBlockImpl : public torch::nn::Module {
   public:

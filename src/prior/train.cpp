@@ -71,8 +71,8 @@ PictureData draw_pictures(const ExampleSource& source, std::int64_t count,
 
 LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencoder,
                         const ClipTokenizer& tokenizer, const TrainSettings& settings) {
-    constexpr std::int64_t block = 32;
-    const std::int64_t count = settings.data_samples / block * block;
+    constexpr std::int64_t at_once = 32;
+    const std::int64_t count = settings.data_samples / at_once * at_once;
     LatentData data;
     data.latents = torch::empty({count, 4, latent_size, latent_size}, torch::kHalf);
     data.depth = torch::empty({count, 1, latent_size, latent_size}, torch::kHalf);
@@ -81,10 +81,10 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
     Progress progress("examples", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
-    run_workers(count / block, settings.replicas, [&](std::int64_t job) {
+    run_workers(count / at_once, settings.replicas, [&](std::int64_t job) {
         std::vector<torch::Tensor> images, depths;
         std::vector<std::string> captions;
-        for (std::int64_t i = job * block; i < (job + 1) * block; ++i) {
+        for (std::int64_t i = job * at_once; i < (job + 1) * at_once; ++i) {
             Example example = source.draw(i);
             images.push_back(std::move(example.image));
             depths.push_back(std::move(example.depth));
@@ -99,13 +99,13 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
         }
         latents = latents.to(torch::kFloat32) * autoencoder.scaling_factor();
         const auto rows = [&](torch::Tensor& all) {
-            return all.slice(0, job * block, (job + 1) * block);
+            return all.slice(0, job * at_once, (job + 1) * at_once);
         };
         rows(data.latents).copy_(latents);
         rows(data.depth).copy_(torch::stack(depths));
         rows(data.tokens).copy_(tokenizer.encode_batch(captions, text_length));
         const std::lock_guard lock(mutex);
-        progress.update(done += block);
+        progress.update(done += at_once);
     });
     stop_if_interrupted(settings);
     return data;
