@@ -80,12 +80,12 @@ TEST(Clip, NamesWhatAFolderLacks) {
     testing::write_file(folder.path() / "merges.txt", "#version: 0.2\n");
     EXPECT_NE(message().find("preprocessor_config.json"), std::string::npos);
     testing::write_file(folder.path() / "preprocessor_config.json", R"({"size": 40})");
+    EXPECT_NE(message().find("does not bring"), std::string::npos);
+    testing::write_file(folder.path() / "preprocessor_config.json",
+                        R"({"size": 40, "crop_size": 40})");
     EXPECT_NE(message().find("does not belong"), std::string::npos);
     testing::write_file(folder.path() / "vocab.json",
                         R"({"<|startoftext|>": 0, "<|endoftext|>": 501})");
-    EXPECT_NE(message().find("does not crop"), std::string::npos);
-    testing::write_file(folder.path() / "preprocessor_config.json",
-                        R"({"size": 40, "crop_size": 40})");
     EXPECT_EQ(Clip::load(folder.path()).embed_texts({"a"}).sizes(), (torch::IntArrayRef{1, 20}));
 
     std::filesystem::resize_file(folder.path() / "model.safetensors", 100000);

@@ -53,9 +53,9 @@ std::vector<torch::Tensor> load_pictures(const CaptionCommand& options, torch::D
 }
 
 void run_caption(const CaptionCommand& options, torch::Device device) {
-    const std::vector<torch::Tensor> pictures = load_pictures(options, device);
     const std::unique_ptr<Captioner> captioner =
         load_captioner(options.captioner, device, choose_precision(options.precision, device));
+    const std::vector<torch::Tensor> pictures = load_pictures(options, device);
 
     nlohmann::json captions = nlohmann::json::array();
     Progress progress("caption", static_cast<std::int64_t>(pictures.size()));

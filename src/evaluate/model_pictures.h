@@ -19,8 +19,7 @@ std::vector<Camera> picture_cameras(const Model& model, int count);
 torch::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
                             const std::vector<Camera>& cameras, int pixels);
 
-/// Those over white, as networks that were trained on photographs like them best: [N, 3, H, W] sRGB
-/// in [0, 1].
+/// Those over white: [N, 3, H, W] sRGB in [0, 1].
 torch::Tensor over_white(const torch::Tensor& linear);
 
 /// detail_correlation (detail.h) of two such sets of pictures, where the first shows the model.

@@ -14,19 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Everything small is read before gigabytes of weights are.
-ImageProcessor load_processor(const fs::path& folder, int image_size) {
-    const ImageProcessor processor = ImageProcessor::load(folder);
-    // Two shapes: what keeps the sides' ratio would not make squares of both.
-    for (const int width : {image_size, 2 * image_size})
-        if (processor.output_size(image_size, width) != std::array<int, 2>{image_size, image_size})
-            throw InputError((folder / "preprocessor_config.json").string(),
-                             fmt::format("does not bring pictures to the {0} x {0} pixels of "
-                                         "config.json's image_size",
-                                         image_size));
-    return processor;
-}
-
 void check_tokenizer(const fs::path& file, const CaptionTokenizer& tokenizer, int vocab_size) {
     if (tokenizer.largest_id() >= vocab_size)
         throw InputError(file.string(),
@@ -61,8 +48,9 @@ class BlipCaptioner : public Captioner {
     BlipCaptioner(const fs::path& folder, const BlipConfig& config, torch::Device device,
                   torch::Dtype dtype)
         : tokenizer_(BertTokenizer::load(folder)),
-          processor_(load_processor(folder, config.vision.image_size)),
+          processor_(ImageProcessor::load(folder, config.vision.image_size)),
           device_(device) {
+        // Everything small is read and checked before gigabytes of weights are.
         check_tokenizer(folder / "vocab.txt", tokenizer_, config.vocab_size);
         model_ = load_blip(folder, device, dtype);
     }
@@ -88,7 +76,7 @@ class Blip2Captioner : public Captioner {
     Blip2Captioner(const fs::path& folder, const Blip2Config& config, torch::Device device,
                    torch::Dtype dtype)
         : tokenizer_(Gpt2Tokenizer::load(folder)),
-          processor_(load_processor(folder, config.vision.image_size)),
+          processor_(ImageProcessor::load(folder, config.vision.image_size)),
           end_token_(config.text.eos_token_id),
           device_(device) {
         check_tokenizer(folder / "vocab.json", tokenizer_, config.text.vocab_size);

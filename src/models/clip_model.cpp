@@ -66,19 +66,13 @@ Clip Clip::load(const std::filesystem::path& folder, torch::Device device, torch
     Clip clip;
     clip.device_ = device;
     clip.tokenizer = std::make_shared<ClipTokenizer>(ClipTokenizer::load(folder));
-    clip.processor = std::make_shared<ImageProcessor>(ImageProcessor::load(folder));
+    clip.processor =
+        std::make_shared<ImageProcessor>(ImageProcessor::load(folder, config.vision.image_size));
     if (clip.tokenizer->largest_id() >= config.text.vocab_size)
         throw InputError((folder / "vocab.json").string(),
                          fmt::format("has id {}, but the text model knows {} tokens",
                                      clip.tokenizer->largest_id(), config.text.vocab_size),
                          "the tokenizer does not belong to this model");
-    const int size = config.vision.image_size;
-    if (clip.processor->output_size(size, size) != std::array<int, 2>{size, size} ||
-        !clip.processor->config().center_crop)
-        throw InputError((folder / "preprocessor_config.json").string(),
-                         fmt::format("does not crop pictures to the {0} x {0} pixels of "
-                                     "config.json's image_size",
-                                     size));
     clip.model = load_clip_model(folder, device, dtype);
     return clip;
 }

@@ -1,6 +1,7 @@
 #include "item3d/models/image_processor.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/core/parallel.h"
 
 #include <ATen/Functions.h>
@@ -167,6 +168,18 @@ ImageProcessorConfig ImageProcessorConfig::from_config(const Config& config) {
 ImageProcessor ImageProcessor::load(const std::filesystem::path& folder) {
     return ImageProcessor(
         ImageProcessorConfig::from_config(Config::read(folder / "preprocessor_config.json")));
+}
+
+ImageProcessor ImageProcessor::load(const std::filesystem::path& folder, int image_size) {
+    const ImageProcessor processor = load(folder);
+    // Two shapes: what keeps the sides' ratio would not make squares of both.
+    for (const int width : {image_size, 2 * image_size})
+        if (processor.output_size(image_size, width) != std::array<int, 2>{image_size, image_size})
+            throw InputError((folder / "preprocessor_config.json").string(),
+                             fmt::format("does not bring pictures to the {0} x {0} pixels of "
+                                         "config.json's image_size",
+                                         image_size));
+    return processor;
 }
 
 std::array<int, 2> ImageProcessor::resized_size(int height, int width) const {

@@ -33,9 +33,9 @@ class ImageProcessor {
     /// Reads FOLDER/preprocessor_config.json. Throws InputError, also for options that are not
     /// supported (another filter than bicubic).
     static ImageProcessor load(const std::filesystem::path& folder);
-
-    /// Height and width of the network's input.
-    std::array<int, 2> output_size(int height, int width) const;
+    /// The same for a network that reads squares of `image_size` pixels; InputError, too, when some
+    /// pictures would not become such.
+    static ImageProcessor load(const std::filesystem::path& folder, int image_size);
 
     /// Bytes [H, W, C] (grey or RGB; with alpha, composed over white) -> [1, 3, h, w] float32,
     /// exactly as Pillow resizes them (resize_bicubic).
@@ -51,6 +51,7 @@ class ImageProcessor {
 
   private:
     std::array<int, 2> resized_size(int height, int width) const;
+    std::array<int, 2> output_size(int height, int width) const;
     torch::Tensor crop_and_normalize(const torch::Tensor& planes) const;
 
     ImageProcessorConfig config_;
