@@ -37,7 +37,7 @@ TEST(ControlNet, ChangesWhatThePipelinePredictsWhereItHasDepth) {
     EXPECT_FALSE(takes_depth(pipeline));
     torch::manual_seed(5);
     const torch::Tensor latents = torch::randn({2, 4, 4, 3}), t = torch::tensor({300, 300});
-    const torch::Tensor text = pipeline.encode_text({"a duck"});
+    const TextEmbedding text = pipeline.encode_text({"a duck"});
     const torch::Tensor depth = torch::rand({2, 64, 48}) + 1;  // twice as fine as the pictures
     EXPECT_FALSE(condition_of_depth(pipeline, depth, latents).defined());
     const torch::Tensor plain = pipeline.predict(latents, t, text);
@@ -50,7 +50,7 @@ TEST(ControlNet, ChangesWhatThePipelinePredictsWhereItHasDepth) {
     const torch::Tensor picture = condition_of_depth(pipeline, depth, latents);
     EXPECT_EQ(picture.sizes(), (std::vector<std::int64_t>{2, 3, 32, 24}));
     EXPECT_TRUE(pipeline.predict(latents, t, text).equal(plain));
-    const torch::Tensor context = text.expand({2, -1, -1});
+    const torch::Tensor context = text.expand(2).states;
     const UNetResiduals residuals = pipeline.controlnet(latents, t, context, picture, 0.7f);
     const torch::Tensor wanted = pipeline.unet(latents, t, context, AddedCondition{}, residuals);
     const torch::Tensor predicted = pipeline.predict(latents, t, text, picture);

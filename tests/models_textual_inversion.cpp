@@ -23,7 +23,7 @@ TEST(TextualInversion, ReproducesTheReference) {
         "a photo of <cat-toy>", "<cat-toy> in the style of <style-x>, highly detailed",
         "A<cat-toy>b <style-x><style-x>", "nothing special"};
     golden.expect("input_ids", pipeline.tokenizer->encode_batch(prompts), 0);
-    golden.expect("last_hidden_state", pipeline.encode_text(prompts));
+    golden.expect("last_hidden_state", pipeline.encode_text(prompts).states);
 }
 
 TEST(TextualInversion, IsCalledAfterTheFileAndItsVectorsAlone) {
@@ -40,7 +40,8 @@ TEST(TextualInversion, IsCalledAfterTheFileAndItsVectorsAlone) {
     EXPECT_EQ(one, (std::vector<int>{tokenizer.bos_id(), before + 3, tokenizer.eos_id()}));
     // Prompts without it are what they were.
     const Pipeline plain = Pipeline::load(fixture("pipeline_sd"));
-    EXPECT_TRUE(plain.encode_text({"a duck"}).equal(pipeline.encode_text({"a duck"})));
+    EXPECT_TRUE(plain.encode_text({"a duck"}).states.equal(
+        pipeline.encode_text({"a duck"}).states));
 }
 
 TEST(TextualInversion, TeachesBothEncodersOfAPair) {
