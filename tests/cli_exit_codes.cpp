@@ -17,6 +17,14 @@ TEST_F(Program, HelpAndVersionGoToStdout) {
     EXPECT_EQ(version.out.rfind("item3d ", 0), 0u) << version.out;
 }
 
+TEST_F(Program, GuidanceHelpListsTheMethods) {
+    const Result help = run("edit --guidance help");
+    EXPECT_EQ(help.code, 0);
+    for (const char* method : {"rdl", "sds", "dds", "pds", "nfsd", "csd", "ism", "sdi"})
+        EXPECT_NE(help.out.find(std::string("\n") + method + " "), std::string::npos) << method;
+    EXPECT_EQ(help.error, "");
+}
+
 TEST_F(Program, WrongUsageIsTwo) {
     EXPECT_EQ(run("").code, 2);
     EXPECT_EQ(run("no_such_command").code, 2);

@@ -344,6 +344,13 @@ TEST(EditSettings, prior_defaults_and_overrides_are_merged_and_checked) {
     const EditSettings settings = resolve_settings(folder, {{"iterations", 20}});
     EXPECT_EQ(settings.iterations, 20);
     EXPECT_EQ(settings.resolution, 64);
+    EXPECT_EQ(settings.timestep_schedule, "uniform");
+    // A method that is asked for brings what it was published with; what is said goes before.
+    const EditSettings inverted = resolve_settings(folder, {{"guidance", "sdi"}, {"cfg", 5}});
+    EXPECT_EQ(inverted.timestep_schedule, "anneal");
+    EXPECT_EQ(inverted.timesteps, (std::vector<float>{0.25f, 0.98f}));
+    EXPECT_EQ(inverted.cfg, 5);
+    EXPECT_EQ(inverted.resolution, 64);
     EXPECT_THROW(resolve_settings(folder, {{"timesteps", {0.9, 0.1}}}), InputError);
     EXPECT_THROW(resolve_settings(folder, {{"keep", {"colour"}}}), InputError);
     EXPECT_THROW(resolve_settings(folder, {{"batch", 0}}), InputError);

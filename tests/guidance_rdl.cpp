@@ -1,3 +1,4 @@
+#include "guidance_support.h"
 #include "item3d/core/error.h"
 #include "item3d/guidance/noised_latents.h"
 #include "item3d/guidance/rdl.h"
@@ -10,21 +11,14 @@
 namespace item3d {
 namespace {
 
-const std::filesystem::path pipeline_folder =
-    std::filesystem::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd";
+using testing::load_pipeline;
+using testing::random_input;
+using testing::relative_error;
+
 const std::filesystem::path step_file =
     std::filesystem::path(ITEM3D_TEST_DATA) / "guidance" / "rdl_step.safetensors";
 
 constexpr double tolerance = 5e-5;  // goldens' advice for rdl_step, of max(1, largest value)
-
-double relative_error(const torch::Tensor& value, const torch::Tensor& expected) {
-    const double scale = std::max(1.0, expected.abs().max().item<double>());
-    return (value - expected).abs().max().item<double>() / scale;
-}
-
-std::shared_ptr<const Pipeline> load_pipeline() {
-    return std::make_shared<Pipeline>(Pipeline::load(pipeline_folder));
-}
 
 /// The recorded step's latents, noise and timesteps, as noise_latents would give them.
 NoisedLatents recorded_start(const Pipeline& pipeline, const SafeTensors& file) {
@@ -35,13 +29,6 @@ NoisedLatents recorded_start(const Pipeline& pipeline, const SafeTensors& file) 
     start.alphas_cumprod = pipeline.scheduler.alphas_at(start.timesteps);
     start.noisy = pipeline.scheduler.add_noise(start.latents, start.noise, start.timesteps);
     return start;
-}
-
-GuidanceInput random_input(std::uint64_t seed) {
-    torch::manual_seed(seed);
-    GuidanceInput input;
-    input.images = torch::rand({2, 3, 32, 32}).requires_grad_(true);
-    return input;
 }
 
 }  // namespace
@@ -79,7 +66,7 @@ TEST(RelativeDirection, differs_from_the_published_source_branch) {
 
 TEST(Guidance, same_seed_and_iteration_give_the_same_gradient) {
     const auto pipeline = load_pipeline();
-    for (const char* method : {"rdl", "sds"}) {
+    for (const std::string& method : guidance_methods()) {
         GuidanceOptions options;
         options.method = method;
         options.seed = 7;

@@ -49,13 +49,16 @@ void run(const BenchGuidanceCommand& options, torch::Device device) {
         torch::rand({options.batch, 3, size, size}, device).set_requires_grad(true);
     const torch::Tensor depth = torch::ones({options.batch, size, size}, device);
 
+    GuidanceInput input{images, depth};
+    if (guidance->needs_reference()) input.reference = torch::rand_like(images);
+
     std::vector<double> step, encode, unet;
     double first = 0;
     Progress progress("bench", options.repeats);
     for (int i = -1; i < options.repeats; ++i) {
         if (interrupted()) throw Interrupted("nothing was written");
         const double start = seconds_now();
-        const GuidanceOutput output = guidance->step({images, depth}, i + 1);
+        const GuidanceOutput output = guidance->step(input, i + 1);
         output.latents.backward(output.latents_gradient);
         // Waits for the device as well.
         ITEM3D_CHECK(images.grad().isfinite().all().item<bool>(), "the gradient is not finite");

@@ -35,17 +35,34 @@ CLI::Option* setting(CLI::App& command, EditCommandOptions& options, const std::
         flag, [&options, key](const T& value) { options.overrides[key] = value; }, help);
 }
 
+void print_guidance_kinds() {
+    fmt::print("{:6}{:76}{}\n", "method", "", "U-Net rows a picture");
+    for (const GuidanceKind& kind : guidance_kinds())
+        fmt::print("{:6}{:76}{}\n", kind.name, kind.description, kind.cost);
+}
+
 void add_settings(CLI::App& command, EditCommandOptions& options) {
-    setting<std::string>(command, options, "--guidance", "guidance",
-                         "rdl (relative direction, the default) or sds (score distillation)");
+    command
+        .add_option_function<std::string>(
+            "--guidance",
+            [&options](const std::string& method) {
+                if (method == "help") {
+                    print_guidance_kinds();
+                    throw CLI::Success();
+                }
+                options.overrides["guidance"] = method;
+            },
+            fmt::format("The method: {}; help tells what each is for and costs",
+                        fmt::join(guidance_methods(), ", ")))
+        ->trigger_on_parse();  // before it is said that the model is missing
     setting<std::string>(command, options, "--adjust", "adjust",
                          "learned (the source follows the render, the default) or off");
     setting<float>(command, options, "--anchor", "anchor",
                    "Pull towards the target's own score, added to rdl; 0: none, 1: strong");
     setting<float>(command, options, "--cfg", "cfg", "Weight of classifier-free guidance");
     setting<std::string>(command, options, "--negative-prompt", "negative_prompt",
-                         "What not to show: sds pushes away from it, and so does the detail stage. "
-                         "Meaningless for rdl's direction, in which it cancels");
+                         "What not to show: guidance pushes away from it, and so does the detail "
+                         "stage. Meaningless for rdl's direction, in which it cancels");
     setting<int>(command, options, "--iterations", "iterations", "Steps of the optimisation");
     setting<int>(command, options, "--batch", "batch", "Views in each step");
     setting<int>(command, options, "--resolution", "resolution",
@@ -55,8 +72,10 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
                                 "MIN,MAX noise levels, as parts of the schedule (0.02,0.98)")
         ->delimiter(',')
         ->expected(2);
+    setting<std::string>(command, options, "--timestep-schedule", "timestep_schedule",
+                         "uniform (drawn, the default), anneal (from high to low) or dreamtime");
     setting<std::string>(command, options, "--weighting", "weighting",
-                         "omega(t): early, late, dreamfusion or uniform");
+                         "omega(t) of rdl, sds, nfsd and csd: early, late, dreamfusion or uniform");
     setting<std::string>(command, options, "--light", "light",
                          "studio, noon, sunset, overcast, night, or an .hdr or .exr file");
     setting<std::string>(command, options, "--background", "background",

@@ -25,13 +25,25 @@ float learning_rate_factor(std::int64_t iteration, std::int64_t iterations) {
     return warm_up * (final_learning_rate + (1 - final_learning_rate) * cosine);
 }
 
+/// What guidance looks at. The unedited model is the field as it was fitted, so that a render that
+/// has not been edited yet equals its reference.
+GuidanceInput look(const EditScene& scene, const EditSettings& settings, EditState& state) {
+    const ViewOptions options{settings.batch, state.iteration};
+    const View view = render_view(scene, settings, state.field, options);
+    GuidanceInput input{view.images, view.depth};
+    if (state.guidance->needs_reference()) {
+        const torch::NoGradGuard no_grad;
+        input.reference = render_view(scene, settings, state.fitted, options).images;
+    }
+    return input;
+}
+
 void run_iteration(const EditScene& scene, const EditSettings& settings, EditState& state,
                    IterationTimes& times) {
     const double start = seconds_now();
-    const View view = render_view(scene, settings, state.field, {settings.batch, state.iteration});
+    const GuidanceInput input = look(scene, settings, state);
     const double rendered = seconds_now();
-    const GuidanceOutput guidance =
-        state.guidance->step({view.images, view.depth}, state.iteration);
+    const GuidanceOutput guidance = state.guidance->step(input, state.iteration);
     const double guided = seconds_now();
 
     // A single bad prediction (an overflow in bf16) must not destroy the field.

@@ -45,7 +45,8 @@ EditScene load_scene(const EditRequest& request) {
     apply_extras(*scene.prior, settings);
     if (low_memory) {
         scene.prior->vae->recompute_in_backward(true);
-        scene.prior->free_text_encoders({settings.from, settings.to, settings.negative_prompt});
+        scene.prior->free_text_encoders(
+            {settings.from, settings.to, settings.negative_prompt, default_negative_prompt()});
     }
     return scene;
 }

@@ -23,6 +23,17 @@ json prior_defaults(const std::filesystem::path& prior) {
     return document.value("defaults", json::object());
 }
 
+/// What a method needs that is not usual: guidance scales, noise levels. rdl and sds are what the
+/// other defaults are for.
+json published_settings(const std::string& method) {
+    if (method == "dds") return {{"timesteps", {0.05, 0.95}}};
+    // cfg is published as 100, for neural radiance fields.
+    if (method == "pds") return {{"cfg", 30}, {"timesteps", {0.1, 0.9}}};
+    if (method == "sdi")
+        return {{"cfg", 8.5}, {"timesteps", {0.25, 0.98}}, {"timestep_schedule", "anneal"}};
+    return json::object();
+}
+
 void require(bool condition, const std::string& option, const std::string& problem) {
     if (!condition) throw InputError(option, problem);
 }
@@ -61,6 +72,7 @@ void check(const EditSettings& settings) {
 EditSettings resolve_settings(const std::filesystem::path& prior, const json& overrides) {
     json merged = EditSettings{};
     merged.update(prior_defaults(prior));
+    merged.update(published_settings(overrides.value("guidance", "")));
     merged.update(overrides);
     try {
         EditSettings settings = merged.get<EditSettings>();
@@ -95,6 +107,8 @@ GuidanceOptions guidance_options(const EditSettings& settings) {
     options.adjust_samples = settings.adjust_samples;
     options.min_timestep = settings.timesteps[0];
     options.max_timestep = settings.timesteps[1];
+    options.timestep_schedule = parse_timestep_schedule(settings.timestep_schedule);
+    options.iterations = settings.iterations;
     options.weighting = parse_weighting(settings.weighting);
     options.seed = settings.seed;
     return options;

@@ -19,7 +19,7 @@ namespace item3d {
 struct EditSettings : PipelineExtras {
     std::string from;
     std::string to;
-    /// What the picture shall not show: for sds's guidance and the detail stage.
+    /// What the picture shall not show: for the guidance (but rdl's) and the detail stage.
     std::string negative_prompt;
     std::string guidance = "rdl";
     std::string adjust = "learned";
@@ -39,6 +39,7 @@ struct EditSettings : PipelineExtras {
     std::vector<std::string> detail_words;  ///< lower case; the prior's own list
     int detail_views = 16;
     std::vector<float> timesteps = {0.02f, 0.98f};
+    std::string timestep_schedule = "uniform";
     std::string weighting = "dreamfusion";
     std::string light = "studio";     ///< preset or .hdr/.exr file
     std::string background = "vary";  ///< a colour, or "vary": another grey each iteration
@@ -52,10 +53,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     EditSettings, lora, embedding, controlnet, controlnet_scale, vae, from, to, negative_prompt,
     guidance, adjust, anchor, cfg, adjust_learning_rate, adjust_samples, iterations, batch,
     resolution, learning_rate, metallic, metallic_start, detail, detail_words, detail_views,
-    timesteps, weighting, light, background, texture_size, keep, material, seed)
+    timesteps, timestep_schedule, weighting, light, background, texture_size, keep, material, seed)
 
-/// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- overrides. Throws InputError
-/// when a value is of the wrong type or out of range.
+/// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- what a method was published
+/// with, where the overrides name it <- overrides. Throws InputError when a value is of the wrong
+/// type or out of range.
 EditSettings resolve_settings(const std::filesystem::path& prior, const nlohmann::json& overrides);
 
 /// Whether the detail stage runs.

@@ -2,7 +2,13 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/guidance/csd.h"
+#include "item3d/guidance/dds.h"
+#include "item3d/guidance/ism.h"
+#include "item3d/guidance/nfsd.h"
+#include "item3d/guidance/pds.h"
 #include "item3d/guidance/rdl.h"
+#include "item3d/guidance/sdi.h"
 #include "item3d/guidance/sds.h"
 
 #include <algorithm>
@@ -23,10 +29,71 @@ bool is_blank(const std::string& text) {
                        [](unsigned char c) { return std::isspace(c) != 0; });
 }
 
+using PipelinePointer = std::shared_ptr<const Pipeline>;
+using Maker = std::unique_ptr<Guidance> (*)(PipelinePointer, const std::string& source_prompt,
+                                            const std::string& target_prompt,
+                                            const GuidanceOptions&);
+
+template <typename Method>
+std::unique_ptr<Guidance> from_both(PipelinePointer pipeline, const std::string& source_prompt,
+                                    const std::string& target_prompt,
+                                    const GuidanceOptions& options) {
+    return std::make_unique<Method>(std::move(pipeline), source_prompt, target_prompt, options);
+}
+
+template <typename Method>
+std::unique_ptr<Guidance> from_target(PipelinePointer pipeline, const std::string&,
+                                      const std::string& target_prompt,
+                                      const GuidanceOptions& options) {
+    return std::make_unique<Method>(std::move(pipeline), target_prompt, options);
+}
+
+struct Method {
+    GuidanceKind kind;
+    Maker make;
+};
+
+const std::vector<Method>& methods() {
+    static const std::vector<Method> all = {
+        {{"rdl", "relative direction, from the source's words to the target's (the default)",
+          "2; learned source: 1 + its samples, and a backward pass"},
+         from_both<RelativeDirection>},
+        {{"sds", "score distillation, the baseline: the target alone, oversaturated", "2"},
+         from_target<ScoreDistillation>},
+        {{"dds", "delta denoising: as rdl, but against the unedited model; keeps structure", "4"},
+         from_both<DeltaDenoising>},
+        {{"pds", "posterior distillation: dds with a pull back to the unedited model", "4"},
+         from_both<PosteriorDistillation>},
+        {{"nfsd", "noise-free score distillation: sds without its noise, less saturated", "3"},
+         from_target<NoiseFreeDistillation>},
+        {{"csd", "classifier score (DreamMat): the words' direction from a negative prompt", "3"},
+         from_target<ClassifierScore>},
+        {{"ism", "interval score matching (LucidDreamer): inverted noise, against blur", "3 to 8"},
+         from_target<IntervalScore>},
+        {{"sdi", "distillation via inversion: noise that fits prompt and picture; slow", "4 to 24"},
+         from_target<InversionDistillation>}};
+    return all;
+}
+
 }  // namespace
 
+const std::vector<GuidanceKind>& guidance_kinds() {
+    static const std::vector<GuidanceKind> kinds = [] {
+        std::vector<GuidanceKind> all;
+        for (const Method& method : methods())
+            all.push_back(method.kind);
+        return all;
+    }();
+    return kinds;
+}
+
 const std::vector<std::string>& guidance_methods() {
-    static const std::vector<std::string> names = {"rdl", "sds"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const GuidanceKind& kind : guidance_kinds())
+            all.push_back(kind.name);
+        return all;
+    }();
     return names;
 }
 
@@ -41,6 +108,20 @@ Weighting parse_weighting(const std::string& name) {
     return static_cast<Weighting>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
+TimestepSchedule parse_timestep_schedule(const std::string& name) {
+    static const std::vector<std::string> names = {"uniform", "anneal", "dreamtime"};
+    require_one_of("--timestep-schedule", name, names);
+    return static_cast<TimestepSchedule>(std::find(names.begin(), names.end(), name) -
+                                         names.begin());
+}
+
+const std::string& default_negative_prompt() {
+    static const std::string words =
+        "unrealistic, blurry, low quality, out of focus, ugly, low contrast, dull, dark, "
+        "low-resolution, gloomy";
+    return words;
+}
+
 std::unique_ptr<Guidance> make_guidance(std::shared_ptr<const Pipeline> pipeline,
                                         const std::string& source_prompt,
                                         const std::string& target_prompt,
@@ -53,11 +134,10 @@ std::unique_ptr<Guidance> make_guidance(std::shared_ptr<const Pipeline> pipeline
     if (is_blank(target_prompt)) {
         throw InputError("--to", "the prompt is empty", "describe the look that you want");
     }
-    if (options.method == "sds") {
-        return std::make_unique<ScoreDistillation>(std::move(pipeline), target_prompt, options);
-    }
-    return std::make_unique<RelativeDirection>(std::move(pipeline), source_prompt, target_prompt,
-                                               options);
+    const auto chosen = std::find_if(methods().begin(), methods().end(), [&](const Method& method) {
+        return method.kind.name == options.method;
+    });
+    return chosen->make(std::move(pipeline), source_prompt, target_prompt, options);
 }
 
 }  // namespace item3d

@@ -16,18 +16,24 @@ namespace item3d {
 /// omega(t), how much a timestep counts: sqrt(abar)(1 - abar), 1/(1 - abar), 1 - abar, 1.
 enum class Weighting { early, late, dreamfusion, uniform };
 
+/// How the timesteps of the iterations follow one another, see scheduled_timestep().
+enum class TimestepSchedule { uniform, anneal, dreamtime };
+
 struct GuidanceOptions {
     std::string method = "rdl";      ///< one of guidance_methods()
     std::string adjust = "learned";  ///< "off" or "learned"; only rdl has a direction to adjust
     float guidance_scale = 7.5f;     ///< w of classifier-free guidance
-    /// What sds's classifier-free guidance starts from; it cancels in rdl's direction.
+    /// What classifier-free guidance starts from, in place of the empty prompt; it cancels in rdl's
+    /// direction. nfsd and csd have a term of its own for it, default_negative_prompt() when empty.
     std::string negative_prompt;
     float anchor = 0.0f;  ///< lambda of anchored RDL: adds lambda (eps_target - eps)
     float adjust_learning_rate = 0.03f;
     int adjust_samples = 1;      ///< noises that each step of the learned source looks at
     float min_timestep = 0.02f;  ///< as a fraction of the training timesteps
     float max_timestep = 0.98f;
-    Weighting weighting = Weighting::dreamfusion;
+    TimestepSchedule timestep_schedule = TimestepSchedule::uniform;
+    Weighting weighting = Weighting::dreamfusion;  ///< of rdl, sds, nfsd and csd
+    std::int64_t iterations = 1000;  ///< of the whole edit: what changes in its course looks here
     std::uint64_t seed = 0;
 };
 
@@ -35,6 +41,9 @@ struct GuidanceOptions {
 struct GuidanceInput {
     torch::Tensor images;  ///< [N, 3, H, W] sRGB in [0, 1]; what the gradient is with respect to
     torch::Tensor depth;   ///< [N, H, W] z-depth, 0: background; read where the prior takes depth
+    /// [N, 3, H, W] the unedited model from the same cameras in the same light; undefined unless
+    /// Guidance::needs_reference().
+    torch::Tensor reference = {};
 };
 
 struct GuidanceOutput {
@@ -54,16 +63,30 @@ class Guidance {
     virtual ~Guidance() = default;
     /// Noise and timesteps depend on the options' seed and `iteration` alone.
     virtual GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) = 0;
+    /// Whether step() reads GuidanceInput::reference.
+    virtual bool needs_reference() const { return false; }
     /// What a checkpoint must hold for an exact resume; empty for methods without state.
     virtual NamedTensors state() const { return {}; }
     /// Takes back what state() gave. Throws InputError when a tensor is missing.
     virtual void load_state(const NamedTensors& state) { (void)state; }
 };
 
+/// What --guidance offers.
+struct GuidanceKind {
+    std::string name;
+    std::string description;
+    std::string cost;  ///< rows of the U-Net for each picture of a step
+};
+const std::vector<GuidanceKind>& guidance_kinds();
+/// Their names.
 const std::vector<std::string>& guidance_methods();
 const std::vector<std::string>& adjustment_names();
 /// "early", "late", "dreamfusion", "uniform"; throws InputError on others.
 Weighting parse_weighting(const std::string& name);
+/// "uniform", "anneal", "dreamtime"; throws InputError on others.
+TimestepSchedule parse_timestep_schedule(const std::string& name);
+/// What nfsd and csd push away from when nothing else is said (Katzir et al. 2023).
+const std::string& default_negative_prompt();
 
 /// Throws InputError on an unknown method or adjustment, or an empty prompt.
 std::unique_ptr<Guidance> make_guidance(std::shared_ptr<const Pipeline> pipeline,

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
+#include "item3d/guidance/timestep_schedule.h"
 #include "item3d/models/depth_condition.h"
 
 #include <ATen/CPUGeneratorImpl.h>
@@ -12,8 +13,9 @@ namespace item3d {
 
 namespace {
 
-// Streams of the edit's seed; those of cameras, backgrounds and lights are in edit/views.cpp.
-enum Stream : std::uint64_t { noise_stream = 1, renoise_stream = 5 };
+// Streams of the edit's seed; those of cameras, backgrounds and lights are in edit/views.cpp, 6 and
+// 7 in edit/render_view.cpp and edit/detail_stage.cpp.
+enum Stream : std::uint64_t { noise_stream = 1, renoise_stream = 5, further_stream = 8 };
 
 /// Numbers of one iteration; leaves room for two draws.
 Random iteration_random(const GuidanceOptions& options, Stream stream, std::int64_t iteration) {
@@ -45,8 +47,25 @@ torch::Tensor timestep_weight(Weighting weighting, const torch::Tensor& alphas_c
     ITEM3D_CHECK(false, "unknown weighting");
 }
 
-torch::Tensor twice(const torch::Tensor& rows) {
-    return rows.defined() ? torch::cat({rows, rows}) : rows;
+torch::Tensor IterationDraws::normal_like(const torch::Tensor& latents) {
+    return torch::randn(latents.sizes(), generator, torch::kFloat32).to(latents.device());
+}
+
+IterationDraws iteration_draws(const GuidanceOptions& options, std::int64_t iteration) {
+    Random random = iteration_random(options, further_stream, iteration);
+    const double uniform = random.uniform();
+    return {uniform, at::detail::createCPUGenerator(random.bits())};
+}
+
+GuidanceOutput finish_step(const NoisedLatents& start, const torch::Tensor& direction,
+                           const torch::Tensor& gradient, double unet_began) {
+    GuidanceOutput output;
+    output.latents = start.latents;
+    output.latents_gradient = gradient;
+    output.direction_length = root_mean_square(direction);
+    output.seconds_encode = start.seconds_encode;
+    output.seconds_unet = seconds_now() - unet_began;
+    return output;
 }
 
 NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input,
@@ -56,13 +75,18 @@ NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input
     NoisedLatents result;
     const double start = seconds_now();
     result.latents = pipeline.encode_image(input.images * 2 - 1);
+    if (input.reference.defined()) {
+        ITEM3D_CHECK(input.reference.sizes() == input.images.sizes(),
+                     "the reference must be as many and as large as the images");
+        const torch::NoGradGuard no_grad;
+        result.reference = pipeline.encode_image(input.reference * 2 - 1);
+    }
     result.seconds_encode = seconds_now() - start;
 
     const torch::Tensor& schedule = pipeline.scheduler.alphas_cumprod();
-    const auto training_steps = static_cast<double>(schedule.size(0));
     Random random = iteration_random(options, noise_stream, iteration);
-    const auto timestep = static_cast<std::int64_t>(random.uniform(
-        options.min_timestep * training_steps, options.max_timestep * training_steps));
+    const std::int64_t timestep =
+        scheduled_timestep(options, schedule.size(0), iteration, random.uniform());
     auto generator = at::detail::createCPUGenerator(random.bits());
 
     const torch::NoGradGuard no_grad;

@@ -1,6 +1,6 @@
 #include "item3d/guidance/rdl.h"
 
-#include "item3d/guidance/noised_latents.h"
+#include "item3d/guidance/prediction.h"
 
 namespace item3d {
 
@@ -19,14 +19,7 @@ RelativeDirection::RelativeDirection(std::shared_ptr<const Pipeline> pipeline,
 
 PromptPair predict_pair(const Pipeline& pipeline, const NoisedLatents& start,
                         const TextEmbedding& target_text, const TextEmbedding& source_text) {
-    const torch::NoGradGuard no_grad;
-    const std::int64_t rows = start.noisy.size(0);
-    const auto both =
-        pipeline
-            .predict_noise(twice(start.noisy), twice(start.timesteps),
-                           TextEmbedding::join(target_text.expand(rows), source_text.expand(rows)),
-                           twice(start.condition))
-            .chunk(2);
+    const auto both = predict_each(pipeline, noisy_input(start), {target_text, source_text});
     return {both[0], both[1]};
 }
 
@@ -50,13 +43,8 @@ GuidanceOutput RelativeDirection::step(const GuidanceInput& input, std::int64_t 
     if (options_.anchor != 0)
         gradient = gradient + options_.anchor * (predictions.target - start.noise);
 
-    GuidanceOutput output;
-    output.latents = start.latents;
-    output.latents_gradient = start.weight * gradient;
-    output.direction_length = root_mean_square(direction);
+    GuidanceOutput output = finish_step(start, direction, start.weight * gradient, before);
     output.adjustment_loss = learned_source_ ? learned_source_->loss() : 0.0f;
-    output.seconds_encode = start.seconds_encode;
-    output.seconds_unet = seconds_now() - before;
     return output;
 }
 

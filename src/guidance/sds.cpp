@@ -1,6 +1,6 @@
 #include "item3d/guidance/sds.h"
 
-#include "item3d/guidance/noised_latents.h"
+#include "item3d/guidance/prediction.h"
 
 namespace item3d {
 
@@ -10,33 +10,16 @@ ScoreDistillation::ScoreDistillation(std::shared_ptr<const Pipeline> pipeline,
     : pipeline_(std::move(pipeline)),
       options_(options),
       target_text_(pipeline_->encode_text({target_prompt})),
-      no_text_(options.negative_prompt.empty()
-                   ? pipeline_->encode_no_text()
-                   : pipeline_->encode_text({options.negative_prompt})) {}
+      base_text_(encode_base(*pipeline_, options)) {}
 
 GuidanceOutput ScoreDistillation::step(const GuidanceInput& input, std::int64_t iteration) {
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
-    const std::int64_t rows = start.noisy.size(0);
-
-    const torch::NoGradGuard no_grad;
     const double before = seconds_now();
-    const TextEmbedding text =
-        TextEmbedding::join(target_text_.expand(rows), no_text_.expand(rows));
-    const auto predictions = pipeline_
-                                 ->predict_noise(twice(start.noisy), twice(start.timesteps), text,
-                                                 twice(start.condition))
-                                 .chunk(2);
-    const torch::Tensor guided =
-        predictions[1] + options_.guidance_scale * (predictions[0] - predictions[1]);
-    const torch::Tensor direction = guided - start.noise;
-
-    GuidanceOutput output;
-    output.latents = start.latents;
-    output.latents_gradient = start.weight * direction;
-    output.direction_length = root_mean_square(direction);
-    output.seconds_encode = start.seconds_encode;
-    output.seconds_unet = seconds_now() - before;
-    return output;
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor direction = predict_guided(*pipeline_, noisy_input(start), target_text_,
+                                                   base_text_, options_.guidance_scale) -
+                                    start.noise;
+    return finish_step(start, direction, start.weight * direction, before);
 }
 
 }  // namespace item3d

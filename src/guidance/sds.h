@@ -17,7 +17,7 @@ class ScoreDistillation : public Guidance {
     std::shared_ptr<const Pipeline> pipeline_;
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row each
-    TextEmbedding no_text_;      ///< or the negative prompt
+    TextEmbedding base_text_;    ///< none, or the negative prompt
 };
 
 }  // namespace item3d

@@ -1,0 +1,27 @@
+// Delta denoising score (Hertz et al. 2023):
+//   g = eps^w(z_t, y_target) - eps^w(zref_t, y_source),
+// zref the latents of the unedited model from the same cameras, under the same noise. Where the
+// prompts agree and nothing was edited, both terms are equal; what the model has that no word
+// mentions is in both. No omega(t): its exponents are published as 0.
+#pragma once
+
+#include "item3d/guidance/guidance.h"
+
+namespace item3d {
+
+class DeltaDenoising : public Guidance {
+  public:
+    DeltaDenoising(std::shared_ptr<const Pipeline> pipeline, const std::string& source_prompt,
+                   const std::string& target_prompt, const GuidanceOptions& options);
+    GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
+    bool needs_reference() const override { return true; }
+
+  private:
+    std::shared_ptr<const Pipeline> pipeline_;
+    GuidanceOptions options_;
+    TextEmbedding target_text_;  ///< one row each
+    TextEmbedding source_text_;
+    TextEmbedding base_text_;  ///< none, or the negative prompt
+};
+
+}  // namespace item3d

@@ -1,0 +1,34 @@
+// Posterior distillation sampling (Koo et al. 2024): the difference of the stochastic latents that
+// take each branch from t to the previous step t' of a 500-step DDIM grid,
+//   g = s(z, y_target) - s(zref, y_source),   s(z, y) = (z_t' - mu(z_t, eps^w(z_t, y))) / sigma,
+// with one noise at t and one at t' for both; zref are the latents of the unedited model, mu and
+// sigma the mean and deviation of DDPM's posterior. Beside dds's difference of predictions it holds
+// a pull of z to zref whose weight depends on t: identity.
+#pragma once
+
+#include "item3d/guidance/noised_latents.h"
+
+namespace item3d {
+
+class PosteriorDistillation : public Guidance {
+  public:
+    PosteriorDistillation(std::shared_ptr<const Pipeline> pipeline,
+                          const std::string& source_prompt, const std::string& target_prompt,
+                          const GuidanceOptions& options);
+    GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
+    bool needs_reference() const override { return true; }
+
+  private:
+    /// s(z, y) at a grid step, see above.
+    struct Step;
+    torch::Tensor stochastic_latents(const NoisedLatents& start, const Step& step,
+                                     const torch::Tensor& latents, const TextEmbedding& text) const;
+
+    std::shared_ptr<const Pipeline> pipeline_;
+    GuidanceOptions options_;
+    TextEmbedding target_text_;  ///< one row each
+    TextEmbedding source_text_;
+    TextEmbedding base_text_;  ///< none, or the negative prompt
+};
+
+}  // namespace item3d

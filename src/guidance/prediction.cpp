@@ -1,0 +1,65 @@
+#include "item3d/guidance/prediction.h"
+
+#include <cmath>
+
+namespace item3d {
+
+NoisyInput noisy_input(const NoisedLatents& start) {
+    return {start.noisy, start.timesteps, start.condition};
+}
+
+NoisyInput noisy_input(const NoisedLatents& start, const torch::Tensor& latents,
+                       std::int64_t timestep) {
+    return {latents, torch::full_like(start.timesteps, timestep), start.condition};
+}
+
+TextEmbedding encode_base(const Pipeline& pipeline, const GuidanceOptions& options) {
+    return options.negative_prompt.empty() ? pipeline.encode_no_text()
+                                           : pipeline.encode_text({options.negative_prompt});
+}
+
+TextEmbedding encode_negative(const Pipeline& pipeline, const GuidanceOptions& options) {
+    return pipeline.encode_text(
+        {options.negative_prompt.empty() ? default_negative_prompt() : options.negative_prompt});
+}
+
+std::vector<torch::Tensor> predict_each(const Pipeline& pipeline, const NoisyInput& input,
+                                        const std::vector<TextEmbedding>& texts) {
+    const torch::NoGradGuard no_grad;
+    const std::int64_t rows = input.latents.size(0);
+    const auto count = static_cast<std::int64_t>(texts.size());
+    TextEmbedding text = texts.front().expand(rows);
+    for (std::size_t i = 1; i < texts.size(); ++i)
+        text = TextEmbedding::join(text, texts[i].expand(rows));
+    const auto repeated = [&](const torch::Tensor& tensor) {
+        if (!tensor.defined()) return tensor;
+        std::vector<torch::Tensor> copies(texts.size(), tensor);
+        return torch::cat(copies);
+    };
+    return pipeline
+        .predict_noise(repeated(input.latents), repeated(input.timesteps), text,
+                       repeated(input.condition))
+        .chunk(count);
+}
+
+torch::Tensor predict_guided(const Pipeline& pipeline, const NoisyInput& input,
+                             const TextEmbedding& text, const TextEmbedding& base,
+                             double guidance_scale) {
+    const torch::NoGradGuard no_grad;
+    const auto predictions = predict_each(pipeline, input, {text, base});
+    return predictions[1] + guidance_scale * (predictions[0] - predictions[1]);
+}
+
+double alpha_at(const Pipeline& pipeline, std::int64_t timestep) {
+    return pipeline.scheduler.alphas_cumprod()[timestep].item<double>();
+}
+
+torch::Tensor clean_latents(const torch::Tensor& noisy, const torch::Tensor& noise, double alpha) {
+    return (noisy - std::sqrt(1 - alpha) * noise) / std::sqrt(alpha);
+}
+
+torch::Tensor add_noise(const torch::Tensor& clean, const torch::Tensor& noise, double alpha) {
+    return std::sqrt(alpha) * clean + std::sqrt(1 - alpha) * noise;
+}
+
+}  // namespace item3d

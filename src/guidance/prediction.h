@@ -1,0 +1,43 @@
+// Asking the U-Net with several prompts at once, and walking along its noise (DDIM).
+#pragma once
+
+#include "item3d/guidance/noised_latents.h"
+
+namespace item3d {
+
+/// What the U-Net is asked about.
+struct NoisyInput {
+    torch::Tensor latents;    ///< [N, C, h, w] z_t
+    torch::Tensor timesteps;  ///< [N] int64
+    torch::Tensor condition;  ///< of Pipeline::predict_noise; undefined: none
+};
+NoisyInput noisy_input(const NoisedLatents& start);
+/// The same pictures at another level of noise.
+NoisyInput noisy_input(const NoisedLatents& start, const torch::Tensor& latents,
+                       std::int64_t timestep);
+
+/// What classifier-free guidance starts from: the options' negative prompt, or no text.
+TextEmbedding encode_base(const Pipeline& pipeline, const GuidanceOptions& options);
+
+/// What nfsd and csd push away from: the options' negative prompt, or default_negative_prompt().
+TextEmbedding encode_negative(const Pipeline& pipeline, const GuidanceOptions& options);
+
+/// eps(y) for each of these texts (one row each), in one call of the U-Net; constants.
+std::vector<torch::Tensor> predict_each(const Pipeline& pipeline, const NoisyInput& input,
+                                        const std::vector<TextEmbedding>& texts);
+
+/// eps^w(y) = eps(base) + w (eps(y) - eps(base)), two rows an image.
+torch::Tensor predict_guided(const Pipeline& pipeline, const NoisyInput& input,
+                             const TextEmbedding& text, const TextEmbedding& base,
+                             double guidance_scale);
+
+/// abar_t, a number.
+double alpha_at(const Pipeline& pipeline, std::int64_t timestep);
+
+/// The clean latents that z_t is made of if its noise is this: (z_t - sqrt(1 - a) eps) / sqrt(a).
+torch::Tensor clean_latents(const torch::Tensor& noisy, const torch::Tensor& noise, double alpha);
+
+/// sqrt(a) clean + sqrt(1 - a) noise.
+torch::Tensor add_noise(const torch::Tensor& clean, const torch::Tensor& noise, double alpha);
+
+}  // namespace item3d

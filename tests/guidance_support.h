@@ -1,0 +1,31 @@
+// What the tests of guidance share: the tiny pipeline and pictures for it.
+#pragma once
+
+#include "item3d/guidance/guidance.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace item3d::testing {
+
+inline std::shared_ptr<const Pipeline> load_pipeline() {
+    return std::make_shared<Pipeline>(
+        Pipeline::load(std::filesystem::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd"));
+}
+
+/// Two pictures, and two more as the unedited model's.
+inline GuidanceInput random_input(std::uint64_t seed) {
+    torch::manual_seed(seed);
+    GuidanceInput input;
+    input.images = torch::rand({2, 3, 32, 32}).requires_grad_(true);
+    input.reference = torch::rand({2, 3, 32, 32});
+    return input;
+}
+
+/// Of the largest expected value, or of 1 where that is smaller.
+inline double relative_error(const torch::Tensor& value, const torch::Tensor& expected) {
+    const double scale = std::max(1.0, expected.abs().max().item<double>());
+    return (value - expected).abs().max().item<double>() / scale;
+}
+
+}  // namespace item3d::testing
