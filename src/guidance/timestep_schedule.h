@@ -19,8 +19,7 @@ std::int64_t scheduled_timestep(const GuidanceOptions& options, std::int64_t tra
 /// 0 at the first iteration, rising to 1 at the end of the edit.
 double progress_of(const GuidanceOptions& options, std::int64_t iteration);
 
-/// The single-method constants of papers count in steps of 1000; this is one of them in a schedule
-/// of another length.
+/// Papers count timesteps out of 1000; this is one of theirs in a schedule of another length.
 std::int64_t of_thousand(std::int64_t step, std::int64_t training_steps);
 
 }  // namespace item3d
