@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
 #include "item3d/scene/io/load.h"
+#include "item3d/scene/light_description.h"
 #include "item3d/scene/sky_model.h"
 #include "item3d/scene/studio_light.h"
 
@@ -25,46 +26,11 @@ Vec3 direction_of(float azimuth_degrees, float elevation_degrees) {
                 std::cos(elevation) * std::cos(azimuth));
 }
 
-/// Averages blocks of texels, weighted by solid angle, into one of at most 64 rows.
-Image shrink(const Image& light) {
-    const int block = std::max(1, light.height / 64);
-    if (block == 1) return light;
-    Image small((light.width + block - 1) / block, (light.height + block - 1) / block, 3);
-    for (int y = 0; y < small.height; ++y) {
-        for (int x = 0; x < small.width; ++x) {
-            double weights = 0;
-            double sum[3] = {0, 0, 0};
-            for (int j = y * block; j < std::min((y + 1) * block, light.height); ++j) {
-                const double weight = texel_solid_angle(j, light.height);
-                for (int i = x * block; i < std::min((x + 1) * block, light.width); ++i) {
-                    weights += weight;
-                    for (int c = 0; c < 3; ++c)
-                        sum[c] += weight * light.at(i, j, c);
-                }
-            }
-            for (int c = 0; c < 3; ++c)
-                small.at(x, y, c) = static_cast<float>(sum[c] / weights);
-        }
-    }
-    return small;
-}
-
 /// Scales the light so that the largest irradiance / pi over all normals is `peak`.
 void normalize_peak(Image& light, float peak) {
-    const Image small = shrink(light);
-    constexpr int normals = 256;
-    float largest = 0;
-    for (int i = 0; i < normals; ++i) {
-        // Fibonacci's spiral covers the sphere evenly.
-        const float y = 1 - (2 * i + 1.0f) / normals;
-        const float radius = std::sqrt(1 - y * y);
-        const float angle = 2.39996323f * static_cast<float>(i);
-        const Vec3 e =
-            irradiance_over_pi(small, Vec3(radius * std::cos(angle), y, radius * std::sin(angle)));
-        largest = std::max(largest, (e.x + e.y + e.z) / 3);
-    }
+    const float scale = peak / peak_irradiance_over_pi(light);
     for (float& value : light.pixels)
-        value *= peak / largest;
+        value *= scale;
 }
 
 /// CIE standard overcast sky (Moon and Spencer 1942): three times brighter at the zenith than at

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/scene/environment.h"
+#include "item3d/scene/sun_disk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -268,55 +269,6 @@ class Atmosphere {
     Table multiple_;
 };
 
-/// Part of texel (x, y) that the disk covers, by 8 x 8 points.
-double disk_coverage(int x, int y, int width, int height, Vec3 centre, float cosine_radius,
-                     float cosine_far) {
-    const Vec3 middle = equirectangular_direction((x + 0.5f) / width, (y + 0.5f) / height);
-    if (glm::dot(middle, centre) < cosine_far) return 0;
-    constexpr int points = 8;
-    int inside = 0;
-    for (int i = 0; i < points * points; ++i) {
-        const Vec3 direction =
-            equirectangular_direction((x + (i % points + 0.5f) / points) / width,
-                                      (y + (i / points + 0.5f) / points) / height);
-        inside += glm::dot(direction, centre) >= cosine_radius && direction.y > 0;
-    }
-    return static_cast<double>(inside) / (points * points);
-}
-
-/// Adds the disk with irradiance `irradiance` on a plane that faces it.
-void add_sun(Image& image, const SkyOptions& options, Double3 irradiance) {
-    const int width = image.width;
-    const int height = image.height;
-    const float cosine_radius = std::cos(options.sun_radius);
-    const float cosine_far = std::cos(std::min(pi, options.sun_radius + 2 * pi / height));
-    std::vector<double> coverage(static_cast<std::size_t>(width) * height);
-    double solid_angle = 0;
-    for (int y = 0; y < height; ++y) {
-        const double texel = texel_solid_angle(y, height);
-        for (int x = 0; x < width; ++x) {
-            const double covered = disk_coverage(x, y, width, height, options.sun_direction,
-                                                 cosine_radius, cosine_far);
-            coverage[static_cast<std::size_t>(y) * width + x] = covered;
-            solid_angle += covered * texel;
-        }
-    }
-    if (solid_angle == 0) {
-        // Smaller than the spacing of the points: all of it goes into one texel.
-        const Vec2 uv = equirectangular_uv(options.sun_direction);
-        const int x = std::min(static_cast<int>(uv.x * width), width - 1);
-        const int y = std::min(static_cast<int>(uv.y * height), height - 1);
-        coverage[static_cast<std::size_t>(y) * width + x] = 1;
-        solid_angle = texel_solid_angle(y, height);
-    }
-    for (std::size_t i = 0; i < coverage.size(); ++i) {
-        for (int c = 0; c < 3; ++c) {
-            image.pixels[3 * i + c] +=
-                static_cast<float>(coverage[i] * irradiance[c] / solid_angle);
-        }
-    }
-}
-
 }  // namespace
 
 Image make_clear_sky(const SkyOptions& options, int height) {
@@ -345,7 +297,8 @@ Image make_clear_sky(const SkyOptions& options, int height) {
         },
         1);
     if (sun.y > 0) {
-        add_sun(image, options, above * atmosphere.sun_transmittance(observer_radius, sun.y));
+        add_sun_disk(image, {options.sun_direction, options.sun_radius,
+                             above * atmosphere.sun_transmittance(observer_radius, sun.y)});
     }
 
     Double3 irradiance(0);

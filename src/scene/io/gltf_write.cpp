@@ -1,4 +1,6 @@
 // Documents to .glb and .gltf files.
+#include "item3d/scene/io/gltf_write.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/scene/io/gltf_make.h"
@@ -94,42 +96,6 @@ void embed_images(const SourceDocument& document, GltfBuilder& builder) {
     }
 }
 
-Bytes to_glb(const Json& json, const Bytes& binary, const SourceDocument& document) {
-    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    Bytes out;
-    const auto put = [&](std::uint32_t value) {
-        for (int shift = 0; shift < 32; shift += 8) {
-            out.push_back(static_cast<std::uint8_t>(value >> shift & 255));
-        }
-    };
-    std::size_t total = 12 + 8 + text.size();
-    const auto padded = [](std::size_t size) { return (size + 3) / 4 * 4; };
-    if (!binary.empty()) total += 8 + padded(binary.size());
-    for (const auto& chunk : document.other_chunks)
-        total += 8 + padded(chunk.bytes.size());
-    if (total > std::numeric_limits<std::uint32_t>::max()) {
-        throw InputError("glb",
-                         fmt::format("the model needs {} bytes, more than a .glb can hold", total),
-                         "write a .gltf, or smaller textures");
-    }
-    out.reserve(total);
-    const auto put_chunk = [&](std::uint32_t type, std::span<const std::uint8_t> bytes) {
-        put(static_cast<std::uint32_t>(padded(bytes.size())));
-        put(type);
-        out.insert(out.end(), bytes.begin(), bytes.end());
-        out.resize(padded(out.size()), 0);
-    };
-    put(0x46546c67);
-    put(2);
-    put(static_cast<std::uint32_t>(total));
-    put_chunk(0x4e4f534a, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    if (!binary.empty()) put_chunk(0x004e4942, binary);
-    for (const auto& chunk : document.other_chunks)
-        put_chunk(chunk.type, chunk.bytes);
-    return out;
-}
-
 // Files that the document refers to, copied beside the new one under the same names.
 void copy_files(const SourceDocument& document, const fs::path& folder) {
     const auto copy = [&](const Json& item, const auto& read) {
@@ -183,6 +149,42 @@ std::vector<PrimitiveUse> primitive_uses(const Model& model, bool is_made) {
 }
 
 }  // namespace
+
+Bytes to_glb(const Json& json, const Bytes& binary, const SourceDocument& document) {
+    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    Bytes out;
+    const auto put = [&](std::uint32_t value) {
+        for (int shift = 0; shift < 32; shift += 8) {
+            out.push_back(static_cast<std::uint8_t>(value >> shift & 255));
+        }
+    };
+    std::size_t total = 12 + 8 + text.size();
+    const auto padded = [](std::size_t size) { return (size + 3) / 4 * 4; };
+    if (!binary.empty()) total += 8 + padded(binary.size());
+    for (const auto& chunk : document.other_chunks)
+        total += 8 + padded(chunk.bytes.size());
+    if (total > std::numeric_limits<std::uint32_t>::max()) {
+        throw InputError("glb",
+                         fmt::format("the model needs {} bytes, more than a .glb can hold", total),
+                         "write a .gltf, or smaller textures");
+    }
+    out.reserve(total);
+    const auto put_chunk = [&](std::uint32_t type, std::span<const std::uint8_t> bytes) {
+        put(static_cast<std::uint32_t>(padded(bytes.size())));
+        put(type);
+        out.insert(out.end(), bytes.begin(), bytes.end());
+        out.resize(padded(out.size()), 0);
+    };
+    put(0x46546c67);
+    put(2);
+    put(static_cast<std::uint32_t>(total));
+    put_chunk(0x4e4f534a, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    if (!binary.empty()) put_chunk(0x004e4942, binary);
+    for (const auto& chunk : document.other_chunks)
+        put_chunk(chunk.type, chunk.bytes);
+    return out;
+}
 
 void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit) {
     const bool is_binary = to_lower(path.extension().string()) == ".glb";

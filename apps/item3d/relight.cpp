@@ -1,0 +1,222 @@
+// item3d relight: the same model under another light, chosen and changed by hand.
+#include "command.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/version.h"
+#include "item3d/evaluate/animation.h"
+#include "item3d/evaluate/contact_sheet.h"
+#include "item3d/evaluate/model_pictures.h"
+#include "item3d/evaluate/picture.h"
+#include "item3d/render/render.h"
+#include "item3d/scene/io/gltf_light.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/scene/io/save.h"
+#include "item3d/scene/light_layout.h"
+#include "item3d/scene/sky_hour.h"
+#include "light_options.h"
+#include "picture_options.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
+
+struct RelightCommand : CommonOptions {
+    std::string model;
+    std::string output;
+    std::string light = "studio";
+    std::optional<float> sky;  ///< hour; instead of light
+    std::string from_light = "studio";
+    LightOptions change;
+    bool punctual = false;
+    int views = 6;
+    int frames = 30;
+    int size = 384;
+};
+
+/// Cameras around the model, of which the first sees it as `item3d render` does, from where left
+/// and right are told.
+std::vector<Camera> cameras_around(const Model& model, int count) {
+    std::vector<Camera> cameras = picture_cameras(model, count);
+    const auto bounds = model.bounds();
+    const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
+    const Mat4 turn = glm::translate(Mat4(1), centre) *
+                      glm::rotate(Mat4(1), default_azimuth, Vec3(0, 1, 0)) *
+                      glm::translate(Mat4(1), -centre);
+    for (Camera& camera : cameras)
+        camera.camera_to_world = turn * camera.camera_to_world;
+    return cameras;
+}
+
+std::vector<Image> draw(const Model& model, const EnvironmentLight& light, int count, int pixels) {
+    const torch::Tensor linear =
+        draw_pictures(model, light, cameras_around(model, count), pixels).cpu();
+    std::vector<Image> pictures;
+    for (const torch::Tensor& picture : linear.unbind(0))
+        pictures.push_back(to_display(to_image(picture)));
+    return pictures;
+}
+
+Image views_sheet(const std::vector<Image>& pictures, const std::string& title) {
+    std::vector<Tile> tiles;
+    for (const Image& picture : pictures)
+        tiles.push_back({picture, ""});
+    ContactSheetOptions options;
+    options.columns = std::min<int>(3, static_cast<int>(tiles.size()));
+    options.title = title;
+    return contact_sheet(tiles, options);
+}
+
+/// A row for each light: the light itself, and up to three views.
+Image comparison(const std::vector<Image>& before, const std::vector<Image>& after,
+                 const Image& old_light, const Image& new_light, const std::string& title) {
+    std::vector<Tile> tiles;
+    const std::size_t views = std::min<std::size_t>(3, before.size());
+    const auto add_row = [&](const Image& light, const std::vector<Image>& pictures,
+                             const std::string& label) {
+        tiles.push_back({light_picture(light, pictures.front().width), label});
+        for (std::size_t i = 0; i < views; ++i)
+            tiles.push_back({pictures[i], ""});
+    };
+    add_row(old_light, before, "before");
+    add_row(new_light, after, "after");
+    ContactSheetOptions options;
+    options.columns = static_cast<int>(views) + 1;
+    options.title = title;
+    return contact_sheet(tiles, options);
+}
+
+std::string light_title(const RelightCommand& options) {
+    if (!options.change.lit.empty()) return options.change.lit;
+    return options.sky ? fmt::format("the sky at {:g} o'clock", *options.sky)
+                       : fs::path(options.light).stem().string();
+}
+
+Image chosen_light(const RelightCommand& options) {
+    const Image base = options.sky
+                           ? make_sky_at(*options.sky)
+                           : load_light(options.light, parse_light_layout(options.change.layout));
+    return apply(options.change, base);
+}
+
+/// What is drawn under both lights, and written.
+void write_pictures(const RelightCommand& options, const Model& model, const Image& old_image,
+                    const Image& new_image, torch::Device device) {
+    const fs::path folder = options.output;
+    const EnvironmentLight old_light = prefilter(old_image, 256, device);
+    const EnvironmentLight new_light = prefilter(new_image, 256, device);
+    const auto before = draw(model, old_light, options.views, options.size);
+    const auto after = draw(model, new_light, options.views, options.size);
+    const std::string title = light_title(options);
+    save_image(folder / "before.png",
+               views_sheet(before, fs::path(options.from_light).stem().string()));
+    save_image(folder / "after.png", views_sheet(after, title));
+    save_image(folder / "sheet.png", comparison(before, after, old_image, new_image, title));
+    if (interrupted()) throw Interrupted("the turntable was not drawn");
+
+    const int frame_size = std::max(16, options.size * 3 / 4);
+    std::vector<Image> frames = draw(model, new_light, options.frames, frame_size);
+    for (Image& frame : frames)
+        frame = flatten(frame, turntable_ground);
+    write_atomically(folder / "turntable.webp",
+                     std::span<const std::uint8_t>(encode_animation(frames)));
+}
+
+void run_relight(const RelightCommand& options, torch::Device device) {
+    chosen_sun(options.change);  // mistakes are told before anything is computed
+    const Model model = load_model(options.model);
+    const Image old_light = load_light(options.from_light, LightLayout::automatic);
+    const Image new_light = chosen_light(options);
+    const LightDescription description = describe_light(new_light);
+    if (options.punctual && description.lobe.share == 0) {
+        throw InputError("--punctual", "the light is black and has no brightest lobe");
+    }
+    const fs::path folder = options.output;
+    make_output_folder(folder);
+    save_image(folder / "light.hdr", new_light, 32);
+    save_image(folder / "light.exr", new_light, 32);
+    write_pictures(options, model, old_light, new_light, device);
+
+    nlohmann::json record = {{"version", version()},
+                             {"command", command_line()},
+                             {"model", options.model},
+                             {"from_light", options.from_light},
+                             {"light", options.light},
+                             {"sky", nullptr},
+                             {"settings", settings_json(options.change)},
+                             {"description", to_json(description)},
+                             {"description_before", to_json(describe_light(old_light))},
+                             {"punctual", nullptr}};
+    if (options.sky) {
+        record["light"] = nullptr;
+        record["sky"] = *options.sky;
+    }
+    std::optional<DirectionalLight> sun;
+    if (options.punctual) {
+        sun = DirectionalLight{description.lobe.direction, Vec3(description.lobe.irradiance)};
+        record["punctual"] = {
+            {"direction", {sun->direction.x, sun->direction.y, sun->direction.z}},
+            {"irradiance", {sun->irradiance.x, sun->irradiance.y, sun->irradiance.z}}};
+    }
+    save_lit_model(folder / "model.glb", model, sun);
+    write_atomically(folder / "relight.json", std::string_view(record.dump(2) + "\n"));
+    if (options.json) {
+        print_json(record);
+    } else {
+        fmt::print("{}\n", (folder / "sheet.png").string());
+    }
+}
+
+}  // namespace
+
+void add_relight_command(CLI::App& app) {
+    auto options = std::make_shared<RelightCommand>();
+    CLI::App* command = add_command(app, "relight", "Show a model under another light", *options);
+    command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
+    command->add_option("-o,--output", options->output, "A folder")->required();
+    CLI::Option* light =
+        command
+            ->add_option("--light", options->light,
+                         "The new light: studio, noon, sunset, overcast, night, or an .hdr or .exr "
+                         "file")
+            ->capture_default_str();
+    command
+        ->add_option(
+            "--sky", options->sky,
+            "A clear sky at this hour (0 to 24) instead: the sun rises in the east at 6 and "
+            "is in the south at 12")
+        ->check(CLI::Range(0.0f, 24.0f))
+        ->excludes(light);
+    command->add_option("--from-light", options->from_light, "The old light, to compare with")
+        ->capture_default_str();
+    add_light_options(*command, options->change);
+    command->add_flag("--punctual", options->punctual,
+                      "Add the light's brightest lobe to model.glb as a directional light "
+                      "(KHR_lights_punctual)");
+    command->add_option("--views", options->views, "Of before.png and after.png")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    command->add_option("--frames", options->frames, "Of turntable.webp")
+        ->check(CLI::Range(1, 360))
+        ->capture_default_str();
+    command->add_option("--size", options->size, "Pixels of a view's side")
+        ->check(CLI::Range(16, 2048))
+        ->capture_default_str();
+    command->callback([options] { run_relight(*options, start_command(*options)); });
+}
+
+}  // namespace item3d

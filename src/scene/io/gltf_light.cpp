@@ -1,0 +1,107 @@
+#include "item3d/scene/io/gltf_light.h"
+
+#include "item3d/core/error.h"
+#include "item3d/scene/io/gltf_builder.h"
+#include "item3d/scene/io/gltf_document.h"
+#include "item3d/scene/io/gltf_write.h"
+#include "item3d/scene/io/resources.h"
+#include "item3d/scene/io/save.h"
+#include "item3d/scene/io/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* punctual = "KHR_lights_punctual";
+
+bool refers_to_files(const Json& json) {
+    for (const char* list : {"buffers", "images"}) {
+        if (!json.contains(list)) continue;
+        for (const Json& item : json[list]) {
+            const std::string uri = item.value("uri", std::string());
+            if (!uri.empty() && !is_data_uri(uri)) return true;
+        }
+    }
+    return false;
+}
+
+/// x, y, z, w: turns +Z towards `direction`, so that a light, which shines along -Z, comes from
+/// there.
+Json rotation_towards(Vec3 direction) {
+    if (direction.z < -0.99999f) return Json{0, 1, 0, 0};
+    const Vec3 axis = glm::cross(Vec3(0, 0, 1), direction);
+    const Vec4 q = glm::normalize(Vec4(axis, 1 + direction.z));
+    return Json{q.x, q.y, q.z, q.w};
+}
+
+/// The nodes that are no node's children.
+Json root_nodes(const Json& json) {
+    std::set<std::size_t> children;
+    for (const Json& node : json["nodes"]) {
+        if (!node.contains("children")) continue;
+        for (const Json& child : node["children"])
+            children.insert(child.get<std::size_t>());
+    }
+    Json roots = Json::array();
+    for (std::size_t i = 0; i < json["nodes"].size(); ++i)
+        if (!children.contains(i)) roots.push_back(i);
+    return roots;
+}
+
+void add_sun(Json& json, const DirectionalLight& sun) {
+    const float strongest = std::max({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z});
+    ITEM3D_CHECK(strongest > 0, "a directional light shines");
+    const Vec3 color = sun.irradiance / strongest;
+    const std::size_t light = append(json["extensions"][punctual], "lights",
+                                     Json{{"type", "directional"},
+                                          {"name", "sun"},
+                                          {"color", {color.x, color.y, color.z}},
+                                          {"intensity", strongest}});
+    const std::size_t node = append(json, "nodes",
+                                    Json{{"name", "sun"},
+                                         {"rotation", rotation_towards(sun.direction)},
+                                         {"extensions", {{punctual, {{"light", light}}}}}});
+    // Without scenes viewers show what they like; the loader took all nodes.
+    if (!json.contains("scenes") || json["scenes"].empty()) {
+        json["scenes"] = Json::array({Json{{"nodes", root_nodes(json)}}});
+        json["scene"] = 0;
+    } else {
+        append(json["scenes"][json.value("scene", std::size_t{0})], "nodes", node);
+    }
+    if (!json.contains("extensionsUsed")) json["extensionsUsed"] = Json::array();
+    Json& used = json["extensionsUsed"];
+    if (std::find(used.begin(), used.end(), punctual) == used.end()) used.push_back(punctual);
+}
+
+}  // namespace
+
+void save_lit_model(const fs::path& path, const Model& model,
+                    const std::optional<DirectionalLight>& sun) {
+    if (to_lower(path.extension().string()) != ".glb") {
+        throw InputError(path.string(), "a model with its light is written as .glb");
+    }
+    const bool is_whole_glb = model.source &&
+                              to_lower(model.source->path.extension().string()) == ".glb" &&
+                              !refers_to_files(model.source->json);
+    if (!sun && is_whole_glb) {
+        write_atomically(path, std::span<const std::uint8_t>(read_bytes(model.source->path)));
+        return;
+    }
+    write_atomically(path, [&](const fs::path& temporary) {
+        save_model(temporary, model);
+        if (!sun) return;
+        const auto document = parse_gltf(temporary, read_bytes(temporary));
+        Json json = document->json;
+        add_sun(json, *sun);
+        const Bytes binary = document->has_binary_chunk ? document->buffers[0] : Bytes();
+        write_atomically(temporary, std::span<const std::uint8_t>(to_glb(json, binary, *document)));
+    });
+}
+
+}  // namespace item3d

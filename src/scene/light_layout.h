@@ -1,0 +1,48 @@
+// Lights as other programs lay them out: cube maps and light probes, brought to equirectangular.
+#pragma once
+
+#include "item3d/core/math.h"
+#include "item3d/scene/image.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+enum class LightLayout {
+    automatic,        ///< by the ratio of the sides
+    equirectangular,  ///< 2:1
+    /// Six faces as an unfolded box, seen from inside, around the front (-Z): right (+X), left, up
+    /// and down on its four sides, and the back beyond the right one (4:3) or, upside down, below
+    /// the lower one (3:4).
+    cross,
+    /// right, left, up, down, front, back in a row (6:1) or a column (1:6), seen from inside; the
+    /// lower edge of "up" and the upper edge of "down" meet the front. This is the order +X -X +Y
+    /// -Y +Z -Z of graphics interfaces, whose cube maps look along +Z.
+    strip,
+    /// A light probe (Debevec 1998): the middle looks to -Z, and the distance from it, as a part of
+    /// half the side, is the angle from -Z as a part of 180 degrees. 1:1.
+    angular
+};
+
+/// "auto", "equirectangular", "cross", "strip", "angular".
+const std::vector<std::string>& light_layout_names();
+/// Throws InputError on other names.
+LightLayout parse_light_layout(const std::string& name);
+
+/// picture: linear RGB. Returns height x 2*height x 3, where height is two sides of a cube's face
+/// or half the side of a probe; an equirectangular picture comes back as it is. Throws InputError
+/// that names `subject` when the sides do not fit the layout, or tell of none.
+Image to_equirectangular(const Image& picture, LightLayout layout, const std::string& subject);
+
+/// load_light of environment.h for files in any layout; presets are equirectangular already.
+Image load_light(const std::string& name_or_path, LightLayout layout);
+
+/// An equirectangular light of `height` rows from radiance by direction, four samples a texel.
+Image light_from(int height, const std::function<Vec3(Vec3)>& radiance);
+
+/// Radiance in a direction, bilinear.
+Vec3 look_up(const Image& light, Vec3 direction);
+
+}  // namespace item3d

@@ -1,0 +1,141 @@
+// item3d light and relight: what they write, and what they say to mistakes.
+#include "cli_support.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace item3d::testing {
+namespace {
+
+using nlohmann::json;
+
+class RelightProgram : public Program {
+  protected:
+    fs::path textured_ = fs::path(ITEM3D_TEST_DATA) / "scene/gltf/full_pbr.glb";
+
+    json describe(const std::string& arguments) const {
+        const Result result = run("light --json " + arguments);
+        EXPECT_EQ(result.code, 0) << result.error;
+        return json::parse(result.out, nullptr, false);
+    }
+    Result relight(const std::string& arguments, const fs::path& model) const {
+        return run("relight " + quoted(model) + " -o " + quoted(folder_ / "out") +
+                   " --views 2 --frames 2 --size 32 --quiet " + arguments);
+    }
+    /// The JSON chunk and the rest of a .glb.
+    static std::pair<json, std::string> parts(const fs::path& path) {
+        const std::string bytes = read_file(path);
+        std::uint32_t length = 0;
+        for (int i = 3; i >= 0; --i)
+            length = length << 8 | static_cast<unsigned char>(bytes[12 + i]);
+        return {json::parse(bytes.substr(20, length)), bytes.substr(20 + length)};
+    }
+};
+
+double angle_between(const json& angles, double azimuth, double elevation) {
+    const auto radians = [](double degrees) { return degrees * M_PI / 180; };
+    const double a = radians(angles["elevation"]), b = radians(elevation);
+    const double turn = radians(angles["azimuth"].get<double>() - azimuth);
+    const double cosine = std::sin(a) * std::sin(b) + std::cos(a) * std::cos(b) * std::cos(turn);
+    return std::acos(std::min(1.0, cosine)) * 180 / M_PI;
+}
+
+TEST_F(RelightProgram, WritesEverything) {
+    const Result result = relight("--lit 'from the left' --tint orange", textured_);
+    ASSERT_EQ(result.code, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    for (const char* name : {"light.hdr", "light.exr", "before.png", "after.png", "sheet.png",
+                             "turntable.webp", "relight.json", "model.glb"}) {
+        EXPECT_GT(read_file(folder_ / "out" / name).size(), 100u) << name;
+    }
+    EXPECT_EQ(read_file(folder_ / "out/model.glb"), read_file(textured_));
+    EXPECT_NE(read_file(folder_ / "out/before.png"), read_file(folder_ / "out/after.png"));
+    const json record = json::parse(read_file(folder_ / "out/relight.json"));
+    EXPECT_EQ(record["settings"]["lit"], "from the left");
+    // The viewer stands at 145 degrees, so its left is at 235; read back from the file as well.
+    EXPECT_LT(angle_between(record["description"]["brightest_lobe"], 235, 25), 2);
+    for (const char* file : {"light.exr", "light.hdr"}) {
+        const json read = describe(quoted(folder_ / "out" / file));
+        EXPECT_LT(angle_between(read["brightest_lobe"], 235, 25), 2) << file;
+    }
+}
+
+TEST_F(RelightProgram, AddsADirectionalLightAndNothingElse) {
+    ASSERT_EQ(relight("--sun 90,30 --punctual", textured_).code, 0);
+    const auto [before, binary_before] = parts(textured_);
+    auto [after, binary_after] = parts(folder_ / "out/model.glb");
+    EXPECT_EQ(binary_before, binary_after);
+    const json light = after["extensions"]["KHR_lights_punctual"]["lights"].back();
+    EXPECT_EQ(light["type"], "directional");
+    EXPECT_GT(light["intensity"].get<double>(), 0.1);
+    // It shines along its node's -Z: turn +Z by the node's rotation, which must point to the sun.
+    const json node = after["nodes"].back();
+    const std::vector<double> q = node["rotation"];
+    const double x = 2 * (q[0] * q[2] + q[3] * q[1]), y = 2 * (q[1] * q[2] - q[3] * q[0]);
+    EXPECT_NEAR(x, std::cos(M_PI / 6), 0.02);
+    EXPECT_NEAR(y, 0.5, 0.02);
+    EXPECT_EQ(after["scenes"][0]["nodes"].back(), after["nodes"].size() - 1);
+    // Without it the document is what it was.
+    after["nodes"].erase(after["nodes"].size() - 1);
+    after["scenes"][0]["nodes"].erase(after["scenes"][0]["nodes"].size() - 1);
+    EXPECT_EQ(after["nodes"], before["nodes"]);
+    EXPECT_EQ(after["scenes"], before["scenes"]);
+    EXPECT_EQ(after["images"], before["images"]);
+    EXPECT_EQ(after["materials"], before["materials"]);
+}
+
+TEST_F(RelightProgram, TakesObjAndTheSkyByTheHour) {
+    const Result result = relight("--sky 9 --json", cube_);
+    ASSERT_EQ(result.code, 0) << result.error;
+    const json record = json::parse(result.out);
+    EXPECT_EQ(record["sky"], 9);
+    // Half way up between east and south: 45 degrees of hour angle.
+    EXPECT_LT(angle_between(record["description"]["brightest_lobe"], 125.26, 30), 4);
+    EXPECT_EQ(read_file(folder_ / "out/model.glb").substr(0, 4), "glTF");
+}
+
+TEST_F(RelightProgram, LightConvertsAndChanges) {
+    const fs::path file = folder_ / "noon.exr";
+    const json noon = describe("noon -o " + quoted(file));
+    const json& lobe = noon["brightest_lobe"];
+    EXPECT_TRUE(lobe["is_sun"].get<bool>());
+    const json turned = describe(quoted(file) + " --rotate 90 --exposure 1");
+    EXPECT_LT(angle_between(turned["brightest_lobe"], lobe["azimuth"].get<double>() + 90,
+                            lobe["elevation"]),
+              0.5);
+    EXPECT_NEAR(turned["mean_radiance"].get<double>() / noon["mean_radiance"].get<double>(), 2,
+                1e-3);
+    EXPECT_LT(describe("noon --tint red")["color_temperature"].is_null()
+                  ? 0.0
+                  : describe("noon --tint orange")["color_temperature"].get<double>(),
+              noon["color_temperature"].get<double>());
+    EXPECT_EQ(run("light noon -o " + quoted(folder_ / "noon.png")).code, 0);
+    EXPECT_NE(run("light " + quoted(file)).out.find("a sun"), std::string::npos);
+}
+
+TEST_F(RelightProgram, ExplainsMistakes) {
+    const std::string model = "relight " + quoted(cube_) + " -o " + quoted(folder_ / "out") + " ";
+    expect_error(model + "--lit 'a nice mood'", 3, "names no direction");
+    expect_error(model + "--light nowhere.hdr", 3, "nowhere.hdr");
+    expect_error(model + "--tint mauvish", 3, "mauvish");
+    expect_error(model + "--tint black", 3, "tint");
+    expect_error(model + "--sun 10", 2, "--sun 10");
+    expect_error(model + "--sun 10,95", 2, "--sun 10,95");
+    expect_error(model + "--strength 2", 2, "--strength");
+    EXPECT_EQ(run(model + "--sky 25").code, 2);
+    EXPECT_EQ(run(model + "--sky 5 --light noon").code, 2);
+    EXPECT_EQ(run(model + "--sun 1,2 --lit left").code, 2);
+    expect_error("relight nothing.glb -o " + quoted(folder_ / "out"), 3, "nothing.glb");
+    expect_error("light noon -o noon.jpg", 2, "noon.jpg");
+    const fs::path odd = folder_ / "odd.exr";
+    ASSERT_EQ(run("render " + quoted(cube_) + " --size 70x30 -o " + quoted(odd)).code, 0);
+    expect_error("light " + quoted(odd), 3, "odd.exr");
+    expect_error("light --layout cross " + quoted(odd), 3, "odd.exr");
+    EXPECT_EQ(run("light --layout equirectangular " + quoted(odd)).code, 0);
+}
+
+}  // namespace
+}  // namespace item3d::testing
