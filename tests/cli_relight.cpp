@@ -108,10 +108,9 @@ TEST_F(RelightProgram, LightConvertsAndChanges) {
               0.5);
     EXPECT_NEAR(turned["mean_radiance"].get<double>() / noon["mean_radiance"].get<double>(), 2,
                 1e-3);
-    EXPECT_LT(describe("noon --tint red")["color_temperature"].is_null()
-                  ? 0.0
-                  : describe("noon --tint orange")["color_temperature"].get<double>(),
-              noon["color_temperature"].get<double>());
+    const json warm = describe("noon --tint '#ffd9b0'");
+    EXPECT_LT(warm["color_temperature"].get<double>(),
+              noon["color_temperature"].get<double>() - 500);
     EXPECT_EQ(run("light noon -o " + quoted(folder_ / "noon.png")).code, 0);
     EXPECT_NE(run("light " + quoted(file)).out.find("a sun"), std::string::npos);
 }
@@ -125,7 +124,6 @@ TEST_F(RelightProgram, ExplainsMistakes) {
     expect_error(model + "--sun 10", 2, "--sun 10");
     expect_error(model + "--sun 10,95", 2, "--sun 10,95");
     expect_error(model + "--strength 2", 2, "--strength");
-    EXPECT_EQ(run(model + "--sky 25").code, 2);
     EXPECT_EQ(run(model + "--sky 5 --light noon").code, 2);
     EXPECT_EQ(run(model + "--sun 1,2 --lit left").code, 2);
     expect_error("relight nothing.glb -o " + quoted(folder_ / "out"), 3, "nothing.glb");
@@ -133,8 +131,6 @@ TEST_F(RelightProgram, ExplainsMistakes) {
     const fs::path odd = folder_ / "odd.exr";
     ASSERT_EQ(run("render " + quoted(cube_) + " --size 70x30 -o " + quoted(odd)).code, 0);
     expect_error("light " + quoted(odd), 3, "odd.exr");
-    expect_error("light --layout cross " + quoted(odd), 3, "odd.exr");
-    EXPECT_EQ(run("light --layout equirectangular " + quoted(odd)).code, 0);
 }
 
 }  // namespace

@@ -46,8 +46,9 @@ void run_light(const LightCommand& options) {
         throw UsageError("-o " + options.output + ": expected a .hdr, .exr or .png file");
     }
     const LightOptions& change = options.change;
-    chosen_sun(change);  // mistakes are told before anything is computed
-    const Image light = apply(change, load_light(options.light, parse_light_layout(change.layout)));
+    const std::optional<SunSetting> sun = chosen_sun(change);
+    const Image light =
+        apply(change, sun, load_light(options.light, parse_light_layout(change.layout)));
     if (!options.output.empty()) write_light(options.output, light);
 
     const bool describe = options.describe || options.output.empty();
@@ -56,7 +57,7 @@ void run_light(const LightCommand& options) {
         result.update({{"light", options.light},
                        {"width", light.width},
                        {"height", light.height},
-                       {"settings", settings_json(change)}});
+                       {"settings", settings_json(change, sun)}});
         if (!options.output.empty()) result["file"] = options.output;
         print_json(result);
         return;

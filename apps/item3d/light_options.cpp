@@ -107,7 +107,7 @@ void add_light_options(CLI::App& command, LightOptions& options) {
                 "--sun", options.sun,
                 "AZIMUTH,ELEVATION[,STRENGTH]: moves the light's sun, or adds one. Degrees; "
                 "azimuth 0 is north, 90 east. STRENGTH is its irradiance over the mean of "
-                "the rest (without it, what its sun has, else 2)")
+                "the rest (without it, what its sun has, else 6)")
             ->group(group);
     command
         .add_option(
@@ -146,14 +146,14 @@ std::optional<SunSetting> chosen_sun(const LightOptions& options) {
     return sun;
 }
 
-Image apply(const LightOptions& options, const Image& light) {
+Image apply(const LightOptions& options, const std::optional<SunSetting>& sun, const Image& light) {
     Image result = tilt_light(adjust_light(light, options.rotation, 0), options.tilt);
-    if (const auto sun = chosen_sun(options)) result = place_sun(result, *sun);
+    if (sun) result = place_sun(result, *sun);
     if (!options.tint.empty()) result = tint_light(result, linear_tint(options.tint));
     return adjust_light(result, 0, options.exposure);
 }
 
-nlohmann::json settings_json(const LightOptions& options) {
+nlohmann::json settings_json(const LightOptions& options, const std::optional<SunSetting>& sun) {
     nlohmann::json settings = {{"layout", options.layout},
                                {"rotate", options.rotation},
                                {"tilt", options.tilt},
@@ -163,7 +163,7 @@ nlohmann::json settings_json(const LightOptions& options) {
                                {"exposure", options.exposure}};
     if (!options.lit.empty()) settings["lit"] = options.lit;
     if (!options.tint.empty()) settings["tint"] = options.tint;
-    if (const auto sun = chosen_sun(options)) {
+    if (sun) {
         settings["sun"] = {{"azimuth", sun->from.azimuth},
                            {"elevation", sun->from.elevation},
                            {"width", sun->width},

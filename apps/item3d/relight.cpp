@@ -9,7 +9,7 @@
 #include "item3d/evaluate/contact_sheet.h"
 #include "item3d/evaluate/model_pictures.h"
 #include "item3d/evaluate/picture.h"
-#include "item3d/render/render.h"
+#include "item3d/render/shade.h"
 #include "item3d/scene/io/gltf_light.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
@@ -106,11 +106,11 @@ std::string light_title(const RelightCommand& options) {
                        : fs::path(options.light).stem().string();
 }
 
-Image chosen_light(const RelightCommand& options) {
+Image chosen_light(const RelightCommand& options, const std::optional<SunSetting>& sun) {
     const Image base = options.sky
                            ? make_sky_at(*options.sky)
                            : load_light(options.light, parse_light_layout(options.change.layout));
-    return apply(options.change, base);
+    return apply(options.change, sun, base);
 }
 
 /// What is drawn under both lights, and written.
@@ -137,10 +137,10 @@ void write_pictures(const RelightCommand& options, const Model& model, const Ima
 }
 
 void run_relight(const RelightCommand& options, torch::Device device) {
-    chosen_sun(options.change);  // mistakes are told before anything is computed
+    const std::optional<SunSetting> placed_sun = chosen_sun(options.change);
     const Model model = load_model(options.model);
     const Image old_light = load_light(options.from_light, LightLayout::automatic);
-    const Image new_light = chosen_light(options);
+    const Image new_light = chosen_light(options, placed_sun);
     const LightDescription description = describe_light(new_light);
     if (options.punctual && description.lobe.share == 0) {
         throw InputError("--punctual", "the light is black and has no brightest lobe");
@@ -157,7 +157,7 @@ void run_relight(const RelightCommand& options, torch::Device device) {
                              {"from_light", options.from_light},
                              {"light", options.light},
                              {"sky", nullptr},
-                             {"settings", settings_json(options.change)},
+                             {"settings", settings_json(options.change, placed_sun)},
                              {"description", to_json(description)},
                              {"description_before", to_json(describe_light(old_light))},
                              {"punctual", nullptr}};

@@ -12,6 +12,9 @@ namespace item3d {
 
 namespace {
 
+/// Of a new sun: enough that it is plainly seen from where, with fill in the shadows.
+constexpr double usual_strength = 6;
+
 /// Replaces the lobe, with its blurred rim, by the mean of a ring around it.
 void remove_lobe(Image& light, const LightLobe& lobe) {
     const auto texel = static_cast<float>(M_PI / std::min(light.height, light.width / 2));
@@ -77,7 +80,7 @@ Image place_sun(const Image& light, const SunSetting& setting) {
         remove_lobe(result, lobe);
     }
     const double rest = M_PI * luminance(mean_radiance(result));
-    double irradiance = lobe.is_sun() ? luminance(lobe.irradiance) : 2 * rest;
+    double irradiance = lobe.is_sun() ? luminance(lobe.irradiance) : usual_strength * rest;
     if (setting.strength) irradiance = *setting.strength * rest;
     // In the dark there is nothing to be relative to.
     if (rest == 0 && !lobe.is_sun()) irradiance = M_PI;

@@ -19,7 +19,7 @@ Image tint_light(const Image& light, Vec3 linear_color);
 struct SunSetting {
     SkyAngles from;
     /// Irradiance facing the sun over the mean irradiance of the rest of the light; none: what the
-    /// light's own sun has, else 2.
+    /// light's own sun has, else 6.
     std::optional<float> strength;
     float width =
         3;  ///< degrees across; the true sun has 0.53. Its irradiance does not depend on it

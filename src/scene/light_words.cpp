@@ -62,8 +62,8 @@ const std::map<std::string, int> numbers = {
     {"one", 1},   {"two", 2},   {"three", 3}, {"four", 4}, {"five", 5},    {"six", 6},
     {"seven", 7}, {"eight", 8}, {"nine", 9},  {"ten", 10}, {"eleven", 11}, {"twelve", 12}};
 
-const std::set<std::string> above_words = {"above", "overhead", "top", "zenith"};
-const std::set<std::string> below_words = {"below", "underneath", "beneath", "bottom"};
+const std::set<std::string> above_words = {"above", "overhead", "top", "upper", "zenith"};
+const std::set<std::string> below_words = {"below", "underneath", "beneath", "bottom", "lower"};
 const std::set<std::string> low_words = {"low", "rising", "setting"};
 const std::set<std::string> high_words = {"high"};
 /// These say a direction wherever they stand; others only after a preposition, so that "a left
@@ -304,7 +304,7 @@ LightWords parse_light_words(const std::string& sentence, float viewer_azimuth) 
 const std::vector<std::string>& light_words_help() {
     static const std::vector<std::string> lines = {
         "from the left, right, front, back (or behind), camera (or behind the camera)",
-        "from above (or overhead, the top), below (or underneath, the bottom)",
+        "from above (or overhead, top, upper), below (or underneath, bottom, lower)",
         "in the north, east, south, west, northeast, ...",
         "from 2 o'clock, from two o'clock: 6 is the camera, 12 beyond the model",
         "low or rising or setting, high, 40 degrees up: with one of the others",
