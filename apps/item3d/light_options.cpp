@@ -82,6 +82,18 @@ nlohmann::json number_or_null(const std::optional<double>& number) {
 
 }  // namespace
 
+CLI::Validator number_between(float low, float high) {
+    return {[=](std::string& text) {
+                const auto numbers = parse_numbers(text);
+                const bool fits = numbers && numbers->size() == 1 && numbers->front() >= low &&
+                                  numbers->front() <= high;
+                return fits ? std::string()
+                            : fmt::format("expected a number from {} to {}, found {}", low, high,
+                                          text);
+            },
+            fmt::format("[{} - {}]", low, high)};
+}
+
 void add_light_options(CLI::App& command, LightOptions& options) {
     const char* const group = "Changing the light, in this order";
     command
@@ -92,13 +104,13 @@ void add_light_options(CLI::App& command, LightOptions& options) {
         ->group("Reading the light");
     command
         .add_option("--rotate", options.rotation, "Degrees about +Y, from north (-Z) to east (+X)")
-        ->check(CLI::Range(-36000.0f, 36000.0f))
+        ->check(number_between(-36000.0f, 36000.0f))
         ->capture_default_str()
         ->group(group);
     command
         .add_option("--tilt", options.tilt,
                     "Degrees about the line from west to east: what is in the north rises")
-        ->check(CLI::Range(-36000.0f, 36000.0f))
+        ->check(number_between(-36000.0f, 36000.0f))
         ->capture_default_str()
         ->group(group);
     CLI::Option* sun =
@@ -118,11 +130,11 @@ void add_light_options(CLI::App& command, LightOptions& options) {
         ->excludes(sun)
         ->group(group);
     command.add_option("--strength", options.strength, "STRENGTH for --lit")
-        ->check(CLI::Range(1e-3f, 1e6f))
+        ->check(number_between(1e-3f, 1e6f))
         ->excludes(sun)
         ->group(group);
     command.add_option("--sun-width", options.sun_width, "Degrees across; the true sun has 0.53")
-        ->check(CLI::Range(0.53f, 30.0f))
+        ->check(number_between(0.53f, 30.0f))
         ->capture_default_str()
         ->group(group);
     command
@@ -130,7 +142,7 @@ void add_light_options(CLI::App& command, LightOptions& options) {
                     "A colour by name or #rrggbb that multiplies all, at luminance 1")
         ->group(group);
     command.add_option("--exposure", options.exposure, "Stops: the light is multiplied by 2^EV")
-        ->check(CLI::Range(-30.0f, 30.0f))
+        ->check(number_between(-30.0f, 30.0f))
         ->capture_default_str()
         ->group(group);
 }

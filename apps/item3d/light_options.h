@@ -25,6 +25,9 @@ struct LightOptions {
     float sun_width = 3;  ///< degrees
 };
 
+/// Refuses what is not a number from `low` to `high`; CLI::Range lets nan pass.
+CLI::Validator number_between(float low, float high);
+
 /// Adds --layout, --rotate, --tilt, --sun, --lit, --strength, --sun-width, --tint and --exposure.
 void add_light_options(CLI::App& command, LightOptions& options);
 

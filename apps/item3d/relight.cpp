@@ -199,7 +199,7 @@ void add_relight_command(CLI::App& app) {
             "--sky", options->sky,
             "A clear sky at this hour (0 to 24) instead: the sun rises in the east at 6 and "
             "is in the south at 12")
-        ->check(CLI::Range(0.0f, 24.0f))
+        ->check(number_between(0, 24))
         ->excludes(light);
     command->add_option("--from-light", options->from_light, "The old light, to compare with")
         ->capture_default_str();
