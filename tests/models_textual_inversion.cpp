@@ -40,8 +40,8 @@ TEST(TextualInversion, IsCalledAfterTheFileAndItsVectorsAlone) {
     EXPECT_EQ(one, (std::vector<int>{tokenizer.bos_id(), before + 3, tokenizer.eos_id()}));
     // Prompts without it are what they were.
     const Pipeline plain = Pipeline::load(fixture("pipeline_sd"));
-    EXPECT_TRUE(plain.encode_text({"a duck"}).states.equal(
-        pipeline.encode_text({"a duck"}).states));
+    EXPECT_TRUE(
+        plain.encode_text({"a duck"}).states.equal(pipeline.encode_text({"a duck"}).states));
 }
 
 TEST(TextualInversion, TeachesBothEncodersOfAPair) {
