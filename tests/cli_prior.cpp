@@ -64,9 +64,11 @@ TEST_F(PriorProgram, InstalledPriorsAreFoundByName) {
 
 TEST_F(PriorProgram, AnInterruptedPullGoesOnWhereItStopped) {
     const std::string whole = read_file(small_prior / unet);
-    hub.break_file(unet, {.times = 1, .slow = whole.size() / 5000});
+    // Slow enough to be under way when the interrupt comes, however long the program takes to
+    // start.
+    hub.break_file(unet, {.times = 1, .slow = whole.size() / 20000});
     const Result stopped =
-        run("prior pull someone/model", environment() + "timeout -s INT --preserve-status 1 ");
+        run("prior pull someone/model", environment() + "timeout -s INT --preserve-status 3 ");
     EXPECT_EQ(stopped.code, 130) << stopped.error;
     EXPECT_NE(stopped.error.find("item3d: interrupted: "), std::string::npos) << stopped.error;
     const fs::path blobs = folder_ / "hf/hub/models--someone--model/blobs";

@@ -45,6 +45,12 @@ TEST_F(RenderProgram, SamplesChangeEdgesAndFitTheSize) {
     EXPECT_NE(result.error.find("at most 2"), std::string::npos) << result.error;
 }
 
+TEST_F(RenderProgram, LightOptionsAreNumbers) {
+    const std::string rest = quoted(corner_) + " -o " + quoted(folder_ / "p.png");
+    EXPECT_EQ(run("render --exposure nan " + rest).code, 2);
+    EXPECT_EQ(run("render --light-rotation nan " + rest).code, 2);
+}
+
 TEST_F(RenderProgram, IsOfShadedPicturesAlone) {
     const std::string rest = quoted(corner_) + " -o " + quoted(folder_ / "p.png");
     EXPECT_EQ(run("render --occlusion --channel depth " + rest).code, 2);

@@ -14,6 +14,7 @@
 #include "item3d/render/shade.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
+#include "light_options.h"
 #include "picture_options.h"
 
 #include <filesystem>
@@ -206,7 +207,7 @@ void add_generate_command(CLI::App& app) {
     command
         ->add_option("--guidance-scale,--cfg", options->guidance_scale,
                      "Weight of the prompt (classifier-free guidance); without it, the prior's own")
-        ->check(CLI::Range(0.1f, 1000.0f));
+        ->check(number_between(0.1f, 1000));
     command->add_option("--seed", options->generate.seed, "Of the noise that it starts from")
         ->capture_default_str();
     command->add_option("--count", options->generate.count, "How many pictures")

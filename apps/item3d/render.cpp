@@ -12,6 +12,7 @@
 #include "item3d/scene/environment.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
+#include "light_options.h"
 #include "picture_options.h"
 
 #include <algorithm>
@@ -312,10 +313,10 @@ void add_render_command(CLI::App& app) {
     command
         ->add_option("--light-rotation", options->light_rotation,
                      "Degrees about +Y, from -Z towards +X")
-        ->check(CLI::Range(-36000.0f, 36000.0f))
+        ->check(number_between(-36000, 36000))
         ->capture_default_str();
     command->add_option("--exposure", options->exposure, "Stops: the light is multiplied by 2^EV")
-        ->check(CLI::Range(-30.0f, 30.0f))
+        ->check(number_between(-30, 30))
         ->capture_default_str();
     command->add_option("--size", options->size, "WxH in pixels")->capture_default_str();
     command
