@@ -51,6 +51,20 @@ TEST(AutoencoderTiny, LearnsToReconstruct) {
     EXPECT_LT(last, 0.3 * first);
 }
 
+TEST(AutoencoderKL, GivesTheSameGradientWhenItComputesAgain) {
+    const Golden golden("vae_kl");
+    const auto vae = load_autoencoder(fixture("vae_kl"));
+    const auto gradient_of_mean = [&] {
+        const torch::Tensor image = golden.in("image").clone().requires_grad_();
+        return gradient(vae->encode(image), golden.in("cotangent"), image);
+    };
+    const torch::Tensor kept = gradient_of_mean();
+    vae->recompute_in_backward(true);
+    EXPECT_TRUE(gradient_of_mean().equal(kept));
+    golden.expect("grad_mean", gradient_of_mean());
+    EXPECT_FALSE(vae->encode(golden.in("image")).requires_grad());
+}
+
 TEST(AutoencoderKL, ReproducesTheReferenceAndItsGradients) {
     const Golden golden("vae_kl");
     const auto vae = std::dynamic_pointer_cast<AutoencoderKL>(load_autoencoder(fixture("vae_kl")));

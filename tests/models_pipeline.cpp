@@ -226,5 +226,20 @@ TEST(DepthCondition, ScalesDisparityAndAveragesCells) {
     EXPECT_TRUE(torch::isfinite(depth_condition(half, 2)).all().item<bool>());
 }
 
+TEST(Pipeline, KnowsItsPromptsAfterTheEncodersAreFreed) {
+    Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
+    const torch::Tensor duck = pipeline.encode_text({"a duck"}).states,
+                        none = pipeline.encode_no_text().states;
+    pipeline.free_text_encoders({"a duck", "a golden duck"});
+    EXPECT_EQ(pipeline.text_encoder->parameters()[0].numel(), 0);
+    EXPECT_TRUE(pipeline.encode_text({"a duck"}).states.equal(duck));
+    EXPECT_TRUE(pipeline.encode_no_text().states.equal(none));
+    const TextEmbedding both = pipeline.encode_text({"a golden duck", "a duck"});
+    EXPECT_EQ(both.rows(), 2);
+    EXPECT_TRUE(both.row(1).states.equal(duck));
+    EXPECT_FALSE(both.row(0).states.equal(duck));
+    EXPECT_ANY_THROW(pipeline.encode_text({"a cat"}));
+}
+
 }  // namespace
 }  // namespace item3d
