@@ -69,7 +69,8 @@ Section geometry_section(const Folders& folders) {
         "spot from eight views: pixels whose centre sees the model where the reference's does not "
         "or the reverse, the largest relative difference of depth and the angle between normals "
         "where both see it, and our antialiased coverage against the reference's (512 samples a "
-        "pixel), with 1, 2 x 2 and 4 x 4 of our own samples a pixel: largest difference, and the "
+        "pixel), with 1, 2 x 2, 4 x 4 and 8 x 8 of our own samples a pixel: largest difference, "
+        "and the "
         "share of edge pixels within 1/16.";
     section.columns = {"view",
                        "mask differs at",
@@ -78,7 +79,8 @@ Section geometry_section(const Folders& folders) {
                        "normal, largest",
                        "coverage, 1 sample",
                        "coverage, 2 x 2",
-                       "coverage, 4 x 4"};
+                       "coverage, 4 x 4",
+                       "coverage, 8 x 8"};
     const EnvironmentLight light = prefilter(torch::ones({6, 16, 16, 3}));
     for (std::size_t v = 0; v < views.cameras.size(); ++v) {
         const int view = static_cast<int>(v);
@@ -111,7 +113,7 @@ Section geometry_section(const Folders& folders) {
         const torch::Tensor edge = ((coverage > 0.001f).logical_and(coverage < 0.999f));
         std::vector<std::string> cells;
         nlohmann::json by_samples;
-        for (const int samples : {1, 2, 4}) {
+        for (const int samples : {1, 2, 4, 8}) {
             RenderOptions options;
             options.width = options.height = size;
             options.supersampling = samples;
@@ -127,11 +129,12 @@ Section geometry_section(const Folders& folders) {
                                                    {"within_sixteenth", within}};
         }
         const auto differs = (seen != mask).sum().item<std::int64_t>();
-        section.rows.push_back(
-            {std::to_string(view),
-             fmt::format("{} of {}", differs, mask.sum().item<std::int64_t>()),
-             fmt::format("{:.1e}", depth_error), fmt::format("{:.2f}°", angle_99),
-             fmt::format("{:.2f}°", angle.max().item<double>()), cells[0], cells[1], cells[2]});
+        section.rows.push_back({std::to_string(view),
+                                fmt::format("{} of {}", differs, mask.sum().item<std::int64_t>()),
+                                fmt::format("{:.1e}", depth_error),
+                                fmt::format("{:.2f}°", angle_99),
+                                fmt::format("{:.2f}°", angle.max().item<double>()), cells[0],
+                                cells[1], cells[2], cells[3]});
         section.numbers[fmt::format("view_{:02}", view)] = {
             {"mask_differs", differs},
             {"depth", depth_error},

@@ -29,6 +29,15 @@ torch::Tensor cube_directions(int size) {
     return directions;
 }
 
+/// [6 S S, 1], up to a factor.
+torch::Tensor relative_solid_angles(int size) {
+    const torch::Tensor texel = (torch::arange(size) * 2 + 1).to(torch::kFloat64) / size - 1;
+    return (1 + texel.square().unsqueeze(0) + texel.square().unsqueeze(1))
+        .pow(-1.5)
+        .expand({6, size, size})
+        .reshape({-1, 1});
+}
+
 /// <A x, y> = <x, A^T y> for a linear A.
 template <typename F>
 void expect_transposed(const F& f, const torch::Tensor& x) {
@@ -304,11 +313,7 @@ TEST(Prefilter, PyramidSumsAreTheDirectSums) {
     cube[4][3][0] = 300.0f;  // at an edge between faces
     const EnvironmentLight light = prefilter(cube);
     const torch::Tensor directions = cube_directions(size).reshape({-1, 3}).to(torch::kFloat64);
-    const torch::Tensor texel = (torch::arange(size) * 2 + 1).to(torch::kFloat64) / size - 1;
-    const torch::Tensor angle = (1 + texel.square().unsqueeze(0) + texel.square().unsqueeze(1))
-                                    .pow(-1.5)
-                                    .expand({6, size, size})
-                                    .reshape({-1, 1});
+    const torch::Tensor angle = relative_solid_angles(size);
     const torch::Tensor flux = cube.reshape({-1, 3}).to(torch::kFloat64) * angle;
     for (std::size_t level = 0; level < 3; ++level) {
         const auto level_size = static_cast<int>(light.specular[level].size(1));
@@ -344,6 +349,37 @@ TEST(Prefilter, GradientIsTheTranspose) {
             },
             torch::rand({6, size, size, 3}));
     }
+}
+
+/// A dim sky with a sun of a few texels.
+torch::Tensor sunny_cube(int size) {
+    torch::Tensor cube = 0.02f + 0.01f * cube_directions(size);
+    cube[2].narrow(0, size / 3, 3).narrow(1, size / 2, 4) += 300.0f;
+    return cube;
+}
+
+TEST(Prefilter, GradientIsTheTransposeUnderASun) {
+    for (const int size : {64, 128})
+        expect_transposed([](const torch::Tensor& x) { return prefilter(x).diffuse; },
+                          sunny_cube(size));
+}
+
+TEST(Prefilter, IrradianceWhereASunSets) {
+    constexpr int size = 128;
+    const torch::Tensor cube = sunny_cube(size);
+    const torch::Tensor found = prefilter(cube).diffuse;
+    const auto map_size = static_cast<int>(found.size(1));
+    const torch::Tensor chosen = torch::arange(0, 6 * map_size * map_size, 397);
+    const torch::Tensor normals =
+        cube_directions(map_size).reshape({-1, 3}).index_select(0, chosen).to(torch::kFloat64);
+    const torch::Tensor light = cube_directions(size).reshape({-1, 3}).to(torch::kFloat64);
+    const torch::Tensor angle = relative_solid_angles(size);
+    const torch::Tensor cosine = normals.matmul(light.t()).clamp_min(0);
+    const torch::Tensor expected =
+        cosine.matmul(cube.reshape({-1, 3}) * angle) / cosine.matmul(angle);
+    const torch::Tensor error =
+        (found.reshape({-1, 3}).index_select(0, chosen) - expected).abs() / expected;
+    EXPECT_LT(error.max().item<double>(), 0.005);
 }
 
 TEST(Prefilter, FindsEveryTexelOfACone) {

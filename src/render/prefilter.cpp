@@ -4,6 +4,7 @@
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
 #include "item3d/render/environment_light.h"
+#include "item3d/render/irradiance_sums.h"
 #include "item3d/render/prefilter_sums.h"
 #include "item3d/render/shade.h"
 
@@ -28,9 +29,6 @@ constexpr float finest_roughness = 0.08f;
 constexpr float chain_roughness = 0.5f;  ///< of the smallest level's first lobe
 constexpr std::array<float, 4> wide_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
 constexpr float kept_energy = 0.999f;
-/// Of the irradiance: summed at the first size, then upsampled to the second. Bilinear lookups in a
-/// coarser map show where a sun sets.
-constexpr int cosine_size = 64, diffuse_size = 128;
 /// How far texels are summed at full resolution, in texels at a face's centre: between the
 /// reference report's error for smooth metal, which falls with it, and time, which grows.
 constexpr float near_texels = 2;
@@ -119,7 +117,7 @@ Lobe plan_lobe(float roughness, int size, std::size_t level, std::size_t last) {
 struct Plan {
     std::vector<int> sizes;   ///< of the environment's resolutions, finest first
     std::vector<Lobe> lobes;  ///< a level of EnvironmentLight each
-    std::size_t cosine;       ///< the level that irradiance is summed over
+    std::size_t cosine = 0;   ///< the level that irradiance is summed over, at most 128 texels
 };
 
 Plan plan_chain(int size) {
@@ -128,7 +126,8 @@ Plan plan_chain(int size) {
         plan.sizes.push_back(size);
     const std::size_t levels = plan.sizes.size();
     const std::size_t smallest = levels > 1 ? levels - 2 : 0;  // 32 texels
-    plan.cosine = smallest > 0 ? smallest - 1 : 0;             // 64
+    while (plan.sizes[plan.cosine] > irradiance_size)
+        ++plan.cosine;
     // Two lobes a resolution: the shading blends neighbours, which shows when they are far apart.
     const std::size_t lobes = std::max<std::size_t>(1, 2 * smallest);
     for (std::size_t i = 0; i < lobes; ++i) {
@@ -246,10 +245,9 @@ struct Prefilter : torch::autograd::Function<Prefilter> {
             maps.push_back(map.mean);
             weights.push_back(map.inverse_weight);
         };
-        const MeanRadiance irradiance(diffuse_size);
-        CubePlanes coarse = cosine_sums(flux[plan.cosine], cosine_size);
-        kernels::fill_halo(coarse, 1);
-        irradiance.store(kernels::upsampled(coarse));
+        const std::vector<std::int64_t> bright = bright_texels(flux[plan.cosine]);
+        const MeanRadiance irradiance(irradiance_size);
+        irradiance.store(irradiance_sums(flux[plan.cosine], bright));
         keep(irradiance);
         for (const Lobe& lobe : plan.lobes) {
             CubePlanes sums = far_sums(flux[lobe.last()], lobe.far);
@@ -279,6 +277,7 @@ struct Prefilter : torch::autograd::Function<Prefilter> {
         context->set_materialize_grads(false);
         context->saved_data["weights"] = weights;
         context->saved_data["size"] = cube.size(1);
+        context->saved_data["bright"] = bright;
         return maps;
     }
 
@@ -295,8 +294,9 @@ struct Prefilter : torch::autograd::Function<Prefilter> {
         }
         if (gradients[0].defined())
             kernels::add(flux[plan.cosine],
-                         cosine_sums(kernels::restricted(sums_gradient(gradients[0], weights[0])),
-                                     plan.sizes[plan.cosine]));
+                         irradiance_sums_transposed(sums_gradient(gradients[0], weights[0]),
+                                                    plan.sizes[plan.cosine],
+                                                    context->saved_data["bright"].toIntVector()));
         for (std::size_t i = 0; i < plan.lobes.size(); ++i) {
             if (!gradients[i + 1].defined()) continue;
             const Lobe& lobe = plan.lobes[i];
