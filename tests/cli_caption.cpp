@@ -27,6 +27,19 @@ TEST_F(Program, CaptionsAPictureAndAModel) {
     EXPECT_EQ(captions[0].get<std::string>().rfind("a photo of", 0), 0u) << captions[0];
 }
 
+TEST_F(Program, EditNamesWhatAnAdjustmentLacks) {
+    const std::string edit =
+        "edit " + quoted(cube_) + " --from 'a red cube' --to 'a blue cube' -o " +
+        quoted(folder_ / "out") + " --prior '" ITEM3D_TEST_DATA "/models/pipeline_sd'";
+    expect_error(edit + " --adjust caption", 3, "--captioner");
+    expect_error(edit + " --adjust caption --captioner /nowhere", 3, "/nowhere/config.json");
+    expect_error(edit + " --adjust sometimes", 3, "caption-paper");
+    expect_error(edit + " --adjust caption --adjust-every 0" + captioner(), 3, "--adjust-every");
+    expect_error(edit + " --adjust caption --adjust-strength 9" + captioner(), 3,
+                 "--adjust-strength");
+    expect_error(edit + " --settle 2", 3, "--settle");
+}
+
 TEST_F(Program, CaptionAndScoreNameWhatTheyLack) {
     expect_error("caption " + quoted(cube_) + " --captioner /nowhere", 3, "/nowhere/config.json");
     expect_error("caption " + quoted(folder_ / "no.png") + captioner(), 3, "no.png");

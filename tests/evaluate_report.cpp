@@ -49,6 +49,8 @@ EditReport example() {
     report.turntable = ReportImage{"turntable", picture};
     report.textures = {{"Base colour", picture, picture}, {"Normal", {}, picture}};
     report.scores = {{"Metallic", "0.91", "was 0.00"}};
+    report.timeline = {{"start", {"", picture}, "a <red> mug", {{"angle", "0"}}},
+                       {"25", {"", picture}, "", {}}};
     report.charts = {{"Direction", "iteration", {{"length", {1.0, 0.5, 0.25}}}, true}};
     report.settings = {{"guidance", "rdl"}, {"seed", "0"}};
     report.seconds = {{"fit", 4.0}, {"optimize", 61.0}};
@@ -85,7 +87,9 @@ TEST(EditReport, IsWholeSelfContainedAndEscaped) {
     EXPECT_EQ(html.find("http"), std::string::npos);
     EXPECT_EQ(html.find("@import"), std::string::npos);
     EXPECT_EQ(occurrences(html, "<img "), occurrences(html, "<img src=\"data:"));
-    EXPECT_EQ(occurrences(html, "<img "), 2u * 2 + 1 + 3);
+    EXPECT_EQ(occurrences(html, "<img "), 2u * 2 + 1 + 3 + 2);
+    EXPECT_EQ(occurrences(html, "<q>"), 1u);
+    EXPECT_NE(html.find("<q>a &lt;red&gt; mug</q>"), std::string::npos);
     EXPECT_NE(html.find("href=\"my%20textures/a%3Ab.png\""), std::string::npos);
     EXPECT_EQ(html, edit_report_html(example()));
 }

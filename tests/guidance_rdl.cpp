@@ -128,10 +128,10 @@ TEST(LearnedSource, lowers_the_denoising_loss_and_survives_a_checkpoint) {
     GuidanceOptions options;
     const auto guidance = make_guidance(pipeline, "a red mug", "a blue mug", options);
     const GuidanceInput input = random_input(4);
-    const float before = guidance->step(input, 0).adjustment_loss;
+    const float before = guidance->step(input, 0).source_loss;
     float after = 0;
     for (int i = 0; i < 30; ++i)
-        after = guidance->step(input, 0).adjustment_loss;
+        after = guidance->step(input, 0).source_loss;
     EXPECT_LT(after, before);
 
     const auto resumed = make_guidance(pipeline, "a red mug", "a blue mug", options);

@@ -69,10 +69,10 @@ TEST(GuidanceSdxl, the_learned_source_moves_both_parts_and_survives_a_checkpoint
     const auto guidance = make_guidance(pipeline, "a red bowl", "a stone statue", {});
     const TextEmbedding start = pipeline->encode_text({"a red bowl"});
     const GuidanceInput input = random_pictures(4);
-    const float before = guidance->step(input, 0).adjustment_loss;
+    const float before = guidance->step(input, 0).source_loss;
     float after = 0;
     for (int i = 0; i < 12; ++i)
-        after = guidance->step(input, 0).adjustment_loss;
+        after = guidance->step(input, 0).source_loss;
     EXPECT_LT(after, before);
     NamedTensors copy;
     for (const auto& [name, tensor] : guidance->state())

@@ -128,6 +128,14 @@ TEST_F(HubFolders, FindsPriorsByEachKindOfName) {
     EXPECT_EQ(find_prior("someone/model@" + commit), snapshot);
 }
 
+TEST_F(HubFolders, FindsTheNetworksThatAPriorBrings) {
+    EXPECT_EQ(find_in_prior(folder.path, "clip"), "");
+    fs::create_directories(folder.path / "clip");
+    EXPECT_EQ(find_in_prior(folder.path, "clip"), "");
+    std::ofstream(folder.path / "clip/config.json") << "{}";
+    EXPECT_EQ(find_in_prior(folder.path, "clip"), folder.path / "clip");
+}
+
 TEST_F(HubFolders, WhatIsNotThereIsSaidWithWhatToTry) {
     const auto message = [](const std::string& name) {
         return error_of<InputError>([&] { find_prior(name); });

@@ -73,7 +73,36 @@ TEST(Blip, WritesTheReferencesCaptions) {
     EXPECT_THROW(write_captions(model, pixels, begin, options), InputError);
 }
 
-/// Its numbers are compared with the reference's by `parity`; here, what must hold for any weights.
+TEST(Blip2, ReproducesTheReference) {
+    const torch::NoGradGuard no_grad;
+    const Golden golden("blip2");
+    Blip2Model model = load_blip2(fixture("blip2"));
+    const torch::Tensor picture =
+        model->project(model->query_image(model->image_embeds(golden.in("pixel_values"))));
+    golden.expect("language_projection", picture);
+    OptModel language_model = model->language_model();
+    golden.expect("logits",
+                  language_model->logits(language_model->forward(
+                      model->embed(golden.in("input_ids"), picture), golden.in("attention_mask"))));
+}
+
+TEST(Blip2, WritesTheReferencesCaptions) {
+    const Golden golden("blip2");
+    const Blip2Model model = load_blip2(fixture("blip2"));
+    const torch::Tensor pixels = golden.in("pixel_values");
+    const torch::Tensor visible = golden.out("prompt_mask");
+    DecodingOptions options;
+    options.max_new_tokens = 12;
+    options.end_token = model->config().text.eos_token_id;
+    for (const auto& [beams, name] : {std::pair{1, "greedy_ids_prompt"}, {3, "beam_ids_prompt"}}) {
+        options.beams = beams;
+        EXPECT_TRUE(write_captions(model, pixels, golden.out("prompt_ids"), visible, options)
+                        .tokens.equal(golden.out(name)))
+            << name;
+    }
+}
+
+/// For what must hold for any weights.
 Blip2Model random_blip2() {
     const nlohmann::json layers = {{"hidden_size", 16},
                                    {"intermediate_size", 24},
@@ -155,10 +184,35 @@ TEST_F(CaptionerFolder, GivesSentences) {
     options.beams = 2;
     const std::string plain = captioner->caption(bytes, options);
     EXPECT_EQ(captioner->caption(bytes, options), plain);
+    // Several at once are as each by itself.
+    const torch::Tensor other = torch::randint(256, {32, 32, 3}, torch::kUInt8);
+    const auto both = captioner->captions({bytes, other}, options);
+    ASSERT_EQ(both.size(), 2u);
+    EXPECT_EQ(both[0].text, plain);
+    EXPECT_EQ(both[1].text, captioner->caption(other, options));
     options.prefix = "A picture of";
     EXPECT_TRUE(captioner->caption(bytes, options).starts_with("a picture of"));
     options.prefix = std::string(200, 'x') + " " + std::string(200, '!');
     EXPECT_THROW(captioner->caption(bytes, options), InputError);
+}
+
+TEST_F(CaptionerFolder, TellsWhichCaptionsCameToAnEnd) {
+    const auto captioner = load_captioner(folder_.path());
+    torch::manual_seed(2);
+    std::vector<torch::Tensor> pictures;
+    for (int i = 0; i < 8; ++i)
+        pictures.push_back(torch::randint(256, {32, 32, 3}, torch::kUInt8));
+    CaptionOptions options;
+    const auto captions = captioner->captions(pictures, options);
+    options.max_new_tokens = 40;
+    const auto longer = captioner->captions(pictures, options);
+    int ended = 0;
+    for (std::size_t i = 0; i < captions.size(); ++i) {
+        ended += captions[i].ended ? 1 : 0;
+        EXPECT_EQ(captions[i].text == longer[i].text, captions[i].ended) << i;
+    }
+    EXPECT_GT(ended, 0);
+    EXPECT_LT(ended, 8);
 }
 
 TEST_F(CaptionerFolder, NamesWhatIsMissingOrWrong) {

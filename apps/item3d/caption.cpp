@@ -11,6 +11,7 @@
 #include "item3d/scene/io/load.h"
 #include "picture_options.h"
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -57,6 +58,7 @@ void run_caption(const CaptionCommand& options, torch::Device device) {
         load_captioner(options.captioner, device, choose_precision(options.precision, device));
     const std::vector<torch::Tensor> pictures = load_pictures(options, device);
 
+    const auto begin = std::chrono::steady_clock::now();
     nlohmann::json captions = nlohmann::json::array();
     Progress progress("caption", static_cast<std::int64_t>(pictures.size()));
     for (std::size_t i = 0; i < pictures.size(); ++i) {
@@ -64,12 +66,14 @@ void run_caption(const CaptionCommand& options, torch::Device device) {
         progress.update(static_cast<std::int64_t>(i + 1));
     }
     progress.finish();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     if (options.json) {
         print_json({{"file", options.input},
                     {"captioner", options.captioner},
                     {"prefix", options.caption.prefix},
                     {"beams", options.caption.beams},
-                    {"captions", captions}});
+                    {"captions", captions},
+                    {"seconds", took.count()}});
     } else {
         for (const auto& caption : captions)
             fmt::print("{}\n", caption.get<std::string>());

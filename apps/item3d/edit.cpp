@@ -56,14 +56,24 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
                         fmt::join(guidance_methods(), ", ")))
         ->trigger_on_parse();  // before it is said that the model is missing
     setting<std::string>(command, options, "--adjust", "adjust",
-                         "learned (the source follows the render, the default) or off");
+                         "How rdl's source follows the render: learned (by its denoising loss, the "
+                         "default), caption (by what a captioner sees change), caption-paper (the "
+                         "same with the sign of the paper's formula) or off");
+    setting<int>(command, options, "--adjust-every", "adjust_every",
+                 "Iterations between captions, and between the report's pictures of how it went");
+    setting<float>(command, options, "--adjust-strength", "adjust_strength",
+                   "How much captions count, 0 to 2");
+    setting<float>(command, options, "--settle", "settle",
+                   "Stop where the direction has shrunk to this part of its first length and stays "
+                   "there; 0: do all iterations");
     setting<float>(command, options, "--anchor", "anchor",
                    "Pull towards the target's own score, added to rdl; 0: none, 1: strong");
     setting<float>(command, options, "--cfg", "cfg", "Weight of classifier-free guidance");
     setting<std::string>(command, options, "--negative-prompt", "negative_prompt",
                          "What not to show: guidance pushes away from it, and so does the detail "
                          "stage. Meaningless for rdl's direction, in which it cancels");
-    setting<int>(command, options, "--iterations", "iterations", "Steps of the optimisation");
+    setting<int>(command, options, "--iterations", "iterations",
+                 "Steps of the optimisation; with --settle, at most");
     setting<int>(command, options, "--batch", "batch", "Views in each step");
     setting<int>(command, options, "--resolution", "resolution",
                  "Edge in pixels of the pictures that the prior sees");
@@ -111,6 +121,8 @@ void run_edit(EditCommandOptions& options) {
     EditRequest& request = options.request;
     request.device = start_command(options);
     request.prior = find_prior(options.prior);
+    if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
+    if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
     options.overrides["from"] = options.from;
     options.overrides["to"] = options.to;
     if (options.overrides.value("keep", nlohmann::json()) == nlohmann::json::array({"nothing"})) {
@@ -125,6 +137,9 @@ void run_edit(EditCommandOptions& options) {
             "--negative-prompt has no effect: it cancels in rdl's direction, and no detail stage "
             "follows");
     }
+
+    if (options.overrides.contains("adjust") && request.settings.guidance != "rdl")
+        warn("--adjust has no effect: only rdl has a source to adjust");
 
     const nlohmann::json summary = edit_model(request);
     if (options.json) {
@@ -150,7 +165,11 @@ void add_edit_command(CLI::App& app) {
                         "Diffusion model: a folder in the diffusers layout, or a name (item3d "
                         "prior pull); without it, the embedded one");
     command->add_option("--clip", request.clip,
-                        "CLIP model in the transformers layout: scores of the result, as of score");
+                        "CLIP model in the transformers layout: scores of the result, as of score; "
+                        "without it, the one that the prior brings along, if any");
+    command->add_option("--captioner", request.captioner,
+                        "BLIP or BLIP-2 in the transformers layout, for --adjust caption; without "
+                        "it, the one that the prior brings along");
     command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
     command->add_option("--precision", request.precision, "Of the networks")
         ->check(CLI::IsMember(precision_names()))

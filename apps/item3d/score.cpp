@@ -7,6 +7,7 @@
 #include "item3d/scene/environment.h"
 #include "item3d/scene/io/load.h"
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -47,8 +48,10 @@ void run_score(const ScoreCommand& options, torch::Device device) {
     const std::vector<Camera> cameras = picture_cameras(before, options.views);
     const torch::Tensor was = draw_pictures(before, light, cameras, view_pixels);
     const torch::Tensor is = draw_pictures(after, light, cameras, view_pixels);
+    const auto begin = std::chrono::steady_clock::now();
     const ClipScores scores =
         clip_scores(clip, over_white(was), over_white(is), options.from, options.to);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
 
     std::vector<double> kept;
     for (std::int64_t i = 0; i < was.size(0); ++i)
@@ -68,6 +71,7 @@ void run_score(const ScoreCommand& options, torch::Device device) {
                    {"to", options.to},
                    {"clip", options.clip},
                    {"detail_kept", kept_mean},
+                   {"seconds", took.count()},
                    {"views", views}});
     print_json(result);
 }

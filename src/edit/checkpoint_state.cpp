@@ -24,6 +24,7 @@ nlohmann::json identity_of(const EditRequest& request) {
     nlohmann::json identity = request.settings;
     identity["model"] = hash_of_file(request.model);
     identity["precision"] = request.precision;
+    if (wants_captions(request.settings)) identity["captioner"] = request.captioner.string();
     return identity;
 }
 
@@ -88,6 +89,36 @@ class StateReader {
     std::map<std::string, torch::Tensor> tensors_;
 };
 
+/// Its text as bytes of a tensor, its pictures as one.
+void append_adjustment(NamedTensors& tensors, const AdjustmentState& adjustment) {
+    nlohmann::json before = nlohmann::json::array();
+    for (const Caption& caption : adjustment.captions_before)
+        before.push_back({{"text", caption.text}, {"ended", caption.ended}});
+    const nlohmann::json json = {
+        {"records", adjustment.records}, {"before", before}, {"failure", adjustment.failure}};
+    const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    tensors.emplace_back("adjustment.json",
+                         torch::tensor(std::vector<std::uint8_t>(text.begin(), text.end())));
+    std::vector<torch::Tensor> pictures;
+    for (const AdjustmentRecord& record : adjustment.records)
+        pictures.push_back(record.picture);
+    if (!pictures.empty()) tensors.emplace_back("adjustment.pictures", torch::stack(pictures));
+}
+
+void read_adjustment(const StateReader& reader, AdjustmentState& adjustment) {
+    const torch::Tensor bytes = reader.get("adjustment.json").contiguous();
+    const auto* text = bytes.const_data_ptr<std::uint8_t>();
+    const auto json = nlohmann::json::parse(text, text + bytes.numel());
+    json.at("records").get_to(adjustment.records);
+    json.at("failure").get_to(adjustment.failure);
+    for (const auto& caption : json.at("before"))
+        adjustment.captions_before.push_back(
+            {caption.at("text").get<std::string>(), caption.at("ended").get<bool>()});
+    for (std::size_t i = 0; i < adjustment.records.size(); ++i)
+        adjustment.records[i].picture =
+            reader.get("adjustment.pictures")[static_cast<std::int64_t>(i)];
+}
+
 std::vector<float> to_floats(const torch::Tensor& tensor) {
     const torch::Tensor flat = tensor.contiguous();
     return {flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel()};
@@ -117,7 +148,8 @@ void save_state(const EditRequest& request, const EditState& state) {
     }
     checkpoint.tensors.emplace_back("curve.direction_length",
                                     torch::tensor(state.direction_length));
-    checkpoint.tensors.emplace_back("curve.adjustment_loss", torch::tensor(state.adjustment_loss));
+    checkpoint.tensors.emplace_back("curve.source_loss", torch::tensor(state.source_loss));
+    append_adjustment(checkpoint.tensors, state.adjustment);
     save_checkpoint(checkpoint_path(request), checkpoint);
 }
 
@@ -144,7 +176,8 @@ bool load_state(const EditRequest& request, EditState& state) {
                 reader.get("detail.targets").to(state.field->table().device()).split(1);
     }
     state.direction_length = to_floats(reader.get("curve.direction_length"));
-    state.adjustment_loss = to_floats(reader.get("curve.adjustment_loss"));
+    state.source_loss = to_floats(reader.get("curve.source_loss"));
+    read_adjustment(reader, state.adjustment);
     state.iteration = checkpoint->iteration;
     return true;
 }

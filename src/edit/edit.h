@@ -14,9 +14,10 @@ namespace item3d {
 
 struct EditRequest {
     std::filesystem::path model;
-    std::filesystem::path prior;   ///< folder in the diffusers layout
-    std::filesystem::path output;  ///< folder, made when it is not there
-    std::filesystem::path clip;    ///< CLIP model that scores the result; empty: none
+    std::filesystem::path prior;      ///< folder in the diffusers layout
+    std::filesystem::path output;     ///< folder, made when it is not there
+    std::filesystem::path clip;       ///< CLIP model that scores the result; empty: none
+    std::filesystem::path captioner;  ///< BLIP or BLIP-2; read where wants_captions(settings)
     EditSettings settings;
     bool resume = false;
     /// Stop as an interrupt would when this many iterations are done; 0: run to the end.

@@ -2,7 +2,9 @@
 
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/edit/adjustment.h"
 #include "item3d/edit/checkpoint_state.h"
+#include "item3d/edit/fixed_point.h"
 #include "item3d/edit/render_view.h"
 #include "item3d/edit/safekeeping.h"
 #include "item3d/guidance/noised_latents.h"
@@ -14,15 +16,42 @@ namespace {
 
 constexpr int warm_up_iterations = 10;
 constexpr float final_learning_rate = 0.1f;  ///< as a part of the first
+constexpr std::int64_t cool_down = 20;       ///< iterations that a settled edit still takes
 
-/// Warm-up, then a cosine down to a tenth: a function of the iteration alone, so that a resumed run
-/// follows the same path.
-float learning_rate_factor(std::int64_t iteration, std::int64_t iterations) {
+/// Warm-up, then a cosine down to a tenth.
+float scheduled_learning_rate(std::int64_t iteration, std::int64_t iterations) {
     const float warm_up =
         std::min(1.0f, static_cast<float>(iteration + 1) / static_cast<float>(warm_up_iterations));
     const float progress = static_cast<float>(iteration) / static_cast<float>(iterations);
     const float cosine = 0.5f + 0.5f * std::cos(pi * progress);
     return warm_up * (final_learning_rate + (1 - final_learning_rate) * cosine);
+}
+
+/// When the edit settled, if it has. Schedules in which noise levels fall change the direction's
+/// length by themselves.
+std::optional<std::int64_t> settled(const EditSettings& settings, const EditState& state) {
+    if (settings.timestep_schedule != "uniform") return std::nullopt;
+    return settled_at(state.direction_length, settings.settle);
+}
+
+/// As a part of the settings' learning rate: a function of the iteration and of when the edit
+/// settled, so that a resumed run follows the same path. What has settled comes to rest as it would
+/// have at the end: steps as large as in the middle leave noise.
+float learning_rate_factor(const EditSettings& settings, const EditState& state) {
+    const float scheduled = scheduled_learning_rate(state.iteration, settings.iterations);
+    const auto since = settled(settings, state);
+    if (!since) return scheduled;
+    const float part = static_cast<float>(state.iteration - *since) / cool_down;
+    return scheduled + part * (final_learning_rate - scheduled);
+}
+
+/// Counts as done what a settled edit is spared.
+void end_where_settled(const EditSettings& settings, EditState& state) {
+    const auto since = settled(settings, state);
+    if (!since || state.iteration < *since + cool_down || state.iteration >= settings.iterations)
+        return;
+    note(fmt::format("settled after {} of {} iterations", state.iteration, settings.iterations));
+    state.iteration = settings.iterations;
 }
 
 /// What guidance looks at. The unedited model is the field as it was fitted, so that a render that
@@ -51,7 +80,7 @@ void run_iteration(const EditScene& scene, const EditSettings& settings, EditSta
     guidance.latents.backward(gradient / settings.batch);
     const double back = seconds_now();
 
-    const float factor = learning_rate_factor(state.iteration, settings.iterations);
+    const float factor = learning_rate_factor(settings, state);
     for (std::size_t group = 0; group < state.optimizer.group_count(); ++group) {
         state.optimizer.options(group).learning_rate = settings.learning_rate * factor;
     }
@@ -59,7 +88,7 @@ void run_iteration(const EditScene& scene, const EditSettings& settings, EditSta
     state.optimizer.zero_grad();
 
     state.direction_length.push_back(guidance.direction_length);
-    state.adjustment_loss.push_back(guidance.adjustment_loss);
+    state.source_loss.push_back(guidance.source_loss);
     ++state.iteration;
 
     ++times.iterations;
@@ -79,15 +108,25 @@ std::int64_t total_iterations(const EditSettings& settings) {
 IterationTimes optimize(const EditRequest& request, const EditScene& scene, EditState& state) {
     const EditSettings& settings = request.settings;
     IterationTimes times;
-    if (state.iteration >= settings.iterations) return times;
-    Progress progress("edit", settings.iterations, state.iteration);
-    Safekeeping safekeeping(request, scene);
-    while (state.iteration < settings.iterations) {
-        run_iteration(scene, settings, state, times);
-        progress.update(state.iteration,
-                        fmt::format("direction {:.3f}", state.direction_length.back()));
-        safekeeping.after_step(state, progress);
+    const DirectionAdjustment adjustment(request, scene);
+    const auto adjust = [&](const auto& step) {
+        const double start = seconds_now();
+        step();
+        times.adjust += seconds_now() - start;
+    };
+    if (state.iteration < settings.iterations) {
+        Progress progress("edit", settings.iterations, state.iteration);
+        Safekeeping safekeeping(request, scene);
+        while (state.iteration < settings.iterations) {
+            adjust([&] { adjustment.before_iteration(state); });
+            run_iteration(scene, settings, state, times);
+            end_where_settled(settings, state);
+            progress.update(state.iteration,
+                            fmt::format("direction {:.3f}", state.direction_length.back()));
+            safekeeping.after_step(state, progress);
+        }
     }
+    adjust([&] { adjustment.finish(state); });
     save_state(request, state);
     return times;
 }

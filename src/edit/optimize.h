@@ -1,6 +1,7 @@
 // The loop: cameras -> render -> guidance -> backward -> step; then the detail stage.
 #pragma once
 
+#include "item3d/edit/adjustment.h"
 #include "item3d/edit/edit.h"
 #include "item3d/edit/scene.h"
 #include "item3d/edit/timing.h"
@@ -28,9 +29,12 @@ struct EditState {
     Adam optimizer;
     std::unique_ptr<Guidance> guidance;
     DetailState detail;
-    std::int64_t iteration = 0;           ///< iterations done, views of the detail stage included
+    AdjustmentState adjustment;
+    /// Iterations done, views of the detail stage included; iterations that a settled edit was
+    /// spared count as done.
+    std::int64_t iteration = 0;
     std::vector<float> direction_length;  ///< a curve of the report, one value an iteration
-    std::vector<float> adjustment_loss;
+    std::vector<float> source_loss;       ///< another
 };
 
 /// Fits a field to the input's materials, or takes everything from the checkpoint in the output
@@ -43,8 +47,8 @@ void begin_detail(EditState& state);
 /// Iterations of the loop and views of the detail stage.
 std::int64_t total_iterations(const EditSettings& settings);
 
-/// Runs the remaining iterations; writes checkpoints and previews as it goes. Throws Interrupted
-/// after writing the checkpoint.
+/// Runs the remaining iterations, or as many as the edit takes to settle; writes checkpoints and
+/// previews as it goes. Throws Interrupted after writing the checkpoint.
 IterationTimes optimize(const EditRequest& request, const EditScene& scene, EditState& state);
 
 /// What guidance leaves out. Its gradient is an average over noises, and an average has no grain: a

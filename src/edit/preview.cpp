@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/edit/field_pictures.h"
 #include "item3d/scene/io/save.h"
 
 namespace item3d {
@@ -10,7 +11,6 @@ namespace {
 constexpr int picture_size = 256;
 constexpr float elevation = 0.35f;
 constexpr float field_of_view = 0.6f;
-constexpr float background_gray = 0.75f;
 
 }  // namespace
 
@@ -21,14 +21,7 @@ Preview::Preview(std::filesystem::path path, const EditScene& scene)
 
 void Preview::update(NeuralTexture& field) {
     if (!enabled_) return;
-    const torch::NoGradGuard no_grad;
-    const Raster raster = rasterize(scene_.geometry, cameras_, picture_size, picture_size);
-    const Surface surface = interpolate_surface(scene_.geometry, raster, cameras_);
-    const MaterialSample material = scene_.source->sample(surface, field);
-    const torch::Tensor background = torch::full({3}, background_gray, scene_.device);
-    torch::Tensor pictures =
-        scatter(shade(surface, material, scene_.lights->front()), surface, raster, background);
-    pictures = linear_to_srgb(antialias(pictures, raster, scene_.geometry).clamp(0, 1));
+    const torch::Tensor pictures = draw_field(scene_, field, cameras_, picture_size);
     try {
         save_image(path_, to_image(torch::cat(pictures.unbind(0), 1)));
     } catch (const Error& error) {

@@ -12,6 +12,17 @@ namespace {
 // A prior that sees few pixels needs no fine reflections, and coarse ones prefilter in a moment.
 constexpr int small_picture = 128;
 
+std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& request,
+                                                       torch::Dtype precision) {
+    if (!wants_captions(request.settings)) return nullptr;
+    if (request.captioner.empty())
+        throw InputError("--adjust " + request.settings.adjust,
+                         "needs a captioner, and the prior "
+                         "brings none",
+                         "give a folder with BLIP or BLIP-2: --captioner DIR");
+    return load_captioner(request.captioner, request.device, precision);
+}
+
 }  // namespace
 
 EditScene load_scene(const EditRequest& request) {
@@ -22,6 +33,7 @@ EditScene load_scene(const EditRequest& request) {
     scene.device = device;
     scene.precision = choose_precision(request.precision, device);
     const bool low_memory = wants_low_memory(request, scene.precision, device);
+    scene.captioner = load_wanted_captioner(request, scene.precision);
     scene.model = load_model(request.model);
     scene.materials = select_materials(scene.model, settings.material);
     for (const int index : scene.materials) {
@@ -45,8 +57,9 @@ EditScene load_scene(const EditRequest& request) {
     apply_extras(*scene.prior, settings);
     if (low_memory) {
         scene.prior->vae->recompute_in_backward(true);
-        scene.prior->free_text_encoders(
-            {settings.from, settings.to, settings.negative_prompt, default_negative_prompt()});
+        if (!scene.captioner)  // whose sentences are not known yet
+            scene.prior->free_text_encoders(
+                {settings.from, settings.to, settings.negative_prompt, default_negative_prompt()});
     }
     return scene;
 }

@@ -5,6 +5,7 @@
 #include "item3d/edit/material_source.h"
 #include "item3d/edit/views.h"
 #include "item3d/field/atlas.h"
+#include "item3d/models/captioner.h"
 #include "item3d/models/pipeline.h"
 #include "item3d/render/geometry.h"
 #include "item3d/render/textured.h"
@@ -26,6 +27,7 @@ struct EditScene {
     std::unique_ptr<MaterialSource> source;
     std::unique_ptr<LightRig> lights;
     std::shared_ptr<Pipeline> prior;
+    std::shared_ptr<const Captioner> captioner;  ///< none unless wants_captions()
     torch::Dtype precision = torch::kFloat32;
     torch::Device device = torch::kCPU;  ///< where all tensors of the edit are
 };

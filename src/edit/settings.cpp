@@ -54,6 +54,12 @@ void check(const EditSettings& settings) {
             "must be between 1 and 1000");
     require(settings.adjust_samples >= 1 && settings.adjust_samples <= 64, "adjust_samples",
             "must be between 1 and 64");
+    require(settings.adjust_every >= 1 && settings.adjust_every <= 1000000, "--adjust-every",
+            "must be 1 or more iterations");
+    require(settings.adjust_strength >= 0 && settings.adjust_strength <= 2, "--adjust-strength",
+            "must be between 0 and 2");
+    require(settings.settle >= 0 && settings.settle < 1, "--settle",
+            "must be between 0 (never) and 1");
     require(settings.texture_size >= 0 && settings.texture_size <= 8192, "--texture-size",
             "must be between 1 and 8192, or 0 for the input's own");
     require(settings.timesteps.size() == 2 && settings.timesteps[0] >= 0 &&
@@ -82,6 +88,10 @@ EditSettings resolve_settings(const std::filesystem::path& prior, const json& ov
         throw InputError((prior / "prior.json").string(),
                          std::string("its defaults are of the wrong kind: ") + error.what());
     }
+}
+
+bool wants_captions(const EditSettings& settings) {
+    return settings.guidance == "rdl" && adjusts_by_captions(settings.adjust);
 }
 
 bool wants_detail(const EditSettings& settings) {

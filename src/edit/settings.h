@@ -27,6 +27,12 @@ struct EditSettings : PipelineExtras {
     float cfg = 7.5f;  ///< weight of classifier-free guidance
     float adjust_learning_rate = 0.03f;
     int adjust_samples = 1;  ///< noises that each step of the learned source looks at
+    /// Iterations between captions, and between lines of the record.
+    int adjust_every = 25;
+    float adjust_strength = 1;  ///< how much captions count
+    /// The optimisation ends where the direction has shrunk to this part of its first length, see
+    /// fixed_point.h; 0: never before the last iteration.
+    float settle = 0;
     int iterations = 600;
     int batch = 2;         ///< views an iteration
     int resolution = 512;  ///< pixels of the square picture that the prior sees
@@ -51,14 +57,18 @@ struct EditSettings : PipelineExtras {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     EditSettings, lora, embedding, controlnet, controlnet_scale, vae, from, to, negative_prompt,
-    guidance, adjust, anchor, cfg, adjust_learning_rate, adjust_samples, iterations, batch,
-    resolution, learning_rate, metallic, metallic_start, detail, detail_words, detail_views,
-    timesteps, timestep_schedule, weighting, light, background, texture_size, keep, material, seed)
+    guidance, adjust, anchor, cfg, adjust_learning_rate, adjust_samples, adjust_every,
+    adjust_strength, settle, iterations, batch, resolution, learning_rate, metallic, metallic_start,
+    detail, detail_words, detail_views, timesteps, timestep_schedule, weighting, light, background,
+    texture_size, keep, material, seed)
 
 /// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- what a method was published
 /// with, where the overrides name it <- overrides. Throws InputError when a value is of the wrong
 /// type or out of range.
 EditSettings resolve_settings(const std::filesystem::path& prior, const nlohmann::json& overrides);
+
+/// Whether a captioner adjusts the direction.
+bool wants_captions(const EditSettings& settings);
 
 /// Whether the detail stage runs.
 bool wants_detail(const EditSettings& settings);

@@ -3,6 +3,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/version.h"
 #include "item3d/edit/outputs.h"
+#include "item3d/evaluate/animation.h"
 #include "item3d/models/precision.h"
 
 #include <ATen/Parallel.h>
@@ -39,15 +40,27 @@ json seconds_json(const StageTimes& times) {
 
 json iteration_json(const IterationTimes& times) {
     const auto count = static_cast<double>(std::max<std::int64_t>(1, times.iterations));
-    return {{"render", times.render / count},
-            {"encode", times.encode / count},
-            {"unet", times.unet / count},
-            {"backward", times.backward / count},
-            {"step", times.step / count}};
+    return {{"render", times.render / count}, {"encode", times.encode / count},
+            {"unet", times.unet / count},     {"backward", times.backward / count},
+            {"step", times.step / count},     {"adjust", times.adjust / count}};
 }
 
-json summary_json(const EditRequest& request, const EditScene& scene, const StageTimes& times,
-                  const IterationTimes& iteration_times, const Pictures& pictures) {
+json adjustment_json(const EditRequest& request, const AdjustmentState& adjustment) {
+    json result = {{"records", adjustment.records}};
+    if (wants_captions(request.settings)) {
+        result["captioner"] = request.captioner.string();
+        json before = json::array();
+        for (const Caption& caption : adjustment.captions_before)
+            before.push_back(caption.text);
+        result["captions_before"] = before;
+    }
+    if (!adjustment.failure.empty()) result["failure"] = adjustment.failure;
+    return result;
+}
+
+json summary_json(const EditRequest& request, const EditScene& scene, const EditState& state,
+                  const StageTimes& times, const IterationTimes& iteration_times,
+                  const Pictures& pictures) {
     const EditSettings& settings = request.settings;
     json remade = json::object();
     for (const auto& [material, reason] : scene.atlas.remade) {
@@ -65,6 +78,8 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Stag
                     {"precision", precision_name(scene.precision)},
                     {"threads", at::get_num_threads()},
                     {"iterations", settings.iterations},
+                    {"iterations_done", state.direction_length.size()},
+                    {"adjustment", adjustment_json(request, state.adjustment)},
                     {"settings", settings},
                     {"new_uv_maps", remade},
                     {"scores",
@@ -109,6 +124,16 @@ Curve curve_of(const std::string& name, const std::vector<float>& values) {
     return {name, std::vector<double>(values.begin(), values.end()), 1, 1};
 }
 
+std::string timeline_note(const EditState& state) {
+    std::string text = "direction: its mean length since the picture before";
+    if (state.guidance->text_direction())
+        text +=
+            "; turned, length: where the direction between the two sentences points now, beside "
+            "where it pointed at first; loss: how badly the source describes the picture, on "
+            "average since the one before";
+    return text + ".";
+}
+
 std::vector<Chart> charts_of(const EditSettings& settings, const EditState& state) {
     if (state.direction_length.empty()) return {};
     std::vector<Chart> charts;
@@ -117,13 +142,43 @@ std::vector<Chart> charts_of(const EditSettings& settings, const EditState& stat
          "iteration",
          {curve_of("direction", state.direction_length)},
          true});
-    if (settings.guidance == "rdl" && settings.adjust == "learned") {
-        charts.push_back({"Denoising loss of the source that follows the render",
+    if (state.guidance->text_direction()) {
+        charts.push_back({settings.adjust == "off" ? "Denoising loss of the source sentence"
+                                                   : "Denoising loss of the source as it follows",
                           "iteration",
-                          {curve_of("loss", state.adjustment_loss)},
+                          {curve_of("loss", state.source_loss)},
                           true});
     }
     return charts;
+}
+
+/// The first caption stands for all of them; the rest is in edit.json.
+TimelineEntry entry_of(const AdjustmentRecord& record) {
+    TimelineEntry entry;
+    entry.title = record.iteration == 0 ? "start" : fmt::format("step {}", record.iteration);
+    entry.picture = {entry.title, encode_webp(to_image(record.picture.to(torch::kFloat32) / 255))};
+    if (!record.captions.empty()) entry.caption = record.captions.front();
+    if (record.direction)
+        entry.facts.emplace_back("direction", fmt::format("{:.3f}", *record.direction));
+    if (record.text) {
+        entry.facts.emplace_back("turned", fmt::format("{:.0f}\u00b0", record.text->angle));
+        entry.facts.emplace_back("length", fmt::format("{:.2f}", record.text->length));
+    }
+    if (record.source_loss)
+        entry.facts.emplace_back("loss", fmt::format("{:.3f}", *record.source_loss));
+    return entry;
+}
+
+/// No more than fit on a page, the first and the last among them.
+std::vector<TimelineEntry> timeline_of(const std::vector<AdjustmentRecord>& records) {
+    constexpr std::size_t most = 12;
+    const std::size_t count = std::min(records.size(), most);
+    std::vector<TimelineEntry> timeline;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t index = count < 2 ? i : i * (records.size() - 1) / (count - 1);
+        timeline.push_back(entry_of(records[index]));
+    }
+    return timeline;
 }
 
 TableRows settings_table(const json& summary) {
@@ -145,17 +200,22 @@ TableRows settings_table(const json& summary) {
 json write_summary(const EditRequest& request, const EditScene& scene, const EditState& state,
                    const StageTimes& times, const IterationTimes& iteration_times,
                    const EditedModel& edited, const Pictures& pictures) {
-    const json summary = summary_json(request, scene, times, iteration_times, pictures);
+    const json summary = summary_json(request, scene, state, times, iteration_times, pictures);
 
     EditReport report;
     report.model = request.model.filename().string();
     report.from = request.settings.from;
     report.to = request.settings.to;
+    if (state.direction_length.size() < static_cast<std::size_t>(request.settings.iterations))
+        report.summary = fmt::format("Settled after {} of {} iterations.",
+                                     state.direction_length.size(), request.settings.iterations);
     report.before = pictures.before;
     report.after = pictures.after;
     report.turntable = pictures.turntable;
     report.textures = edited.textures;
     report.scores = scores_of(pictures);
+    report.timeline = timeline_of(state.adjustment.records);
+    report.timeline_note = timeline_note(state);
     report.charts = charts_of(request.settings, state);
     report.settings = settings_table(summary);
     report.seconds = times.stages();
@@ -164,6 +224,9 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
                                   scene.model.materials[static_cast<std::size_t>(material)].name +
                                   " has a new UV map: " + reason);
     }
+    if (!state.adjustment.failure.empty())
+        report.warnings.push_back("The captioner was not asked to the end: " +
+                                  state.adjustment.failure);
     report.files = {{"model.glb", "model.glb"},
                     {"edit.json", "edit.json"},
                     {"turntable.webp", "turntable.webp"},

@@ -36,6 +36,7 @@ struct IterationTimes {
     double unet = 0;
     double backward = 0;
     double step = 0;
+    double adjust = 0;  ///< pictures and captions of DirectionAdjustment
 };
 
 /// The process's largest resident size so far, in bytes.

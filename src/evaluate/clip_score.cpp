@@ -5,6 +5,9 @@
 namespace item3d {
 namespace {
 
+/// Enough to keep matrix products busy; more would only take memory.
+constexpr int pictures_at_once = 8;
+
 /// Shorter differences of unit vectors have no direction but rounding's.
 constexpr double least_length = 1e-5;
 
@@ -26,9 +29,9 @@ ClipScores clip_scores(const Clip& clip, const torch::Tensor& before, const torc
     const torch::NoGradGuard no_grad;
     const torch::Tensor texts = clip.embed_texts({from, to}).cpu().to(torch::kFloat64);
     const auto embed = [&](const torch::Tensor& pictures) {
-        std::vector<torch::Tensor> rows;  // one at a time keeps memory low
-        for (const torch::Tensor& picture : pictures.split(1))
-            rows.push_back(clip.embed_images(picture).cpu().to(torch::kFloat64));
+        std::vector<torch::Tensor> rows;
+        for (const torch::Tensor& some : pictures.split(pictures_at_once))
+            rows.push_back(clip.embed_images(some).cpu().to(torch::kFloat64));
         return torch::cat(rows);
     };
     const torch::Tensor was = embed(before), is = embed(after);

@@ -83,6 +83,19 @@ th { font-weight: 400; color: var(--soft); }
 .columns { columns: 2 320px; column-gap: 48px; }
 .columns table { display: block; } .columns tbody { display: block; }
 .columns tr { display: grid; grid-template-columns: 11em 1fr; break-inside: avoid; }
+.timeline { list-style: none; margin: 0; padding: 0; display: grid; gap: 22px 0;
+  grid-template-columns: repeat(auto-fill, minmax(146px, 1fr)); }
+.timeline li { border-top: 2px solid var(--line); padding: 8px 14px 0 0; position: relative; }
+.timeline li::before { content: ""; position: absolute; top: -5px; left: 0; width: 8px; height: 8px;
+  border-radius: 50%; background: var(--accent); }
+.timeline b { display: block; font-size: 13px; font-weight: 600; margin-bottom: 6px;
+  font-variant-numeric: tabular-nums; }
+.timeline q { display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 4;
+  overflow: hidden; font: italic 15px/1.3 var(--serif); margin-top: 8px; overflow-wrap: anywhere; }
+.timeline dl { display: grid; grid-template-columns: auto 1fr; gap: 0 8px; margin: 6px 0 0;
+  font-size: 12px; color: var(--soft); }
+.timeline dd { margin: 0; text-align: right; font-variant-numeric: tabular-nums; }
+.timeline + p { color: var(--soft); font-size: 13px; max-width: 80ch; margin: 18px 0 36px; }
 .charts { display: grid; gap: 30px; grid-template-columns: repeat(auto-fit, minmax(min(100%, 430px), 1fr)); }
 .chart svg { display: block; width: 100%; height: auto; overflow: visible; }
 .chart h3 { font-size: 14px; font-weight: 600; margin: 0; }

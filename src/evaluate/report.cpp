@@ -84,6 +84,22 @@ std::string textures(const EditReport& report) {
     return html_gallery(figures, 300);
 }
 
+std::string timeline(const EditReport& report) {
+    if (report.timeline.empty()) return "";
+    std::string html;
+    for (const TimelineEntry& entry : report.timeline) {
+        html +=
+            "<li><b>" + html_escape(entry.title) + "</b>" + html_figure({"", entry.picture.bytes});
+        if (!entry.caption.empty()) html += "<q>" + html_escape(entry.caption) + "</q>";
+        html += "<dl>";
+        for (const auto& [name, value] : entry.facts)
+            html += fmt::format("<dt>{}</dt><dd>{}</dd>", html_escape(name), html_escape(value));
+        html += "</dl></li>\n";
+    }
+    return "<ol class=\"timeline\">\n" + html + "</ol>\n<p>" + html_escape(report.timeline_note) +
+           "</p>\n";
+}
+
 std::string charts(const EditReport& report) {
     if (report.charts.empty()) return "";
     std::string html;
@@ -109,7 +125,7 @@ std::string edit_report_html(const EditReport& report) {
     }
     body += html_section(report.turntable ? "All around" : "Scores", around);
     body += html_section("Textures", textures(report));
-    body += html_section("How it went", charts(report));
+    body += html_section("How it went", timeline(report) + charts(report));
     body += html_section("Where the time went", html_timings(report.seconds));
     body += html_section("Settings", settings(report));
     body += "<footer>";

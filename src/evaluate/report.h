@@ -24,6 +24,14 @@ struct Score {
     std::string meaning;
 };
 
+/// How the edit stood at one moment.
+struct TimelineEntry {
+    std::string title;  ///< when
+    ReportImage picture;
+    std::string caption;                                     ///< what was seen; may be empty
+    std::vector<std::pair<std::string, std::string>> facts;  ///< names and numbers
+};
+
 struct EditReport {
     std::string model;  ///< its file's name
     std::string from;
@@ -35,6 +43,8 @@ struct EditReport {
     std::optional<ReportImage> turntable;
     std::vector<TexturePair> textures;
     std::vector<Score> scores;
+    std::vector<TimelineEntry> timeline;  ///< in order
+    std::string timeline_note;            ///< what its numbers mean
     std::vector<Chart> charts;
     TableRows settings;
     std::vector<std::pair<std::string, double>> seconds;  ///< by stage

@@ -98,8 +98,12 @@ const std::vector<std::string>& guidance_methods() {
 }
 
 const std::vector<std::string>& adjustment_names() {
-    static const std::vector<std::string> names = {"learned", "off"};
+    static const std::vector<std::string> names = {"learned", "caption", "caption-paper", "off"};
     return names;
+}
+
+bool adjusts_by_captions(const std::string& adjustment) {
+    return adjustment == "caption" || adjustment == "caption-paper";
 }
 
 Weighting parse_weighting(const std::string& name) {

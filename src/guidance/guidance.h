@@ -1,12 +1,14 @@
 // Pictures and prompts in, gradient out. Knows images, not meshes.
 #pragma once
 
+#include "item3d/guidance/text_direction.h"
 #include "item3d/models/pipeline.h"
 #include "item3d/models/safetensors.h"
 
 #include <torch/types.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,7 +23,7 @@ enum class TimestepSchedule { uniform, anneal, dreamtime };
 
 struct GuidanceOptions {
     std::string method = "rdl";      ///< one of guidance_methods()
-    std::string adjust = "learned";  ///< "off" or "learned"; only rdl has a direction to adjust
+    std::string adjust = "learned";  ///< of adjustment_names(); only rdl has a direction to adjust
     float guidance_scale = 7.5f;     ///< w of classifier-free guidance
     /// What classifier-free guidance starts from, in place of the empty prompt; it cancels in rdl's
     /// direction. nfsd and csd have a term of its own for it, default_negative_prompt() when empty.
@@ -52,7 +54,7 @@ struct GuidanceOutput {
     /// [N, C, h, w] g of docs/method.md, a constant: call latents.backward(latents_gradient).
     torch::Tensor latents_gradient;
     float direction_length = 0;  ///< RMS of the direction before weighting; the report's curve
-    float adjustment_loss = 0;   ///< denoising loss of the learned source, 0 without one
+    float source_loss = 0;       ///< rdl: denoising loss of the source, as the model was trained
     double seconds_encode = 0;
     double seconds_unet = 0;
 };
@@ -65,6 +67,11 @@ class Guidance {
     virtual GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) = 0;
     /// Whether step() reads GuidanceInput::reference.
     virtual bool needs_reference() const { return false; }
+    /// What is to be added to the source prompt's embedding from the next step on (one row), for
+    /// adjustments that are made outside. Methods without such a source leave it.
+    virtual void shift_source(const TextEmbedding& shift) { (void)shift; }
+    /// Where the direction between the sentences points now; no value for methods without one.
+    virtual std::optional<TextDirection> text_direction() const { return std::nullopt; }
     /// What a checkpoint must hold for an exact resume; empty for methods without state.
     virtual NamedTensors state() const { return {}; }
     /// Takes back what state() gave. Throws InputError when a tensor is missing.
@@ -80,7 +87,11 @@ struct GuidanceKind {
 const std::vector<GuidanceKind>& guidance_kinds();
 /// Their names.
 const std::vector<std::string>& guidance_methods();
+/// learned: see learned_source.h; caption, caption-paper: see caption_source.h, whoever makes the
+/// captions calls Guidance::shift_source(); off.
 const std::vector<std::string>& adjustment_names();
+/// True of caption and caption-paper.
+bool adjusts_by_captions(const std::string& adjustment);
 /// "early", "late", "dreamfusion", "uniform"; throws InputError on others.
 Weighting parse_weighting(const std::string& name);
 /// "uniform", "anneal", "dreamtime"; throws InputError on others.

@@ -1,6 +1,7 @@
 #include "item3d/guidance/learned_source.h"
 
 #include "item3d/core/error.h"
+#include "item3d/guidance/prediction.h"
 
 #include <torch/csrc/autograd/autograd.h>
 
@@ -44,11 +45,7 @@ torch::Tensor LearnedSource::predict_and_follow(const Pipeline& pipeline, const 
     const TextEmbedding text{embeddings[0], parts_.size() > 1 ? embeddings[1] : torch::Tensor()};
     const torch::Tensor prediction =
         pipeline.predict_noise(latents.noisy, latents.timesteps, text, latents.condition);
-    torch::Tensor error = prediction - latents.noise;
-    // An error of v is an error of eps divided by sqrt(abar); the loss is the one the model was
-    // trained with.
-    if (pipeline.scheduler.predicts_velocity()) error = error / latents.alphas_cumprod.sqrt();
-    const torch::Tensor loss = error.square().mean();
+    const torch::Tensor loss = denoising_loss(pipeline, prediction, latents);
     const auto gradients = torch::autograd::grad({loss}, embeddings);
     loss_ = loss.item<float>();
 
@@ -65,6 +62,10 @@ torch::Tensor LearnedSource::predict_and_follow(const Pipeline& pipeline, const 
                                               ((part.second_moment / correction2).sqrt() + epsilon);
     }
     return prediction.detach().narrow(0, 0, own.noisy.size(0));
+}
+
+TextEmbedding LearnedSource::embedding() const {
+    return {parts_[0].embedding, parts_.size() > 1 ? parts_[1].embedding : torch::Tensor()};
 }
 
 NamedTensors LearnedSource::state() const {

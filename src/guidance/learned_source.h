@@ -26,6 +26,8 @@ class LearnedSource {
                                      std::int64_t iteration);
     /// Denoising loss of the last call, in the U-Net's own target (eps or v).
     float loss() const { return loss_; }
+    /// One row: what stands for the source now.
+    TextEmbedding embedding() const;
 
     NamedTensors state() const;
     void load_state(const NamedTensors& state);

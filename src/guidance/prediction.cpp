@@ -50,6 +50,14 @@ torch::Tensor predict_guided(const Pipeline& pipeline, const NoisyInput& input,
     return predictions[1] + guidance_scale * (predictions[0] - predictions[1]);
 }
 
+torch::Tensor denoising_loss(const Pipeline& pipeline, const torch::Tensor& prediction,
+                             const NoisedLatents& latents) {
+    torch::Tensor error = prediction - latents.noise;
+    // An error of v is an error of eps divided by sqrt(abar).
+    if (pipeline.scheduler.predicts_velocity()) error = error / latents.alphas_cumprod.sqrt();
+    return error.square().mean();
+}
+
 double alpha_at(const Pipeline& pipeline, std::int64_t timestep) {
     return pipeline.scheduler.alphas_cumprod()[timestep].item<double>();
 }

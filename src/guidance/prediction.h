@@ -31,6 +31,11 @@ torch::Tensor predict_guided(const Pipeline& pipeline, const NoisyInput& input,
                              const TextEmbedding& text, const TextEmbedding& base,
                              double guidance_scale);
 
+/// How far eps(y) is from the noise that is there: the mean square error that the model was trained
+/// with, of eps or of the velocity. A scalar, differentiable in the prediction.
+torch::Tensor denoising_loss(const Pipeline& pipeline, const torch::Tensor& prediction,
+                             const NoisedLatents& latents);
+
 /// abar_t, a number.
 double alpha_at(const Pipeline& pipeline, std::int64_t timestep);
 

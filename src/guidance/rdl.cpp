@@ -23,8 +23,22 @@ PromptPair predict_pair(const Pipeline& pipeline, const NoisedLatents& start,
     return {both[0], both[1]};
 }
 
+TextEmbedding RelativeDirection::source() const {
+    if (learned_source_) return learned_source_->embedding();
+    return source_shift_.states.defined() ? add_scaled(source_text_, source_shift_, 1)
+                                          : source_text_;
+}
+
+void RelativeDirection::shift_source(const TextEmbedding& shift) {
+    source_shift_ = shift;
+}
+
+std::optional<TextDirection> RelativeDirection::text_direction() const {
+    return compare_directions(target_text_, source_text_, source());
+}
+
 PromptPair RelativeDirection::predict(const NoisedLatents& start, std::int64_t iteration) {
-    if (!learned_source_) return predict_pair(*pipeline_, start, target_text_, source_text_);
+    if (!learned_source_) return predict_pair(*pipeline_, start, target_text_, source());
     const torch::Tensor source = learned_source_->predict_and_follow(*pipeline_, start, iteration);
     const torch::NoGradGuard no_grad;
     const torch::Tensor target =
@@ -44,16 +58,29 @@ GuidanceOutput RelativeDirection::step(const GuidanceInput& input, std::int64_t 
         gradient = gradient + options_.anchor * (predictions.target - start.noise);
 
     GuidanceOutput output = finish_step(start, direction, start.weight * gradient, before);
-    output.adjustment_loss = learned_source_ ? learned_source_->loss() : 0.0f;
+    output.source_loss = learned_source_
+                             ? learned_source_->loss()
+                             : denoising_loss(*pipeline_, predictions.source, start).item<float>();
     return output;
 }
 
 NamedTensors RelativeDirection::state() const {
-    return learned_source_ ? learned_source_->state() : NamedTensors{};
+    if (learned_source_) return learned_source_->state();
+    NamedTensors state;
+    if (source_shift_.states.defined()) state.emplace_back("shift.states", source_shift_.states);
+    if (source_shift_.pooled.defined()) state.emplace_back("shift.pooled", source_shift_.pooled);
+    return state;
 }
 
 void RelativeDirection::load_state(const NamedTensors& state) {
-    if (learned_source_) learned_source_->load_state(state);
+    if (learned_source_) {
+        learned_source_->load_state(state);
+        return;
+    }
+    for (const auto& [name, tensor] : state) {
+        const torch::Tensor value = tensor.to(source_text_.states.device()).clone();
+        (name == "shift.pooled" ? source_shift_.pooled : source_shift_.states) = value;
+    }
 }
 
 }  // namespace item3d

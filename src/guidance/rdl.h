@@ -28,16 +28,22 @@ class RelativeDirection : public Guidance {
     RelativeDirection(std::shared_ptr<const Pipeline> pipeline, const std::string& source_prompt,
                       const std::string& target_prompt, const GuidanceOptions& options);
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
+    /// Without a learned source.
+    void shift_source(const TextEmbedding& shift) override;
+    std::optional<TextDirection> text_direction() const override;
     NamedTensors state() const override;
     void load_state(const NamedTensors& state) override;
 
   private:
+    /// One row: the prompt's embedding, or what stands for it by now.
+    TextEmbedding source() const;
     PromptPair predict(const NoisedLatents& start, std::int64_t iteration);
 
     std::shared_ptr<const Pipeline> pipeline_;
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row, as the source's
     TextEmbedding source_text_;
+    TextEmbedding source_shift_;  ///< undefined until there is one
     std::optional<LearnedSource> learned_source_;
 };
 

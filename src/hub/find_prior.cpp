@@ -45,4 +45,8 @@ fs::path find_prior(const std::string& name) {
     return cached.find_snapshot(repository->revision_or_main());
 }
 
+fs::path find_in_prior(const fs::path& prior, const std::string& name) {
+    return fs::exists(prior / name / "config.json") ? prior / name : fs::path();
+}
+
 }  // namespace item3d

@@ -33,14 +33,29 @@ torch::Tensor row(const std::vector<int>& ids) {
     return torch::tensor(std::vector<std::int64_t>(ids.begin(), ids.end())).unsqueeze(0);
 }
 
-/// The text of the first row's tokens from `begin` on, one line.
-std::string text_of(const CaptionTokenizer& tokenizer, const Decoded& decoded, int begin) {
-    const torch::Tensor tokens = decoded.tokens[0].contiguous();
-    const auto* first = tokens.const_data_ptr<std::int64_t>();
-    std::string text = tokenizer.decode(std::vector<int>(first + begin, first + tokens.numel()));
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-    return strip_white_space(text);
+/// What each row's tokens from `begin` on say. They end with `end_token` unless they were cut off.
+std::vector<Caption> texts_of(const CaptionTokenizer& tokenizer, const Decoded& decoded, int begin,
+                              int prompt_length, int end_token) {
+    std::vector<Caption> captions;
+    for (const torch::Tensor& row : decoded.tokens.unbind(0)) {
+        const torch::Tensor tokens = row.contiguous();
+        const auto* first = tokens.const_data_ptr<std::int64_t>();
+        const auto* last = first + tokens.numel();
+        std::string text = tokenizer.decode(std::vector<int>(first + begin, last));
+        std::replace_if(
+            text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+        captions.push_back({strip_white_space(to_valid_utf8(text)),
+                            std::find(first + prompt_length, last, end_token) != last});
+    }
+    return captions;
+}
+
+torch::Tensor process_all(const ImageProcessor& processor,
+                          const std::vector<torch::Tensor>& pictures) {
+    std::vector<torch::Tensor> rows;
+    for (const torch::Tensor& picture : pictures)
+        rows.push_back(processor.process(picture));
+    return torch::cat(rows);
 }
 
 class BlipCaptioner : public Captioner {
@@ -54,14 +69,17 @@ class BlipCaptioner : public Captioner {
         check_tokenizer(folder / "vocab.txt", tokenizer_, config.vocab_size);
         model_ = load_blip(folder, device, dtype);
     }
-    std::string caption(const torch::Tensor& bytes, const CaptionOptions& options) const override {
+    std::vector<Caption> captions(const std::vector<torch::Tensor>& pictures,
+                                  const CaptionOptions& options) const override {
         // The network's own first token for [CLS], and no [SEP] yet.
         std::vector<int> prompt = tokenizer_.encode(options.prefix);
         prompt.front() = model_->config().bos_token_id;
         prompt.pop_back();
-        const Decoded decoded = write_captions(model_, processor_.process(bytes).to(device_),
-                                               row(prompt), decoding_options(options));
-        return text_of(tokenizer_, decoded, 1);
+        const Decoded decoded =
+            write_captions(model_, process_all(processor_, pictures).to(device_), row(prompt),
+                           decoding_options(options));
+        return texts_of(tokenizer_, decoded, 1, static_cast<int>(prompt.size()),
+                        model_->config().sep_token_id);
     }
 
   private:
@@ -85,16 +103,18 @@ class Blip2Captioner : public Captioner {
             end_token_ = Config::read(generation).integers("eos_token_id", {end_token_}).front();
         model_ = load_blip2(folder, device, dtype);
     }
-    std::string caption(const torch::Tensor& bytes, const CaptionOptions& options) const override {
+    std::vector<Caption> captions(const std::vector<torch::Tensor>& pictures,
+                                  const CaptionOptions& options) const override {
         const Blip2Config& config = model_->config();
         std::vector<int> prompt(config.num_query_tokens, config.image_token_index);
         for (const int id : tokenizer_.encode(options.prefix))
             if (id != config.image_token_index) prompt.push_back(id);
         DecodingOptions decoding = decoding_options(options);
         decoding.end_token = end_token_;
-        const Decoded decoded = write_captions(model_, processor_.process(bytes).to(device_),
-                                               row(prompt), {}, decoding);
-        return text_of(tokenizer_, decoded, config.num_query_tokens);
+        const Decoded decoded = write_captions(
+            model_, process_all(processor_, pictures).to(device_), row(prompt), {}, decoding);
+        return texts_of(tokenizer_, decoded, config.num_query_tokens,
+                        static_cast<int>(prompt.size()), end_token_);
     }
 
   private:

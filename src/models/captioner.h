@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -15,13 +16,21 @@ struct CaptionOptions {
     int max_new_tokens = 30;  ///< behind the prefix
 };
 
+struct Caption {
+    std::string text;   ///< one line, the prefix included
+    bool ended = true;  ///< false: cut off at max_new_tokens
+};
+
 class Captioner {
   public:
     virtual ~Captioner() = default;
-    /// bytes [H, W, C] as ImageProcessor takes them. The caption in one line, the prefix
-    /// included. Throws InputError for a prefix that is too long.
-    virtual std::string caption(const torch::Tensor& bytes,
-                                const CaptionOptions& options) const = 0;
+    /// One for each picture, bytes [H, W, C] as ImageProcessor takes them, all in one pass. Throws
+    /// InputError for a prefix that is too long, Interrupted after Ctrl-C.
+    virtual std::vector<Caption> captions(const std::vector<torch::Tensor>& pictures,
+                                          const CaptionOptions& options) const = 0;
+    std::string caption(const torch::Tensor& picture, const CaptionOptions& options) const {
+        return captions({picture}, options).front().text;
+    }
 };
 
 /// Reads a folder of transformers' BlipForConditionalGeneration or Blip2ForConditionalGeneration

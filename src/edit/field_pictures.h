@@ -1,0 +1,17 @@
+// Pictures of the field as it is, for people and captioners.
+#pragma once
+
+#include "item3d/edit/scene.h"
+
+#include <torch/types.h>
+
+#include <vector>
+
+namespace item3d {
+
+/// [N, size, size, 3] sRGB in [0, 1]: the edit's light from its front, a light grey behind. No
+/// graph.
+torch::Tensor draw_field(const EditScene& scene, NeuralTexture& field,
+                         const std::vector<Camera>& cameras, int size);
+
+}  // namespace item3d

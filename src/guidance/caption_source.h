@@ -1,0 +1,58 @@
+// A source embedding that follows what a captioner sees (--adjust caption; ITEM3D, section 3.4).
+//
+// The paper lets a captioner B describe the render I_i every few iterations and changes the source
+// prompt by what the captions changed. In the space of embeddings its sum of differences
+// telescopes:
+//   e_source,i = e(y_source) + lambda mean_v w_v [ e(B(I_i,v)) - e(B(I_0,v)) ],
+// over a few views v. Its formula adds the sum to the direction, target minus source, which is the
+// other sign: `paper_sign`.
+//
+// A captioner that says nothing useful does no harm: w_v is a quarter where a caption does not
+// mention the object and nothing where it is empty or was cut off, and the source moves by no more
+// than the whole way to the target.
+#pragma once
+
+#include "item3d/guidance/text_direction.h"
+#include "item3d/models/captioner.h"
+#include "item3d/models/pipeline.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+struct CaptionSourceOptions {
+    float strength = 1;  ///< lambda
+    bool paper_sign = false;
+};
+
+/// Words that name the object: those that both sentences have, "a" and "of" and their like left
+/// out; those of the source where they share none. Lower case.
+std::vector<std::string> object_words(const std::string& source_prompt,
+                                      const std::string& target_prompt);
+
+/// True where one of these words, or its plural, stands in the caption.
+bool mentions(const std::string& caption, const std::vector<std::string>& words);
+
+class CaptionSource {
+  public:
+    CaptionSource(std::shared_ptr<const Pipeline> pipeline, const std::string& source_prompt,
+                  const std::string& target_prompt, const CaptionSourceOptions& options);
+
+    /// What to add to the source prompt's embedding (one row), from the captions of the same views
+    /// before the edit and now. No value when no view has captions of any use.
+    std::optional<TextEmbedding> shift(const std::vector<Caption>& before,
+                                       const std::vector<Caption>& now) const;
+
+  private:
+    double weight(const Caption& before, const Caption& now) const;
+
+    std::shared_ptr<const Pipeline> pipeline_;
+    CaptionSourceOptions options_;
+    std::vector<std::string> object_words_;
+    TextEmbedding direction_;  ///< e(y_target) - e(y_source)
+};
+
+}  // namespace item3d
