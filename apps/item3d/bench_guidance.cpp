@@ -5,7 +5,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
-#include "item3d/edit/timing.h"
+#include "item3d/core/stage_times.h"
 #include "item3d/guidance/guidance.h"
 #include "item3d/guidance/noised_latents.h"
 #include "item3d/hub/find_prior.h"

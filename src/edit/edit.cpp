@@ -1,10 +1,10 @@
 #include "item3d/edit/edit.h"
 
 #include "item3d/core/files.h"
+#include "item3d/core/stage_times.h"
 #include "item3d/edit/optimize.h"
 #include "item3d/edit/outputs.h"
 #include "item3d/edit/scene.h"
-#include "item3d/edit/timing.h"
 
 namespace item3d {
 

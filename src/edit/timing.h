@@ -1,32 +1,11 @@
-// Where an edit's time and memory go, for edit.json.
+// Where an edit's time goes, for edit.json.
 #pragma once
 
-#include <chrono>
+#include "item3d/core/stage_times.h"
+
 #include <cstdint>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace item3d {
-
-/// Wall-clock seconds of consecutive stages.
-class StageTimes {
-  public:
-    StageTimes() : start_(Clock::now()), stage_start_(start_) {}
-    void end_stage(const std::string& name) {
-        const auto now = Clock::now();
-        stages_.emplace_back(name, std::chrono::duration<double>(now - stage_start_).count());
-        stage_start_ = now;
-    }
-    const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
-    double total() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point start_;
-    Clock::time_point stage_start_;
-    std::vector<std::pair<std::string, double>> stages_;
-};
 
 /// Sums over the iterations that this run did, in seconds.
 struct IterationTimes {
@@ -38,8 +17,5 @@ struct IterationTimes {
     double step = 0;
     double adjust = 0;  ///< pictures and captions of DirectionAdjustment
 };
-
-/// The process's largest resident size so far, in bytes.
-std::int64_t peak_memory_bytes();
 
 }  // namespace item3d

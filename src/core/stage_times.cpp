@@ -1,4 +1,4 @@
-#include "item3d/edit/timing.h"
+#include "item3d/core/stage_times.h"
 
 #include <sys/resource.h>
 
