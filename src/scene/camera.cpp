@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/scene/pose.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -51,15 +52,6 @@ std::string frame_name(const std::string& file_path) {
     return name == "." || name == ".." ? "" : name.string();
 }
 
-float finite_number(const Json& value, const std::string& subject, const std::string& what) {
-    if (!value.is_number()) {
-        throw InputError(subject, what + " must be a number, found " + value.type_name());
-    }
-    const float number = value.get<float>();
-    if (!std::isfinite(number)) throw InputError(subject, what + " is not a finite number");
-    return number;
-}
-
 float checked_field_of_view(float angle, const std::string& subject) {
     if (!(angle > 1e-3f && angle < 3.1f)) {
         throw InputError(subject,
@@ -75,46 +67,14 @@ float checked_field_of_view(float angle, const std::string& subject) {
 float field_of_view_of(const Json& object, const std::string& subject) {
     if (object.contains("camera_angle_x")) {
         return checked_field_of_view(
-            finite_number(object["camera_angle_x"], subject, "camera_angle_x"), subject);
+            finite_json_number(object["camera_angle_x"], subject, "camera_angle_x"), subject);
     }
     if (object.contains("fl_x") && object.contains("w")) {
-        const float focal = finite_number(object["fl_x"], subject, "fl_x");
-        const float width = finite_number(object["w"], subject, "w");
+        const float focal = finite_json_number(object["fl_x"], subject, "fl_x");
+        const float width = finite_json_number(object["w"], subject, "w");
         return checked_field_of_view(2 * std::atan2(width / 2, focal), subject);
     }
     return 0;
-}
-
-Mat4 pose_of(const Json& rows, const std::string& subject) {
-    const auto wrong = [&](const std::string& problem) {
-        return InputError(subject, "transform_matrix " + problem,
-                          "it is a camera-to-world matrix, four rows of four numbers");
-    };
-    if (!rows.is_array() || rows.size() != 4) throw wrong("must have 4 rows");
-    Mat4 pose(1.0f);
-    for (int row = 0; row < 4; ++row) {
-        if (!rows[row].is_array() || rows[row].size() != 4) throw wrong("must have rows of 4");
-        for (int column = 0; column < 4; ++column) {
-            pose[column][row] = finite_number(rows[row][column], subject, "transform_matrix");
-        }
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        const float length = glm::length(Vec3(pose[axis]));
-        if (!(length > 1e-6f)) throw wrong("has an axis of length zero");
-        pose[axis] = Vec4(Vec3(pose[axis]) / length, pose[axis].w);
-    }
-    const Mat3 rotation(pose);
-    // Exporters round to few digits, so this is loose: it finds shears and mirrors, not rounding.
-    const Mat3 product = glm::transpose(rotation) * rotation;
-    for (int i = 0; i < 9; ++i) {
-        if (std::abs(product[i / 3][i % 3] - (i / 3 == i % 3 ? 1.0f : 0.0f)) > 0.02f) {
-            throw wrong("is not a rotation (its axes are not at right angles)");
-        }
-    }
-    if (glm::determinant(rotation) < 0) throw wrong("mirrors the world");
-    const Vec4 last(pose[0][3], pose[1][3], pose[2][3], pose[3][3]);
-    if (glm::length(last - Vec4(0, 0, 0, 1)) > 1e-4f) throw wrong("must end with the row 0 0 0 1");
-    return pose;
 }
 
 }  // namespace
@@ -248,7 +208,7 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path) {
             throw InputError(where, "expected an object with \"transform_matrix\"");
         }
         Camera camera;
-        camera.camera_to_world = pose_of(frame["transform_matrix"], where);
+        camera.camera_to_world = pose_from_rows(frame["transform_matrix"], where);
         camera.field_of_view_x = field_of_view_of(frame, where);
         if (camera.field_of_view_x == 0) camera.field_of_view_x = shared_field_of_view;
         if (camera.field_of_view_x == 0) {
