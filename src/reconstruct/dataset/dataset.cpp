@@ -1,0 +1,225 @@
+#include "item3d/reconstruct/dataset/dataset.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/reconstruct/dataset/orient_world.h"
+#include "item3d/reconstruct/dataset/photograph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t fewest_views = 3;
+
+fs::path colmap_model(const fs::path& folder) {
+    for (const char* place : {"sparse/0", "sparse", "colmap/sparse/0", "0", "."}) {
+        const fs::path model = folder / place;
+        if ((fs::exists(model / "cameras.txt") && fs::exists(model / "images.txt")) ||
+            (fs::exists(model / "cameras.bin") && fs::exists(model / "images.bin")))
+            return model;
+    }
+    return {};
+}
+
+fs::path images_folder(const fs::path& folder, const DatasetOptions& options) {
+    if (!options.images.empty()) {
+        if (!fs::is_directory(options.images)) {
+            throw InputError(options.images.string(), "is not a folder of pictures");
+        }
+        return options.images;
+    }
+    return fs::is_directory(folder / "images") ? folder / "images" : folder;
+}
+
+SourceDataset read_source(const fs::path& path, const DatasetOptions& options) {
+    if (!fs::exists(path)) throw InputError(path.string(), "there is no such file or folder");
+    if (fs::is_regular_file(path)) return read_nerfstudio(path);
+    if (fs::exists(path / "transforms_train.json")) return read_nerf_synthetic(path);
+    if (fs::exists(path / "transforms.json")) return read_nerfstudio(path / "transforms.json");
+    if (const fs::path model = colmap_model(path); !model.empty()) {
+        return read_colmap(model, images_folder(path, options));
+    }
+    if (fs::exists(path / "poses_bounds.npy")) {
+        return read_llff(path / "poses_bounds.npy", images_folder(path, options));
+    }
+    throw InputError(
+        path.string(),
+        "found none of transforms_train.json, transforms.json, sparse/0/cameras.txt or "
+        ".bin, poses_bounds.npy",
+        "a dataset is NeRF-synthetic, nerfstudio, COLMAP or LLFF");
+}
+
+void choose_splits(SourceDataset& source, const DatasetOptions& options) {
+    const auto is_unknown = [](const SourceView& v) { return v.split == Split::unknown; };
+    if (std::all_of(source.views.begin(), source.views.end(), is_unknown)) {
+        // LLFF's way; a dataset that is hardly enough gives nothing away.
+        const std::size_t step = static_cast<std::size_t>(options.hold_out);
+        const bool holds_out = step > 1 && source.views.size() >= fewest_views + step;
+        for (std::size_t i = 0; i < source.views.size(); ++i)
+            source.views[i].split = holds_out && i % step == step / 2 ? Split::test : Split::train;
+    }
+    if (options.most_views <= 0) return;
+    std::vector<std::size_t> train;
+    for (std::size_t i = 0; i < source.views.size(); ++i)
+        if (source.views[i].split == Split::train) train.push_back(i);
+    const auto wanted = static_cast<std::size_t>(options.most_views);
+    if (train.size() <= wanted) return;
+    for (const std::size_t i : train)
+        source.views[i].split = Split::unknown;
+    for (std::size_t i = 0; i < wanted; ++i)
+        source.views[train[i * train.size() / wanted]].split = Split::train;
+    std::erase_if(source.views, is_unknown);
+}
+
+std::string origin_words(const std::map<MaskOrigin, std::size_t>& origins) {
+    static const std::map<MaskOrigin, const char*> words{
+        {MaskOrigin::none, "none"},
+        {MaskOrigin::folder, "a folder"},
+        {MaskOrigin::mask_path, "mask_path"},
+        {MaskOrigin::alpha, "alpha"},
+        {MaskOrigin::background, "the background's colour"}};
+    std::string text;
+    for (const auto& [origin, count] : origins)
+        text += (text.empty() ? "" : ", ") + std::string(words.at(origin)) +
+                (origins.size() > 1 ? fmt::format(" ({})", count) : "");
+    return text;
+}
+
+struct Coverage {
+    double share = 0;
+    bool touches_edge = false;
+};
+
+Coverage coverage_of(const Image& image) {
+    Coverage coverage;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const float alpha = image.at(x, y, 3);
+            coverage.share += alpha;
+            const bool edge = x == 0 || y == 0 || x + 1 == image.width || y + 1 == image.height;
+            coverage.touches_edge = coverage.touches_edge || (edge && alpha > 0.5f);
+        }
+    }
+    coverage.share /= static_cast<double>(image.width) * image.height;
+    return coverage;
+}
+
+/// Masks that say nothing make every shape right, or none.
+void check_masks(const fs::path& path, Dataset& dataset) {
+    std::size_t full = 0, total = 0;
+    std::vector<std::string> empty;
+    for (const auto* views : {&dataset.train, &dataset.test}) {
+        for (const View& view : *views) {
+            const Coverage coverage = coverage_of(view.image);
+            ++total;
+            full += coverage.share > 0.999;
+            if (coverage.share < 1e-5) empty.push_back(view.name);
+            dataset.cut_off += coverage.touches_edge;
+        }
+    }
+    const std::string hint =
+        "give masks in alpha, by --masks FOLDER, or by --background COLOUR where it is plain";
+    if (full > total / 2) {
+        throw InputError(
+            path.string(),
+            fmt::format("{} of {} pictures are all object (masks: {})", full, total, dataset.masks),
+            hint);
+    }
+    if (!empty.empty()) {
+        throw InputError(
+            path.string(),
+            fmt::format("the mask of '{}' is black{}: the object is not in the picture",
+                        empty.front(),
+                        empty.size() > 1 ? fmt::format(" (and {} more)", empty.size() - 1) : ""),
+            "take such views out of the dataset, or mend their masks");
+    }
+    if (dataset.cut_off == total) {
+        throw InputError(path.string(), "the object is cut off by the frame of every picture",
+                         "a shape can be found only where some pictures show all of it");
+    }
+    if (dataset.cut_off > 0) {
+        warn(fmt::format("the object touches the frame in {} of {} pictures", dataset.cut_off,
+                         total));
+    }
+}
+
+void check_cameras(const fs::path& path, const Dataset& dataset) {
+    if (dataset.train.size() < fewest_views) {
+        throw InputError(path.string(),
+                         fmt::format("{} view(s) to learn from", dataset.train.size()),
+                         "at least 3 are needed, and 30 or more are good");
+    }
+    float spread = 0;
+    const Vec3 first = dataset.train.front().camera.position();
+    for (const View& view : dataset.train)
+        spread = std::max(spread, glm::distance(first, view.camera.position()));
+    if (spread < 0.01f * glm::distance(first, dataset.centre) || spread == 0) {
+        throw InputError(path.string(), "all cameras stand at one place",
+                         "a shape is seen only from different sides; are the poses those of the "
+                         "pictures?");
+    }
+}
+
+}  // namespace
+
+Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
+    SourceDataset source = read_source(path, options);
+    if (source.views.empty()) throw InputError(path.string(), "the dataset has no views");
+    choose_splits(source, options);
+    if (!options.masks.empty() && !fs::is_directory(options.masks)) {
+        throw InputError(options.masks.string(), "is not a folder of masks");
+    }
+    const fs::path folder = fs::is_directory(path) ? path : path.parent_path();
+    const fs::path masks = !options.masks.empty() ? options.masks : folder / "masks";
+
+    Dataset dataset;
+    dataset.kind = source.kind;
+    dataset.world_from_dataset = upright(source, options.up);
+    std::map<MaskOrigin, std::size_t> origins;
+    int width = 0, height = 0;
+    for (const SourceView& from : source.views) {
+        fs::path mask = find_mask(masks, from);
+        if (mask.empty() && !options.masks.empty()) {
+            throw InputError(options.masks.string(), "there is no mask for '" + from.name + "'",
+                             "masks are named as their pictures, with .png");
+        }
+        const bool named = mask.empty() && !from.mask.empty();
+        if (named) mask = from.mask;
+        Lens lens;
+        MaskOrigin origin = MaskOrigin::none;
+        View view;
+        view.name = from.name;
+        view.image = load_photograph(from, mask, options, lens, origin);
+        ++origins[named ? MaskOrigin::mask_path : origin];
+        // Where one angle stands for all pictures, they must have one size.
+        if (from.lens.width == 0) {
+            if (width == 0) {
+                width = view.image.width;
+                height = view.image.height;
+            } else if (view.image.width != width || view.image.height != height) {
+                throw InputError(from.picture.string(),
+                                 fmt::format("is {} x {}, the pictures before it {} x {}",
+                                             view.image.width, view.image.height, width, height),
+                                 "camera_angle_x speaks of pictures of one size");
+            }
+        }
+        view.camera.name = from.name;
+        view.camera.field_of_view_x = lens.field_of_view_x();
+        view.camera.camera_to_world = Mat4(dataset.world_from_dataset) * from.camera_to_world;
+        (from.split == Split::test ? dataset.test : dataset.train).push_back(std::move(view));
+    }
+    dataset.masks = origin_words(origins);
+    std::tie(dataset.centre, dataset.radius) = region_seen(dataset.train);
+    check_cameras(path, dataset);
+    check_masks(path, dataset);
+    return dataset;
+}
+
+}  // namespace item3d

@@ -1,0 +1,187 @@
+#include "item3d/reconstruct/dataset/photograph.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/evaluate/picture.h"
+#include "item3d/reconstruct/dataset/orientation.h"
+#include "item3d/scene/io/load.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_floating(const fs::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".exr" || extension == ".hdr";
+}
+
+std::string size_text(int width, int height) {
+    return fmt::format("{} x {}", width, height);
+}
+
+/// Poses are found for pictures as they are stored or as they are shown: the one whose sides are
+/// the lens's; as shown where the layout names no size.
+Image right_way_up(const Image& stored, int orientation, const Lens& lens) {
+    if (orientation == 1) return stored;
+    if (lens.width == 0) return oriented(stored, orientation);
+    const auto fits = [&](int width, int height) {
+        return std::abs(static_cast<double>(width) * lens.height -
+                        static_cast<double>(height) * lens.width) <= std::max(width, height);
+    };
+    if (fits(stored.width, stored.height) || !swaps_sides(orientation)) return stored;
+    return fits(stored.height, stored.width) ? oriented(stored, orientation) : stored;
+}
+
+/// Pictures may all be smaller than the lens says (folders like images_4), not of other
+/// proportions.
+Lens lens_for(const Image& picture, const SourceView& view) {
+    const Lens& lens = view.lens;
+    if (lens.width > 0) {
+        const double x = static_cast<double>(picture.width) / lens.width;
+        const double y = static_cast<double>(picture.height) / lens.height;
+        // Half a pixel of rounding in each side.
+        const double rounding = 0.51 / lens.width + 0.51 / lens.height;
+        if (std::abs(x - y) > rounding) {
+            throw InputError(view.picture.string(),
+                             "the picture is " + size_text(picture.width, picture.height) +
+                                 ", its camera's are " + size_text(lens.width, lens.height),
+                             "give the pictures that the poses were found for");
+        }
+    }
+    return lens.scaled_to(picture.width, picture.height);
+}
+
+bool varies(const Image& image, int channel) {
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            if (image.at(x, y, channel) < 0.999f) return true;
+    return false;
+}
+
+/// One channel: alpha where the mask has it and it says something, else the mean of the colours.
+Image load_mask(const fs::path& file, const Image& picture) {
+    const Image stored = load_image(file);
+    if (stored.width != picture.width || stored.height != picture.height) {
+        const bool proportional =
+            std::abs(static_cast<double>(stored.width) / picture.width -
+                     static_cast<double>(stored.height) / picture.height) < 0.02;
+        if (!proportional) {
+            throw InputError(file.string(),
+                             "the mask is " + size_text(stored.width, stored.height) +
+                                 ", its picture " + size_text(picture.width, picture.height),
+                             "a mask has the size of its picture");
+        }
+    }
+    const bool has_alpha = stored.channels == 2 || stored.channels == 4;
+    const bool from_alpha = has_alpha && varies(stored, stored.channels - 1);
+    const int colors = has_alpha ? stored.channels - 1 : stored.channels;
+    Image mask(stored.width, stored.height, 1);
+    for (int y = 0; y < stored.height; ++y) {
+        for (int x = 0; x < stored.width; ++x) {
+            float sum = 0;
+            for (int c = 0; c < colors; ++c)
+                sum += stored.at(x, y, c);
+            mask.at(x, y, 0) = std::clamp(from_alpha ? stored.at(x, y, stored.channels - 1)
+                                                     : sum / static_cast<float>(colors),
+                                          0.0f, 1.0f);
+        }
+    }
+    return resize(mask, picture.width, picture.height);
+}
+
+float background_coverage(const Vec3& encoded, const DatasetOptions& options) {
+    const Vec3 difference = glm::abs(encoded - *options.background);
+    const float largest = std::max({difference.x, difference.y, difference.z});
+    // A soft step: antialiased edges are partly background.
+    return std::clamp(largest / options.background_tolerance - 0.5f, 0.0f, 1.0f);
+}
+
+/// Linear RGB times coverage, and coverage.
+Image premultiplied(const Image& picture, const Image& mask, bool is_linear,
+                    const DatasetOptions& options) {
+    Image result(picture.width, picture.height, 4);
+    const bool has_alpha = picture.channels == 2 || picture.channels == 4;
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+            Vec3 color;
+            for (int c = 0; c < 3; ++c)
+                color[c] = picture.at(x, y, picture.channels >= 3 ? c : 0);
+            float alpha = has_alpha ? picture.at(x, y, picture.channels - 1) : 1.0f;
+            if (!mask.empty()) {
+                alpha = mask.at(x, y, 0);
+            } else if (options.background) {
+                alpha = std::min(alpha, background_coverage(color, options));
+            }
+            alpha = std::isfinite(alpha) ? std::clamp(alpha, 0.0f, 1.0f) : 0.0f;
+            for (int c = 0; c < 3; ++c) {
+                const float value = std::isfinite(color[c]) ? std::max(color[c], 0.0f) : 0.0f;
+                result.at(x, y, c) = alpha * (is_linear ? value : srgb_to_linear(value));
+            }
+            result.at(x, y, 3) = alpha;
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+fs::path find_mask(const fs::path& folder, const SourceView& view) {
+    const std::string file = view.picture.filename().string();
+    const std::string base = fs::path(view.name).filename().string();
+    for (const fs::path& name : {fs::path(view.name), fs::path(base), fs::path(file)}) {
+        if (fs::is_regular_file(folder / name)) return folder / name;
+        fs::path with = name;
+        with += ".png";
+        if (fs::is_regular_file(folder / with)) return folder / with;
+    }
+    return {};
+}
+
+Image load_photograph(const SourceView& view, const fs::path& mask_file,
+                      const DatasetOptions& options, Lens& lens, MaskOrigin& origin) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(view.picture, ignored)) {
+        throw InputError(view.picture.string(),
+                         "the picture of view '" + view.name + "' is missing",
+                         "every pose needs its picture");
+    }
+    const int orientation = exif_orientation(read_bytes(view.picture));
+    Image picture = right_way_up(load_image(view.picture), orientation, view.lens);
+    lens = lens_for(picture, view);
+
+    const bool has_alpha = picture.channels == 2 || picture.channels == 4;
+    Image mask;
+    if (!mask_file.empty()) {
+        mask = load_mask(mask_file, picture);
+        origin = MaskOrigin::folder;
+    } else if (has_alpha && varies(picture, picture.channels - 1)) {
+        origin = MaskOrigin::alpha;
+    } else {
+        origin = options.background ? MaskOrigin::background : MaskOrigin::none;
+    }
+    Image image =
+        premultiplied(picture, mask, options.is_linear || is_floating(view.picture), options);
+    image = undistort(image, lens);
+    Lens ideal;
+    ideal.width = lens.width;
+    ideal.height = lens.height;
+    ideal.focal_x = ideal.focal_y = lens.focal_x;
+    ideal.centre_x = 0.5 * lens.width;
+    ideal.centre_y = 0.5 * lens.height;
+    if (options.longest_side > 0) {
+        image = thumbnail(image, options.longest_side);
+        ideal = ideal.scaled_to(image.width, image.height);
+    }
+    lens = ideal;
+    return image;
+}
+
+}  // namespace item3d

@@ -1,0 +1,77 @@
+#include "item3d/reconstruct/dataset/source.h"
+
+#include "item3d/core/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array picture_extensions{".png", ".jpg", ".jpeg", ".exr", ".hdr"};
+
+bool has_picture_extension(const fs::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return std::find(picture_extensions.begin(), picture_extensions.end(), extension) !=
+           picture_extensions.end();
+}
+
+}  // namespace
+
+const char* dataset_kind_name(DatasetKind kind) {
+    switch (kind) {
+        case DatasetKind::nerf_synthetic:
+            return "NeRF-synthetic";
+        case DatasetKind::nerfstudio:
+            return "nerfstudio";
+        case DatasetKind::colmap:
+            return "COLMAP";
+        case DatasetKind::llff:
+            return "LLFF";
+    }
+    check_failed("kind", __FILE__, __LINE__, "an unknown kind of dataset");
+}
+
+fs::path inside(const fs::path& folder, const std::string& name, const std::string& subject) {
+    const fs::path relative = fs::path(name).lexically_normal();
+    if (name.empty() || relative.is_absolute() || *relative.begin() == "..") {
+        throw InputError(subject, "'" + name + "' is not inside " + folder.string(),
+                         "pictures and masks must lie below the dataset's folder");
+    }
+    return folder / relative;
+}
+
+fs::path find_picture(const fs::path& path) {
+    std::error_code ignored;
+    if (fs::is_regular_file(path, ignored)) return path;
+    for (const char* extension : picture_extensions) {
+        fs::path with = path;
+        with += extension;
+        if (fs::is_regular_file(with, ignored)) return with;
+    }
+    return path;
+}
+
+std::string without_picture_extension(const std::string& name) {
+    fs::path path = fs::path(name).lexically_normal();
+    if (has_picture_extension(path)) path.replace_extension();
+    return path.string();
+}
+
+std::vector<fs::path> list_pictures(const fs::path& folder) {
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
+        if (has_picture_extension(i->path())) found.push_back(i->path());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+}  // namespace item3d
