@@ -1,0 +1,14 @@
+// Where the photographs were taken from.
+#pragma once
+
+#include "item3d/reconstruct/dataset/dataset.h"
+
+#include <array>
+#include <string>
+
+namespace item3d {
+
+/// Inline SVG: cameras and the model's box from above and from the front; held-out views are rings.
+std::string camera_plot(const Dataset& dataset, std::array<Vec3, 2> bounds);
+
+}  // namespace item3d

@@ -1,0 +1,39 @@
+// What a reconstruction leaves in its folder.
+#pragma once
+
+#include "item3d/core/stage_times.h"
+#include "item3d/reconstruct/reconstruct.h"
+#include "item3d/reconstruct/scores.h"
+
+#include <optional>
+#include <vector>
+
+namespace item3d {
+
+/// Bakes the field into the model's UV map, writes model.glb and reads it back: scores and pictures
+/// are of what was written.
+Model bake_and_save(const std::filesystem::path& file, const Model& model, Appearance& appearance,
+                    const ReconstructRequest& request);
+
+/// All that is known in the end.
+struct Reconstruction {
+    const ReconstructRequest& request;
+    const Dataset& dataset;
+    Model model;  ///< as written
+    Image light;
+    std::optional<Shape> shape;  ///< none for a given mesh
+    RefineCurves refine;
+    std::vector<ScoredView> train, test;  ///< a few of the former
+    std::vector<ScoredView> relit, relit_scaled;
+    std::optional<double> chamfer;  ///< part of the reference's diagonal
+    StageTimes times;
+    std::vector<std::string> warnings;
+};
+
+/// The content of reconstruct.json.
+nlohmann::json summary_json(const Reconstruction& result);
+
+/// report.html, self-contained.
+std::string report_html(const Reconstruction& result);
+
+}  // namespace item3d

@@ -1,0 +1,154 @@
+#include "item3d/reconstruct/reconstruct.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/reconstruct/outputs.h"
+#include "item3d/reconstruct/surface/plain_model.h"
+#include "item3d/scene/environment.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/scene/io/save.h"
+
+#include <algorithm>
+
+namespace item3d {
+
+namespace {
+
+constexpr std::size_t train_views_scored = 6;
+constexpr int light_cube = 128;
+/// Outlines of exact poses agree better than this even on a coarse lattice; those of poses that
+/// are half a degree off do not.
+constexpr double least_hull_overlap = 0.95;
+
+std::string describe(const Dataset& dataset) {
+    const Image& first = dataset.train.front().image;
+    return fmt::format("{}: {} views to learn from, {} held out, {} x {}, masks from {}",
+                       dataset_kind_name(dataset.kind), dataset.train.size(), dataset.test.size(),
+                       first.width, first.height, dataset.masks);
+}
+
+std::vector<View> some(const std::vector<View>& views, std::size_t count) {
+    std::vector<View> chosen;
+    for (std::size_t i = 0; i < std::min(count, views.size()); ++i)
+        chosen.push_back(views[i * views.size() / std::min(count, views.size())]);
+    return chosen;
+}
+
+/// The test views for which the folder has a picture, with that picture.
+std::vector<View> relit_views(const Dataset& dataset, const RelitViews& relit) {
+    std::vector<View> views;
+    for (View view : dataset.test) {
+        const auto file = find_picture(relit.folder / std::filesystem::path(view.name).filename());
+        if (!std::filesystem::is_regular_file(file)) continue;
+        const Image picture = load_image(file);
+        if (picture.width != view.image.width || picture.height != view.image.height) {
+            throw InputError(file.string(), "is not of the size of its test view");
+        }
+        const bool is_linear = file.extension() == ".exr" || file.extension() == ".hdr";
+        for (int y = 0; y < picture.height; ++y) {
+            for (int x = 0; x < picture.width; ++x) {
+                const float alpha = view.image.at(x, y, 3);
+                for (int c = 0; c < 3; ++c) {
+                    const float value = picture.at(x, y, picture.channels >= 3 ? c : 0);
+                    view.image.at(x, y, c) = is_linear ? value : alpha * srgb_to_linear(value);
+                }
+            }
+        }
+        views.push_back(std::move(view));
+    }
+    if (views.empty()) {
+        throw InputError(relit.folder.string(), "has no picture that is named as a test view");
+    }
+    return views;
+}
+
+void score(Reconstruction& result) {
+    const ReconstructRequest& request = result.request;
+    const auto bounds = result.model.bounds();
+    const EnvironmentLight light = prefilter(result.light, light_cube);
+    result.train = score_views(
+        result.model, light, make_targets(some(result.dataset.train, train_views_scored), bounds));
+    result.test = score_views(result.model, light, make_targets(result.dataset.test, bounds));
+    if (!request.relit.folder.empty()) {
+        const auto targets = make_targets(relit_views(result.dataset, request.relit), bounds);
+        const EnvironmentLight other = prefilter(
+            adjust_light(load_light(request.relit.light), 0, request.relit.exposure), light_cube);
+        result.relit = score_views(result.model, other, targets);
+        result.relit_scaled =
+            score_views(result.model, other, targets, best_gain(result.model, other, targets));
+    }
+    if (!request.reference.empty()) {
+        result.chamfer =
+            chamfer_distance(mesh_of(result.model), mesh_of(load_model(request.reference)));
+    }
+}
+
+/// The mesh with UVs, and the materials and light that were found with it.
+struct Start {
+    Model model;
+    Appearance appearance;
+};
+
+Start start_from_mesh(const ReconstructRequest& request, const Dataset& dataset) {
+    Model model = unwrapped(load_plain_model(request.mesh), request.texture_size);
+    const auto bounds = model.bounds();
+    const auto views = make_targets({dataset.train.front()}, bounds);
+    return {std::move(model), make_appearance(bounds, views, request.refine.seed)};
+}
+
+Start start_from_photographs(const ReconstructRequest& request, Reconstruction& result) {
+    const Dataset& dataset = result.dataset;
+    const VisualHull hull(dataset.train);
+    const auto bounds = hull.bounds(dataset.centre, dataset.radius, request.dataset.string());
+    Appearance appearance =
+        make_appearance(bounds, make_targets({dataset.train.front()}, bounds), request.refine.seed);
+    result.shape = find_shape(dataset, hull, bounds, appearance, request.shape);
+    if (result.shape->hull_overlap < least_hull_overlap) {
+        result.warnings.push_back(fmt::format(
+            "the outlines of the pictures agree with each other only to {:.1f} %: poses "
+            "or masks look wrong",
+            100 * result.shape->hull_overlap));
+        warn(result.warnings.back());
+    }
+    const TriangleMesh& mesh = result.shape->mesh;
+    result.times.end_stage("shape");
+    return {unwrapped(plain_model(mesh.positions, mesh.triangles), request.texture_size),
+            std::move(appearance)};
+}
+
+}  // namespace
+
+nlohmann::json reconstruct(const ReconstructRequest& request) {
+    StageTimes times;
+    make_output_folder(request.output);
+    const Dataset dataset = load_dataset(request.dataset, request.dataset_options);
+    note(describe(dataset));
+    Reconstruction result{request, dataset, {}, {}, {}, {}, {}, {}, {}, {}, {}, times, {}};
+    result.times.end_stage("load");
+
+    Start start = request.mesh.empty() ? start_from_photographs(request, result)
+                                       : start_from_mesh(request, dataset);
+    result.times.end_stage("unwrap");
+
+    MovableMesh mesh(start.model, request.move_vertices);
+    result.refine = refine(start.appearance, mesh, start.model,
+                           make_targets(dataset.train, start.model.bounds()), request.refine);
+    result.times.end_stage("refine");
+
+    result.model = bake_and_save(request.output / "model.glb", mesh.apply(start.model),
+                                 start.appearance, request);
+    result.light = start.appearance.light.to_image();
+    save_image(request.output / "light.hdr", result.light, 32);
+    result.times.end_stage("bake");
+
+    score(result);
+    result.times.end_stage("scores");
+    const nlohmann::json summary = summary_json(result);
+    write_atomically(request.output / "report.html", std::string_view(report_html(result)));
+    write_atomically(request.output / "reconstruct.json", std::string_view(summary.dump(2) + "\n"));
+    return summary;
+}
+
+}  // namespace item3d

@@ -1,0 +1,42 @@
+// From photographs to a model that can be edited:
+//   load dataset -> hull -> shape, with first materials and light -> UVs -> refine -> bake ->
+//   scores.
+#pragma once
+
+#include "item3d/reconstruct/dataset/dataset.h"
+#include "item3d/reconstruct/shape/find_shape.h"
+#include "item3d/reconstruct/surface/refine.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+
+namespace item3d {
+
+/// Photographs in a known light, to see whether materials and light were told apart.
+struct RelitViews {
+    std::filesystem::path folder;  ///< pictures named as test views; empty: none
+    std::string light = "studio";  ///< preset or file
+    float exposure = 0;            ///< stops
+};
+
+struct ReconstructRequest {
+    std::filesystem::path dataset;
+    std::filesystem::path output;     ///< folder, made when it is not there
+    std::filesystem::path mesh;       ///< a shape that is known already; empty: it is looked for
+    std::filesystem::path reference;  ///< the true mesh, to compare with; empty: none
+    DatasetOptions dataset_options;
+    ShapeOptions shape;
+    RefineOptions refine;
+    bool move_vertices = true;  ///< of a shape that was looked for; of a given mesh only if asked
+    int texture_size = 1024;
+    RelitViews relit;
+    std::string command;  ///< as typed
+};
+
+/// Writes model.glb, light.hdr, report.html and reconstruct.json into the output folder and returns
+/// the latter's content. Throws InputError, ResourceError and Interrupted as core/error.h says.
+nlohmann::json reconstruct(const ReconstructRequest& request);
+
+}  // namespace item3d

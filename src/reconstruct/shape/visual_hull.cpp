@@ -1,0 +1,178 @@
+#include "item3d/reconstruct/shape/visual_hull.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace item3d {
+
+namespace {
+
+constexpr float far_away = 1e12f;
+constexpr int search_cells = 64;
+
+/// Squared distances along one line: the lower envelope of parabolas that stand on `value`.
+void distance_along(std::vector<float>& value, std::vector<int>& roots, std::vector<float>& ends,
+                    std::vector<float>& result) {
+    const int count = static_cast<int>(value.size());
+    int last = 0;
+    roots[0] = 0;
+    ends[0] = -std::numeric_limits<float>::infinity();
+    ends[1] = std::numeric_limits<float>::infinity();
+    const auto meeting = [&](int p, int q) {
+        const auto a = static_cast<float>(p), b = static_cast<float>(q);
+        return ((value[q] + b * b) - (value[p] + a * a)) / (2 * (b - a));
+    };
+    for (int q = 1; q < count; ++q) {
+        float at = meeting(roots[last], q);
+        while (at <= ends[last])
+            at = meeting(roots[--last], q);
+        roots[++last] = q;
+        ends[last] = at;
+        ends[last + 1] = std::numeric_limits<float>::infinity();
+    }
+    for (int q = 0, k = 0; q < count; ++q) {
+        while (ends[k + 1] < static_cast<float>(q))
+            ++k;
+        const auto step = static_cast<float>(q - roots[k]);
+        result[q] = step * step + value[roots[k]];
+    }
+    value = result;
+}
+
+/// Squared distance of each pixel to the nearest whose mask is (or is not) set.
+std::vector<float> squared_distance(const std::vector<bool>& mask, int width, int height, bool to) {
+    std::vector<float> field(mask.size());
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        field[i] = mask[i] == to ? 0.0f : far_away;
+    const auto lines = [&](int count, int length, std::size_t first_step, std::size_t step) {
+        std::vector<float> value(length), result(length), ends(length + 1);
+        std::vector<int> roots(length);
+        for (int line = 0; line < count; ++line) {
+            const std::size_t first = static_cast<std::size_t>(line) * first_step;
+            for (int i = 0; i < length; ++i)
+                value[i] = field[first + static_cast<std::size_t>(i) * step];
+            distance_along(value, roots, ends, result);
+            for (int i = 0; i < length; ++i)
+                field[first + static_cast<std::size_t>(i) * step] = value[i];
+        }
+    };
+    lines(width, height, 1, static_cast<std::size_t>(width));
+    lines(height, width, static_cast<std::size_t>(width), 1);
+    return field;
+}
+
+/// Bilinear at pixel coordinates, held at the edges.
+float look_up(const Image& image, float x, float y) {
+    x = std::clamp(x - 0.5f, 0.0f, static_cast<float>(image.width - 1));
+    y = std::clamp(y - 0.5f, 0.0f, static_cast<float>(image.height - 1));
+    const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+    const int x1 = std::min(x0 + 1, image.width - 1), y1 = std::min(y0 + 1, image.height - 1);
+    const float u = x - static_cast<float>(x0), v = y - static_cast<float>(y0);
+    return std::lerp(std::lerp(image.at(x0, y0, 0), image.at(x1, y0, 0), u),
+                     std::lerp(image.at(x0, y1, 0), image.at(x1, y1, 0), u), v);
+}
+
+}  // namespace
+
+Image signed_distance(const Image& image) {
+    std::vector<bool> mask;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            mask.push_back(image.at(x, y, image.channels - 1) >= 0.5f);
+    const auto outside = squared_distance(mask, image.width, image.height, true);
+    const auto inside = squared_distance(mask, image.width, image.height, false);
+    // A mask without any pixel of one kind would be infinitely far from it.
+    const auto limit = static_cast<float>(2 * std::max(image.width, image.height));
+    Image result(image.width, image.height, 1);
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        result.pixels[i] = mask[i] ? 0.5f - std::min(std::sqrt(inside[i]), limit)
+                                   : std::min(std::sqrt(outside[i]), limit) - 0.5f;
+    return result;
+}
+
+VisualHull::VisualHull(const std::vector<View>& views) : silhouettes_(views.size()) {
+    parallel_for(
+        "signed_distance", static_cast<std::int64_t>(views.size()),
+        [&](std::int64_t i) {
+            const auto index = static_cast<std::size_t>(i);
+            silhouettes_[index] = {views[index].camera, signed_distance(views[index].image)};
+        },
+        1);
+}
+
+torch::Tensor VisualHull::distance(const torch::Tensor& points_) const {
+    const torch::Tensor points = points_.detach().contiguous();
+    torch::Tensor result = torch::empty({points.size(0)});
+    const float* p = points.const_data_ptr<float>();
+    float* out = result.data_ptr<float>();
+    struct Projection {
+        Mat4 to_camera;
+        float focal;
+    };
+    std::vector<Projection> projections;
+    for (const Silhouette& silhouette : silhouettes_) {
+        const float half = 0.5f * static_cast<float>(silhouette.distance.width);
+        projections.push_back({silhouette.camera.world_to_camera(),
+                               half / std::tan(0.5f * silhouette.camera.field_of_view_x)});
+    }
+    parallel_for(
+        "visual_hull", points.size(0),
+        [&](std::int64_t i) {
+            const Vec4 point(p[3 * i], p[3 * i + 1], p[3 * i + 2], 1);
+            float farthest = -std::numeric_limits<float>::infinity();
+            for (std::size_t s = 0; s < silhouettes_.size(); ++s) {
+                const Image& mask = silhouettes_[s].distance;
+                const Vec3 seen(projections[s].to_camera * point);
+                const float depth = -seen.z, focal = projections[s].focal;
+                if (depth <= 1e-6f) continue;
+                const float x = focal * seen.x / depth + 0.5f * static_cast<float>(mask.width);
+                const float y = -focal * seen.y / depth + 0.5f * static_cast<float>(mask.height);
+                if (x < 0 || y < 0 || x > static_cast<float>(mask.width) ||
+                    y > static_cast<float>(mask.height))
+                    continue;
+                farthest = std::max(farthest, look_up(mask, x, y) * depth / focal);
+            }
+            out[i] = std::isfinite(farthest) ? farthest : far_away;
+        },
+        1024);
+    return result;
+}
+
+std::array<Vec3, 2> VisualHull::bounds(Vec3 centre, float radius,
+                                       const std::string& subject) const {
+    const float reach = 1.2f * radius;
+    const Lattice lattice{
+        centre - reach, 2 * reach / search_cells, {search_cells, search_cells, search_cells}};
+    const torch::Tensor points = lattice.vertices();
+    // Thin parts may lie between the lattice's points.
+    const torch::Tensor inside = (distance(points) < lattice.cell).nonzero().select(1, 0);
+    if (inside.size(0) == 0) {
+        throw InputError(
+            subject, "no place is inside the masks of all views",
+            "the object is out of the frame, or poses and masks do not belong together");
+    }
+    const torch::Tensor found = points.index_select(0, inside);
+    const torch::Tensor low = std::get<0>(found.min(0)), high = std::get<0>(found.max(0));
+    const auto corner = [](const torch::Tensor& t) {
+        return Vec3(t[0].item<float>(), t[1].item<float>(), t[2].item<float>());
+    };
+    return {corner(low) - lattice.cell, corner(high) + lattice.cell};
+}
+
+Lattice make_lattice(std::array<Vec3, 2> bounds, int cells) {
+    const Vec3 size = bounds[1] - bounds[0];
+    Lattice lattice;
+    lattice.cell = std::max({size.x, size.y, size.z, 1e-6f}) / static_cast<float>(cells - 2);
+    const Vec3 middle = 0.5f * (bounds[0] + bounds[1]);
+    for (int a = 0; a < 3; ++a) {
+        lattice.cells[a] = std::max(2, static_cast<int>(std::ceil(size[a] / lattice.cell)) + 2);
+        lattice.origin[a] = middle[a] - 0.5f * lattice.cell * static_cast<float>(lattice.cells[a]);
+    }
+    return lattice;
+}
+
+}  // namespace item3d

@@ -1,0 +1,137 @@
+#include "item3d/reconstruct/surface/refine.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/field/adam.h"
+#include "item3d/reconstruct/view_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace item3d {
+
+namespace {
+
+constexpr double final_rate = 0.1;
+constexpr std::int64_t smoothness_points = 4096;
+
+/// World units of a pixel of the first view at the middle of the bounds.
+float pixel_size(std::array<Vec3, 2> bounds, const TargetView& view) {
+    const float distance = glm::distance(view.camera.position(), 0.5f * (bounds[0] + bounds[1]));
+    return 2 * std::tan(0.5f * view.camera.field_of_view_x) * distance /
+           static_cast<float>(view.width());
+}
+
+std::array<Vec3, 2> bounds_of(const Model& model) {
+    return model.bounds();
+}
+
+double falling(double rate, int iteration, int iterations) {
+    const double progress = static_cast<double>(iteration) / iterations;
+    return rate * (final_rate + (1 - final_rate) * 0.5 * (1 + std::cos(pi * progress)));
+}
+
+std::optional<Occlusion> trace_occlusion(const MovableMesh& mesh, bool wanted) {
+    if (!wanted) return std::nullopt;
+    const torch::NoGradGuard no_gradient;
+    OcclusionOptions options;
+    options.rays = 128;
+    return Occlusion(mesh.geometry(), nullptr, options);
+}
+
+}  // namespace
+
+MaterialRanges reconstruction_ranges() {
+    MaterialRanges ranges;
+    ranges.base_color = {0.03f, 1.0f};
+    ranges.roughness = {0.08f, 1.0f};
+    ranges.normal_slope = 1.0f;
+    return ranges;
+}
+
+Appearance make_appearance(std::array<Vec3, 2> bounds, const std::vector<TargetView>& views,
+                           std::uint64_t seed) {
+    NeuralTextureOptions options;
+    options.seed = seed;
+    options.ranges = reconstruction_ranges();
+    const Vec3 size = bounds[1] - bounds[0];
+    const float extent = std::max({size.x, size.y, size.z});
+    options.bounds = {bounds[0] - 0.02f * extent, bounds[1] + 0.02f * extent};
+    options.finest_resolution =
+        std::clamp(static_cast<int>(extent / pixel_size(bounds, views.front())), 64, 1024);
+    return {NeuralTexture(options), TrainableLight()};
+}
+
+RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& model,
+                    const std::vector<TargetView>& views, const RefineOptions& options) {
+    Adam adam;
+    adam.add_group({appearance.field->table()}, {.learning_rate = options.field_learning_rate});
+    adam.add_group(appearance.field->network_parameters(),
+                   {.learning_rate = 0.5 * options.field_learning_rate});
+    adam.add_group({appearance.light.logarithm()},
+                   {.learning_rate = options.light_learning_rate, .beta2 = 0.999});
+    if (mesh.moves()) {
+        adam.add_group(
+            {mesh.offsets()},
+            {.learning_rate = options.vertex_learning_rate * mesh.mean_edge(), .beta2 = 0.999});
+    }
+    std::vector<double> rates;
+    for (std::size_t group = 0; group < adam.group_count(); ++group)
+        rates.push_back(adam.options(group).learning_rate);
+
+    const std::optional<Occlusion> occlusion = trace_occlusion(mesh, options.ambient_occlusion);
+    const float reach = pixel_size(bounds_of(model), views.front());
+    const RegularizerWeights& weights = options.weights;
+    ViewOrder order(views.size(), options.seed);
+    Random random(options.seed, 0x726566696e65);
+    RefineCurves curves;
+    Progress progress("materials and light", options.iterations);
+    EnvironmentLight light;
+    for (int i = 0; i < options.iterations; ++i) {
+        // A prefiltered light costs as much as a view: its gradients are used once in a while.
+        const bool light_learns = i % options.light_every == 0;
+        if (light_learns) {
+            light = appearance.light.prefiltered();
+        } else if (i % options.light_every == 1) {
+            const torch::NoGradGuard no_gradient;
+            light = appearance.light.prefiltered();
+        }
+        const TargetView& view = views[order.at(i)];
+        const Geometry geometry = mesh.geometry();
+        const RenderedView rendered =
+            render_view(geometry, appearance.field, light, view,
+                        {occlusion ? &*occlusion : nullptr, options.normal_map});
+        const torch::Tensor background = torch::full({3}, static_cast<float>(random.uniform()));
+        const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
+        const torch::Tensor mask = mask_loss(rendered.image, view.image);
+        torch::Tensor loss = picture;
+        if (rendered.surface.count() > 0) {
+            loss = loss + weights.smoothness * smoothness_loss(appearance.field, rendered, reach,
+                                                               smoothness_points, random);
+            if (options.normal_map)
+                loss = loss +
+                       weights.flat_normals * (1 - rendered.material.normal.select(1, 2)).mean();
+            if (rendered.occlusion.defined())
+                loss = loss +
+                       (rendered.material.orm.select(1, 0) - rendered.occlusion).square().mean();
+        }
+        if (light_learns) loss = loss + weights.whiteness * appearance.light.whiteness_loss();
+        if (mesh.moves()) loss = loss + weights.mask * mask + weights.crumpling * mesh.crumpling();
+        loss.backward();
+        for (std::size_t group = 0; group < rates.size(); ++group)
+            adam.options(group).learning_rate = falling(rates[group], i, options.iterations);
+        adam.step();
+        adam.zero_grad();
+
+        curves.picture.push_back(picture.item<double>());
+        curves.mask.push_back(mask.item<double>());
+        progress.update(i + 1, fmt::format("difference {:.4f}", curves.picture.back()));
+        if (interrupted())
+            throw Interrupted("interrupted while materials and light were looked for");
+    }
+    return curves;
+}
+
+}  // namespace item3d

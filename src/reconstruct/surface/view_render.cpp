@@ -1,0 +1,109 @@
+#include "item3d/reconstruct/surface/view_render.h"
+
+#include "item3d/evaluate/picture.h"
+
+#include <algorithm>
+
+namespace item3d {
+
+namespace {
+
+constexpr float roughness_weight = 1.0f;
+constexpr float metallic_weight = 1.0f;
+
+torch::Tensor random_normals(std::int64_t rows, float deviation, Random& random) {
+    torch::Tensor values = torch::empty({rows, 3});
+    float* out = values.data_ptr<float>();
+    for (std::int64_t i = 0; i < 3 * rows; ++i)
+        out[i] = static_cast<float>(random.normal(0, deviation));
+    return values;
+}
+
+/// Picks up to `count` rows at even distances, beginning anywhere.
+torch::Tensor some_rows(std::int64_t rows, std::int64_t count, Random& random) {
+    const std::int64_t step = std::max<std::int64_t>(1, rows / std::max<std::int64_t>(1, count));
+    const std::int64_t first = random.index(std::min(step, rows));
+    return torch::arange(first, rows, step, torch::kInt64);
+}
+
+}  // namespace
+
+std::vector<TargetView> make_targets(const std::vector<View>& views, std::array<Vec3, 2> bounds,
+                                     int shrink) {
+    std::vector<TargetView> targets;
+    for (const View& view : views) {
+        TargetView target{view.name, view.camera, {}};
+        fit_depth_range(target.camera, bounds);
+        const Image image = shrink == 1 ? view.image
+                                        : resize(view.image, std::max(1, view.image.width / shrink),
+                                                 std::max(1, view.image.height / shrink));
+        target.image = to_tensor(image).unsqueeze(0);
+        targets.push_back(std::move(target));
+    }
+    return targets;
+}
+
+RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
+                         const EnvironmentLight& light, const TargetView& view,
+                         const ViewRenderOptions& options) {
+    const std::vector<Camera> cameras{view.camera};
+    RenderedView result;
+    result.raster = rasterize(geometry, cameras, view.width(), view.height());
+    result.surface = interpolate_surface(geometry, result.raster, cameras);
+    if (result.surface.count() == 0) {
+        result.image = torch::zeros({1, view.height(), view.width(), 4});
+        return result;
+    }
+    result.material = field->forward(result.surface.position);
+    MaterialSample shaded = result.material;
+    if (!options.normal_map) shaded.normal = torch::Tensor();
+    torch::Tensor occlusion = torch::ones_like(shaded.orm.narrow(1, 0, 1));
+    if (options.occlusion != nullptr) {
+        result.occlusion = options.occlusion->at(result.raster, result.surface);
+        occlusion = result.occlusion.unsqueeze(1);
+    }
+    shaded.orm = torch::cat({occlusion, shaded.orm.narrow(1, 1, 2)}, 1);
+    const torch::Tensor radiance = shade(result.surface, shaded, light);
+    const torch::Tensor values =
+        torch::cat({radiance, torch::ones_like(radiance.narrow(1, 0, 1))}, 1);
+    result.image = antialias(scatter(values, result.surface, result.raster, torch::zeros({4})),
+                             result.raster, geometry);
+    return result;
+}
+
+torch::Tensor log_srgb(const torch::Tensor& linear) {
+    return linear_to_srgb(torch::log1p(linear.clamp_min(0.0f)));
+}
+
+torch::Tensor picture_loss(const torch::Tensor& rendered, const torch::Tensor& target,
+                           const torch::Tensor& background) {
+    const auto over = [&](const torch::Tensor& image) {
+        return image.narrow(3, 0, 3) + (1 - image.narrow(3, 3, 1)) * background;
+    };
+    const torch::Tensor truth = over(target);
+    torch::Tensor picture = over(rendered);
+    // Photographs end at 1: what is brighter may be as bright as it likes.
+    picture = torch::where((truth >= 0.999f).logical_and(picture > truth), truth, picture);
+    return (log_srgb(picture) - log_srgb(truth)).abs().mean();
+}
+
+torch::Tensor mask_loss(const torch::Tensor& rendered, const torch::Tensor& target) {
+    return (rendered.select(3, 3) - target.select(3, 3)).square().mean();
+}
+
+torch::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float reach,
+                              std::int64_t count, Random& random) {
+    const std::int64_t rows = view.surface.count();
+    if (rows == 0) return torch::zeros({});
+    const torch::Tensor chosen = some_rows(rows, count, random);
+    const torch::Tensor positions = view.surface.position.detach().index_select(0, chosen);
+    const MaterialSample beside =
+        field->forward(positions + random_normals(positions.size(0), reach, random));
+    const torch::Tensor base_color = view.material.base_color.index_select(0, chosen);
+    const torch::Tensor orm = view.material.orm.index_select(0, chosen);
+    const torch::Tensor change = (orm - beside.orm).abs().mean(0);
+    return (linear_to_srgb(base_color) - linear_to_srgb(beside.base_color)).abs().mean() +
+           roughness_weight * change[1] + metallic_weight * change[2];
+}
+
+}  // namespace item3d

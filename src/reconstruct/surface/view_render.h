@@ -1,0 +1,64 @@
+// A render and a photograph of the same view, and how far apart they are.
+#pragma once
+
+#include "item3d/core/random.h"
+#include "item3d/field/neural_texture.h"
+#include "item3d/reconstruct/dataset/dataset.h"
+#include "item3d/render/environment_light.h"
+#include "item3d/render/occlusion.h"
+#include "item3d/render/shade.h"
+
+#include <torch/types.h>
+
+#include <vector>
+
+namespace item3d {
+
+/// A photograph as the losses want it.
+struct TargetView {
+    std::string name;
+    Camera camera;        ///< with a depth range around the object
+    torch::Tensor image;  ///< [1, H, W, 4] premultiplied linear RGB and coverage
+    int width() const { return static_cast<int>(image.size(2)); }
+    int height() const { return static_cast<int>(image.size(1)); }
+};
+
+/// bounds: of the object, for the cameras' depth ranges. shrink: pictures of 1/shrink the size.
+std::vector<TargetView> make_targets(const std::vector<View>& views, std::array<Vec3, 2> bounds,
+                                     int shrink = 1);
+
+struct RenderedView {
+    torch::Tensor image;  ///< [1, H, W, 4] as TargetView's, antialiased
+    Raster raster;
+    Surface surface;
+    MaterialSample material;
+    torch::Tensor occlusion;  ///< [P]; undefined without
+};
+
+struct ViewRenderOptions {
+    const Occlusion* occlusion = nullptr;  ///< traced; darkens besides the material's own
+    bool normal_map = false;               ///< use the field's tangent-space normals
+};
+
+/// Differentiable in the field, the light, and the geometry's positions and normals.
+RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
+                         const EnvironmentLight& light, const TargetView& view,
+                         const ViewRenderOptions& options = {});
+
+/// What a display would show of radiance, as a function that goes on beyond 1 (nvdiffrec, Munkberg
+/// et al. 2022): sRGB of log(1 + x).
+torch::Tensor log_srgb(const torch::Tensor& linear);
+
+/// Mean absolute difference, log-sRGB, both over the same plain background [3].
+torch::Tensor picture_loss(const torch::Tensor& rendered, const torch::Tensor& target,
+                           const torch::Tensor& background);
+
+/// Mean squared difference of coverage.
+torch::Tensor mask_loss(const torch::Tensor& rendered, const torch::Tensor& target);
+
+/// Mean change of base colour, roughness and metallic over `reach` (world units): the field looked
+/// up at up to `count` of the view's points and beside them.
+torch::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float reach,
+                              std::int64_t count, Random& random);
+
+}  // namespace item3d

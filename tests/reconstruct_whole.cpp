@@ -1,0 +1,180 @@
+// Whole reconstructions of small pictures that our own renderer drew.
+#include "item3d/core/error.h"
+#include "item3d/reconstruct/reconstruct.h"
+#include "item3d/reconstruct/scores.h"
+#include "item3d/reconstruct/surface/plain_model.h"
+#include "item3d/render/textured.h"
+#include "item3d/scene/environment.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/scene/sphere.h"
+#include "reconstruct_support.h"
+
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A sphere with broad stripes.
+Model striped_sphere() {
+    Model model = make_unit_sphere(24, 32);
+    for (Vec3& position : model.primitives.front().positions)
+        position *= 0.9f;
+    Material& material = model.materials.back();
+    material.metallic_factor = 0;
+    material.roughness_factor = 0.6f;
+    Texture stripes;
+    stripes.image = Image(64, 32, 3);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (int c = 0; c < 3; ++c)
+                stripes.image.at(x, y, c) = (x / 8) % 2 == 0 ? 0.8f : (c == 0 ? 0.7f : 0.2f);
+    model.textures.push_back(stripes);
+    material.base_color_texture = 0;
+    return model;
+}
+
+/// A NeRF-synthetic folder of the sphere in the light of noon, and sphere.glb.
+fs::path sphere_dataset(const std::string& name, int train, int test, int size) {
+    const torch::NoGradGuard no_gradient;
+    const fs::path folder = testing::fresh_folder(name);
+    const Model model = striped_sphere();
+    save_model(folder / "sphere.glb", model);
+    const Geometry geometry = Geometry::from_model(model);
+    const TexturedMaterials materials(model);
+    const EnvironmentLight light = prefilter(make_light_preset("noon", 64), 64);
+    RenderOptions options;
+    options.width = options.height = size;
+    for (const auto& [split, count] : {std::pair{"train", train}, std::pair{"test", test}}) {
+        fs::create_directories(folder / split);
+        nlohmann::json document{{"camera_angle_x", 0.7}, {"frames", nlohmann::json::array()}};
+        for (int i = 0; i < count; ++i) {
+            Camera camera =
+                orbit_camera(Vec3(0), 4, 2.4f * static_cast<float>(i) + (count == test ? 1.1f : 0),
+                             0.9f * std::sin(1.7f * static_cast<float>(i)), 0.7f);
+            const std::string file = std::string(split) + "/r_" + std::to_string(i);
+            const Image picture =
+                to_image(render(geometry, materials, light, {camera}, options)[0]);
+            Image straight = picture;
+            for (int p = 0; p < size * size; ++p) {
+                float* pixel = &straight.pixels[static_cast<std::size_t>(4 * p)];
+                for (int c = 0; c < 3; ++c)
+                    pixel[c] = pixel[3] > 0
+                                   ? linear_to_srgb(std::clamp(pixel[c] / pixel[3], 0.0f, 1.0f))
+                                   : 0.0f;
+            }
+            save_image(folder / (file + ".png"), straight);
+            document["frames"].push_back(
+                {{"file_path", "./" + file},
+                 {"transform_matrix",
+                  testing::rows_of(testing::y_up_to_z_up() * camera.camera_to_world)}});
+        }
+        write_atomically(folder / ("transforms_" + std::string(split) + ".json"),
+                         std::string_view(document.dump()));
+    }
+    return folder;
+}
+
+TEST(Reconstruct, MaterialsAndLightOfAGivenMesh) {
+    ReconstructRequest request;
+    request.dataset = sphere_dataset("mesh", 12, 3, 48);
+    request.output = testing::fresh_folder("mesh_out");
+    request.mesh = request.dataset / "sphere.glb";
+    request.reference = request.mesh;
+    request.move_vertices = false;
+    request.refine.iterations = 150;
+    request.texture_size = 128;
+    const nlohmann::json summary = reconstruct(request);
+    EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 25);
+    EXPECT_GT(summary["scores"]["test"]["mask_overlap"].get<double>(), 0.97);
+    // The mesh is the given one.
+    EXPECT_LT(summary["scores"]["chamfer"].get<double>(), 0.01);
+
+    const Model model = load_model(request.output / "model.glb");
+    EXPECT_GE(model.materials[0].base_color_texture, 0);
+    EXPECT_GE(model.materials[0].metallic_roughness_texture, 0);
+    EXPECT_EQ(load_image(request.output / "light.hdr").width, 128);
+    const std::string report = read_text(request.output / "report.html");
+    EXPECT_NE(report.find("Held-out views"), std::string::npos);
+    EXPECT_EQ(report.find("http://"), std::string::npos);
+    EXPECT_EQ(nlohmann::json::parse(read_text(request.output / "reconstruct.json")), summary);
+}
+
+TEST(Reconstruct, ShapeFromPicturesAlone) {
+    ReconstructRequest request;
+    request.dataset = sphere_dataset("shape", 16, 3, 48);
+    request.output = testing::fresh_folder("shape_out");
+    request.reference = request.dataset / "sphere.glb";
+    request.shape.cells = {12, 24};
+    request.shape.iterations = 120;
+    request.shape.triangles = 2000;
+    request.refine.iterations = 120;
+    request.texture_size = 128;
+    const nlohmann::json summary = reconstruct(request);
+    EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 22);
+    EXPECT_GT(summary["scores"]["test"]["mask_overlap"].get<double>(), 0.95);
+    EXPECT_LT(summary["scores"]["chamfer"].get<double>(), 0.02);
+    EXPECT_TRUE(summary["warnings"].empty());
+}
+
+TEST(Reconstruct, AConstantFieldIsTheMaterialOfThePlainModel) {
+    NeuralTextureOptions options;
+    options.ranges = reconstruction_ranges();
+    NeuralTexture field = constant_field(options);
+    Model model = striped_sphere();
+    set_constant_material(model, options.ranges);
+    const MaterialSample sample = field->forward(torch::rand({20, 3}) - 0.5f);
+    const Material& material = model.materials[0];
+    EXPECT_NEAR(sample.base_color.min().item<float>(), material.base_color_factor.x, 1e-5);
+    EXPECT_NEAR(sample.base_color.max().item<float>(), material.base_color_factor.x, 1e-5);
+    EXPECT_NEAR(sample.orm[7][1].item<float>(), material.roughness_factor, 1e-6);
+    EXPECT_NEAR(sample.orm[7][2].item<float>(), material.metallic_factor, 1e-6);
+    EXPECT_NEAR(sample.normal[3][2].item<float>(), 1, 1e-6);
+}
+
+TEST(Refine, LossesSeeWhatTheyShould) {
+    const torch::Tensor target = torch::full({1, 4, 4, 4}, 0.5f);
+    torch::Tensor same = target.clone();
+    const torch::Tensor background = torch::full({3}, 0.2f);
+    EXPECT_EQ(picture_loss(same, target, background).item<float>(), 0);
+    EXPECT_EQ(mask_loss(same, target).item<float>(), 0);
+    same.narrow(3, 0, 3).fill_(0.7f);
+    EXPECT_GT(picture_loss(same, target, background).item<float>(), 0.02f);
+    // What is brighter than a photograph can be is right where the photograph is white.
+    torch::Tensor white = torch::ones({1, 4, 4, 4}), brighter = white.clone();
+    brighter.narrow(3, 0, 3).fill_(5.0f);
+    EXPECT_EQ(picture_loss(brighter, white, background).item<float>(), 0);
+
+    TrainableLight light(16, 0.5f);
+    EXPECT_NEAR(light.whiteness_loss().item<float>(), 0, 1e-6);
+    {
+        const torch::NoGradGuard no_gradient;
+        light.logarithm().select(2, 0).add_(1.0f);
+    }
+    EXPECT_GT(light.whiteness_loss().item<float>(), 0.1f);
+    light.prefiltered().diffuse.sum().backward();
+    EXPECT_GT(light.logarithm().grad().abs().min().item<float>(), 0);
+}
+
+TEST(MovableMesh, SeamsMoveAsOne) {
+    Model model = striped_sphere();
+    MovableMesh mesh(model, true);
+    const std::int64_t places = mesh.offsets().size(0);
+    EXPECT_LT(places, static_cast<std::int64_t>(model.primitives[0].positions.size()));
+    EXPECT_NEAR(mesh.crumpling().item<float>(), 0, 1e-9);
+    {
+        const torch::NoGradGuard no_gradient;
+        mesh.offsets().add_(torch::tensor({0.1f, 0.0f, 0.0f}));
+    }
+    EXPECT_NEAR(mesh.crumpling().item<float>(), 0, 1e-6);  // moved as one
+    const Model moved = mesh.apply(model);
+    for (std::size_t v = 0; v < moved.primitives[0].positions.size(); ++v)
+        EXPECT_NEAR(moved.primitives[0].positions[v].x, model.primitives[0].positions[v].x + 0.1f,
+                    1e-5);
+    mesh.geometry().positions.sum().backward();
+    EXPECT_GT(mesh.offsets().grad().min().item<float>(), 0);
+}
+
+}  // namespace
+}  // namespace item3d
