@@ -88,6 +88,13 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
                          "omega(t) of rdl, sds, nfsd and csd: early, late, dreamfusion or uniform");
     setting<std::string>(command, options, "--light", "light",
                          "studio, noon, sunset, overcast, night, or an .hdr or .exr file");
+    setting<std::string>(command, options, "--optimize", "optimize",
+                         "texture (the default), light (which relight does alone) or both");
+    setting<std::string>(command, options, "--light-model", "light_model",
+                         "Of a light that is optimised: physical, texels, or auto");
+    setting<std::string>(command, options, "--light-augment", "light_augment",
+                         "How the light varies while a texture is edited, so that no shading is "
+                         "painted: off, rotate, or all (other presets and brightness too)");
     setting<std::string>(command, options, "--background", "background",
                          "A colour, or vary: another grey each step");
     setting<int>(command, options, "--texture-size", "texture_size",

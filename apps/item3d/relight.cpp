@@ -1,4 +1,4 @@
-// item3d relight: the same model under another light, chosen and changed by hand.
+// item3d relight: the same model under another light, chosen and changed by hand, or by words.
 #include "command.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
@@ -17,6 +17,7 @@
 #include "item3d/scene/sky_hour.h"
 #include "light_options.h"
 #include "picture_options.h"
+#include "relight_words.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -42,6 +43,7 @@ struct RelightCommand : CommonOptions {
     std::optional<float> sky;  ///< hour; instead of light
     std::string from_light = "studio";
     LightOptions change;
+    RelightWords words;
     bool punctual = false;
     int views = 6;
     int frames = 30;
@@ -101,9 +103,28 @@ Image comparison(const std::vector<Image>& before, const std::vector<Image>& aft
 }
 
 std::string light_title(const RelightCommand& options) {
+    if (options.words.given()) return options.words.to;
     if (!options.change.lit.empty()) return options.change.lit;
     return options.sky ? fmt::format("the sky at {:g} o'clock", *options.sky)
                        : fs::path(options.light).stem().string();
+}
+
+/// What guidance finds may be tinted and exposed; what else changes a light says where it comes
+/// from, and so do the words.
+void refuse_contradictions(const RelightCommand& options, bool light_is_given) {
+    if (!options.words.given()) {
+        if (options.words.resume || !options.words.overrides.empty() || !options.words.prior.empty())
+            throw UsageError("--prior and the options below it are those of --from and --to");
+        return;
+    }
+    const LightOptions& change = options.change;
+    if (light_is_given || options.sky)
+        throw UsageError("--to finds the light that --light and --sky give: leave out one of them "
+                         "(--from-light says where to begin)");
+    if (!change.sun.empty() || !change.lit.empty() || change.strength || change.rotation != 0 ||
+        change.tilt != 0)
+        throw UsageError("--to says itself where the light comes from: without --sun, --lit, "
+                         "--strength, --rotate and --tilt");
 }
 
 Image chosen_light(const RelightCommand& options, const std::optional<SunSetting>& sun) {
@@ -140,12 +161,22 @@ void run_relight(const RelightCommand& options, torch::Device device) {
     const std::optional<SunSetting> placed_sun = chosen_sun(options.change);
     const Model model = load_model(options.model);
     const Image old_light = load_light(options.from_light, LightLayout::automatic);
-    const Image new_light = chosen_light(options, placed_sun);
+    const fs::path folder = options.output;
+    nlohmann::json by_words = nullptr;
+    Image new_light;
+    if (options.words.given()) {
+        make_output_folder(folder);
+        WordsLight found = light_by_words(options.words, options.model, options.from_light, folder,
+                                          device);
+        new_light = apply(options.change, placed_sun, found.light);
+        by_words = std::move(found.record);
+    } else {
+        new_light = chosen_light(options, placed_sun);
+    }
     const LightDescription description = describe_light(new_light);
     if (options.punctual && description.lobe.share == 0) {
         throw InputError("--punctual", "the light is black and has no brightest lobe");
     }
-    const fs::path folder = options.output;
     make_output_folder(folder);
     save_image(folder / "light.hdr", new_light, 32);
     save_image(folder / "light.exr", new_light, 32);
@@ -160,11 +191,10 @@ void run_relight(const RelightCommand& options, torch::Device device) {
                              {"settings", settings_json(options.change, placed_sun)},
                              {"description", to_json(description)},
                              {"description_before", to_json(describe_light(old_light))},
+                             {"words", by_words},
                              {"punctual", nullptr}};
-    if (options.sky) {
-        record["light"] = nullptr;
-        record["sky"] = *options.sky;
-    }
+    if (options.sky || options.words.given()) record["light"] = nullptr;
+    if (options.sky) record["sky"] = *options.sky;
     std::optional<DirectionalLight> sun;
     if (options.punctual) {
         sun = DirectionalLight{description.lobe.direction, Vec3(description.lobe.irradiance)};
@@ -204,6 +234,7 @@ void add_relight_command(CLI::App& app) {
     command->add_option("--from-light", options->from_light, "The old light, to compare with")
         ->capture_default_str();
     add_light_options(*command, options->change);
+    add_words_options(*command, options->words);
     command->add_flag("--punctual", options->punctual,
                       "Add the light's brightest lobe to model.glb as a directional light "
                       "(KHR_lights_punctual)");
@@ -216,7 +247,11 @@ void add_relight_command(CLI::App& app) {
     command->add_option("--size", options->size, "Pixels of a view's side")
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();
-    command->callback([options] { run_relight(*options, start_command(*options)); });
+    command->callback([options, light] {
+        const torch::Device device = start_command(*options);
+        refuse_contradictions(*options, light->count() > 0);
+        run_relight(*options, device);
+    });
 }
 
 }  // namespace item3d

@@ -57,7 +57,8 @@ void DirectionAdjustment::observe(EditState& state) const {
     // The first view alone where only people look.
     const std::vector<Camera> cameras(cameras_.begin(),
                                       asks ? cameras_.end() : cameras_.begin() + 1);
-    const torch::Tensor pictures = draw_field(scene_, state.field, cameras, view_pixels);
+    const torch::Tensor pictures =
+        draw_field(scene_, state.field, light_as_it_is(scene_, state), cameras, view_pixels);
 
     AdjustmentRecord record;
     record.iteration = static_cast<std::int64_t>(state.direction_length.size());
@@ -80,7 +81,10 @@ std::vector<Caption> DirectionAdjustment::follow(EditState& state,
     try {
         if (adjustment.captions_before.empty())
             adjustment.captions_before = scene_.captioner->captions(
-                to_bytes(draw_field(scene_, state.fitted, cameras_, view_pixels)), {});
+                to_bytes(draw_field(scene_, state.fitted,
+                                    state.light ? state.first_light : scene_.lights->front(),
+                                    cameras_, view_pixels)),
+                {});
         captions = scene_.captioner->captions(to_bytes(pictures), {});
     } catch (const Interrupted&) {
         throw;

@@ -1,6 +1,7 @@
 #include "item3d/core/files.h"
 #include "item3d/edit/outputs.h"
 #include "item3d/field/bake.h"
+#include "item3d/scene/io/gltf_light.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 
@@ -43,10 +44,9 @@ void save_texture(const EditRequest& request, const EditScene& scene, const std:
                      read_bytes(path)});
 }
 
-}  // namespace
+constexpr int light_height = 256;
 
-EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state) {
-    const torch::NoGradGuard no_grad;
+EditedModel bake_textures(const EditRequest& request, const EditScene& scene, EditState& state) {
     BakeOptions options;
     options.texture_size = request.settings.texture_size;
     options.channels = {scene.channels.base_color, scene.channels.occlusion,
@@ -72,6 +72,25 @@ EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, Ed
                      source.normal_texture, bits, edited.textures);
     }
     edited.model = load_model(path);
+    return edited;
+}
+
+}  // namespace
+
+EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state) {
+    const torch::NoGradGuard no_grad;
+    EditedModel edited;
+    if (edits_texture(request.settings)) {
+        edited = bake_textures(request, scene, state);
+    } else {
+        save_lit_model(request.output / "model.glb", scene.model);
+        edited.model = scene.model;
+    }
+    if (state.light) {
+        edited.light = state.light->image(light_height);
+        for (const char* name : {"light.hdr", "light.exr"})
+            save_image(request.output / name, *edited.light, 32);
+    }
     return edited;
 }
 

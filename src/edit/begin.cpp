@@ -3,12 +3,16 @@
 #include "item3d/edit/checkpoint_state.h"
 #include "item3d/edit/metals.h"
 #include "item3d/edit/optimize.h"
+#include "item3d/edit/surface_means.h"
 #include "item3d/field/fit.h"
+#include "item3d/scene/environment.h"
 
 #include <algorithm>
 
 namespace item3d {
 namespace {
+
+constexpr int small_prior = 128;  ///< pixels; one that sees fewer says little about a light
 
 // AdamW's settings of the published code (betas 0.9 and 0.99), without weight decay: decay would
 // pull an untouched texture towards grey.
@@ -27,6 +31,17 @@ int finest_texture(const EditScene& scene, int texture_size) {
     return finest;
 }
 
+std::unique_ptr<LightModel> begin_light(const EditScene& scene, const EditSettings& settings) {
+    LightModelOptions options;
+    options.kind = settings.light_model;
+    if (options.kind == "auto")
+        options.kind = settings.resolution <= small_prior ? "physical" : "texels";
+    if (!settings.light_from.empty())
+        options.from = SkyAngles{settings.light_from[0], settings.light_from[1]};
+    options.object_color = surface_means(scene.model, scene.materials).base_color;
+    return make_light_model(load_light(settings.light), options);
+}
+
 }  // namespace
 
 EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
@@ -37,8 +52,16 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     state.field->to(scene.device);
     state.guidance =
         make_guidance(scene.prior, settings.from, settings.to, guidance_options(settings));
-    state.optimizer.add_group({state.field->table()}, adam_options(settings));
-    state.optimizer.add_group(state.field->network_parameters(), adam_options(settings));
+    if (edits_texture(settings)) {
+        state.optimizer.add_group({state.field->table()}, adam_options(settings));
+        state.optimizer.add_group(state.field->network_parameters(), adam_options(settings));
+    }
+    if (edits_light(settings)) {
+        state.light = begin_light(scene, settings);
+        const torch::NoGradGuard no_grad;
+        state.first_light = prefilter(state.light->cube(optimized_light_size).to(scene.device));
+        state.optimizer.add_group(state.light->parameters(), adam_options(settings));
+    }
     state.fitted = snapshot(state.field);
 
     if (request.resume) {
@@ -49,6 +72,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         }
         note("nothing to resume in " + request.output.string() + ": beginning anew");
     }
+    if (!edits_texture(settings)) return state;
     FitOptions options;
     options.seed = settings.seed;
     fit_to_materials(state.field, scene.geometry, *scene.space, *scene.textured, options);

@@ -132,6 +132,10 @@ void save_state(const EditRequest& request, const EditState& state) {
     checkpoint.iteration = state.iteration;
     append_parameters(checkpoint.tensors, "fitted.", state.fitted);
     append_parameters(checkpoint.tensors, "field.", state.field);
+    if (state.light) {
+        for (const torch::Tensor& parameter : state.light->parameters())
+            checkpoint.tensors.emplace_back("light", parameter.detach());
+    }
     for (const auto& [name, tensor] : state.optimizer.state()) {
         checkpoint.tensors.emplace_back("optimizer." + name, tensor);
     }
@@ -161,6 +165,11 @@ bool load_state(const EditRequest& request, EditState& state) {
     const StateReader reader(checkpoint_path(request).string(), checkpoint->tensors);
     reader.parameters("fitted.", state.fitted);
     reader.parameters("field.", state.field);
+    if (state.light) {
+        const torch::NoGradGuard no_grad;
+        for (torch::Tensor parameter : state.light->parameters())
+            parameter.copy_(reader.get("light"));
+    }
     state.optimizer.load_state(reader.with_prefix("optimizer."));
     NamedTensors guidance;
     for (const auto& [name, tensor] : reader.with_prefix("guidance.")) {

@@ -8,14 +8,15 @@ constexpr float background_gray = 0.75f;  ///< linear
 }  // namespace
 
 torch::Tensor draw_field(const EditScene& scene, NeuralTexture& field,
-                         const std::vector<Camera>& cameras, int size) {
+                         const EnvironmentLight& light, const std::vector<Camera>& cameras,
+                         int size) {
     const torch::NoGradGuard no_grad;
     const Raster raster = rasterize(scene.geometry, cameras, size, size);
     const Surface surface = interpolate_surface(scene.geometry, raster, cameras);
     const MaterialSample material = scene.source->sample(surface, field);
     const torch::Tensor background = torch::full({3}, background_gray, scene.device);
     const torch::Tensor pictures =
-        scatter(shade(surface, material, scene.lights->front()), surface, raster, background);
+        scatter(shade(surface, material, light), surface, raster, background);
     return linear_to_srgb(antialias(pictures, raster, scene.geometry).clamp(0, 1));
 }
 

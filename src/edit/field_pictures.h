@@ -9,9 +9,9 @@
 
 namespace item3d {
 
-/// [N, size, size, 3] sRGB in [0, 1]: the edit's light from its front, a light grey behind. No
-/// graph.
+/// [N, size, size, 3] sRGB in [0, 1], a light grey behind. No graph.
 torch::Tensor draw_field(const EditScene& scene, NeuralTexture& field,
-                         const std::vector<Camera>& cameras, int size);
+                         const EnvironmentLight& light, const std::vector<Camera>& cameras,
+                         int size);
 
 }  // namespace item3d

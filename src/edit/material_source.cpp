@@ -12,6 +12,7 @@ ChannelMask edited_channels(const EditSettings& settings) {
     const auto edited = [&](const char* name) {
         return std::find(settings.keep.begin(), settings.keep.end(), name) == settings.keep.end();
     };
+    if (!edits_texture(settings)) return {false, false, false, false, false};
     const bool metal =
         settings.metallic == "always" || names_metal(settings.from) || names_metal(settings.to);
     return {edited("base_color"), edited("occlusion"), edited("roughness"),
@@ -64,6 +65,7 @@ MaterialSample MaterialSource::sample(const Surface& surface, NeuralTexture& fie
         const torch::NoGradGuard no_grad;
         return textured_.sample(surface);
     }();
+    if (!channels_.any()) return own;
     const MaterialSample edited = field->forward(space_.positions(surface));
     const torch::Tensor here = all_edited_
                                    ? torch::ones({1, 1}, is_edited_.options())

@@ -19,6 +19,7 @@ struct ChannelMask {
     bool roughness = true;
     bool metallic = true;
     bool normal = true;
+    bool any() const { return base_color || occlusion || roughness || metallic || normal; }
 };
 /// What the settings say to edit: all but `keep`, and metallic only as its own setting allows.
 ChannelMask edited_channels(const EditSettings& settings);

@@ -57,11 +57,17 @@ void end_where_settled(const EditSettings& settings, EditState& state) {
 /// What guidance looks at. The unedited model is the field as it was fitted, so that a render that
 /// has not been edited yet equals its reference.
 GuidanceInput look(const EditScene& scene, const EditSettings& settings, EditState& state) {
-    const ViewOptions options{settings.batch, state.iteration};
+    ViewOptions options{settings.batch, state.iteration};
+    EnvironmentLight light;
+    if (state.light) {
+        light = prefilter(state.light->cube(optimized_light_size).to(scene.device));
+        options.light = &light;
+    }
     const View view = render_view(scene, settings, state.field, options);
     GuidanceInput input{view.images, view.depth};
     if (state.guidance->needs_reference()) {
         const torch::NoGradGuard no_grad;
+        if (state.light) options.light = &state.first_light;
         input.reference = render_view(scene, settings, state.fitted, options).images;
     }
     return input;
@@ -78,11 +84,14 @@ void run_iteration(const EditScene& scene, const EditSettings& settings, EditSta
     // A single bad prediction (an overflow in bf16) must not destroy the field.
     const torch::Tensor gradient = torch::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
     guidance.latents.backward(gradient / settings.batch);
+    if (state.light) state.light->regularization().backward();
     const double back = seconds_now();
 
     const float factor = learning_rate_factor(settings, state);
     for (std::size_t group = 0; group < state.optimizer.group_count(); ++group) {
-        state.optimizer.options(group).learning_rate = settings.learning_rate * factor;
+        const bool is_light = state.light && group + 1 == state.optimizer.group_count();
+        state.optimizer.options(group).learning_rate =
+            factor * (is_light ? settings.light_learning_rate : settings.learning_rate);
     }
     state.optimizer.step();
     state.optimizer.zero_grad();
@@ -100,6 +109,12 @@ void run_iteration(const EditScene& scene, const EditSettings& settings, EditSta
 }
 
 }  // namespace
+
+EnvironmentLight light_as_it_is(const EditScene& scene, const EditState& state) {
+    if (!state.light) return scene.lights->front();
+    const torch::NoGradGuard no_grad;
+    return prefilter(state.light->cube(optimized_light_size).to(scene.device));
+}
 
 std::int64_t total_iterations(const EditSettings& settings) {
     return settings.iterations + (wants_detail(settings) ? settings.detail_views : 0);

@@ -8,6 +8,8 @@
 #include "item3d/field/adam.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/guidance/guidance.h"
+#include "item3d/light/light_model.h"
+#include "item3d/render/environment_light.h"
 
 #include <memory>
 #include <string>
@@ -27,6 +29,8 @@ struct EditState {
     NeuralTexture fitted{nullptr};  ///< the field as fitted to the input, for the bake's residual
     NeuralTexture field{nullptr};
     Adam optimizer;
+    std::unique_ptr<LightModel> light;  ///< null where the light is not optimised
+    EnvironmentLight first_light;       ///< what `light` began as
     std::unique_ptr<Guidance> guidance;
     DetailState detail;
     AdjustmentState adjustment;
@@ -36,6 +40,13 @@ struct EditState {
     std::vector<float> direction_length;  ///< a curve of the report, one value an iteration
     std::vector<float> source_loss;       ///< another
 };
+
+/// Edge of the cube that a light is optimised on.
+inline constexpr int optimized_light_size = 32;
+
+/// What the model stands in now: the light that is optimised, or the first of the scene's. No
+/// graph.
+EnvironmentLight light_as_it_is(const EditScene& scene, const EditState& state);
 
 /// Fits a field to the input's materials, or takes everything from the checkpoint in the output
 /// folder when the request says resume and one is there.

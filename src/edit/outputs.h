@@ -18,9 +18,11 @@ namespace item3d {
 struct EditedModel {
     Model model;
     std::vector<TexturePair> textures;
+    std::optional<Image> light;  ///< the new one, where the light was optimised
 };
 
-/// Writes model.glb and textures/.
+/// Writes model.glb and textures/; where the texture is not edited, model.glb alone, with all its
+/// bytes. Where the light is, light.hdr and light.exr.
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state);
 
 struct Pictures {
@@ -33,8 +35,8 @@ struct Pictures {
     std::optional<ClipScores> clip;
 };
 
-/// Draws the same views of both models; writes before.png, after.png and turntable.webp. With
-/// `clip`, scores them too.
+/// Draws the same views of both models, each in its light; writes before.png, after.png and
+/// turntable.webp. With `clip`, scores them too.
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
                          const EditedModel& edited, const std::optional<Clip>& clip);
 

@@ -49,7 +49,9 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     const EnvironmentLight light = prefilter(load_light(request.settings.light), 256, scene.device);
     const auto cameras = picture_cameras(scene.model, view_count);
     const torch::Tensor before = draw_pictures(scene.model, light, cameras, view_pixels);
-    const torch::Tensor after = draw_pictures(edited.model, light, cameras, view_pixels);
+    const EnvironmentLight new_light =
+        edited.light ? prefilter(*edited.light, 256, scene.device) : light;
+    const torch::Tensor after = draw_pictures(edited.model, new_light, cameras, view_pixels);
 
     Pictures pictures;
     const auto before_pictures = to_pictures(before);
@@ -61,7 +63,8 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
 
     std::vector<Image> frames;
     for (const Camera& camera : picture_cameras(scene.model, turntable_frames)) {
-        const torch::Tensor frame = draw_pictures(edited.model, light, {camera}, turntable_pixels);
+        const torch::Tensor frame =
+            draw_pictures(edited.model, new_light, {camera}, turntable_pixels);
         frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
     }
     pictures.turntable = {request.settings.to, encode_animation(frames)};

@@ -19,9 +19,9 @@ Preview::Preview(std::filesystem::path path, const EditScene& scene)
       scene_(scene),
       cameras_(turntable(scene.model.bounds(), 3, elevation, field_of_view)) {}
 
-void Preview::update(NeuralTexture& field) {
+void Preview::update(NeuralTexture& field, const EnvironmentLight& light) {
     if (!enabled_) return;
-    const torch::Tensor pictures = draw_field(scene_, field, cameras_, picture_size);
+    const torch::Tensor pictures = draw_field(scene_, field, light, cameras_, picture_size);
     try {
         save_image(path_, to_image(torch::cat(pictures.unbind(0), 1)));
     } catch (const Error& error) {

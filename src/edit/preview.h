@@ -11,9 +11,9 @@ namespace item3d {
 class Preview {
   public:
     Preview(std::filesystem::path path, const EditScene& scene);
-    /// Draws the field from three sides and replaces the picture. A preview that cannot be written
-    /// is not worth stopping an edit for: it warns once and gives up.
-    void update(NeuralTexture& field);
+    /// Draws the field in that light from three sides and replaces the picture. A preview that
+    /// cannot be written is not worth stopping an edit for: it warns once and gives up.
+    void update(NeuralTexture& field, const EnvironmentLight& light);
 
   private:
     std::filesystem::path path_;

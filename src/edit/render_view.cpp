@@ -32,7 +32,8 @@ View render_view(const EditScene& scene, const EditSettings& settings, NeuralTex
     const int size = settings.resolution * scale;
     const auto cameras =
         sample_cameras(scene.sphere, options.count, settings.seed, options.iteration);
-    const EnvironmentLight& light = scene.lights->pick(settings.seed, options.iteration);
+    const EnvironmentLight light =
+        options.light ? *options.light : scene.lights->pick(settings.seed, options.iteration);
 
     const Raster raster = rasterize(scene.geometry, cameras, size, size);
     const Surface surface = interpolate_surface(scene.geometry, raster, cameras);

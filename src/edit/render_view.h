@@ -23,7 +23,8 @@ struct ViewOptions {
     /// Offsets of the points where the material is looked up, in pixels (standard deviation), so
     /// that what is learnt from one picture covers its pixels and not a point in each.
     float spread = 0;
-    std::uint64_t spread_draw = 0;  ///< another draw of those offsets
+    std::uint64_t spread_draw = 0;            ///< another draw of those offsets
+    const EnvironmentLight* light = nullptr;  ///< null: what the scene's lights have for it
 };
 
 View render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,

@@ -15,9 +15,14 @@ constexpr double seconds_between_previews = 5;
 
 Safekeeping::Safekeeping(const EditRequest& request, const EditScene& scene)
     : request_(request),
+      scene_(scene),
       preview_(request.output / "preview.png", scene),
       checkpointed_(seconds_now()),
       previewed_(checkpointed_) {}
+
+void Safekeeping::update_preview(EditState& state) {
+    preview_.update(state.field, light_as_it_is(scene_, state));
+}
 
 void Safekeeping::after_step(EditState& state, Progress& progress) {
     const std::int64_t total = total_iterations(request_.settings);
@@ -33,7 +38,7 @@ void Safekeeping::after_step(EditState& state, Progress& progress) {
         checkpointed_ = seconds_now();
     }
     if (seconds_now() - previewed_ > seconds_between_previews) {
-        preview_.update(state.field);
+        update_preview(state);
         previewed_ = seconds_now();
     }
 }

@@ -15,7 +15,10 @@ class Safekeeping {
     void after_step(EditState& state, Progress& progress);
 
   private:
+    void update_preview(EditState& state);
+
     const EditRequest& request_;
+    const EditScene& scene_;
     Preview preview_;
     double checkpointed_;
     double previewed_;

@@ -46,12 +46,14 @@ EditScene load_scene(const EditRequest& request) {
     scene.geometry = Geometry::from_model(scene.model, device);
     scene.sphere = bounding_sphere(scene.model);
     scene.space = std::make_unique<FieldSpace>(scene.model, scene.materials, device);
-    scene.atlas = make_atlas(scene.model, *scene.space, scene.materials, settings.texture_size);
+    if (edits_texture(settings))
+        scene.atlas = make_atlas(scene.model, *scene.space, scene.materials, settings.texture_size);
     scene.textured = std::make_unique<TexturedMaterials>(scene.model, device);
     scene.source = std::make_unique<MaterialSource>(scene.model, *scene.textured, *scene.space,
                                                     scene.materials, scene.channels, device);
-    scene.lights = std::make_unique<LightRig>(
-        settings.light, settings.resolution <= small_picture ? 64 : 256, device);
+    scene.lights =
+        std::make_unique<LightRig>(settings.light, settings.light_augment,
+                                   settings.resolution <= small_picture ? 64 : 256, device);
     scene.prior =
         std::make_shared<Pipeline>(Pipeline::load(request.prior, device, scene.precision));
     apply_extras(*scene.prior, settings);

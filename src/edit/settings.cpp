@@ -34,6 +34,13 @@ json published_settings(const std::string& method) {
     return json::object();
 }
 
+/// A light has few numbers, and they move the whole picture: fewer steps than for a texture, and a
+/// direction that is taken against the same picture in the first light, which cancels what the
+/// prior makes of the model itself.
+json relight_settings() {
+    return {{"guidance", "dds"}, {"iterations", 80}};
+}
+
 void require(bool condition, const std::string& option, const std::string& problem) {
     if (!condition) throw InputError(option, problem);
 }
@@ -44,6 +51,18 @@ void check(const EditSettings& settings) {
     require(settings.resolution >= 16 && settings.resolution <= 2048, "--resolution",
             "must be between 16 and 2048 pixels");
     require(settings.learning_rate > 0, "--learning-rate", "must be above 0");
+    require(settings.optimize == "texture" || settings.optimize == "light" ||
+                settings.optimize == "both",
+            "--optimize", "must be texture, light or both");
+    require(settings.light_model == "auto" || settings.light_model == "physical" ||
+                settings.light_model == "texels",
+            "--light-model", "must be auto, physical or texels");
+    require(settings.light_augment == "off" || settings.light_augment == "rotate" ||
+                settings.light_augment == "all",
+            "--light-augment", "must be off, rotate or all");
+    require(settings.light_learning_rate > 0, "light_learning_rate", "must be above 0");
+    require(settings.light_from.empty() || settings.light_from.size() == 2, "light_from",
+            "must be an azimuth and an elevation in degrees");
     require(settings.metallic == "auto" || settings.metallic == "always", "--metallic",
             "must be auto or always");
     require(settings.metallic_start >= 0 && settings.metallic_start <= 1, "metallic_start",
@@ -78,6 +97,10 @@ void check(const EditSettings& settings) {
 EditSettings resolve_settings(const std::filesystem::path& prior, const json& overrides) {
     json merged = EditSettings{};
     merged.update(prior_defaults(prior));
+    if (overrides.value("optimize", "") == "light") {
+        merged.update(relight_settings());
+        merged.update(published_settings(merged["guidance"]));
+    }
     merged.update(published_settings(overrides.value("guidance", "")));
     merged.update(overrides);
     try {
@@ -94,11 +117,20 @@ bool wants_captions(const EditSettings& settings) {
     return settings.guidance == "rdl" && adjusts_by_captions(settings.adjust);
 }
 
+bool edits_light(const EditSettings& settings) {
+    return settings.optimize != "texture";
+}
+
+bool edits_texture(const EditSettings& settings) {
+    return settings.optimize != "light";
+}
+
 bool wants_detail(const EditSettings& settings) {
     const auto has = [](const std::vector<std::string>& words, const std::string& word) {
         return std::find(words.begin(), words.end(), word) != words.end();
     };
     if (settings.iterations == 0 || has(settings.keep, "base_color")) return false;
+    if (!edits_texture(settings)) return false;
     if (settings.detail != "auto") return settings.detail == "always";
     const std::vector<std::string> from = prompt_words(settings.from);
     const std::vector<std::string> to = prompt_words(settings.to);

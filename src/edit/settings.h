@@ -47,7 +47,15 @@ struct EditSettings : PipelineExtras {
     std::vector<float> timesteps = {0.02f, 0.98f};
     std::string timestep_schedule = "uniform";
     std::string weighting = "dreamfusion";
-    std::string light = "studio";     ///< preset or .hdr/.exr file
+    std::string light = "studio";      ///< preset or .hdr/.exr file
+    std::string optimize = "texture";  ///< texture, light, or both
+    std::string light_model = "auto";  ///< physical, texels; auto: physical for small pictures
+    float light_learning_rate = 0.05f;
+    /// Azimuth and elevation in degrees (SkyAngles) that a light being optimised must come from;
+    /// empty: from anywhere.
+    std::vector<float> light_from;
+    /// How the light varies while a texture is edited: off, rotate, or all (views.h).
+    std::string light_augment = "rotate";
     std::string background = "vary";  ///< a colour, or "vary": another grey each iteration
     int texture_size = 0;             ///< 0: as the input, or 1024 where it has no texture
     std::vector<std::string> keep = {"occlusion", "normal"};
@@ -59,16 +67,21 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     EditSettings, lora, embedding, controlnet, controlnet_scale, vae, from, to, negative_prompt,
     guidance, adjust, anchor, cfg, adjust_learning_rate, adjust_samples, adjust_every,
     adjust_strength, settle, iterations, batch, resolution, learning_rate, metallic, metallic_start,
-    detail, detail_words, detail_views, timesteps, timestep_schedule, weighting, light, background,
-    texture_size, keep, material, seed)
+    detail, detail_words, detail_views, timesteps, timestep_schedule, weighting, light, optimize,
+    light_model, light_learning_rate, light_from, light_augment, background, texture_size, keep,
+    material, seed)
 
-/// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- what a method was published
-/// with, where the overrides name it <- overrides. Throws InputError when a value is of the wrong
+/// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- what relighting needs, where
+/// the overrides say to optimise the light alone <- what a method was published with, where the
+/// overrides name it <- overrides. Throws InputError when a value is of the wrong
 /// type or out of range.
 EditSettings resolve_settings(const std::filesystem::path& prior, const nlohmann::json& overrides);
 
 /// Whether a captioner adjusts the direction.
 bool wants_captions(const EditSettings& settings);
+/// Whether a light, or a texture, is among what is optimised.
+bool edits_light(const EditSettings& settings);
+bool edits_texture(const EditSettings& settings);
 
 /// Whether the detail stage runs.
 bool wants_detail(const EditSettings& settings);

@@ -232,6 +232,7 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
                     {"turntable.webp", "turntable.webp"},
                     {"before.png", "before.png"},
                     {"after.png", "after.png"}};
+    if (edited.light) report.files.push_back({"light.exr", "light.exr"});
     report.command = request.command;
     report.version = version();
     write_atomically(request.output / "report.html", edit_report_html(report));

@@ -76,17 +76,33 @@ torch::Tensor sample_backgrounds(const std::string& background, int count, std::
     return colors;
 }
 
-LightRig::LightRig(const std::string& light, int cube_size, torch::Device device) {
-    const Image image = load_light(light);
-    for (int i = 0; i < light_rotations; ++i) {
-        const float turn = 360.0f * static_cast<float>(i) / light_rotations;
-        lights_.push_back(prefilter(adjust_light(image, turn, 0.0f), cube_size, device));
-    }
+LightRig::LightRig(const std::string& light, const std::string& augment, int cube_size,
+                   torch::Device device) {
+    const auto add = [&](const Image& image, int rotations, float first) {
+        for (int i = 0; i < rotations; ++i) {
+            const float turn =
+                first + 360.0f * static_cast<float>(i) / static_cast<float>(rotations);
+            lights_.push_back(prefilter(adjust_light(image, turn, 0.0f), cube_size, device));
+        }
+    };
+    add(load_light(light), augment == "off" ? 1 : light_rotations, 0);
+    if (augment != "all") return;
+    exposure_range_ = 0.5f;
+    // White lights alone: under a sunset, what is white looks orange to the prior.
+    for (const char* preset : {"studio", "overcast", "noon"})
+        if (preset != light) add(make_light_preset(preset), light_rotations / 2, 30);
 }
 
-const EnvironmentLight& LightRig::pick(std::uint64_t seed, std::int64_t iteration) const {
+EnvironmentLight LightRig::pick(std::uint64_t seed, std::int64_t iteration) const {
     Random random = iteration_random(seed, light_stream, iteration);
-    return lights_[static_cast<std::size_t>(random.index(light_rotations))];
+    EnvironmentLight light =
+        lights_[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(lights_.size())))];
+    if (exposure_range_ == 0) return light;
+    const double factor = std::exp2(random.uniform(-exposure_range_, exposure_range_));
+    light.diffuse = light.diffuse * factor;
+    for (torch::Tensor& level : light.specular)
+        level = level * factor;
+    return light;
 }
 
 }  // namespace item3d

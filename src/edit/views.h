@@ -31,17 +31,24 @@ std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std:
 torch::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
                                  std::int64_t iteration);
 
-/// One light turned to several azimuths, prefiltered once. Shading that stays the same in every
-/// picture could be painted into the base colour; a light that moves cannot.
+/// The lights of an edit, prefiltered once. Shading that stays the same in every picture could be
+/// painted into the base colour; a light that moves cannot. augment:
+///   off     the light as it is, always;
+///   rotate  turned to six azimuths;
+///   all     also exchanged for presets of daylight and the studio, and brighter or darker by up to
+///           half a stop.
 class LightRig {
   public:
-    LightRig(const std::string& light, int cube_size, torch::Device device);
-    const EnvironmentLight& pick(std::uint64_t seed, std::int64_t iteration) const;
+    /// light: preset or file. Throws InputError.
+    LightRig(const std::string& light, const std::string& augment, int cube_size,
+             torch::Device device);
+    EnvironmentLight pick(std::uint64_t seed, std::int64_t iteration) const;
     /// The light as it was given, for pictures.
     const EnvironmentLight& front() const { return lights_.front(); }
 
   private:
     std::vector<EnvironmentLight> lights_;
+    float exposure_range_ = 0;  ///< stops
 };
 
 }  // namespace item3d

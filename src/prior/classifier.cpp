@@ -54,15 +54,19 @@ std::vector<VocabularyEntry> make_vocabulary() {
     pattern("zebra", {"zebra"}, "a zebra {o}", "zebra");
     pattern("leopard", {"leopard"}, "a leopard print {o}", "leopard");
     pattern("flames", {"flame", "flames"}, "a {o} with a flame pattern", "flames");
-    const auto light = [&](const std::string& kind, const std::string& phrase) {
-        all.push_back({"lights", kind, {kind}, "a {c} {o} " + phrase, {}, kind, ""});
+    // "in the dark" and "in the sun" are what captions of these lights say too.
+    const auto light = [&](const std::string& kind, const std::string& phrase,
+                           const std::vector<std::string>& others = {}) {
+        std::vector<std::string> spellings{kind};
+        spellings.insert(spellings.end(), others.begin(), others.end());
+        all.push_back({"lights", kind, spellings, "a {c} {o} " + phrase, {}, kind, ""});
     };
     light("studio", "in a studio");
     light("sunset", "at sunset");
-    light("night", "at night");
+    light("night", "at night", {"dark"});
     light("bright", "in bright light");
     light("overcast", "on an overcast day");
-    light("noon", "at noon");
+    light("noon", "at noon", {"sun"});
     for (const ShapeClass& shape : shape_classes())
         if (!shape.held_out && shape.name != "blob")
             all.push_back({"objects", shape.name, shape.nouns, "a {c} {o}", {}, "", shape.name});

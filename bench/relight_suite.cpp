@@ -1,0 +1,155 @@
+// Relighting by words, judged by numbers and by a page to look at.
+//
+//   relight_suite -o DIR --mesh cow=spot.obj --mesh teapot=teapot.obj --mesh object=bunny.obj
+//
+// Each mesh goes to the dark, to a sunset, to bright light and to the night. Right is: darker;
+// warmer; brighter; darker and colder. Brightness is that of the pictures, warmth that of the light.
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/edit/relight.h"
+#include "item3d/evaluate/contact_sheet.h"
+#include "item3d/evaluate/model_pictures.h"
+#include "item3d/evaluate/picture.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/scene/environment.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/scene/io/save.h"
+#include "item3d/scene/light_description.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+using nlohmann::json;
+
+struct RelightSuiteOptions {
+    std::filesystem::path output;
+    std::filesystem::path prior;
+    std::vector<std::pair<std::string, std::filesystem::path>> meshes;  ///< noun, file
+    json overrides = json::object();
+};
+
+struct Wish {
+    std::string words;
+    int luminance;    ///< 1: shall rise, -1: shall fall, 0: either
+    int temperature;  ///< the same, of the light's colour temperature
+};
+const std::array<Wish, 4> wishes{{{"in the dark", -1, 0},
+                                  {"at sunset", 0, -1},
+                                  {"in bright light", 1, 0},
+                                  {"at night", -1, 1}}};
+
+bool moved(double before, double after, int wanted) {
+    return wanted == 0 || (wanted > 0 ? after > before : after < before);
+}
+
+constexpr int picture_pixels = 256;
+
+struct LitPicture {
+    Image picture;
+    double luminance = 0;  ///< mean linear over the model's pixels, three views
+};
+
+LitPicture look(const Model& model, const Image& light) {
+    const torch::Tensor linear =
+        draw_pictures(model, prefilter(light, 128), picture_cameras(model, 3), picture_pixels);
+    const torch::Tensor weights = torch::tensor({0.2126f, 0.7152f, 0.0722f});
+    const torch::Tensor sum = (linear.narrow(3, 0, 3).clamp(0, 1) * weights).sum();
+    return {to_display(to_image(linear[0]), Vec3(0.6f)),
+            (sum / linear.select(3, 3).sum()).item<double>()};
+}
+
+json run_case(const std::string& noun, const std::filesystem::path& mesh, const Wish& wish,
+              const RelightSuiteOptions& options, std::vector<Tile>& tiles) {
+    const std::string article = std::string("aeiou").find(noun.front()) != noun.npos ? "an " : "a ";
+    EditRequest request;
+    request.model = mesh;
+    request.prior = options.prior;
+    request.output = options.output / "work";
+    make_output_folder(request.output);
+    json overrides = options.overrides;
+    overrides.update({{"from", article + noun}, {"to", article + noun + " " + wish.words}});
+    overrides["optimize"] = "light";
+    request.settings = resolve_settings(options.prior, overrides);
+    const FoundLight found = find_light(request);
+
+    const Image first = load_light(request.settings.light);
+    const Model model = load_model(mesh);
+    const LitPicture before = look(model, first);
+    const LitPicture after = look(model, found.light);
+    save_image(options.output / fmt::format("{}-{}.exr", noun, tiles.size()), found.light, 32);
+    const double kelvin_before = describe_light(first).color_temperature.value_or(0);
+    // A light that is bluer than any black body is colder than any.
+    const double kelvin_after = describe_light(found.light).color_temperature.value_or(1e5);
+    const bool right = moved(before.luminance, after.luminance, wish.luminance) &&
+                       moved(kelvin_before, kelvin_after, wish.temperature);
+    if (&wish == &wishes.front()) tiles.push_back({before.picture, noun});
+    tiles.push_back({after.picture, wish.words});
+    return {{"mesh", noun},
+            {"to", request.settings.to},
+            {"luminance", {before.luminance, after.luminance}},
+            {"color_temperature", {kelvin_before, kelvin_after}},
+            {"right", right},
+            {"values", found.record.value("values", json())},
+            {"seconds", found.record["seconds"]}};
+}
+
+void run_suite(const RelightSuiteOptions& options) {
+    std::vector<json> results;
+    std::vector<Tile> tiles;
+    int right = 0;
+    make_output_folder(options.output);
+    for (const auto& [noun, mesh] : options.meshes) {
+        for (const Wish& wish : wishes) {
+            results.push_back(run_case(noun, mesh, wish, options, tiles));
+            const json& result = results.back();
+            right += result["right"].get<bool>() ? 1 : 0;
+            note(fmt::format("{}: {} {} {}", result["to"].dump(), result["luminance"].dump(),
+                             result["color_temperature"].dump(), result["right"].dump()));
+        }
+    }
+    ContactSheetOptions sheet;
+    sheet.columns = static_cast<int>(wishes.size()) + 1;
+    save_image(options.output / "sheet.png", contact_sheet(tiles, sheet));
+    const json summary = {{"right", right}, {"cases", results.size()}, {"results", results}};
+    write_atomically(options.output / "relight.json", summary.dump(2) + "\n");
+    fmt::print("{} of {} right\n", right, results.size());
+}
+
+}  // namespace
+}  // namespace item3d
+
+int main(int argc, char** argv) {
+    item3d::RelightSuiteOptions options;
+    std::vector<std::string> meshes;
+    std::string settings = "{}";
+    CLI::App app("Relights models by words and says whether the light went the right way.");
+    app.add_option("-o,--output", options.output, "Folder for all results")->required();
+    app.add_option("--prior", options.prior, "Prior; without it, the embedded one");
+    app.add_option("--mesh", meshes, "NOUN=FILE")->required();
+    app.add_option("--settings", settings, "Settings of the edit as JSON, {\"seed\": 1}");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        options.prior = item3d::find_prior(options.prior.string());
+        options.overrides = nlohmann::json::parse(settings);
+        for (const std::string& mesh : meshes) {
+            const auto split = mesh.find('=');
+            if (split == std::string::npos) throw item3d::UsageError("--mesh takes NOUN=FILE");
+            options.meshes.emplace_back(mesh.substr(0, split), mesh.substr(split + 1));
+        }
+        item3d::run_suite(options);
+    } catch (const item3d::Error& error) {
+        fmt::print(stderr, "relight_suite: error: {}\n", error.what());
+        return static_cast<int>(error.code());
+    }
+    return 0;
+}

@@ -1,0 +1,21 @@
+// The light alone, found by guidance: geometry and materials stay as they are.
+#pragma once
+
+#include "item3d/edit/edit.h"
+#include "item3d/scene/image.h"
+
+namespace item3d {
+
+struct FoundLight {
+    Image first;  ///< what the optimisation began with, 256 x 512 x 3, equirectangular
+    Image light;  ///< what it ended with
+    /// "settings", "seconds" and, for a physical light, its "values".
+    nlohmann::json record;
+};
+
+/// Optimises the light that the request's settings begin with towards their target sentence. Keeps
+/// checkpoints and a preview in the request's output folder, which must be there, and takes them up
+/// where the request says resume. Throws as edit_model.
+FoundLight find_light(const EditRequest& request);
+
+}  // namespace item3d
