@@ -51,7 +51,7 @@ void expect_problem(const std::string& found, const std::string& wanted) {
     EXPECT_NE(found.find(wanted), std::string::npos) << found;
 }
 
-void expect_cameras(const std::vector<View>& views, const std::vector<Camera>& cameras) {
+void expect_cameras(const std::vector<Photograph>& views, const std::vector<Camera>& cameras) {
     ASSERT_EQ(views.size(), cameras.size());
     for (std::size_t i = 0; i < views.size(); ++i) {
         for (int k = 0; k < 16; ++k)
@@ -227,7 +227,7 @@ TEST(Dataset, NerfstudioUndistortsPictureAndMask) {
     EXPECT_EQ(dataset.kind, DatasetKind::nerfstudio);
     EXPECT_EQ(dataset.masks, "mask_path");
     ASSERT_EQ(dataset.train.size(), 4u);
-    const View& view = dataset.train[0];
+    const Photograph& view = dataset.train[0];
     EXPECT_NEAR(view.camera.field_of_view_x, 2 * std::atan(16.0 / 30.0), 1e-5);
     int compared = 0;
     for (int y = 0; y < 20; ++y) {

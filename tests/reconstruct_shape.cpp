@@ -159,10 +159,10 @@ TEST(VisualHull, DistancesArePixelsFromTheOutline) {
 }
 
 /// Views of a sphere of this radius around the origin.
-std::vector<View> sphere_views(int count, int size, float radius) {
-    std::vector<View> views;
+std::vector<Photograph> sphere_views(int count, int size, float radius) {
+    std::vector<Photograph> views;
     for (const Camera& camera : testing::ring_of_cameras(count)) {
-        View view{camera.name, camera, Image(size, size, 4)};
+        Photograph view{camera.name, camera, Image(size, size, 4)};
         const float slope = std::tan(0.5f * camera.field_of_view_x);
         // The outline of a sphere is where the view's cone touches it.
         const float outline = radius / std::sqrt(16 - radius * radius) / slope;
@@ -198,7 +198,7 @@ TEST(VisualHull, OfASphereIsNearlyTheSphere) {
 }
 
 TEST(VisualHull, SaysWhenMasksAndPosesDoNotBelongTogether) {
-    std::vector<View> views = sphere_views(6, 48, 0.3f);
+    std::vector<Photograph> views = sphere_views(6, 48, 0.3f);
     // Half of the cameras are somewhat higher than they say.
     for (std::size_t i = 0; i < views.size(); i += 2)
         views[i].camera.camera_to_world[3] += Vec4(0, 0.9f, 0, 0);

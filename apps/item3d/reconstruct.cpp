@@ -18,6 +18,7 @@ struct ReconstructCommand : CommonOptions {
     std::string background;
     bool move_vertices = false;
     bool no_normal_map = false;
+    bool no_shadows = false;
     int cells = 96;
     std::uint64_t seed = 0;
 };
@@ -28,6 +29,7 @@ ReconstructRequest make_request(const ReconstructCommand& options) {
         request.dataset_options.background = parse_color(options.background);
     request.move_vertices = request.mesh.empty() || options.move_vertices;
     request.refine.normal_map = !options.no_normal_map;
+    request.refine.shadows = !options.no_shadows;
     request.shape.cells = {options.cells / 2, options.cells};
     request.shape.seed = request.refine.seed = options.seed;
     request.command = command_line();
@@ -106,6 +108,8 @@ void add_reconstruct_command(CLI::App& app) {
         ->check(CLI::Range(16, 4096))
         ->capture_default_str();
     command->add_flag("--no-normal-map", options->no_normal_map, "The mesh alone has normals");
+    command->add_flag("--no-shadows", options->no_shadows,
+                      "Do not trace what the object hides from the light");
     command->add_option("--reference", request.reference,
                         "The true mesh, to measure a distance to");
     command->add_option("--relit", request.relit.folder,

@@ -18,8 +18,9 @@ Model bake_and_save(const std::filesystem::path& file, const Model& model, Appea
     const Atlas atlas = make_atlas(neutral, space, {0}, request.texture_size);
     BakeOptions options;
     options.texture_size = request.texture_size;
+    // Shadows are the renderer's business: a baked occlusion would darken the model a second time.
     options.channels = {.base_color = true,
-                        .occlusion = request.refine.ambient_occlusion,
+                        .occlusion = false,
                         .roughness = true,
                         .metallic = true,
                         .normal = request.refine.normal_map};

@@ -50,7 +50,7 @@ std::string camera_plot(const Dataset& dataset, std::array<Vec3, 2> bounds) {
     const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
     float reach = 0.5f * glm::length(bounds[1] - bounds[0]);
     for (const auto* views : {&dataset.train, &dataset.test})
-        for (const View& view : *views)
+        for (const Photograph& view : *views)
             reach = std::max(reach, glm::distance(view.camera.position(), centre));
     const std::array drawings{Drawing(centre, reach, Vec3(1, 0, 0), Vec3(0, 0, -1)),
                               Drawing(centre, reach, Vec3(1, 0, 0), Vec3(0, 1, 0))};
@@ -60,9 +60,9 @@ std::string camera_plot(const Dataset& dataset, std::array<Vec3, 2> bounds) {
         html += fmt::format("<figure><svg viewBox=\"0 0 {0} {0}\" width=\"{0}\" height=\"{0}\">",
                             plot_size);
         html += drawings[i].box(bounds);
-        for (const View& view : dataset.train)
+        for (const Photograph& view : dataset.train)
             html += drawings[i].camera(view.camera, false, 0.15f * reach);
-        for (const View& view : dataset.test)
+        for (const Photograph& view : dataset.test)
             html += drawings[i].camera(view.camera, true, 0.15f * reach);
         html += fmt::format("</svg><figcaption>{}</figcaption></figure>\n", captions[i]);
     }

@@ -17,6 +17,10 @@ Model bake_and_save(const std::filesystem::path& file, const Model& model, Appea
 
 /// All that is known in the end.
 struct Reconstruction {
+    Reconstruction(const ReconstructRequest& asked, const Dataset& photographs,
+                   const StageTimes& begun)
+        : request(asked), dataset(photographs), times(begun) {}
+
     const ReconstructRequest& request;
     const Dataset& dataset;
     Model model;  ///< as written
@@ -24,7 +28,9 @@ struct Reconstruction {
     std::optional<Shape> shape;  ///< none for a given mesh
     RefineCurves refine;
     std::vector<ScoredView> train, test;  ///< a few of the former
+    std::vector<ScoredView> test_without_shadows;
     std::vector<ScoredView> relit, relit_scaled;
+    Vec3 relit_gain{1.0f};          ///< of the scaled ones
     std::optional<double> chamfer;  ///< part of the reference's diagonal
     StageTimes times;
     std::vector<std::string> warnings;

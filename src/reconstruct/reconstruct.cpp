@@ -4,6 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/reconstruct/dataset/photograph.h"
 #include "item3d/reconstruct/outputs.h"
 #include "item3d/reconstruct/surface/plain_model.h"
 #include "item3d/scene/environment.h"
@@ -17,7 +18,6 @@ namespace item3d {
 namespace {
 
 constexpr std::size_t train_views_scored = 6;
-constexpr int light_cube = 128;
 /// Outlines of exact poses agree better than this even on a coarse lattice; those of poses that
 /// are half a degree off do not.
 constexpr double least_hull_overlap = 0.95;
@@ -29,33 +29,37 @@ std::string describe(const Dataset& dataset) {
                        first.width, first.height, dataset.masks);
 }
 
-std::vector<View> some(const std::vector<View>& views, std::size_t count) {
-    std::vector<View> chosen;
+std::vector<Photograph> some(const std::vector<Photograph>& views, std::size_t count) {
+    std::vector<Photograph> chosen;
     for (std::size_t i = 0; i < std::min(count, views.size()); ++i)
         chosen.push_back(views[i * views.size() / std::min(count, views.size())]);
     return chosen;
 }
 
 /// The test views for which the folder has a picture, with that picture.
-std::vector<View> relit_views(const Dataset& dataset, const RelitViews& relit) {
-    std::vector<View> views;
-    for (View view : dataset.test) {
-        const auto file = find_picture(relit.folder / std::filesystem::path(view.name).filename());
-        if (!std::filesystem::is_regular_file(file)) continue;
-        const Image picture = load_image(file);
+std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructRequest& request) {
+    const RelitViews& relit = request.relit;
+    std::vector<Photograph> views;
+    for (Photograph view : dataset.test) {
+        SourceView source;
+        source.name = view.name;
+        source.picture = find_picture(relit.folder / std::filesystem::path(view.name).filename());
+        if (!std::filesystem::is_regular_file(source.picture)) continue;
+        source.lens.focal_x = source.lens.focal_y = 1;
+        Lens lens;
+        MaskOrigin origin = MaskOrigin::none;
+        const Image picture = load_photograph(source, {}, request.dataset_options, lens, origin);
         if (picture.width != view.image.width || picture.height != view.image.height) {
-            throw InputError(file.string(), "is not of the size of its test view");
+            throw InputError(source.picture.string(), "is not of the size of its test view");
         }
-        const bool is_linear = file.extension() == ".exr" || file.extension() == ".hdr";
-        for (int y = 0; y < picture.height; ++y) {
-            for (int x = 0; x < picture.width; ++x) {
-                const float alpha = view.image.at(x, y, 3);
-                for (int c = 0; c < 3; ++c) {
-                    const float value = picture.at(x, y, picture.channels >= 3 ? c : 0);
-                    view.image.at(x, y, c) = is_linear ? value : alpha * srgb_to_linear(value);
-                }
-            }
-        }
+        // The outline is that of the test view; the colours are premultiplied by it.
+        for (int y = 0; y < picture.height; ++y)
+            for (int x = 0; x < picture.width; ++x)
+                for (int c = 0; c < 3; ++c)
+                    view.image.at(x, y, c) =
+                        std::min(1.0f,
+                                 view.image.at(x, y, 3) / std::max(picture.at(x, y, 3), 1e-6f)) *
+                        picture.at(x, y, c);
         views.push_back(std::move(view));
     }
     if (views.empty()) {
@@ -67,17 +71,20 @@ std::vector<View> relit_views(const Dataset& dataset, const RelitViews& relit) {
 void score(Reconstruction& result) {
     const ReconstructRequest& request = result.request;
     const auto bounds = result.model.bounds();
-    const EnvironmentLight light = prefilter(result.light, light_cube);
-    result.train = score_views(
-        result.model, light, make_targets(some(result.dataset.train, train_views_scored), bounds));
-    result.test = score_views(result.model, light, make_targets(result.dataset.test, bounds));
+    const ModelRenderer renderer(result.model, result.light, request.refine.shadows);
+    const auto test = make_targets(result.dataset.test, bounds);
+    result.test = renderer.score(test);
+    result.train =
+        renderer.score(make_targets(some(result.dataset.train, train_views_scored), bounds));
+    result.test_without_shadows = ModelRenderer(result.model, result.light, false).score(test);
     if (!request.relit.folder.empty()) {
-        const auto targets = make_targets(relit_views(result.dataset, request.relit), bounds);
-        const EnvironmentLight other = prefilter(
-            adjust_light(load_light(request.relit.light), 0, request.relit.exposure), light_cube);
-        result.relit = score_views(result.model, other, targets);
-        result.relit_scaled =
-            score_views(result.model, other, targets, best_gain(result.model, other, targets));
+        const auto targets = make_targets(relit_views(result.dataset, request), bounds);
+        const ModelRenderer relit(
+            result.model, adjust_light(load_light(request.relit.light), 0, request.relit.exposure),
+            request.refine.shadows);
+        result.relit = relit.score(targets);
+        result.relit_gain = relit.best_gain(targets);
+        result.relit_scaled = relit.score(targets, result.relit_gain);
     }
     if (!request.reference.empty()) {
         result.chamfer =
@@ -121,11 +128,11 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
 }  // namespace
 
 nlohmann::json reconstruct(const ReconstructRequest& request) {
-    StageTimes times;
     make_output_folder(request.output);
+    StageTimes times;
     const Dataset dataset = load_dataset(request.dataset, request.dataset_options);
     note(describe(dataset));
-    Reconstruction result{request, dataset, {}, {}, {}, {}, {}, {}, {}, {}, {}, times, {}};
+    Reconstruction result(request, dataset, times);
     result.times.end_stage("load");
 
     Start start = request.mesh.empty() ? start_from_photographs(request, result)

@@ -81,6 +81,8 @@ std::string scores_table(const Reconstruction& result) {
                                       mean.mask_overlap));
     };
     add("Held-out views", result.test);
+    if (result.request.refine.shadows)
+        add("Held-out views, no shadows traced", result.test_without_shadows);
     add("Training views", result.train);
     add("In another light", result.relit);
     add("In another light, one gain a channel", result.relit_scaled);

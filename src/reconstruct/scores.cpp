@@ -13,6 +13,8 @@ namespace item3d {
 
 namespace {
 
+constexpr int light_cube = 128;
+
 /// [1, H, W, 4] premultiplied linear -> [1, 3, H, W] sRGB over white.
 torch::Tensor displayed_over_white(const torch::Tensor& image) {
     const torch::Tensor color = image.narrow(3, 0, 3) + (1 - image.narrow(3, 3, 1));
@@ -22,25 +24,6 @@ torch::Tensor displayed_over_white(const torch::Tensor& image) {
 Image as_picture(const torch::Tensor& planes) {
     return to_image(planes[0].permute({1, 2, 0}).contiguous());
 }
-
-/// Renders all views, one at a time.
-class ModelRenderer {
-  public:
-    ModelRenderer(const Model& model, const EnvironmentLight& light)
-        : geometry_(Geometry::from_model(model)), materials_(model), light_(light) {}
-
-    torch::Tensor draw(const TargetView& view) const {
-        RenderOptions options;
-        options.width = view.width();
-        options.height = view.height();
-        return render(geometry_, materials_, light_, {view.camera}, options);
-    }
-
-  private:
-    Geometry geometry_;
-    TexturedMaterials materials_;
-    const EnvironmentLight& light_;
-};
 
 std::vector<Vec3> points_on(const TriangleMesh& mesh, int count, Random& random) {
     const torch::Tensor positions = mesh.positions.detach().contiguous();
@@ -102,14 +85,32 @@ ViewScore mean_score(const std::vector<ScoredView>& views) {
     return mean;
 }
 
-std::vector<ScoredView> score_views(const Model& model, const EnvironmentLight& light,
-                                    const std::vector<TargetView>& views, Vec3 gain) {
+ModelRenderer::ModelRenderer(const Model& model, const Image& light, bool shadows)
+    : geometry_(Geometry::from_model(model)),
+      materials_(model),
+      light_(prefilter(light, light_cube)) {
+    if (!shadows) return;
+    OcclusionOptions options;
+    options.light = light;
+    occlusion_ = std::make_shared<Occlusion>(geometry_, &model, options);
+}
+
+torch::Tensor ModelRenderer::draw(const TargetView& view) const {
     const torch::NoGradGuard no_gradient;
-    const ModelRenderer renderer(model, light);
+    RenderOptions options;
+    options.width = view.width();
+    options.height = view.height();
+    options.occlusion = occlusion_;
+    return render(geometry_, materials_, light_, {view.camera}, options);
+}
+
+std::vector<ScoredView> ModelRenderer::score(const std::vector<TargetView>& views,
+                                             Vec3 gain) const {
+    const torch::NoGradGuard no_gradient;
     const torch::Tensor factors = torch::tensor({gain.x, gain.y, gain.z, 1.0f});
     std::vector<ScoredView> scored;
     for (const TargetView& view : views) {
-        const torch::Tensor drawn = renderer.draw(view) * factors;
+        const torch::Tensor drawn = draw(view) * factors;
         const torch::Tensor picture = displayed_over_white(drawn);
         const torch::Tensor truth = displayed_over_white(view.image);
         const torch::Tensor a = drawn.select(3, 3), b = view.image.select(3, 3);
@@ -124,14 +125,12 @@ std::vector<ScoredView> score_views(const Model& model, const EnvironmentLight& 
     return scored;
 }
 
-Vec3 best_gain(const Model& model, const EnvironmentLight& light,
-               const std::vector<TargetView>& views) {
+Vec3 ModelRenderer::best_gain(const std::vector<TargetView>& views) const {
     const torch::NoGradGuard no_gradient;
-    const ModelRenderer renderer(model, light);
     torch::Tensor product = torch::zeros({3}, torch::kFloat64);
     torch::Tensor square = torch::zeros({3}, torch::kFloat64);
     for (const TargetView& view : views) {
-        const torch::Tensor drawn = renderer.draw(view).narrow(3, 0, 3).to(torch::kFloat64);
+        const torch::Tensor drawn = draw(view).narrow(3, 0, 3).to(torch::kFloat64);
         const torch::Tensor truth = view.image.narrow(3, 0, 3).to(torch::kFloat64);
         const torch::Tensor both =
             (view.image.narrow(3, 3, 1) > 0.99f).logical_and(truth.amax(3, true) < 0.99);

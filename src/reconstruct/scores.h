@@ -3,10 +3,12 @@
 
 #include "item3d/reconstruct/shape/clean_mesh.h"
 #include "item3d/reconstruct/surface/view_render.h"
+#include "item3d/render/textured.h"
 #include "item3d/scene/model.h"
 
 #include <torch/types.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,15 +29,26 @@ struct ScoredView {
 /// Means over views.
 ViewScore mean_score(const std::vector<ScoredView>& views);
 
-/// Draws `model` as `item3d render` does, from the views' cameras in `light`, and compares.
-/// gain: multiplies each channel's radiance.
-std::vector<ScoredView> score_views(const Model& model, const EnvironmentLight& light,
-                                    const std::vector<TargetView>& views, Vec3 gain = Vec3(1));
+/// Draws a model as `item3d render` does, from the cameras of views.
+class ModelRenderer {
+  public:
+    /// light: equirectangular. shadows: as with --occlusion=light.
+    ModelRenderer(const Model& model, const Image& light, bool shadows);
 
-/// The gain of each channel that brings renders nearest to the photographs, least squares of linear
-/// radiance: light and base colour are known only up to such a factor.
-Vec3 best_gain(const Model& model, const EnvironmentLight& light,
-               const std::vector<TargetView>& views);
+    /// [1, H, W, 4] premultiplied linear radiance.
+    torch::Tensor draw(const TargetView& view) const;
+    /// gain: multiplies each channel's radiance.
+    std::vector<ScoredView> score(const std::vector<TargetView>& views, Vec3 gain = Vec3(1)) const;
+    /// The gain that brings renders nearest to the photographs, least squares of linear radiance:
+    /// light and base colour are known only up to such a factor.
+    Vec3 best_gain(const std::vector<TargetView>& views) const;
+
+  private:
+    Geometry geometry_;
+    TexturedMaterials materials_;
+    EnvironmentLight light_;
+    std::shared_ptr<const Occlusion> occlusion_;
+};
 
 /// Mean of both directions' mean distances between points drawn evenly from two surfaces, over the
 /// diagonal of the reference's box.

@@ -35,37 +35,42 @@ nlohmann::json summary_json(const Reconstruction& result) {
     for (const auto& [stage, value] : result.times.stages())
         seconds[stage] = value;
     seconds["total"] = result.times.total();
-    nlohmann::json summary{
-        {"version", version()},
-        {"command", request.command},
-        {"dataset",
-         {{"path", request.dataset.string()},
-          {"kind", dataset_kind_name(result.dataset.kind)},
-          {"train", result.dataset.train.size()},
-          {"test", result.dataset.test.size()},
-          {"masks", result.dataset.masks},
-          {"views_cut_off", result.dataset.cut_off},
-          {"world_from_dataset", rotation}}},
-        {"settings",
-         {{"mesh", request.mesh.string()},
-          {"cells", request.shape.cells},
-          {"shape_iterations", request.shape.iterations},
-          {"refine_iterations", request.refine.iterations},
-          {"move_vertices", request.move_vertices},
-          {"normal_map", request.refine.normal_map},
-          {"texture_size", request.texture_size},
-          {"seed", request.refine.seed},
-          {"threads", at::get_num_threads()}}},
-        {"model",
-         {{"triangles", result.model.triangle_count()},
-          {"vertices", result.model.primitives.front().positions.size()}}},
-        {"scores", {{"train", score_json(result.train)}, {"test", score_json(result.test)}}},
-        {"warnings", result.warnings},
-        {"seconds", seconds},
-        {"peak_memory_bytes", peak_memory_bytes()}};
+    nlohmann::json summary{{"version", version()},
+                           {"command", request.command},
+                           {"dataset",
+                            {{"path", request.dataset.string()},
+                             {"kind", dataset_kind_name(result.dataset.kind)},
+                             {"train", result.dataset.train.size()},
+                             {"test", result.dataset.test.size()},
+                             {"masks", result.dataset.masks},
+                             {"views_cut_off", result.dataset.cut_off},
+                             {"world_from_dataset", rotation}}},
+                           {"settings",
+                            {{"mesh", request.mesh.string()},
+                             {"cells", request.shape.cells},
+                             {"shape_iterations", request.shape.iterations},
+                             {"refine_iterations", request.refine.iterations},
+                             {"move_vertices", request.move_vertices},
+                             {"shadows", request.refine.shadows},
+                             {"normal_map", request.refine.normal_map},
+                             {"texture_size", request.texture_size},
+                             {"seed", request.refine.seed},
+                             {"threads", at::get_num_threads()}}},
+                           {"model",
+                            {{"triangles", result.model.triangle_count()},
+                             {"vertices", result.model.primitives.front().positions.size()}}},
+                           {"scores",
+                            {{"train", score_json(result.train)},
+                             {"test", score_json(result.test)},
+                             {"test_without_shadows", score_json(result.test_without_shadows)}}},
+                           {"warnings", result.warnings},
+                           {"seconds", seconds},
+                           {"peak_memory_bytes", peak_memory_bytes()}};
     if (result.shape) summary["scores"]["hull_overlap"] = result.shape->hull_overlap;
     if (result.chamfer) summary["scores"]["chamfer"] = *result.chamfer;
     if (!result.relit.empty()) {
+        const Vec3 gain = result.relit_gain;
+        summary["scores"]["relit_gain"] = {gain.x, gain.y, gain.z};
         summary["scores"]["relit"] = score_json(result.relit);
         summary["scores"]["relit_scaled"] = score_json(result.relit_scaled);
     }

@@ -116,7 +116,7 @@ void check_masks(const fs::path& path, Dataset& dataset) {
     std::size_t full = 0, total = 0;
     std::vector<std::string> empty;
     for (const auto* views : {&dataset.train, &dataset.test}) {
-        for (const View& view : *views) {
+        for (const Photograph& view : *views) {
             const Coverage coverage = coverage_of(view.image);
             ++total;
             full += coverage.share > 0.999;
@@ -158,7 +158,7 @@ void check_cameras(const fs::path& path, const Dataset& dataset) {
     }
     float spread = 0;
     const Vec3 first = dataset.train.front().camera.position();
-    for (const View& view : dataset.train)
+    for (const Photograph& view : dataset.train)
         spread = std::max(spread, glm::distance(first, view.camera.position()));
     if (spread < 0.01f * glm::distance(first, dataset.centre) || spread == 0) {
         throw InputError(path.string(), "all cameras stand at one place",
@@ -194,7 +194,7 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
         if (named) mask = from.mask;
         Lens lens;
         MaskOrigin origin = MaskOrigin::none;
-        View view;
+        Photograph view;
         view.name = from.name;
         view.image = load_photograph(from, mask, options, lens, origin);
         ++origins[named ? MaskOrigin::mask_path : origin];

@@ -13,7 +13,7 @@
 namespace item3d {
 
 /// One photograph as an ideal pinhole would have taken it.
-struct View {
+struct Photograph {
     std::string name;
     /// World: +Y up, the dataset's unit of length. Near and far planes are not set.
     Camera camera;
@@ -23,8 +23,8 @@ struct View {
 
 struct Dataset {
     DatasetKind kind = DatasetKind::nerf_synthetic;
-    std::vector<View> train;
-    std::vector<View> test;  ///< held out: never optimised for
+    std::vector<Photograph> train;
+    std::vector<Photograph> test;  ///< held out: never optimised for
     /// From the dataset's own world to the one of the views: a rotation.
     Mat3 world_from_dataset{1.0f};
     std::string masks;        ///< where they came from, in words

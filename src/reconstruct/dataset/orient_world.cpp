@@ -50,11 +50,11 @@ Mat3 upright(const SourceDataset& source, const std::string& up) {
     return Mat3(glm::rotate(Mat4(1.0f), angle, glm::cross(from, to)));
 }
 
-std::pair<Vec3, float> region_seen(const std::vector<View>& views) {
+std::pair<Vec3, float> region_seen(const std::vector<Photograph>& views) {
     if (views.empty()) return {Vec3(0.0f), 1.0f};
     glm::dmat3 sum(0.0);
     glm::dvec3 right(0.0), middle(0.0);
-    for (const View& view : views) {
+    for (const Photograph& view : views) {
         const glm::dvec3 axis(-Vec3(view.camera.camera_to_world[2]));
         const glm::dvec3 eye(view.camera.position());
         // Distance to a line: the part of the way from its point that is across it.
@@ -68,12 +68,12 @@ std::pair<Vec3, float> region_seen(const std::vector<View>& views) {
         centre = Vec3(glm::inverse(sum) * right);
     } else {
         float spread = 1e-3f;
-        for (const View& view : views)
+        for (const Photograph& view : views)
             spread = std::max(spread, glm::distance(view.camera.position(), Vec3(middle)));
         centre = Vec3(middle) - spread * Vec3(views.front().camera.camera_to_world[2]);
     }
     std::vector<float> radii;
-    for (const View& view : views) {
+    for (const Photograph& view : views) {
         const float slope = std::tan(0.5f * view.camera.field_of_view_x);
         const float aspect =
             static_cast<float>(view.image.height) / static_cast<float>(view.image.width);

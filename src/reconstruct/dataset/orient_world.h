@@ -15,6 +15,6 @@ Mat3 upright(const SourceDataset& source, const std::string& up);
 /// The point nearest to the cameras' optical axes (least squares), and the radius of a sphere
 /// around it that nearly all pictures show whole. Axes that are all parallel give the point before
 /// the middle of the cameras at the distance of their spread.
-std::pair<Vec3, float> region_seen(const std::vector<View>& views);
+std::pair<Vec3, float> region_seen(const std::vector<Photograph>& views);
 
 }  // namespace item3d

@@ -46,7 +46,7 @@ void optimize_on_lattice(ShapeField& field, Appearance& appearance,
     Adam adam;
     adam.add_group({appearance.field->table()}, {.learning_rate = 0.01});
     adam.add_group(appearance.field->network_parameters(), {.learning_rate = 0.005});
-    adam.add_group({appearance.light.logarithm()}, {.learning_rate = 0.03, .beta2 = 0.999});
+    adam.add_group(appearance.light.parameters(), {.learning_rate = 0.05, .beta2 = 0.999});
     const std::size_t values = adam.add_group(
         {field.values}, {.learning_rate = options.value_learning_rate, .beta2 = 0.999});
     const std::size_t offsets = adam.add_group(
@@ -70,7 +70,9 @@ void optimize_on_lattice(ShapeField& field, Appearance& appearance,
         const torch::Tensor positions = surface_points(topology, field.values, field.vertices());
         const Geometry geometry = untextured_geometry(positions, topology.triangles);
         const TargetView& view = views[order.at(first + i)];
-        const RenderedView rendered = render_view(geometry, appearance.field, light, view);
+        const RenderedView rendered =
+            render_view(geometry, appearance.field, light, view,
+                        {.one_material = first + i < options.light_alone * options.iterations});
         const torch::Tensor background = torch::full({3}, static_cast<float>(random.uniform()));
         const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
         const torch::Tensor mask = mask_loss(rendered.image, view.image);
@@ -79,10 +81,11 @@ void optimize_on_lattice(ShapeField& field, Appearance& appearance,
                   options.iterations);
         torch::Tensor loss = picture + options.mask_weight * mask +
                              sign_change_weight * sign_change_loss(topology, field.values);
-        const float reach = 0.25f * field.marching.lattice().cell;
-        loss =
-            loss + options.smoothness_weight * smoothness_loss(appearance.field, rendered, reach,
-                                                               smoothness_points_of_shape, random);
+        const float nearest = 0.25f * field.marching.lattice().cell;
+        loss = loss + options.smoothness_weight *
+                          smoothness_loss(appearance.field, rendered, nearest, 40 * nearest,
+                                          smoothness_points_of_shape, random);
+        loss = loss + options.brightness_weight * brightness_loss(rendered);
         if (light_learns)
             loss = loss + options.whiteness_weight * appearance.light.whiteness_loss();
         loss.backward();

@@ -20,8 +20,10 @@ struct ShapeOptions {
     double mask_weight = 2.0;
     double sign_change_weight_first = 0.05, sign_change_weight_last = 0.005;
     double smoothness_weight = 0.03;
-    double whiteness_weight = 0.01;
-    int light_every = 4;
+    double whiteness_weight = 0.003;
+    double brightness_weight = 0.5;
+    double light_alone = 0.15;  ///< part of the iterations, see RefineOptions
+    int light_every = 2;
     int triangles = 20000;  ///< of the mesh that comes back, at most about
     std::uint64_t seed = 0;
 };

@@ -94,7 +94,7 @@ Image signed_distance(const Image& image) {
     return result;
 }
 
-VisualHull::VisualHull(const std::vector<View>& views) : silhouettes_(views.size()) {
+VisualHull::VisualHull(const std::vector<Photograph>& views) : silhouettes_(views.size()) {
     parallel_for(
         "signed_distance", static_cast<std::int64_t>(views.size()),
         [&](std::int64_t i) {

@@ -20,7 +20,7 @@ Image signed_distance(const Image& image);
 /// Masks as distances, to ask about many points.
 class VisualHull {
   public:
-    explicit VisualHull(const std::vector<View>& views);
+    explicit VisualHull(const std::vector<Photograph>& views);
 
     /// [P, 3] world -> [P] world units: about the signed distance to the hull, below 0 inside.
     /// In each picture a point has the distance to the outline, at the point's depth; the largest

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double final_rate = 0.1;
 constexpr std::int64_t smoothness_points = 4096;
+constexpr float farthest_smoothness = 0.15f;  ///< of the object's diagonal
 
 /// World units of a pixel of the first view at the middle of the bounds.
 float pixel_size(std::array<Vec3, 2> bounds, const TargetView& view) {
@@ -24,20 +25,17 @@ float pixel_size(std::array<Vec3, 2> bounds, const TargetView& view) {
            static_cast<float>(view.width());
 }
 
-std::array<Vec3, 2> bounds_of(const Model& model) {
-    return model.bounds();
-}
-
 double falling(double rate, int iteration, int iterations) {
     const double progress = static_cast<double>(iteration) / iterations;
     return rate * (final_rate + (1 - final_rate) * 0.5 * (1 + std::cos(pi * progress)));
 }
 
-std::optional<Occlusion> trace_occlusion(const MovableMesh& mesh, bool wanted) {
-    if (!wanted) return std::nullopt;
+/// light: none: from everywhere.
+Occlusion trace_occlusion(const MovableMesh& mesh, const TrainableLight* light) {
     const torch::NoGradGuard no_gradient;
     OcclusionOptions options;
     options.rays = 128;
+    if (light != nullptr) options.light = light->to_image();
     return Occlusion(mesh.geometry(), nullptr, options);
 }
 
@@ -70,7 +68,7 @@ RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& mode
     adam.add_group({appearance.field->table()}, {.learning_rate = options.field_learning_rate});
     adam.add_group(appearance.field->network_parameters(),
                    {.learning_rate = 0.5 * options.field_learning_rate});
-    adam.add_group({appearance.light.logarithm()},
+    adam.add_group(appearance.light.parameters(),
                    {.learning_rate = options.light_learning_rate, .beta2 = 0.999});
     if (mesh.moves()) {
         adam.add_group(
@@ -81,8 +79,11 @@ RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& mode
     for (std::size_t group = 0; group < adam.group_count(); ++group)
         rates.push_back(adam.options(group).learning_rate);
 
-    const std::optional<Occlusion> occlusion = trace_occlusion(mesh, options.ambient_occlusion);
-    const float reach = pixel_size(bounds_of(model), views.front());
+    std::optional<Occlusion> occlusion;
+    const int trace_every = std::max(1, (options.iterations + 3) / 4);
+    const auto bounds = model.bounds();
+    const float pixel = pixel_size(bounds, views.front());
+    const float farthest = farthest_smoothness * glm::length(bounds[1] - bounds[0]);
     const RegularizerWeights& weights = options.weights;
     ViewOrder order(views.size(), options.seed);
     Random random(options.seed, 0x726566696e65);
@@ -90,6 +91,8 @@ RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& mode
     Progress progress("materials and light", options.iterations);
     EnvironmentLight light;
     for (int i = 0; i < options.iterations; ++i) {
+        if (options.shadows && i % trace_every == 0)
+            occlusion = trace_occlusion(mesh, i > 0 ? &appearance.light : nullptr);
         // A prefiltered light costs as much as a view: its gradients are used once in a while.
         const bool light_learns = i % options.light_every == 0;
         if (light_learns) {
@@ -102,20 +105,21 @@ RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& mode
         const Geometry geometry = mesh.geometry();
         const RenderedView rendered =
             render_view(geometry, appearance.field, light, view,
-                        {occlusion ? &*occlusion : nullptr, options.normal_map});
+                        {.occlusion = occlusion ? &*occlusion : nullptr,
+                         .normal_map = options.normal_map,
+                         .one_material = i < options.light_alone * options.iterations});
         const torch::Tensor background = torch::full({3}, static_cast<float>(random.uniform()));
         const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
         const torch::Tensor mask = mask_loss(rendered.image, view.image);
         torch::Tensor loss = picture;
         if (rendered.surface.count() > 0) {
-            loss = loss + weights.smoothness * smoothness_loss(appearance.field, rendered, reach,
-                                                               smoothness_points, random);
+            loss = loss +
+                   weights.smoothness * smoothness_loss(appearance.field, rendered, pixel, farthest,
+                                                        smoothness_points, random) +
+                   weights.brightness * brightness_loss(rendered);
             if (options.normal_map)
                 loss = loss +
                        weights.flat_normals * (1 - rendered.material.normal.select(1, 2)).mean();
-            if (rendered.occlusion.defined())
-                loss = loss +
-                       (rendered.material.orm.select(1, 0) - rendered.occlusion).square().mean();
         }
         if (light_learns) loss = loss + weights.whiteness * appearance.light.whiteness_loss();
         if (mesh.moves()) loss = loss + weights.mask * mask + weights.crumpling * mesh.crumpling();

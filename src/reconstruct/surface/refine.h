@@ -14,19 +14,25 @@ namespace item3d {
 /// Weights of what is asked besides that renders look like the photographs.
 struct RegularizerWeights {
     double mask = 1.0;           ///< coverage
-    double smoothness = 0.03;    ///< base colour, roughness and metallic vary little
-    double whiteness = 0.01;     ///< the light has little colour
+    double smoothness = 0.05;    ///< base colour, roughness and metallic vary little
+    double whiteness = 0.003;    ///< the light has little colour
+    double brightness = 0.5;     ///< white is like paper
     double crumpling = 0.05;     ///< vertices move together
     double flat_normals = 0.01;  ///< the normal map is flat
 };
 
 struct RefineOptions {
     int iterations = 1000;
-    int light_every = 4;  ///< iterations for which a prefiltered light is used
+    int light_every = 2;  ///< iterations for which a prefiltered light is used
+    /// Part of the iterations in which the whole view has one material, so that shading is first
+    /// explained by the light.
+    double light_alone = 0.15;
     bool normal_map = true;
-    bool ambient_occlusion = true;
+    /// Light that the object itself keeps away is traced: from everywhere at first, then of the
+    /// light that was found so far, three times. Otherwise shadows end up in the base colour.
+    bool shadows = true;
     double field_learning_rate = 0.01;
-    double light_learning_rate = 0.03;
+    double light_learning_rate = 0.05;
     double vertex_learning_rate = 0.02;  ///< in mean edges
     RegularizerWeights weights;
     std::uint64_t seed = 0;
@@ -49,8 +55,7 @@ Appearance make_appearance(std::array<Vec3, 2> bounds, const std::vector<TargetV
                            std::uint64_t seed);
 
 /// Optimises the appearance and the mesh's offsets, one view an iteration in shuffled order, Adam
-/// with rates that fall to a tenth. The field's occlusion learns what is traced. Throws
-/// Interrupted.
+/// with rates that fall to a tenth. Throws Interrupted.
 RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& model,
                     const std::vector<TargetView>& views, const RefineOptions& options);
 

@@ -6,18 +6,23 @@
 
 #include <torch/types.h>
 
+#include <vector>
+
 namespace item3d {
 
 /// An equirectangular map whose texels are optimised: their logarithms, so that radiance stays
-/// above 0 and a sun of a thousand times the sky's radiance is as easily found as the sky.
+/// above 0 and a sun of a thousand times the sky's radiance is as easily found as the sky. The
+/// logarithm is a sum of maps, each of twice the size of the one before, up to `height` rows: half
+/// the sky brightens as fast as one texel does.
 class TrainableLight {
   public:
-    /// Grey of the given radiance from everywhere; `height` rows of twice as many texels.
-    explicit TrainableLight(int height = 64, float radiance = 0.5f);
+    /// Grey of the given radiance from everywhere; height: a power of two, at least 16.
+    explicit TrainableLight(int height = 64, float radiance = 0.7f);
 
-    /// The parameter: [H, 2H, 3] log radiance; requires gradients.
-    torch::Tensor& logarithm() { return logarithm_; }
-    torch::Tensor radiance() const { return logarithm_.exp(); }
+    /// [h, 2h, 3] each; they require gradients.
+    const std::vector<torch::Tensor>& parameters() const { return levels_; }
+    /// [H, 2H, 3].
+    torch::Tensor radiance() const;
     /// Differentiable, with a cube of `height` texels a side.
     EnvironmentLight prefiltered() const;
     Image to_image() const;
@@ -27,7 +32,8 @@ class TrainableLight {
     torch::Tensor whiteness_loss() const;
 
   private:
-    torch::Tensor logarithm_;
+    int height_;
+    std::vector<torch::Tensor> levels_;
     torch::Tensor solid_angle_;  ///< [H, 1, 1], sums to 1 over all texels
 };
 

@@ -3,6 +3,7 @@
 #include "item3d/evaluate/picture.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace item3d {
 
@@ -11,11 +12,17 @@ namespace {
 constexpr float roughness_weight = 1.0f;
 constexpr float metallic_weight = 1.0f;
 
-torch::Tensor random_normals(std::int64_t rows, float deviation, Random& random) {
+/// Steps in all directions, of lengths from `nearest` to `farthest`.
+torch::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random& random) {
     torch::Tensor values = torch::empty({rows, 3});
     float* out = values.data_ptr<float>();
-    for (std::int64_t i = 0; i < 3 * rows; ++i)
-        out[i] = static_cast<float>(random.normal(0, deviation));
+    for (std::int64_t i = 0; i < rows; ++i) {
+        Vec3 direction(random.normal(), random.normal(), random.normal());
+        direction *= nearest * std::pow(farthest / nearest, static_cast<float>(random.uniform())) /
+                     std::max(glm::length(direction), 1e-6f);
+        for (int c = 0; c < 3; ++c)
+            *out++ = direction[c];
+    }
     return values;
 }
 
@@ -28,10 +35,10 @@ torch::Tensor some_rows(std::int64_t rows, std::int64_t count, Random& random) {
 
 }  // namespace
 
-std::vector<TargetView> make_targets(const std::vector<View>& views, std::array<Vec3, 2> bounds,
-                                     int shrink) {
+std::vector<TargetView> make_targets(const std::vector<Photograph>& views,
+                                     std::array<Vec3, 2> bounds, int shrink) {
     std::vector<TargetView> targets;
-    for (const View& view : views) {
+    for (const Photograph& view : views) {
         TargetView target{view.name, view.camera, {}};
         fit_depth_range(target.camera, bounds);
         const Image image = shrink == 1 ? view.image
@@ -56,12 +63,14 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
     }
     result.material = field->forward(result.surface.position);
     MaterialSample shaded = result.material;
+    if (options.one_material) {
+        shaded.base_color = shaded.base_color.mean(0, true).expand_as(shaded.base_color);
+        shaded.orm = shaded.orm.mean(0, true).expand_as(shaded.orm);
+    }
     if (!options.normal_map) shaded.normal = torch::Tensor();
     torch::Tensor occlusion = torch::ones_like(shaded.orm.narrow(1, 0, 1));
-    if (options.occlusion != nullptr) {
-        result.occlusion = options.occlusion->at(result.raster, result.surface);
-        occlusion = result.occlusion.unsqueeze(1);
-    }
+    if (options.occlusion != nullptr)
+        occlusion = options.occlusion->at(result.raster, result.surface).unsqueeze(1);
     shaded.orm = torch::cat({occlusion, shaded.orm.narrow(1, 1, 2)}, 1);
     const torch::Tensor radiance = shade(result.surface, shaded, light);
     const torch::Tensor values =
@@ -91,19 +100,29 @@ torch::Tensor mask_loss(const torch::Tensor& rendered, const torch::Tensor& targ
     return (rendered.select(3, 3) - target.select(3, 3)).square().mean();
 }
 
-torch::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float reach,
-                              std::int64_t count, Random& random) {
+torch::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
+                              float farthest, std::int64_t count, Random& random) {
     const std::int64_t rows = view.surface.count();
     if (rows == 0) return torch::zeros({});
     const torch::Tensor chosen = some_rows(rows, count, random);
     const torch::Tensor positions = view.surface.position.detach().index_select(0, chosen);
     const MaterialSample beside =
-        field->forward(positions + random_normals(positions.size(0), reach, random));
+        field->forward(positions + random_steps(positions.size(0), nearest, farthest, random));
     const torch::Tensor base_color = view.material.base_color.index_select(0, chosen);
     const torch::Tensor orm = view.material.orm.index_select(0, chosen);
     const torch::Tensor change = (orm - beside.orm).abs().mean(0);
     return (linear_to_srgb(base_color) - linear_to_srgb(beside.base_color)).abs().mean() +
            roughness_weight * change[1] + metallic_weight * change[2];
+}
+
+torch::Tensor brightness_loss(const RenderedView& view) {
+    if (view.surface.count() == 0) return torch::zeros({});
+    constexpr double decile = 0.9, paper = 0.8;
+    const torch::Tensor luminance =
+        (view.material.base_color * torch::tensor({0.2126f, 0.7152f, 0.0722f})).sum(1);
+    const auto rank =
+        static_cast<std::int64_t>(decile * static_cast<double>(luminance.size(0) - 1));
+    return (std::get<0>(luminance.kthvalue(rank + 1)) - paper).square();
 }
 
 }  // namespace item3d

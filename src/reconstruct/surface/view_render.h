@@ -24,20 +24,20 @@ struct TargetView {
 };
 
 /// bounds: of the object, for the cameras' depth ranges. shrink: pictures of 1/shrink the size.
-std::vector<TargetView> make_targets(const std::vector<View>& views, std::array<Vec3, 2> bounds,
-                                     int shrink = 1);
+std::vector<TargetView> make_targets(const std::vector<Photograph>& views,
+                                     std::array<Vec3, 2> bounds, int shrink = 1);
 
 struct RenderedView {
     torch::Tensor image;  ///< [1, H, W, 4] as TargetView's, antialiased
     Raster raster;
     Surface surface;
     MaterialSample material;
-    torch::Tensor occlusion;  ///< [P]; undefined without
 };
 
 struct ViewRenderOptions {
-    const Occlusion* occlusion = nullptr;  ///< traced; darkens besides the material's own
+    const Occlusion* occlusion = nullptr;  ///< traced, in place of the material's own
     bool normal_map = false;               ///< use the field's tangent-space normals
+    bool one_material = false;  ///< the view's mean everywhere: only the light can explain shading
 };
 
 /// Differentiable in the field, the light, and the geometry's positions and normals.
@@ -56,9 +56,15 @@ torch::Tensor picture_loss(const torch::Tensor& rendered, const torch::Tensor& t
 /// Mean squared difference of coverage.
 torch::Tensor mask_loss(const torch::Tensor& rendered, const torch::Tensor& target);
 
-/// Mean change of base colour, roughness and metallic over `reach` (world units): the field looked
-/// up at up to `count` of the view's points and beside them.
-torch::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float reach,
-                              std::int64_t count, Random& random);
+/// How far apart base colour (sRGB), roughness and metallic are at up to `count` of the view's
+/// points and at places beside them, at distances from `nearest` to `farthest` (world units, even
+/// in the logarithm). Absolute values: few large steps, a print's edges, cost less than the same as
+/// many small ones, which is what shading in a base colour looks like.
+torch::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
+                              float farthest, std::int64_t count, Random& random);
+
+/// Squared distance of the ninth decile of the view's base colour (luminance) from 0.8. Light and
+/// base colour are known up to a factor: of all pairs, the one whose white is like paper.
+torch::Tensor brightness_loss(const RenderedView& view);
 
 }  // namespace item3d
