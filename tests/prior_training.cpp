@@ -3,6 +3,7 @@
 #include "item3d/models/safetensors.h"
 #include "item3d/prior/replicas.h"
 #include "item3d/prior/train.h"
+#include "item3d/prior/training_loop.h"
 #include "item3d/prior/workers.h"
 
 #include <gtest/gtest.h>

@@ -23,6 +23,9 @@ struct TrainSettings {
     std::int64_t data_samples = 120000;  ///< different pictures
     std::int64_t autoencoder_samples = 48000;
     std::int64_t autoencoder_pictures = 12000;
+    std::int64_t clip_samples = 600000;       ///< that CLIP sees, repetitions counted
+    std::int64_t captioner_samples = 600000;  ///< and the captioner
+    std::int64_t labeled_samples = 120000;    ///< different pictures for these two
     int shape_variants = 30;
     int views_each = 8;
     int lights = 320;
@@ -51,11 +54,6 @@ struct PictureData {
     torch::Tensor images;   ///< [N, 64, 64, 3] uint8 sRGB
     torch::Tensor covered;  ///< [N, 64, 64] uint8
 };
-
-/// The learning rate after `seen` of `total` pictures, as a part of the highest: a short rise, a
-/// plateau, and a linear fall over the last 30 %. A function of counts alone, so that a longer
-/// training can go on from a shorter one's plateau.
-double learning_rate_part(std::int64_t seen, std::int64_t total);
 
 AutoencoderTinyConfig prior_autoencoder_config();
 UNet2DConditionConfig prior_unet_config();
