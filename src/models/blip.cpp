@@ -1,6 +1,7 @@
 #include "item3d/models/blip.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/models/weights.h"
 
@@ -103,6 +104,35 @@ BlipConfig BlipConfig::from_config(const Config& config) {
     return result;
 }
 
+nlohmann::json BlipConfig::to_json() const {
+    const nlohmann::json text{
+        {"attention_probs_dropout_prob", 0.0},
+        {"bos_token_id", bos_token_id},
+        {"encoder_hidden_size", vision.hidden_size},
+        {"eos_token_id", sep_token_id},
+        {"hidden_act", "gelu"},
+        {"hidden_dropout_prob", 0.0},
+        {"hidden_size", hidden_size},
+        {"intermediate_size", intermediate_size},
+        {"is_decoder", true},
+        {"layer_norm_eps", layer_norm_eps},
+        {"max_position_embeddings", max_position_embeddings},
+        {"model_type", "blip_text_model"},
+        {"num_attention_heads", num_attention_heads},
+        {"num_hidden_layers", num_hidden_layers},
+        {"pad_token_id", pad_token_id},
+        {"sep_token_id", sep_token_id},
+        {"tie_word_embeddings", true},
+        {"use_cache", true},
+        {"vocab_size", vocab_size},
+    };
+    return {{"architectures", {"BlipForConditionalGeneration"}},
+            {"model_type", "blip"},
+            {"text_config", text},
+            {"tie_word_embeddings", true},
+            {"vision_config", vision.to_json()}};
+}
+
 double BlipConfig::least_parameters() const {
     const double width = hidden_size;
     return vision.least_parameters() + width * (vocab_size + max_position_embeddings) +
@@ -123,6 +153,12 @@ BlipModel load_blip(const std::filesystem::path& folder, torch::Device device, t
     load_parameters(*model, weights, device, dtype);
     model->eval();
     return model;
+}
+
+void save_blip(const std::filesystem::path& folder, const BlipModel& model, torch::Dtype dtype) {
+    write_atomically(folder / "config.json", model->config().to_json().dump(2) + "\n");
+    save_safetensors(folder / "model.safetensors", module_tensors(*model, dtype),
+                     {{"format", "pt"}});
 }
 
 namespace {

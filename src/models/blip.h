@@ -28,6 +28,7 @@ struct BlipConfig {
     int pad_token_id = 0;
 
     static BlipConfig from_config(const Config& config);
+    nlohmann::json to_json() const;
     double least_parameters() const;
 };
 
@@ -65,6 +66,10 @@ TORCH_MODULE(BlipModel);
 /// InputError.
 BlipModel load_blip(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
                     torch::Dtype dtype = torch::kFloat32);
+
+/// Writes FOLDER/config.json and FOLDER/model.safetensors, without the tied head's tensors.
+void save_blip(const std::filesystem::path& folder, const BlipModel& model,
+               torch::Dtype dtype = torch::kHalf);
 
 /// A caption for each of N pictures. prompt [N or 1, S] int64: what captions begin with,
 /// bos_token_id first. options: beams, max_new_tokens and length_penalty; the tokens are the

@@ -97,6 +97,21 @@ BlipVisionConfig BlipVisionConfig::from_config(const Config& config,
     return result;
 }
 
+nlohmann::json BlipVisionConfig::to_json() const {
+    return {
+        {"attention_dropout", 0.0},
+        {"hidden_act", "gelu"},
+        {"hidden_size", hidden_size},
+        {"image_size", image_size},
+        {"intermediate_size", intermediate_size},
+        {"layer_norm_eps", layer_norm_eps},
+        {"model_type", "blip_vision_model"},
+        {"num_attention_heads", num_attention_heads},
+        {"num_hidden_layers", num_hidden_layers},
+        {"patch_size", patch_size},
+    };
+}
+
 int BlipVisionConfig::tokens() const {
     const int side = image_size / patch_size;
     return side * side + 1;

@@ -25,6 +25,7 @@ struct BlipVisionConfig {
 
     /// Keys that are missing keep the values of `defaults`. Throws InputError.
     static BlipVisionConfig from_config(const Config& config, const BlipVisionConfig& defaults);
+    nlohmann::json to_json() const;
     int tokens() const;  ///< patches and the class token
     double least_parameters() const;
 };

@@ -1,6 +1,7 @@
 #include "item3d/models/clip_model.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/models/weights.h"
 
@@ -22,6 +23,16 @@ ClipConfig ClipConfig::from_config(const Config& config) {
     result.vision = ClipVisionConfig::from_config(config.part("vision_config"));
     result.projection_dim = config.size("projection_dim", result.projection_dim);
     return result;
+}
+
+nlohmann::json ClipConfig::to_json() const {
+    nlohmann::json text_json = text.to_json();
+    text_json.erase("architectures");
+    return {{"architectures", {"CLIPModel"}},
+            {"model_type", "clip"},
+            {"projection_dim", projection_dim},
+            {"text_config", text_json},
+            {"vision_config", vision.to_json()}};
 }
 
 ClipModelImpl::ClipModelImpl(const ClipConfig& config) : config_(config) {
@@ -58,6 +69,13 @@ ClipModel load_clip_model(const std::filesystem::path& folder, torch::Device dev
     load_parameters(*model, weights, device, dtype);
     model->eval();
     return model;
+}
+
+void save_clip_model(const std::filesystem::path& folder, const ClipModel& model,
+                     torch::Dtype dtype) {
+    write_atomically(folder / "config.json", model->config().to_json().dump(2) + "\n");
+    save_safetensors(folder / "model.safetensors", module_tensors(*model, dtype),
+                     {{"format", "pt"}});
 }
 
 Clip Clip::load(const std::filesystem::path& folder, torch::Device device, torch::Dtype dtype) {

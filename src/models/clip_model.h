@@ -22,6 +22,7 @@ struct ClipConfig {
     int projection_dim = 512;
 
     static ClipConfig from_config(const Config& config);
+    nlohmann::json to_json() const;
 };
 
 class ClipModelImpl : public torch::nn::Module {
@@ -51,6 +52,10 @@ TORCH_MODULE(ClipModel);
 /// Reads FOLDER/config.json and FOLDER/model.*. Throws InputError.
 ClipModel load_clip_model(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
                           torch::Dtype dtype = torch::kFloat32);
+
+/// Writes FOLDER/config.json and FOLDER/model.safetensors.
+void save_clip_model(const std::filesystem::path& folder, const ClipModel& model,
+                     torch::Dtype dtype = torch::kHalf);
 
 /// The model with all that pictures and sentences need on their way to it.
 class Clip {

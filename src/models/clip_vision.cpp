@@ -84,6 +84,23 @@ ClipVisionConfig ClipVisionConfig::from_config(const Config& config) {
     return result;
 }
 
+nlohmann::json ClipVisionConfig::to_json() const {
+    return {
+        {"attention_dropout", 0.0},
+        {"hidden_act", hidden_act},
+        {"hidden_size", hidden_size},
+        {"image_size", image_size},
+        {"intermediate_size", intermediate_size},
+        {"layer_norm_eps", layer_norm_eps},
+        {"model_type", "clip_vision_model"},
+        {"num_attention_heads", num_attention_heads},
+        {"num_channels", num_channels},
+        {"num_hidden_layers", num_hidden_layers},
+        {"patch_size", patch_size},
+        {"projection_dim", projection_dim},
+    };
+}
+
 int ClipVisionConfig::tokens() const {
     const int side = image_size / patch_size;
     return side * side + 1;

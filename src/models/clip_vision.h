@@ -29,6 +29,7 @@ struct ClipVisionConfig {
     int projection_dim = 512;
 
     static ClipVisionConfig from_config(const Config& config);
+    nlohmann::json to_json() const;
     int tokens() const;  ///< patches and the class token
     double least_parameters() const;
 };
