@@ -79,6 +79,7 @@ class EditTest : public ::testing::Test {
         request.output = folder_ / output;
         request.settings.from = "a red cube";
         request.settings.to = "a blue cube";
+        request.settings.fit_steps = 30;
         request.settings.iterations = iterations;
         request.settings.batch = 1;
         request.settings.resolution = 32;

@@ -74,6 +74,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     }
     if (!edits_texture(settings)) return state;
     FitOptions options;
+    options.steps = settings.fit_steps;
     options.seed = settings.seed;
     fit_to_materials(state.field, scene.geometry, *scene.space, *scene.textured, options);
     state.fitted = snapshot(state.field);

@@ -46,6 +46,7 @@ void require(bool condition, const std::string& option, const std::string& probl
 }
 
 void check(const EditSettings& settings) {
+    require(settings.fit_steps >= 1, "fit_steps", "must be 1 or more");
     require(settings.iterations >= 0, "--iterations", "must be 0 or more");
     require(settings.batch >= 1 && settings.batch <= 64, "--batch", "must be between 1 and 64");
     require(settings.resolution >= 16 && settings.resolution <= 2048, "--resolution",

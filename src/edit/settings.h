@@ -33,6 +33,7 @@ struct EditSettings : PipelineExtras {
     /// The optimisation ends where the direction has shrunk to this part of its first length, see
     /// fixed_point.h; 0: never before the last iteration.
     float settle = 0;
+    int fit_steps = 200;  ///< that make the neural texture look like the model's own materials
     int iterations = 600;
     int batch = 2;         ///< views an iteration
     int resolution = 512;  ///< pixels of the square picture that the prior sees
@@ -66,10 +67,10 @@ struct EditSettings : PipelineExtras {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     EditSettings, lora, embedding, controlnet, controlnet_scale, vae, from, to, negative_prompt,
     guidance, adjust, anchor, cfg, adjust_learning_rate, adjust_samples, adjust_every,
-    adjust_strength, settle, iterations, batch, resolution, learning_rate, metallic, metallic_start,
-    detail, detail_words, detail_views, timesteps, timestep_schedule, weighting, light, optimize,
-    light_model, light_learning_rate, light_from, light_augment, background, texture_size, keep,
-    material, seed)
+    adjust_strength, settle, fit_steps, iterations, batch, resolution, learning_rate, metallic,
+    metallic_start, detail, detail_words, detail_views, timesteps, timestep_schedule, weighting,
+    light, optimize, light_model, light_learning_rate, light_from, light_augment, background,
+    texture_size, keep, material, seed)
 
 /// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- what relighting needs, where
 /// the overrides say to optimise the light alone <- what a method was published with, where the
