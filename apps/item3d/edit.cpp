@@ -145,7 +145,7 @@ void run_edit(EditCommandOptions& options) {
             "follows");
     }
 
-    if (options.overrides.contains("adjust") && request.settings.guidance != "rdl")
+    if (options.overrides.value("adjust", "off") != "off" && request.settings.guidance != "rdl")
         warn("--adjust has no effect: only rdl has a source to adjust");
 
     const nlohmann::json summary = edit_model(request);

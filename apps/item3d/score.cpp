@@ -4,6 +4,7 @@
 #include "item3d/core/format.h"
 #include "item3d/evaluate/clip_score.h"
 #include "item3d/evaluate/model_pictures.h"
+#include "item3d/models/precision.h"
 #include "item3d/scene/environment.h"
 #include "item3d/scene/io/load.h"
 
@@ -23,6 +24,7 @@ struct ScoreCommand : CommonOptions {
     std::string to;
     std::string clip;
     std::string light = "studio";
+    std::string precision = "fp32";
     int views = 6;
 };
 
@@ -42,7 +44,7 @@ void print_table(const ClipScores& scores, const std::vector<double>& kept, doub
 
 void run_score(const ScoreCommand& options, torch::Device device) {
     const Model before = load_model(options.before), after = load_model(options.after);
-    const Clip clip = Clip::load(options.clip, device);
+    const Clip clip = Clip::load(options.clip, device, choose_precision(options.precision, device));
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
     // One set of cameras: what moved or shrank shows.
     const std::vector<Camera> cameras = picture_cameras(before, options.views);
@@ -90,6 +92,10 @@ void add_score_command(CLI::App& app) {
         ->required();
     command->add_option("--views", options->views, "Around the model, the same for both")
         ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command
+        ->add_option("--precision", options->precision,
+                     "Of the network: fp32, as the reference computes, or bf16, quicker")
         ->capture_default_str();
     command
         ->add_option("--light", options->light,

@@ -5,15 +5,19 @@
 #include "item3d/edit/field_pictures.h"
 #include "item3d/edit/optimize.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace item3d {
 namespace {
 
-constexpr int view_count = 4;  ///< captions are averaged over these
-constexpr int view_pixels = 192;
-constexpr float elevation = 0.35f;
-constexpr float field_of_view = 0.6f;
+constexpr int caption_views = 4;  ///< captions are averaged over these
+
+/// A prior of small pictures is quick, and its captions must be too; large ones show more to a
+/// captioner.
+int caption_pixels(const EditSettings& settings) {
+    return std::clamp(settings.resolution, 144, 384);
+}
 
 /// Mean over the iterations since the line before; no value where there were none.
 std::optional<double> recent_mean(const std::vector<float>& curve,
@@ -32,9 +36,7 @@ std::vector<torch::Tensor> to_bytes(const torch::Tensor& pictures) {
 }  // namespace
 
 DirectionAdjustment::DirectionAdjustment(const EditRequest& request, const EditScene& scene)
-    : settings_(request.settings),
-      scene_(scene),
-      cameras_(turntable(scene.model.bounds(), view_count, elevation, field_of_view)) {
+    : settings_(request.settings), scene_(scene), cameras_(field_cameras(scene, caption_views)) {
     if (!scene.captioner) return;
     source_.emplace(
         scene.prior, settings_.from, settings_.to,
@@ -57,8 +59,8 @@ void DirectionAdjustment::observe(EditState& state) const {
     // The first view alone where only people look.
     const std::vector<Camera> cameras(cameras_.begin(),
                                       asks ? cameras_.end() : cameras_.begin() + 1);
-    const torch::Tensor pictures =
-        draw_field(scene_, state.field, light_as_it_is(scene_, state), cameras, view_pixels);
+    const torch::Tensor pictures = draw_field(scene_, state.field, light_as_it_is(scene_, state),
+                                              cameras, caption_pixels(settings_));
 
     AdjustmentRecord record;
     record.iteration = static_cast<std::int64_t>(state.direction_length.size());
@@ -83,7 +85,7 @@ std::vector<Caption> DirectionAdjustment::follow(EditState& state,
             adjustment.captions_before = scene_.captioner->captions(
                 to_bytes(draw_field(scene_, state.fitted,
                                     state.light ? state.first_light : scene_.lights->front(),
-                                    cameras_, view_pixels)),
+                                    cameras_, caption_pixels(settings_))),
                 {});
         captions = scene_.captioner->captions(to_bytes(pictures), {});
     } catch (const Interrupted&) {

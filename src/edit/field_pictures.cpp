@@ -7,6 +7,10 @@ constexpr float background_gray = 0.75f;  ///< linear
 
 }  // namespace
 
+std::vector<Camera> field_cameras(const EditScene& scene, int count) {
+    return turntable(scene.model.bounds(), count, 0.35f, 0.6f);
+}
+
 torch::Tensor draw_field(const EditScene& scene, NeuralTexture& field,
                          const EnvironmentLight& light, const std::vector<Camera>& cameras,
                          int size) {

@@ -9,6 +9,9 @@
 
 namespace item3d {
 
+/// `count` cameras around the model, a little above it.
+std::vector<Camera> field_cameras(const EditScene& scene, int count);
+
 /// [N, size, size, 3] sRGB in [0, 1], a light grey behind. No graph.
 torch::Tensor draw_field(const EditScene& scene, NeuralTexture& field,
                          const EnvironmentLight& light, const std::vector<Camera>& cameras,

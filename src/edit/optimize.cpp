@@ -1,5 +1,6 @@
 #include "item3d/edit/optimize.h"
 
+#include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/adjustment.h"
@@ -126,7 +127,11 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
     const DirectionAdjustment adjustment(request, scene);
     const auto adjust = [&](const auto& step) {
         const double start = seconds_now();
-        step();
+        try {
+            step();
+        } catch (const Interrupted&) {  // while a caption was written
+            interrupt(request, state);
+        }
         times.adjust += seconds_now() - start;
     };
     if (state.iteration < settings.iterations) {

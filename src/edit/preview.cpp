@@ -9,15 +9,11 @@ namespace item3d {
 namespace {
 
 constexpr int picture_size = 256;
-constexpr float elevation = 0.35f;
-constexpr float field_of_view = 0.6f;
 
 }  // namespace
 
 Preview::Preview(std::filesystem::path path, const EditScene& scene)
-    : path_(std::move(path)),
-      scene_(scene),
-      cameras_(turntable(scene.model.bounds(), 3, elevation, field_of_view)) {}
+    : path_(std::move(path)), scene_(scene), cameras_(field_cameras(scene, 3)) {}
 
 void Preview::update(NeuralTexture& field, const EnvironmentLight& light) {
     if (!enabled_) return;

@@ -13,6 +13,13 @@ constexpr double seconds_between_previews = 5;
 
 }  // namespace
 
+void interrupt(const EditRequest& request, const EditState& state) {
+    save_state(request, state);
+    throw Interrupted(fmt::format("iteration {} of {} is kept; go on with: {} --resume",
+                                  state.iteration, total_iterations(request.settings),
+                                  request.command));
+}
+
 Safekeeping::Safekeeping(const EditRequest& request, const EditScene& scene)
     : request_(request),
       scene_(scene),
@@ -28,10 +35,8 @@ void Safekeeping::after_step(EditState& state, Progress& progress) {
     const std::int64_t total = total_iterations(request_.settings);
     const bool stop = interrupted() || state.iteration == request_.stop_after;
     if (stop && state.iteration < total) {
-        save_state(request_, state);
         progress.finish();
-        throw Interrupted(fmt::format("iteration {} of {} is kept; go on with: {} --resume",
-                                      state.iteration, total, request_.command));
+        interrupt(request_, state);
     }
     if (seconds_now() - checkpointed_ > seconds_between_checkpoints) {
         save_state(request_, state);

@@ -7,6 +7,9 @@
 
 namespace item3d {
 
+/// Writes the checkpoint and throws Interrupted with the command that goes on.
+[[noreturn]] void interrupt(const EditRequest& request, const EditState& state);
+
 class Safekeeping {
   public:
     Safekeeping(const EditRequest& request, const EditScene& scene);

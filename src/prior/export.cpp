@@ -51,6 +51,7 @@ nlohmann::json edit_defaults() {
             {"adjust_learning_rate", 0.06},
             {"adjust_samples", 4},
             {"iterations", 250},
+            {"settle", 0.5},
             {"batch", 1},
             {"resolution", picture_size},
             {"learning_rate", 0.005},
