@@ -17,6 +17,8 @@ namespace {
 constexpr float largest_offset = 0.45f;
 /// Values beyond this are as far inside or outside as can be.
 constexpr float largest_value = 3.0f;
+/// Fine enough that the hull's own outlines show, whatever lattice the shape is looked for on.
+constexpr int hull_check_cells = 64;
 constexpr std::int64_t smoothness_points_of_shape = 2048;
 
 /// The signed field on one lattice: what is optimised.
@@ -157,7 +159,9 @@ Shape find_shape(const Dataset& dataset, const VisualHull& hull, std::array<Vec3
     const std::vector<TargetView> views = make_targets(dataset.train, box);
     auto field =
         std::make_unique<ShapeField>(lattice, hull.distance(lattice.vertices()) / lattice.cell);
-    shape.hull_overlap = mask_overlap(marched(*field), views);
+    const Lattice fine = make_lattice(bounds, hull_check_cells);
+    ShapeField hull_field(fine, hull.distance(fine.vertices()) / fine.cell);
+    shape.hull_overlap = mask_overlap(marched(hull_field), views);
 
     Progress progress("shape", options.iterations);
     const auto levels = static_cast<int>(options.cells.size());
