@@ -7,6 +7,7 @@
 #include "item3d/hub/find_prior.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/train.h"
+#include "item3d/prior/vision_language.h"
 #include "item3d/prior/vocabulary.h"
 #include "item3d/scene/io/save.h"
 #include "prior_commands.h"
@@ -18,7 +19,16 @@ struct TrainOptions : CommonOptions {
     TrainSettings settings;
     std::string output;
     std::string work;
+    std::string part = "all";
 };
+
+void run_train(const TrainOptions& options) {
+    const bool all = options.part == "all";
+    if (all || options.part == "diffusion") train_prior(options.settings);
+    if (all || options.part != "diffusion")
+        train_vision_language(options.settings, all || options.part == "clip",
+                              all || options.part == "captioner");
+}
 
 void add_train(CLI::App& app) {
     auto options = std::make_shared<TrainOptions>();
@@ -28,6 +38,27 @@ void add_train(CLI::App& app) {
     command->add_option("-o,--output", options->output, "Folder to write the prior to")->required();
     command->add_option("--work", options->work,
                         "Folder for data and checkpoints; without it, work/ in the output folder");
+    command
+        ->add_option("--part", options->part,
+                     "What to train: diffusion (autoencoder, text encoder and U-Net), clip, "
+                     "captioner, or all")
+        ->check(CLI::IsMember({"all", "diffusion", "clip", "captioner"}))
+        ->capture_default_str();
+    command
+        ->add_option("--clip-samples", settings.clip_samples,
+                     "Pictures that CLIP learns from, repetitions counted")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command
+        ->add_option("--captioner-samples", settings.captioner_samples,
+                     "Pictures that the captioner learns from, repetitions counted")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command
+        ->add_option("--labeled-data", settings.labeled_samples,
+                     "Different pictures for CLIP and the captioner")
+        ->check(CLI::Range(256, 10000000))
+        ->capture_default_str();
     command
         ->add_option("--samples", settings.samples, "Pictures to learn from, repetitions counted")
         ->check(CLI::PositiveNumber)
@@ -54,7 +85,9 @@ void add_train(CLI::App& app) {
     command->add_option("--lights", settings.lights, "Different lights")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    command->add_option("--batch", settings.batch, "Pictures a step and replica")
+    command
+        ->add_option("--batch", settings.batch,
+                     "Pictures a step and replica that the U-Net learns from")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
     command
@@ -73,7 +106,7 @@ void add_train(CLI::App& app) {
         options->settings.output = options->output;
         options->settings.work = options->work.empty() ? options->settings.output / "work"
                                                        : std::filesystem::path(options->work);
-        train_prior(options->settings);
+        run_train(*options);
     });
 }
 
@@ -141,6 +174,21 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
         fmt::print("trained on {} pictures in {}, loss {:.3f}, autoencoder {:.1f} dB\n",
                    train.value("samples", 0), format_duration(train.value("seconds", 0.0)),
                    train.value("loss", 0.0), train.value("psnr", 0.0));
+    }
+    const auto part = [](const nlohmann::json& from, const char* name) {
+        return 100 * from.value(name, 0.0);
+    };
+    if (prior.contains("clip") && prior["clip"].contains("retrieval")) {
+        const auto& found = prior["clip"]["retrieval"];
+        fmt::print("clip: finds the right one of {} captions for {:.0f} % of held-out pictures\n",
+                   found.value("candidates", 0), part(found, "picture_to_caption"));
+    }
+    if (prior.contains("captioner") && prior["captioner"].contains("captions")) {
+        const auto& named = prior["captioner"]["captions"];
+        fmt::print(
+            "captioner: names the object of {:.0f} %, the material of {:.0f} %, one of them "
+            "of {:.0f} %\n",
+            part(named, "object"), part(named, "material"), part(named, "object_or_material"));
     }
     if (kinds.empty()) fmt::print("not measured: see `item3d prior measure`\n");
     for (const std::string& kind : kinds) {

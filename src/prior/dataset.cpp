@@ -132,6 +132,7 @@ Example draw_example(Random& random, const View& view, const std::vector<Trainin
     example.depth = mirrored ? view.depth.flip(2) : view.depth;
     const ShapeClass& shape = shape_classes()[static_cast<std::size_t>(view.shape_class)];
     example.caption = make_caption(random, shape.nouns, material.phrases, light.phrases);
+    example.facts = facts_of(shape, material, light);
     example.material = material.kind;
     example.light = light.kind;
     return example;

@@ -1,6 +1,7 @@
 // Training pairs: a random material and light on a random view, with its caption.
 #pragma once
 
+#include "item3d/prior/facts.h"
 #include "item3d/prior/lights.h"
 #include "item3d/prior/materials.h"
 #include "item3d/prior/views.h"
@@ -20,6 +21,7 @@ struct Example {
     torch::Tensor
         covered;  ///< [picture_size, picture_size] float32, part of the pixel that is object
     std::string caption;
+    PictureFacts facts;
     std::string material;  ///< ProceduralMaterial::kind
     std::string light;     ///< TrainingLight::kind
 };

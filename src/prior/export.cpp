@@ -72,17 +72,22 @@ void export_diffusion(const fs::path& folder, const UNet2DCondition& unet,
     save_unet(folder / "unet", unet);
     save_clip_text(folder / "text_encoder", text);
 
+    update_prior_json(folder, {{"name", "item3d embedded prior"},
+                               {"resolution", picture_size},
+                               {"train", train},
+                               {"defaults", edit_defaults()},
+                               // Stronger guidance burns the small prior's colours out.
+                               {"generate", {{"steps", 30}, {"guidance_scale", 3.5}}}});
+}
+
+nlohmann::json update_prior_json(const fs::path& folder, const nlohmann::json& members) {
+    const fs::path file = folder / "prior.json";
     nlohmann::json prior = nlohmann::json::object();
-    if (fs::exists(folder / "prior.json"))
-        prior = nlohmann::json::parse(read_text(folder / "prior.json"), nullptr, false);
+    if (fs::exists(file)) prior = nlohmann::json::parse(read_text(file), nullptr, false);
     if (!prior.is_object()) prior = nlohmann::json::object();
-    prior["name"] = "item3d embedded prior";
-    prior["resolution"] = picture_size;
-    prior["train"] = train;
-    prior["defaults"] = edit_defaults();
-    // Stronger guidance burns the small prior's colours out.
-    prior["generate"] = {{"steps", 30}, {"guidance_scale", 3.5}};
-    write_json(folder / "prior.json", prior);
+    prior.update(members);
+    write_json(file, prior);
+    return prior;
 }
 
 }  // namespace item3d

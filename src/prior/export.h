@@ -21,4 +21,9 @@ void export_autoencoder(const std::filesystem::path& folder, const AutoencoderTi
 void export_diffusion(const std::filesystem::path& folder, const UNet2DCondition& unet,
                       const ClipTextModel& text, const nlohmann::json& train);
 
+/// Puts these members into the folder's prior.json, which is made if there is none; others are
+/// kept. Returns what it then holds.
+nlohmann::json update_prior_json(const std::filesystem::path& folder,
+                                 const nlohmann::json& members);
+
 }  // namespace item3d

@@ -5,7 +5,6 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/models/safetensors.h"
-#include "item3d/prior/captions.h"
 #include "item3d/prior/classifier.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/replicas.h"
@@ -194,17 +193,19 @@ Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) 
 
 }  // namespace
 
+std::vector<WordCount> prior_words(const TrainSettings& settings) {
+    return caption_vocabulary(seed_of(settings, vocabulary_stream));
+}
+
 void train_prior(const TrainSettings& settings) {
     keep_freed_memory();
     make_output_folder(settings.output);
     open_work_folder(settings);
     // Token numbers are rows of the text encoder: what is gone on with keeps them.
     const fs::path tokens = settings.output / "tokenizer";
-    const ClipTokenizer tokenizer =
-        settings.resume && fs::exists(tokens / "vocab.json")
-            ? ClipTokenizer::load(tokens)
-            : train_tokenizer(caption_vocabulary(seed_of(settings, vocabulary_stream)),
-                              text_length);
+    const ClipTokenizer tokenizer = settings.resume && fs::exists(tokens / "vocab.json")
+                                        ? ClipTokenizer::load(tokens)
+                                        : train_tokenizer(prior_words(settings), text_length);
     const bool prepared_before = settings.resume && fs::exists(settings.work / "data.safetensors");
     const Prepared prepared =
         prepared_before ? read_prepared(settings) : prepare(settings, tokenizer);
@@ -218,19 +219,13 @@ nlohmann::json write_measurement(const fs::path& folder, int threads) {
     const Pipeline pipeline = Pipeline::load(folder);
     MeasureOptions options;
     options.threads = threads;
-    const nlohmann::json measured = measure_prior(pipeline, options);
-    nlohmann::json prior = nlohmann::json::object();
-    if (fs::exists(folder / "prior.json"))
-        prior = nlohmann::json::parse(read_text(folder / "prior.json"), nullptr, false);
-    if (!prior.is_object()) prior = nlohmann::json::object();
-    prior.update(measured);
+    nlohmann::json measured = measure_prior(pipeline, options);
     std::vector<std::string> words;
     for (const WordCount& word : caption_vocabulary(1))
         words.push_back(word.word);
     std::sort(words.begin(), words.end());
-    prior["words"] = words;
-    write_atomically(folder / "prior.json", prior.dump(2) + "\n");
-    return prior;
+    measured["words"] = words;
+    return update_prior_json(folder, measured);
 }
 
 }  // namespace item3d

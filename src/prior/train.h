@@ -4,6 +4,7 @@
 #include "item3d/models/autoencoder.h"
 #include "item3d/models/clip_text.h"
 #include "item3d/models/unet.h"
+#include "item3d/prior/captions.h"
 #include "item3d/prior/dataset.h"
 
 #include <nlohmann/json.hpp>
@@ -23,9 +24,9 @@ struct TrainSettings {
     std::int64_t data_samples = 120000;  ///< different pictures
     std::int64_t autoencoder_samples = 48000;
     std::int64_t autoencoder_pictures = 12000;
-    std::int64_t clip_samples = 600000;       ///< that CLIP sees, repetitions counted
-    std::int64_t captioner_samples = 600000;  ///< and the captioner
-    std::int64_t labeled_samples = 120000;    ///< different pictures for these two
+    std::int64_t clip_samples = 240000;       ///< that CLIP sees, repetitions counted
+    std::int64_t captioner_samples = 420000;  ///< and the captioner
+    std::int64_t labeled_samples = 60000;     ///< different pictures for these two
     int shape_variants = 30;
     int views_each = 8;
     int lights = 320;
@@ -38,6 +39,9 @@ struct TrainSettings {
     double checkpoint_seconds = 120;
     double export_seconds = 600;
 };
+
+/// The words that all tokenizers are made of.
+std::vector<WordCount> prior_words(const TrainSettings& settings);
 
 /// What the U-Net learns from, encoded. N rows.
 struct LatentData {

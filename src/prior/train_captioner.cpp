@@ -1,0 +1,145 @@
+#include "item3d/core/files.h"
+#include "item3d/core/random.h"
+#include "item3d/models/caption_tokenizer.h"
+#include "item3d/prior/captions.h"
+#include "item3d/prior/export.h"
+#include "item3d/prior/replicas.h"
+#include "item3d/prior/training_loop.h"
+#include "item3d/prior/vision_language.h"
+
+#include <algorithm>
+
+namespace item3d {
+namespace {
+
+constexpr int captioner_batch = 32;
+/// What a vocabulary begins with; their places are their ids.
+constexpr const char* special_tokens[] = {"[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]"};
+constexpr int pad_id = 0, begin_id = 2, end_id = 3;
+
+void write_tokenizer(const std::filesystem::path& folder, const std::vector<WordCount>& words) {
+    std::string lines;
+    for (const char* token : special_tokens)
+        lines += std::string(token) + "\n";
+    for (const WordCount& word : words)
+        lines += word.word + "\n";
+    write_atomically(folder / "vocab.txt", lines);
+    const nlohmann::json config{{"tokenizer_class", "BertTokenizer"},
+                                {"do_lower_case", true},
+                                {"model_max_length", text_length},
+                                {"unk_token", "[UNK]"},
+                                {"cls_token", "[CLS]"},
+                                {"sep_token", "[SEP]"},
+                                {"pad_token", "[PAD]"},
+                                {"mask_token", "[MASK]"}};
+    write_atomically(folder / "tokenizer_config.json", config.dump(2) + "\n");
+}
+
+BlipModel make_captioner(const TrainSettings& settings, const BlipConfig& config) {
+    torch::manual_seed(static_cast<std::int64_t>(settings.seed) + 3);
+    BlipModel model(config);
+    const torch::NoGradGuard no_grad;
+    for (auto& item : model->named_parameters()) {
+        const auto is = [&](const char* part) {
+            return item.key().find(part) != std::string::npos;
+        };
+        if (is("_embedding")) item.value().normal_(0, .05);
+        if (item.key() == "text_decoder.cls.predictions.bias") item.value().zero_();
+    }
+    return model;
+}
+
+/// Cross-entropy of each next word of the plain caption.
+torch::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
+                           const BertTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
+                           Random random) {
+    std::vector<std::vector<int>> texts;
+    std::size_t longest = 0;
+    for (const std::int64_t row : rows) {
+        const Claim claim = plain_claim(data.facts[static_cast<std::size_t>(row)]);
+        texts.push_back(tokenizer.encode(claim.text(draw_frame(random))));
+        longest = std::max(longest, texts.back().size());
+    }
+    constexpr std::int64_t ignored = -100;
+    const auto count = static_cast<std::int64_t>(rows.size());
+    const auto length = static_cast<std::int64_t>(longest) - 1;
+    torch::Tensor tokens = torch::full({count, length}, pad_id, torch::kInt64);
+    torch::Tensor next = torch::full({count, length}, ignored, torch::kInt64);
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+        auto* token = tokens[static_cast<std::int64_t>(i)].data_ptr<std::int64_t>();
+        auto* target = next[static_cast<std::int64_t>(i)].data_ptr<std::int64_t>();
+        for (std::size_t k = 0; k + 1 < texts[i].size(); ++k) {
+            token[k] = texts[i][k];
+            target[k] = texts[i][k + 1];
+        }
+    }
+    torch::Tensor logits;
+    {
+        const Autocast autocast;
+        const torch::Tensor image = model->image_embeds(augment(data.pixel_values(rows), random));
+        // A token sees those before it alone, so padding behind a text needs no mask.
+        const torch::Tensor states =
+            model->decode(tokens, torch::ones_like(tokens), model->read_image(image));
+        logits = model->logits(states);
+    }
+    return torch::cross_entropy_loss(logits.to(torch::kFloat32).flatten(0, 1), next.flatten(), {},
+                                     at::Reduction::Mean, ignored);
+}
+
+}  // namespace
+
+BlipConfig prior_captioner_config(int words) {
+    BlipConfig config;
+    config.vision.hidden_size = 128;
+    config.vision.intermediate_size = 512;
+    config.vision.num_hidden_layers = 5;
+    config.vision.num_attention_heads = 4;
+    config.vision.image_size = read_size;
+    config.vision.patch_size = read_patch;
+    config.vocab_size = words + static_cast<int>(std::size(special_tokens));
+    config.hidden_size = 128;
+    config.intermediate_size = 512;
+    config.num_hidden_layers = 2;
+    config.num_attention_heads = 4;
+    config.max_position_embeddings = 64;
+    config.bos_token_id = begin_id;
+    config.sep_token_id = end_id;
+    config.pad_token_id = pad_id;
+    return config;
+}
+
+nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings& settings,
+                               const std::vector<WordCount>& words, const BlipConfig& config) {
+    const auto folder = settings.output / captioner_folder;
+    make_output_folder(folder);
+    write_tokenizer(folder, words);
+    write_preprocessor(folder, "BlipImageProcessor");
+    const BertTokenizer tokenizer = BertTokenizer::load(folder);
+
+    std::vector<LoopReplica> replicas;
+    for (int rank = 0; rank < settings.replicas; ++rank) {
+        const BlipModel model = make_captioner(settings, config);
+        replicas.push_back({{model.ptr()}, [&, model, rank](const auto& rows, auto step) {
+                                const Random random(settings.seed,
+                                                    0xb11900 + static_cast<std::uint64_t>(rank),
+                                                    static_cast<std::uint64_t>(step) * 65536);
+                                return caption_loss(model, data, tokenizer, rows, random);
+                            }});
+    }
+    LoopOptions options =
+        vision_language_loop("captioner", settings, settings.captioner_samples, data);
+    options.batch = captioner_batch;
+    TrainingLoop loop(options, std::move(replicas));
+
+    const BlipModel exported = make_captioner(settings, config);
+    FlatModel flat({exported.ptr()});
+    nlohmann::json train;
+    loop.run([&](const torch::Tensor& average, const LoopRecord& record) {
+        flat.values.copy_(average);
+        save_blip(folder, exported);
+        train = loop_summary(record, loop.parameters(), settings);
+    });
+    return train;
+}
+
+}  // namespace item3d

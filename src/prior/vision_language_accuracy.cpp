@@ -1,0 +1,119 @@
+#include "item3d/prior/vision_language_accuracy.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+#include "item3d/prior/shapes.h"
+#include "item3d/prior/workers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace item3d {
+namespace {
+
+double rounded(double part) {
+    return std::round(part * 10000) / 10000;
+}
+
+/// Rows of pictures none of whose captions is true of another; the search begins at `next`, which
+/// is moved on. Fewer than `count` where the pictures end.
+std::vector<std::int64_t> distinct_pictures(const LabeledPictures& pictures, std::int64_t& next,
+                                            int count) {
+    std::vector<std::int64_t> rows;
+    for (; next < pictures.count() && static_cast<int>(rows.size()) < count; ++next) {
+        const PictureFacts& facts = pictures.facts[static_cast<std::size_t>(next)];
+        const Claim claim = plain_claim(facts);
+        const bool clashes = std::any_of(rows.begin(), rows.end(), [&](std::int64_t row) {
+            const PictureFacts& other = pictures.facts[static_cast<std::size_t>(row)];
+            return holds(claim, other) || holds(plain_claim(other), facts);
+        });
+        if (!clashes) rows.push_back(next);
+    }
+    return rows;
+}
+
+}  // namespace
+
+LabeledPictures draw_held_out(std::uint64_t seed, std::int64_t count, int views_each, int lights,
+                              int threads) {
+    std::vector<TrainingLight> all_lights =
+        make_training_lights(mix_bits(seed + 1), lights, threads);
+    const ExampleSource source(make_view_pool(true, shape_variants - training_variants, views_each,
+                                              mix_bits(seed + 2), threads),
+                               std::move(all_lights), mix_bits(seed + 3));
+    LabeledPictures pictures = draw_labeled(source, count, threads);
+    if (interrupted()) throw Interrupted("the held-out pictures were not finished");
+    return pictures;
+}
+
+RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledPictures& pictures,
+                                    int candidates) {
+    const torch::NoGradGuard no_grad;
+    RetrievalAccuracy result;
+    result.candidates = candidates;
+    const torch::Tensor own = torch::arange(candidates);
+    std::int64_t next = 0;
+    for (;;) {
+        const std::vector<std::int64_t> rows = distinct_pictures(pictures, next, candidates);
+        if (static_cast<int>(rows.size()) < candidates) break;
+        std::vector<std::string> captions;
+        for (const std::int64_t row : rows)
+            captions.push_back(plain_claim(pictures.facts[static_cast<std::size_t>(row)]).text());
+        const torch::Tensor images = pictures.pixel_values(rows) * .5 + .5;
+        const torch::Tensor cosines =
+            clip.embed_images(images).mm(clip.embed_texts(captions).t()).cpu();
+        const auto right = [&](std::int64_t dimension) {
+            return cosines.argmax(dimension).eq(own).to(torch::kFloat64).mean().item<double>();
+        };
+        result.picture_to_caption += right(1);
+        result.caption_to_picture += right(0);
+        ++result.rounds;
+    }
+    if (result.rounds == 0)
+        throw InputError("retrieval", "there are too few different pictures for one round");
+    result.picture_to_caption /= result.rounds;
+    result.caption_to_picture /= result.rounds;
+    return result;
+}
+
+CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledPictures& pictures,
+                                 int threads) {
+    CaptionAccuracy result;
+    result.pictures = pictures.count();
+    std::mutex mutex;
+    std::int64_t done = 0;
+    Progress progress("captions", result.pictures);
+    run_workers(result.pictures, threads, [&](std::int64_t i) {
+        const CaptionVerdict verdict = judge_caption(captioner.caption(pictures.images[i], {}),
+                                                     pictures.facts[static_cast<std::size_t>(i)]);
+        const std::lock_guard lock(mutex);
+        result.object += verdict.object;
+        result.material += verdict.material;
+        result.object_or_material += verdict.object || verdict.material;
+        result.both += verdict.object && verdict.material;
+        progress.update(++done);
+    });
+    if (interrupted()) throw Interrupted("the captions were not finished");
+    for (double* part :
+         {&result.object, &result.material, &result.object_or_material, &result.both})
+        *part /= static_cast<double>(std::max<std::int64_t>(result.pictures, 1));
+    return result;
+}
+
+void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy) {
+    json = {{"rounds", accuracy.rounds},
+            {"candidates", accuracy.candidates},
+            {"picture_to_caption", rounded(accuracy.picture_to_caption)},
+            {"caption_to_picture", rounded(accuracy.caption_to_picture)}};
+}
+
+void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy) {
+    json = {{"pictures", accuracy.pictures},
+            {"object", rounded(accuracy.object)},
+            {"material", rounded(accuracy.material)},
+            {"object_or_material", rounded(accuracy.object_or_material)},
+            {"both", rounded(accuracy.both)}};
+}
+
+}  // namespace item3d
