@@ -112,6 +112,7 @@ TEST_F(HubFolders, FindsPriorsByEachKindOfName) {
     EXPECT_EQ(find_prior(""), "/assets/prior");
     EXPECT_EQ(find_prior("embedded"), "/assets/prior");
     EXPECT_EQ(find_prior(folder.path.string()), folder.path);
+    EXPECT_EQ(find_in_prior(folder.path, "clip"), "");
 
     const fs::path installed = installed_priors_folder() / "mine";
     EXPECT_EQ(installed, folder.path / "home/.local/share/item3d/priors/mine");

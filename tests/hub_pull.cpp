@@ -97,6 +97,22 @@ TEST_F(HubPull, BringsWhatIsNeededAndNothingElse) {
     EXPECT_EQ(hub.downloads_of(unet), 1);
 }
 
+TEST_F(HubPull, BringsThePriorsOwnClipAndCaptioner) {
+    for (const char* path : {"clip/config.json", "clip/preprocessor_config.json",
+                             "captioner/config.json", "captioner/vocab.txt"})
+        hub.add(path, "{}");
+    hub.add_large("clip/model.safetensors", noise_bytes(3000, 4));
+    hub.add_large("captioner/model.safetensors", noise_bytes(4000, 5));
+    const auto fetched = [&](const char* path) { return fs::exists(pull(request).folder / path); };
+    // Without prior.json they are somebody else's.
+    EXPECT_FALSE(fetched("clip/config.json"));
+    fs::remove_all(request.cache);
+    hub.add("prior.json", "{}");
+    for (const char* path : {"clip/model.safetensors", "clip/preprocessor_config.json",
+                             "captioner/model.safetensors", "captioner/vocab.txt"})
+        EXPECT_TRUE(fetched(path)) << path;
+}
+
 TEST_F(HubPull, ACommitNeedsNoReference) {
     request.revision = FakeHub::commit;
     EXPECT_TRUE(fs::exists(pull(request).folder / "model_index.json"));

@@ -42,6 +42,19 @@ class Verify : public ::testing::Test {
     TemporaryFolder folder_;
 };
 
+TEST_F(Verify, NetworksBesideThePipelineAreReadToo) {
+    fs::copy(fixture("blip"), prior() / "captioner", fs::copy_options::recursive);
+    const PriorReport report = verify_prior(prior());
+    EXPECT_TRUE(report.usable()) << report.problems.front();
+    ASSERT_EQ(report.parts.size(), 6u);
+    EXPECT_EQ(report.parts.back().name, "captioner");
+    EXPECT_EQ(report.parts.back().class_name, "BlipForConditionalGeneration");
+    EXPECT_GT(report.parts.back().parameters, 1000);
+
+    fs::remove(prior() / "captioner" / "vocab.txt");
+    expect_problem("captioner/vocab.txt");
+}
+
 TEST_F(Verify, CountsWhatLoadingFinds) {
     const PriorReport report = verify_prior(prior());
     EXPECT_TRUE(report.usable());

@@ -27,18 +27,32 @@ bool is_pickle(const std::string& path) {
 /// Files directly in a part's folder that are neither weights nor their indexes.
 bool is_description(const std::string& name) {
     return (name.ends_with(".json") && name.find(".index") == std::string::npos) ||
-           name == "merges.txt";
+           name == "merges.txt" || name == "vocab.txt";
 }
 
 /// The stem of a network's weights; "" for parts without any.
 std::string weights_stem(const std::string& part) {
     if (part == "unet" || part == "vae") return "diffusion_pytorch_model";
-    if (part.starts_with("text_encoder")) return "model";
+    if (part.starts_with("text_encoder") || part == "clip" || part == "captioner") return "model";
     return "";
 }
 
-constexpr const char* used_parts[] = {
-    "scheduler", "text_encoder", "text_encoder_2", "tokenizer", "tokenizer_2", "unet", "vae"};
+constexpr const char* used_parts[] = {"scheduler", "text_encoder", "text_encoder_2",
+                                      "tokenizer", "tokenizer_2",  "unet",
+                                      "vae",       "clip",         "captioner"};
+
+/// Whether model_index.json names a class for the part.
+bool is_named(const nlohmann::json& index, const std::string& part) {
+    const auto entry = index.find(part);
+    return entry != index.end() && entry->is_array() && entry->size() == 2 &&
+           (*entry)[1].is_string();
+}
+
+/// What priors of item3d have beside the pipeline: diffusers would not know it in model_index.json.
+bool stands_beside(const std::string& part, const Paths& files) {
+    return (part == "clip" || part == "captioner") && contains(files, "prior.json") &&
+           contains(files, part + "/config.json");
+}
 
 /// Adds the weights of one variant; false when there are none.
 bool add_weights(const std::string& stem, const std::string& variant, const Paths& files,
@@ -103,10 +117,7 @@ FileSelection select_files(const std::string& repository, const std::string& mod
     if (contains(files, "prior.json")) selection.files.push_back("prior.json");
     bool has_network = false, has_variant = false;
     for (const std::string part : used_parts) {
-        const auto entry = index.find(part);
-        if (entry == index.end() || !entry->is_array() || entry->size() != 2 ||
-            !(*entry)[1].is_string())
-            continue;
+        if (!is_named(index, part) && !stands_beside(part, files)) continue;
         for (const std::string& path : files)
             if (path.starts_with(part + "/") && is_description(path.substr(part.size() + 1)) &&
                 path.find('/', part.size() + 1) == std::string::npos)

@@ -3,6 +3,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/models/autoencoder.h"
+#include "item3d/models/captioner.h"
+#include "item3d/models/clip_model.h"
 #include "item3d/models/clip_text.h"
 #include "item3d/models/clip_tokenizer.h"
 #include "item3d/models/noise_schedule.h"
@@ -110,6 +112,8 @@ class Verification {
     PriorReport run() {
         for (const KnownPart& known : known_parts)
             look_at(known);
+        look_beside("clip");
+        look_beside("captioner");
         attempt([&] { check_fit(); });
         if (report_.usable()) add_memory();
         return std::move(report_);
@@ -175,11 +179,34 @@ class Verification {
         }
     }
 
+    /// A network for scores or captions, which model_index.json does not name.
+    void look_beside(const std::string& name) {
+        const fs::path folder = folder_ / name;
+        if (!fs::exists(folder / "config.json")) return;
+        PartReport part;
+        part.name = name;
+        attempt([&] {
+            const auto classes = Config::read(folder / "config.json").texts("architectures", {});
+            if (!classes.empty()) part.class_name = classes.front();
+            if (name == "clip")
+                Clip::load(folder, torch::kMeta);
+            else
+                load_captioner(folder, torch::kMeta);
+            part.parameters = describe_weights(part).total_elements();
+        });
+        report_.parts.push_back(std::move(part));
+    }
+
     void describe_weights(PartReport& part, const torch::nn::Module& module) {
         part.parameters = count_parameters(module);
+        describe_weights(part);
+    }
+
+    /// All but the number of parameters.
+    Weights describe_weights(PartReport& part) {
         const char* stem =
-            part.name.starts_with("text_encoder") ? "model" : "diffusion_pytorch_model";
-        const Weights weights = Weights::open(folder_ / part.name, stem);
+            part.name == "unet" || part.name == "vae" ? "diffusion_pytorch_model" : "model";
+        Weights weights = Weights::open(folder_ / part.name, stem);
         std::set<std::string> types;
         for (const std::string& name : weights.names()) {
             const TensorInfo info = weights.info(name);
@@ -190,6 +217,7 @@ class Verification {
             part.file_bytes += bytes;
         }
         part.stored_as = fmt::format("{}", fmt::join(types, ", "));
+        return weights;
     }
 
     /// Parts that are right by themselves and of different models.
@@ -240,6 +268,7 @@ class Verification {
             MemoryReport memory;
             memory.precision = name;
             for (const PartReport& part : report_.parts) {
+                if (part.name == "clip" || part.name == "captioner") continue;  // loaded on demand
                 const bool text = part.name.starts_with("text");
                 const std::uint64_t bytes = static_cast<std::uint64_t>(part.parameters) *
                                             static_cast<std::uint64_t>(text ? 4 : size);
