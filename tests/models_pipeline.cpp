@@ -230,7 +230,7 @@ TEST(Pipeline, KnowsItsPromptsAfterTheEncodersAreFreed) {
     Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
     const torch::Tensor duck = pipeline.encode_text({"a duck"}).states,
                         none = pipeline.encode_no_text().states;
-    pipeline.free_text_encoders({"a duck", "a golden duck"});
+    pipeline.keep_what_runs({"a duck", "a golden duck"});
     EXPECT_EQ(pipeline.text_encoder->parameters()[0].numel(), 0);
     EXPECT_TRUE(pipeline.encode_text({"a duck"}).states.equal(duck));
     EXPECT_TRUE(pipeline.encode_no_text().states.equal(none));

@@ -42,7 +42,9 @@ void run(const BenchGuidanceCommand& options, torch::Device device) {
     GuidanceOptions guidance_options;
     guidance_options.method = options.method;
     guidance_options.adjust = options.adjust;
-    const auto guidance = make_guidance(prior, "a red mug", "a golden mug", guidance_options);
+    const std::string from = "a red mug", to = "a golden mug";
+    prior->keep_what_runs({from, to, default_negative_prompt()});  // as an edit does
+    const auto guidance = make_guidance(prior, from, to, guidance_options);
     const int size =
         options.size > 0 ? options.size : prior->unet->config().sample_size * prior->downscale();
     const torch::Tensor images =

@@ -57,12 +57,10 @@ EditScene load_scene(const EditRequest& request) {
     scene.prior =
         std::make_shared<Pipeline>(Pipeline::load(request.prior, device, scene.precision));
     apply_extras(*scene.prior, settings);
-    if (low_memory) {
-        scene.prior->vae->recompute_in_backward(true);
-        if (!scene.captioner)  // whose sentences are not known yet
-            scene.prior->free_text_encoders(
-                {settings.from, settings.to, settings.negative_prompt, default_negative_prompt()});
-    }
+    if (low_memory) scene.prior->vae->recompute_in_backward(true);
+    if (!scene.captioner)  // whose sentences are not known yet
+        scene.prior->keep_what_runs(
+            {settings.from, settings.to, settings.negative_prompt, default_negative_prompt()});
     return scene;
 }
 

@@ -1,5 +1,6 @@
 #include "item3d/core/error.h"
 #include "item3d/models/autoencoder.h"
+#include "item3d/models/group_norm.h"
 #include "item3d/models/recompute.h"
 #include "item3d/models/unet_blocks.h"
 #include "item3d/models/weights.h"
@@ -30,7 +31,7 @@ class AutoencoderKL::PixelAttention : public AttentionLayerImpl {
                 nn::GroupNormOptions(config.norm_num_groups, channels).eps(norm_epsilon)));
     }
     torch::Tensor over_pixels(const torch::Tensor& x) {
-        const auto tokens = norm_(x).flatten(2).transpose(1, 2);
+        const auto tokens = group_norm(norm_, x).flatten(2).transpose(1, 2);
         return x + forward(tokens).transpose(1, 2).reshape(x.sizes());
     }
 
@@ -107,7 +108,7 @@ class AutoencoderKL::Encoder : public nn::Module {
                         : block(x);
             if (level.down) x = level.down(x);
         }
-        return conv_out_(torch::silu(conv_norm_out_(mid_block_->forward(x))));
+        return conv_out_(group_norm(conv_norm_out_, mid_block_->forward(x), Activation::silu));
     }
 
     bool recompute = false;  ///< see recompute.h
@@ -164,7 +165,7 @@ class AutoencoderKL::Decoder : public nn::Module {
                 x = block(x);
             if (level.up) x = level.up(x, 2 * x.size(2), 2 * x.size(3));
         }
-        return conv_out_(torch::silu(conv_norm_out_(x)));
+        return conv_out_(group_norm(conv_norm_out_, x, Activation::silu));
     }
 
   private:

@@ -15,7 +15,7 @@ class AutoencoderTiny::Block : public nn::Module {
     explicit Block(int channels) {
         nn::ModuleList list;
         for (int i = 0; i < 3; ++i) {
-            convolutions_.emplace_back(conv3x3(channels, channels));
+            convolutions_.emplace_back(channels, channels);
             list->push_back(convolutions_.back());
             if (i < 2) list->push_back(nn::ReLU());
         }
@@ -28,7 +28,7 @@ class AutoencoderTiny::Block : public nn::Module {
     }
 
   private:
-    std::vector<nn::Conv2d> convolutions_;
+    std::vector<Conv3x3> convolutions_;
 };
 
 /// One entry of diffusers' nn.Sequential; exactly one of the first two is set, or neither.

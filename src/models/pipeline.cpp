@@ -5,6 +5,8 @@
 #include "item3d/core/format.h"
 #include "item3d/models/weights.h"
 
+#include <malloc.h>
+
 namespace item3d {
 namespace {
 
@@ -205,7 +207,7 @@ void Pipeline::save(const fs::path& folder, torch::Dtype dtype) const {
     write_json(folder / "model_index.json", model_index(*this));
 }
 
-void Pipeline::free_text_encoders(const std::vector<std::string>& prompts) {
+void Pipeline::keep_what_runs(const std::vector<std::string>& prompts) {
     std::map<std::string, TextEmbedding> encoded{{"", encode_text({""})}};
     for (const std::string& prompt : prompts)
         encoded[prompt] = encode_text({prompt});
@@ -215,6 +217,13 @@ void Pipeline::free_text_encoders(const std::vector<std::string>& prompts) {
         for (torch::Tensor& parameter : (*encoder)->parameters())
             parameter.set_data(torch::empty({0}, parameter.options()));
     }
+    std::vector<std::shared_ptr<torch::nn::Module>> networks{unet.ptr(), vae};
+    if (!controlnet.is_empty()) networks.push_back(controlnet.ptr());
+    for (const auto& network : networks)
+        for (const auto& layer : network->modules())
+            if (auto* convolution = layer->as<Conv3x3>()) convolution->give_up_weights();
+    // What was let go lies in pieces between what stays; the system gets whole pages of it back.
+    malloc_trim(0);
 }
 
 TextEmbedding Pipeline::encode_text(const std::vector<std::string>& prompts) const {

@@ -38,9 +38,10 @@ class Pipeline {
     /// One row: what classifier-free guidance goes away from when nobody says what. The empty
     /// prompt, or zeros where model_index.json says force_zeros_for_empty_prompt (SDXL).
     TextEmbedding encode_no_text() const;
-    /// Encodes these prompts and no text, and lets the encoders go. From then on encode_text()
-    /// knows these alone; the pipeline cannot be saved any more.
-    void free_text_encoders(const std::vector<std::string>& prompts);
+    /// For pipelines that run and do nothing else from now on: encodes these prompts and no text,
+    /// lets the text encoders go, and lets convolutions give up weights that they keep transformed.
+    /// From then on encode_text() knows these prompts alone; the pipeline cannot be saved any more.
+    void keep_what_runs(const std::vector<std::string>& prompts);
     /// images [N, 3, H, W] in [-1, 1] -> latents [N, C, h, w], scaled (mean of the posterior);
     /// differentiable in images. float32.
     torch::Tensor encode_image(const torch::Tensor& images) const;
@@ -79,7 +80,7 @@ class Pipeline {
     double controlnet_scale = 1;
 
   private:
-    std::map<std::string, TextEmbedding> encoded_;  ///< by free_text_encoders(), a row each
+    std::map<std::string, TextEmbedding> encoded_;  ///< by keep_what_runs(), a row each
 
     void check_fit(const std::filesystem::path& folder) const;
     void check_text_fit(const std::filesystem::path& folder) const;

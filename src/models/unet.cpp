@@ -1,6 +1,7 @@
 #include "item3d/models/unet.h"
 
 #include "item3d/core/error.h"
+#include "item3d/models/group_norm.h"
 #include "item3d/models/weights.h"
 
 namespace item3d {
@@ -75,7 +76,7 @@ torch::Tensor UNet2DConditionImpl::forward(const torch::Tensor& sample,
         // To the size of the skip that comes next: odd sizes are not twice the smaller one.
         if (level.up) x = level.up(x, skips.back().size(2), skips.back().size(3));
     }
-    return conv_out_(torch::silu(conv_norm_out_(x)));
+    return conv_out_(group_norm(conv_norm_out_, x, Activation::silu));
 }
 
 UNet2DCondition load_unet(const std::filesystem::path& folder, torch::Device device,

@@ -1,12 +1,13 @@
 #include "item3d/models/unet_blocks.h"
 
 #include "item3d/models/attention.h"
+#include "item3d/models/group_norm.h"
 
 namespace item3d {
 namespace nn = torch::nn;
 namespace {
 
-nn::GroupNorm group_norm(int groups, int channels, double epsilon) {
+nn::GroupNorm make_norm(int groups, int channels, double epsilon) {
     return nn::GroupNorm(nn::GroupNormOptions(groups, channels).eps(epsilon));
 }
 
@@ -14,21 +15,21 @@ nn::GroupNorm group_norm(int groups, int channels, double epsilon) {
 
 ResnetBlockImpl::ResnetBlockImpl(const Options& options) : options_(options) {
     const int in = options.in_channels, out = options.out_channels;
-    norm1_ = register_module("norm1", group_norm(options.groups, in, options.epsilon));
-    conv1_ = register_module("conv1", nn::Conv2d(conv3x3(in, out)));
+    norm1_ = register_module("norm1", make_norm(options.groups, in, options.epsilon));
+    conv1_ = register_module("conv1", Conv3x3(in, out));
     if (options.time_channels > 0)
         time_emb_proj_ = register_module("time_emb_proj", nn::Linear(options.time_channels, out));
-    norm2_ = register_module("norm2", group_norm(options.groups, out, options.epsilon));
-    conv2_ = register_module("conv2", nn::Conv2d(conv3x3(out, out)));
+    norm2_ = register_module("norm2", make_norm(options.groups, out, options.epsilon));
+    conv2_ = register_module("conv2", Conv3x3(out, out));
     if (in != out)
         conv_shortcut_ =
             register_module("conv_shortcut", nn::Conv2d(nn::Conv2dOptions(in, out, 1)));
 }
 
 torch::Tensor ResnetBlockImpl::forward(const torch::Tensor& x, const torch::Tensor& time) {
-    torch::Tensor hidden = conv1_(torch::silu(norm1_(x)));
+    torch::Tensor hidden = conv1_(group_norm(norm1_, x, Activation::silu));
     if (time_emb_proj_) hidden = hidden + time_emb_proj_(time).unsqueeze(-1).unsqueeze(-1);
-    hidden = conv2_(torch::silu(norm2_(hidden)));
+    hidden = conv2_(group_norm(norm2_, hidden, Activation::silu));
     const torch::Tensor sum = (conv_shortcut_ ? conv_shortcut_(x) : x) + hidden;
     return options_.output_scale == 1.0 ? sum : sum / options_.output_scale;
 }
@@ -81,7 +82,7 @@ torch::Tensor TransformerBlockImpl::forward(torch::Tensor x, const torch::Tensor
 
 SpatialTransformerImpl::SpatialTransformerImpl(const Options& options) : options_(options) {
     const int channels = options.channels;
-    norm_ = register_module("norm", group_norm(options.groups, channels, 1e-6));
+    norm_ = register_module("norm", make_norm(options.groups, channels, 1e-6));
     if (options.linear_projection) {
         linear_in_ = register_module("proj_in", nn::Linear(channels, channels));
         linear_out_ = register_module("proj_out", nn::Linear(channels, channels));
@@ -99,7 +100,7 @@ SpatialTransformerImpl::SpatialTransformerImpl(const Options& options) : options
 torch::Tensor SpatialTransformerImpl::forward(const torch::Tensor& x,
                                               const torch::Tensor& context) {
     const auto rows = x.size(0), channels = x.size(1), height = x.size(2), width = x.size(3);
-    torch::Tensor hidden = norm_(x);
+    torch::Tensor hidden = group_norm(norm_, x);
     if (conv_in_) hidden = conv_in_(hidden);
     hidden = hidden.permute({0, 2, 3, 1}).reshape({rows, height * width, channels});
     if (linear_in_) hidden = linear_in_(hidden);
@@ -121,7 +122,7 @@ torch::Tensor DownsampleImpl::forward(const torch::Tensor& x) {
 }
 
 UpsampleImpl::UpsampleImpl(int channels) {
-    conv_ = register_module("conv", nn::Conv2d(conv3x3(channels, channels)));
+    conv_ = register_module("conv", Conv3x3(channels, channels));
 }
 
 torch::Tensor UpsampleImpl::forward(const torch::Tensor& x, std::int64_t height,

@@ -2,6 +2,8 @@
 // own, so that weights load by name. Feature maps are [N, C, H, W], tokens [N, S, C].
 #pragma once
 
+#include "item3d/models/conv3x3.h"
+
 #include <torch/nn/modules/container/modulelist.h>
 #include <torch/nn/modules/conv.h>
 #include <torch/nn/modules/linear.h>
@@ -35,7 +37,8 @@ class ResnetBlockImpl : public torch::nn::Module {
   private:
     Options options_;
     torch::nn::GroupNorm norm1_{nullptr}, norm2_{nullptr};
-    torch::nn::Conv2d conv1_{nullptr}, conv2_{nullptr}, conv_shortcut_{nullptr};
+    Conv3x3 conv1_{nullptr}, conv2_{nullptr};
+    torch::nn::Conv2d conv_shortcut_{nullptr};
     torch::nn::Linear time_emb_proj_{nullptr};
 };
 TORCH_MODULE(ResnetBlock);
@@ -110,7 +113,7 @@ class UpsampleImpl : public torch::nn::Module {
     torch::Tensor forward(const torch::Tensor& x, std::int64_t height, std::int64_t width);
 
   private:
-    torch::nn::Conv2d conv_{nullptr};
+    Conv3x3 conv_{nullptr};
 };
 TORCH_MODULE(Upsample);
 

@@ -1,0 +1,58 @@
+#include "item3d/models/conv3x3.h"
+
+#include <ATen/autocast_mode.h>
+#include <torch/csrc/autograd/custom_function.h>
+#include <torch/custom_class.h>
+
+namespace item3d {
+namespace {
+
+using torch::autograd::AutogradContext;
+using torch::autograd::tensor_list;
+
+struct ConvolutionHolder : torch::CustomClassHolder {
+    explicit ConvolutionHolder(std::shared_ptr<WinogradConvolution> held)
+        : convolution(std::move(held)) {}
+    std::shared_ptr<WinogradConvolution> convolution;
+};
+
+/// Differentiable in x alone.
+struct FrozenConvolution : torch::autograd::Function<FrozenConvolution> {
+    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& x,
+                                 const std::shared_ptr<WinogradConvolution>& convolution,
+                                 const torch::Tensor& bias) {
+        context->saved_data["convolution"] =
+            c10::IValue::make_capsule(c10::intrusive_ptr<torch::CustomClassHolder>(
+                c10::make_intrusive<ConvolutionHolder>(convolution)));
+        return convolution->forward(x, bias);
+    }
+    static tensor_list backward(AutogradContext* context, tensor_list gradients) {
+        const auto holder = context->saved_data["convolution"].toCapsule();
+        return {static_cast<ConvolutionHolder&>(*holder).convolution->backward(gradients[0]),
+                torch::Tensor(), torch::Tensor()};
+    }
+};
+
+}  // namespace
+
+Conv3x3Impl::Conv3x3Impl(int in_channels, int out_channels, bool with_bias)
+    : Conv2dImpl(
+          torch::nn::Conv2dOptions(in_channels, out_channels, 3).padding(1).bias(with_bias)) {}
+
+torch::Tensor Conv3x3Impl::forward(const torch::Tensor& x) {
+    if (!weight_given_up_) {
+        const bool frozen = !weight.requires_grad() && !(bias.defined() && bias.requires_grad()) &&
+                            !at::autocast::is_autocast_enabled(x.device().type());
+        if (!frozen || !WinogradConvolution::gains(x, weight)) return Conv2dImpl::forward(x);
+        if (!fast_ || !fast_->is_of(weight)) fast_ = std::make_shared<WinogradConvolution>(weight);
+        if (only_runs_ && fast_->forget_weight()) {
+            weight.set_data(torch::empty({0}, weight.options()));
+            weight_given_up_ = true;
+        }
+    }
+    if (torch::GradMode::is_enabled() && x.requires_grad())
+        return FrozenConvolution::apply(x, fast_, bias);
+    return fast_->forward(x, bias);
+}
+
+}  // namespace item3d

@@ -1,0 +1,32 @@
+// The convolution that most of a diffusion network's time goes into.
+#pragma once
+
+#include "item3d/models/winograd.h"
+
+#include <torch/nn/modules/conv.h>
+#include <torch/types.h>
+
+#include <memory>
+
+namespace item3d {
+
+/// nn.Conv2d with kernel 3, stride 1, padding 1. Where neither weights nor bias ask for a gradient
+/// it takes the faster way of winograd.h, if that gains, and its backward pass, which goes to the
+/// input alone, keeps no activations. Weights may be changed at any time before give_up_weights().
+class Conv3x3Impl : public torch::nn::Conv2dImpl {
+  public:
+    Conv3x3Impl(int in_channels, int out_channels, bool with_bias = true);
+    torch::Tensor forward(const torch::Tensor& x);
+
+    /// From now on the layer only runs: where the transformed weights are enough, it lets go of
+    /// `weight` (which is then empty) as soon as it has them.
+    void give_up_weights() { only_runs_ = true; }
+
+  private:
+    std::shared_ptr<WinogradConvolution> fast_;
+    bool only_runs_ = false;
+    bool weight_given_up_ = false;
+};
+TORCH_MODULE(Conv3x3);
+
+}  // namespace item3d

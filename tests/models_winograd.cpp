@@ -1,0 +1,134 @@
+#include "item3d/models/conv3x3.h"
+#include "item3d/models/winograd.h"
+#include "models_testing.h"
+
+#include <torch/csrc/autograd/autograd.h>
+
+namespace item3d {
+namespace {
+
+double relative_error(const torch::Tensor& actual, const torch::Tensor& exact) {
+    return ((actual.detach().to(torch::kFloat64) - exact).norm() / exact.norm()).item<double>();
+}
+
+/// A convolution of the same weights beside one of float64.
+struct Convolutions {
+    Convolutions(int in, int out, torch::Dtype dtype) {
+        torch::manual_seed(in + out);
+        weight = (torch::randn({out, in, 3, 3}) / std::sqrt(9.0 * in)).to(dtype);
+        bias = torch::randn({out}).to(dtype);
+    }
+    torch::Tensor direct(const torch::Tensor& x) const {
+        return torch::conv2d(x, weight.to(x.scalar_type()), bias.to(x.scalar_type()), 1, 1);
+    }
+    torch::Tensor weight, bias;
+};
+
+/// A machine without the instructions convolves directly, which other tests look at.
+bool runs_here(torch::Dtype dtype) {
+    return WinogradConvolution::gains(torch::empty({2, 64, 32, 32}, dtype),
+                                      torch::empty({64, 64, 3, 3}, dtype));
+}
+
+/// Errors against float64 of the output and of the input's gradient, each as a multiple of the
+/// direct convolution's own.
+void compare(torch::Dtype dtype, const std::vector<std::int64_t>& shape, int out, double most) {
+    SCOPED_TRACE(::testing::Message() << "height " << shape[2] << ", width " << shape[3]);
+    const Convolutions layer(static_cast<int>(shape[1]), out, dtype);
+    WinogradConvolution fast(layer.weight);
+    const torch::Tensor x = torch::randn(shape).to(dtype).requires_grad_(true);
+    const torch::Tensor exact_x = x.detach().to(torch::kFloat64).requires_grad_(true);
+    const torch::Tensor exact = layer.direct(exact_x), direct = layer.direct(x);
+    const torch::Tensor gradient = torch::randn(exact.sizes()).to(dtype);
+    EXPECT_LE(relative_error(fast.forward(x.detach(), layer.bias), exact),
+              most * relative_error(direct, exact));
+    const torch::Tensor exact_back =
+        torch::autograd::grad({exact}, {exact_x}, {gradient.to(torch::kFloat64)})[0];
+    const torch::Tensor direct_back = torch::autograd::grad({direct}, {x}, {gradient})[0];
+    EXPECT_LE(relative_error(fast.backward(gradient), exact_back),
+              most * relative_error(direct_back, exact_back));
+}
+
+TEST(Winograd, ErrsLittleMoreThanTheDirectConvolution) {
+    for (const auto& [dtype, most] :
+         {std::pair(torch::kFloat32, 10.0), std::pair(torch::kBFloat16, 3.0)}) {
+        if (!runs_here(dtype)) continue;
+        // Whole tiles, cut tiles in each direction, pictures of a tile or less.
+        compare(dtype, {2, 64, 16, 16}, 128, most);
+        compare(dtype, {1, 128, 13, 18}, 64, most);
+        compare(dtype, {3, 64, 18, 15}, 64, most);
+        compare(dtype, {5, 64, 3, 1}, 64, most);
+        compare(dtype, {1, 64, 1, 7}, 192, most);
+    }
+}
+
+TEST(Winograd, GivesTheSameOnOneThreadAndOnMany) {
+    if (!runs_here(torch::kFloat32)) GTEST_SKIP() << "no AVX-512";
+    const Convolutions layer(64, 128, torch::kFloat32);
+    const WinogradConvolution fast(layer.weight);
+    const torch::Tensor x = torch::randn({1, 64, 40, 24});
+    const torch::Tensor one = fast.forward(x, layer.bias);
+    at::set_num_threads(5);  // more than there are ranges of tiles
+    const torch::Tensor many = fast.forward(x, layer.bias);
+    at::set_num_threads(1);
+    EXPECT_TRUE(torch::equal(one, many));
+}
+
+TEST(Conv3x3, FollowsItsWeightsAndTheirGradients) {
+    Conv3x3 layer(64, 64);
+    const auto expect_as_direct = [&](const torch::Tensor& x) {
+        const torch::Tensor exact =
+            torch::conv2d(x.to(torch::kFloat64), layer->weight.to(torch::kFloat64),
+                          layer->bias.to(torch::kFloat64), 1, 1);
+        EXPECT_LT(relative_error(layer(x), exact), 2e-6);
+    };
+    const torch::Tensor x = torch::randn({2, 64, 16, 16});
+    layer(x).square().mean().backward();
+    EXPECT_TRUE(layer->weight.grad().defined()) << "weights that ask for a gradient get one";
+
+    for (torch::Tensor& parameter : layer->parameters())
+        parameter.set_requires_grad(false);
+    expect_as_direct(x);
+    {
+        const torch::NoGradGuard no_grad;
+        layer->weight.mul_(2);
+    }
+    expect_as_direct(x);
+    layer->weight.set_data(torch::randn_like(layer->weight));
+    expect_as_direct(x);
+    expect_as_direct(x.slice(2, 0, 4));  // too few pixels to gain
+
+    const torch::Tensor asking = x.clone().requires_grad_(true);
+    layer(asking).square().sum().backward();
+    const torch::Tensor same = x.clone().requires_grad_(true);
+    torch::conv2d(same, layer->weight, layer->bias, 1, 1).square().sum().backward();
+    EXPECT_LT(relative_error(asking.grad(), same.grad().to(torch::kFloat64)), 2e-6);
+}
+
+TEST(Conv3x3, RunsWithoutTheWeightsThatItGaveUp) {
+    if (!runs_here(torch::kBFloat16)) GTEST_SKIP() << "no AVX-512 for bfloat16";
+    const auto output_and_gradient = [](Conv3x3& layer) {
+        torch::manual_seed(3);
+        const torch::Tensor x =
+            torch::randn({2, 128, 16, 16}).to(torch::kBFloat16).requires_grad_(true);
+        const torch::Tensor y = layer(x);
+        return std::pair(y.detach(), torch::autograd::grad({y}, {x}, {torch::randn_like(y)})[0]);
+    };
+    Conv3x3 layer(128, 64);
+    for (torch::Tensor& parameter : layer->parameters()) {
+        parameter.set_requires_grad(false);
+        parameter.set_data(parameter.to(torch::kBFloat16));
+    }
+    const auto before = output_and_gradient(layer);
+    layer->give_up_weights();
+    const auto after = output_and_gradient(layer);
+    EXPECT_EQ(layer->weight.numel(), 0);
+    EXPECT_TRUE(torch::equal(after.first, before.first));
+    EXPECT_TRUE(torch::equal(after.second, before.second));
+    const torch::Tensor x = torch::randn({2, 128, 16, 16}).to(torch::kBFloat16);
+    // Pictures that would not have been worth it are convolved the same way now.
+    EXPECT_TRUE(torch::allclose(layer(x.slice(2, 0, 4)).slice(2, 0, 3), layer(x).slice(2, 0, 3)));
+}
+
+}  // namespace
+}  // namespace item3d
