@@ -69,18 +69,21 @@ void optimize_on_lattice(ShapeField& field, Appearance& appearance,
             throw InputError("reconstruct", "the shape vanished while it was optimised",
                              "masks and poses do not belong together, or the object is tiny");
         }
-        const torch::Tensor positions = surface_points(topology, field.values, field.vertices());
+        // One material would carve what is printed on it, so the hull stands still meanwhile.
+        const bool light_alone = first + i < options.light_alone * options.iterations;
+        torch::Tensor positions = surface_points(topology, field.values, field.vertices());
+        if (light_alone) positions = positions.detach();
         const Geometry geometry = untextured_geometry(positions, topology.triangles);
         const TargetView& view = views[order.at(first + i)];
         const RenderedView rendered =
-            render_view(geometry, appearance.field, light, view,
-                        {.one_material = first + i < options.light_alone * options.iterations});
+            render_view(geometry, appearance.field, light, view, {.one_material = light_alone});
         const torch::Tensor background = torch::full({3}, static_cast<float>(random.uniform()));
         const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
         const torch::Tensor mask = mask_loss(rendered.image, view.image);
         const double sign_change_weight =
-            blend(options.sign_change_weight_first, options.sign_change_weight_last, first + i,
-                  options.iterations);
+            light_alone ? 0.0
+                        : blend(options.sign_change_weight_first, options.sign_change_weight_last,
+                                first + i, options.iterations);
         torch::Tensor loss = picture + options.mask_weight * mask +
                              sign_change_weight * sign_change_loss(topology, field.values);
         const float nearest = 0.25f * field.marching.lattice().cell;

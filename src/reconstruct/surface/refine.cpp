@@ -59,7 +59,13 @@ Appearance make_appearance(std::array<Vec3, 2> bounds, const std::vector<TargetV
     options.bounds = {bounds[0] - 0.02f * extent, bounds[1] + 0.02f * extent};
     options.finest_resolution =
         std::clamp(static_cast<int>(extent / pixel_size(bounds, views.front())), 64, 1024);
-    return {NeuralTexture(options), TrainableLight()};
+    NeuralTexture field(options);
+    {
+        // Most things are no metal, and a grey metal explains a picture nearly as well as paint.
+        const torch::NoGradGuard no_gradient;
+        field->metallic_bias().fill_(-3.0f);
+    }
+    return {std::move(field), TrainableLight()};
 }
 
 RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& model,
@@ -102,12 +108,17 @@ RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& mode
             light = appearance.light.prefiltered();
         }
         const TargetView& view = views[order.at(i)];
-        const Geometry geometry = mesh.geometry();
-        const RenderedView rendered =
-            render_view(geometry, appearance.field, light, view,
-                        {.occlusion = occlusion ? &*occlusion : nullptr,
-                         .normal_map = options.normal_map,
-                         .one_material = i < options.light_alone * options.iterations});
+        Geometry geometry = mesh.geometry();
+        // One material would dent what is printed on it, so the shape stands still meanwhile.
+        const bool light_alone = i < options.light_alone * options.iterations;
+        if (light_alone) {
+            geometry.positions = geometry.positions.detach();
+            geometry.normals = geometry.normals.detach();
+        }
+        const RenderedView rendered = render_view(geometry, appearance.field, light, view,
+                                                  {.occlusion = occlusion ? &*occlusion : nullptr,
+                                                   .normal_map = options.normal_map && !light_alone,
+                                                   .one_material = light_alone});
         const torch::Tensor background = torch::full({3}, static_cast<float>(random.uniform()));
         const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
         const torch::Tensor mask = mask_loss(rendered.image, view.image);
