@@ -3,7 +3,8 @@
 //   relight_suite -o DIR --mesh cow=spot.obj --mesh teapot=teapot.obj --mesh object=bunny.obj
 //
 // Each mesh goes to the dark, to a sunset, to bright light and to the night. Right is: darker;
-// warmer; brighter; darker and colder. Brightness is that of the pictures, warmth that of the light.
+// warmer; brighter; darker and colder. Brightness is that of the pictures, warmth that of the
+// light.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -43,10 +44,8 @@ struct Wish {
     int luminance;    ///< 1: shall rise, -1: shall fall, 0: either
     int temperature;  ///< the same, of the light's colour temperature
 };
-const std::array<Wish, 4> wishes{{{"in the dark", -1, 0},
-                                  {"at sunset", 0, -1},
-                                  {"in bright light", 1, 0},
-                                  {"at night", -1, 1}}};
+const std::array<Wish, 4> wishes{
+    {{"in the dark", -1, 0}, {"at sunset", 0, -1}, {"in bright light", 1, 0}, {"at night", -1, 1}}};
 
 bool moved(double before, double after, int wanted) {
     return wanted == 0 || (wanted > 0 ? after > before : after < before);

@@ -97,6 +97,47 @@ TEST_F(RelightProgram, TakesObjAndTheSkyByTheHour) {
     EXPECT_EQ(read_file(folder_ / "out/model.glb").substr(0, 4), "glTF");
 }
 
+// The prior's sunset is warmer and its night is darker and colder than the studio; a few steps are
+// enough to go that way. The full twelve are bench/relight_suite.
+TEST_F(RelightProgram, WordsFindALightAndLeaveTheModelAlone) {
+    const std::string steps = " --iterations 16 --from 'a box' ";
+    ASSERT_EQ(relight("--to 'a box at sunset'" + steps, textured_).code, 0);
+    EXPECT_EQ(read_file(folder_ / "out/model.glb"), read_file(textured_));
+    const json sunset = json::parse(read_file(folder_ / "out/relight.json"));
+    EXPECT_EQ(sunset["words"]["settings"]["light_model"], "auto");
+    EXPECT_LT(sunset["description"]["color_temperature"].get<double>(),
+              sunset["description_before"]["color_temperature"].get<double>() - 300);
+    ASSERT_EQ(relight("--to 'a box at night, lit from the left'" + steps, textured_).code, 0);
+    const json night = json::parse(read_file(folder_ / "out/relight.json"));
+    EXPECT_EQ(night["words"]["prompts"][1], "a box at night");
+    EXPECT_LT(night["description"]["mean_radiance"].get<double>(),
+              0.9 * night["description_before"]["mean_radiance"].get<double>());
+    EXPECT_LT(angle_between(night["description"]["brightest_lobe"], 235, 25), 2);
+}
+
+TEST_F(RelightProgram, WordsOfDirectionAloneNeedNoPrior) {
+    ASSERT_EQ(relight("--from 'a box' --to 'a box lit from behind'", textured_).code, 0);
+    const json record = json::parse(read_file(folder_ / "out/relight.json"));
+    EXPECT_LT(angle_between(record["description"]["brightest_lobe"], 325, 25), 2);
+    EXPECT_FALSE(record["words"].contains("prior"));
+}
+
+TEST_F(RelightProgram, ExplainsSentencesAndContradictions) {
+    const std::string model = "relight " + quoted(cube_) + " -o " + quoted(folder_ / "out") + " ";
+    const std::string words = "--from 'a box' --to 'a box at sunset' ";
+    expect_error(model + "--from 'a box' --to 'a red box'", 2, "names no light");
+    expect_error(model + "--from 'a box' --to 'a box by candlelight'", 2, "sunset");
+    expect_error(model + "--to 'a box at sunset'", 2, "--from and --to");
+    expect_error(model + words + "--light noon", 2, "--light");
+    expect_error(model + words + "--sky 9", 2, "--sky");
+    expect_error(model + words + "--lit left", 2, "--lit");
+    expect_error(model + words + "--rotate 20", 2, "--rotate");
+    expect_error(model + "--seed 3", 2, "--from and --to");
+    EXPECT_EQ(run(model + words + "--light-model sphere").code, 2);
+    expect_error(model + words + "--from-light nowhere.hdr", 3, "nowhere.hdr");
+    expect_error(model + words + "--prior nowhere", 3, "nowhere");
+}
+
 TEST_F(RelightProgram, LightConvertsAndChanges) {
     const fs::path file = folder_ / "noon.exr";
     const json noon = describe("noon -o " + quoted(file));

@@ -9,7 +9,9 @@
 #include "item3d/evaluate/contact_sheet.h"
 #include "item3d/evaluate/model_pictures.h"
 #include "item3d/evaluate/picture.h"
+#include "item3d/render/occlusion.h"
 #include "item3d/render/shade.h"
+#include "item3d/render/textured.h"
 #include "item3d/scene/io/gltf_light.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
@@ -45,6 +47,7 @@ struct RelightCommand : CommonOptions {
     LightOptions change;
     RelightWords words;
     bool punctual = false;
+    bool shadows = true;
     int views = 6;
     int frames = 30;
     int size = 384;
@@ -64,14 +67,41 @@ std::vector<Camera> cameras_around(const Model& model, int count) {
     return cameras;
 }
 
-std::vector<Image> draw(const Model& model, const EnvironmentLight& light, int count, int pixels) {
-    const torch::Tensor linear =
-        draw_pictures(model, light, cameras_around(model, count), pixels).cpu();
-    std::vector<Image> pictures;
-    for (const torch::Tensor& picture : linear.unbind(0))
-        pictures.push_back(to_display(to_image(picture)));
-    return pictures;
-}
+/// Draws a model in one light, with the shadows that it throws upon itself.
+class LitPainter {
+  public:
+    LitPainter(const Model& model, const Image& light, bool shadows, torch::Device device)
+        : model_(model),
+          geometry_(Geometry::from_model(model, device)),
+          materials_(model, device),
+          light_(prefilter(light, 256, device)) {
+        if (!shadows) return;
+        OcclusionOptions options;
+        options.light = light;
+        occlusion_ = std::make_shared<Occlusion>(geometry_, &model, options);
+    }
+
+    std::vector<Image> draw(int count, int pixels) const {
+        const torch::NoGradGuard no_grad;
+        RenderOptions options;
+        options.width = pixels;
+        options.height = pixels;
+        options.occlusion = occlusion_;
+        std::vector<Image> pictures;
+        for (const Camera& camera : cameras_around(model_, count)) {
+            const torch::Tensor picture = render(geometry_, materials_, light_, {camera}, options);
+            pictures.push_back(to_display(to_image(picture[0].cpu())));
+        }
+        return pictures;
+    }
+
+  private:
+    const Model& model_;
+    Geometry geometry_;
+    TexturedMaterials materials_;
+    EnvironmentLight light_;
+    std::shared_ptr<const Occlusion> occlusion_;
+};
 
 Image views_sheet(const std::vector<Image>& pictures, const std::string& title) {
     std::vector<Tile> tiles;
@@ -113,18 +143,21 @@ std::string light_title(const RelightCommand& options) {
 /// from, and so do the words.
 void refuse_contradictions(const RelightCommand& options, bool light_is_given) {
     if (!options.words.given()) {
-        if (options.words.resume || !options.words.overrides.empty() || !options.words.prior.empty())
+        if (options.words.resume || !options.words.overrides.empty() ||
+            !options.words.prior.empty())
             throw UsageError("--prior and the options below it are those of --from and --to");
         return;
     }
     const LightOptions& change = options.change;
     if (light_is_given || options.sky)
-        throw UsageError("--to finds the light that --light and --sky give: leave out one of them "
-                         "(--from-light says where to begin)");
+        throw UsageError(
+            "--to finds the light that --light and --sky give: leave out one of them "
+            "(--from-light says where to begin)");
     if (!change.sun.empty() || !change.lit.empty() || change.strength || change.rotation != 0 ||
         change.tilt != 0)
-        throw UsageError("--to says itself where the light comes from: without --sun, --lit, "
-                         "--strength, --rotate and --tilt");
+        throw UsageError(
+            "--to says itself where the light comes from: without --sun, --lit, "
+            "--strength, --rotate and --tilt");
 }
 
 Image chosen_light(const RelightCommand& options, const std::optional<SunSetting>& sun) {
@@ -138,10 +171,10 @@ Image chosen_light(const RelightCommand& options, const std::optional<SunSetting
 void write_pictures(const RelightCommand& options, const Model& model, const Image& old_image,
                     const Image& new_image, torch::Device device) {
     const fs::path folder = options.output;
-    const EnvironmentLight old_light = prefilter(old_image, 256, device);
-    const EnvironmentLight new_light = prefilter(new_image, 256, device);
-    const auto before = draw(model, old_light, options.views, options.size);
-    const auto after = draw(model, new_light, options.views, options.size);
+    const LitPainter old_painter(model, old_image, options.shadows, device);
+    const LitPainter painter(model, new_image, options.shadows, device);
+    const auto before = old_painter.draw(options.views, options.size);
+    const auto after = painter.draw(options.views, options.size);
     const std::string title = light_title(options);
     save_image(folder / "before.png",
                views_sheet(before, fs::path(options.from_light).stem().string()));
@@ -150,7 +183,7 @@ void write_pictures(const RelightCommand& options, const Model& model, const Ima
     if (interrupted()) throw Interrupted("the turntable was not drawn");
 
     const int frame_size = std::max(16, options.size * 3 / 4);
-    std::vector<Image> frames = draw(model, new_light, options.frames, frame_size);
+    std::vector<Image> frames = painter.draw(options.frames, frame_size);
     for (Image& frame : frames)
         frame = flatten(frame, turntable_ground);
     write_atomically(folder / "turntable.webp",
@@ -166,8 +199,8 @@ void run_relight(const RelightCommand& options, torch::Device device) {
     Image new_light;
     if (options.words.given()) {
         make_output_folder(folder);
-        WordsLight found = light_by_words(options.words, options.model, options.from_light, folder,
-                                          device);
+        WordsLight found =
+            light_by_words(options.words, options.model, options.from_light, folder, device);
         new_light = apply(options.change, placed_sun, found.light);
         by_words = std::move(found.record);
     } else {
@@ -238,6 +271,8 @@ void add_relight_command(CLI::App& app) {
     command->add_flag("--punctual", options->punctual,
                       "Add the light's brightest lobe to model.glb as a directional light "
                       "(KHR_lights_punctual)");
+    command->add_flag("!--no-shadows", options->shadows,
+                      "Draw without the shadows that the model throws upon itself");
     command->add_option("--views", options->views, "Of before.png and after.png")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();

@@ -26,14 +26,14 @@ namespace {
 
 /// What a prior that does not say what it knows is taken to know.
 const std::set<std::string> usual_light_words = {
-    "afternoon", "backlight",  "blue",     "bright",     "candle",    "candlelight", "cloudy",
-    "dark",      "darkness",   "dawn",     "day",        "daylight",  "dim",         "dusk",
-    "evening",   "fire",       "firelight", "fog",       "foggy",     "glow",        "glowing",
-    "golden",    "illuminated", "lamp",    "lamplight",  "light",     "lighting",    "lights",
-    "lit",       "midnight",   "moon",     "moonlight",  "morning",   "neon",        "night",
-    "noon",      "overcast",   "rainy",    "shade",      "shadow",    "shadows",     "sky",
-    "spotlight", "studio",     "sun",      "sunlight",   "sunny",     "sunrise",     "sunset",
-    "torch",     "twilight",   "underwater"};
+    "afternoon", "backlight",   "blue",      "bright",    "candle",   "candlelight", "cloudy",
+    "dark",      "darkness",    "dawn",      "day",       "daylight", "dim",         "dusk",
+    "evening",   "fire",        "firelight", "fog",       "foggy",    "glow",        "glowing",
+    "golden",    "illuminated", "lamp",      "lamplight", "light",    "lighting",    "lights",
+    "lit",       "midnight",    "moon",      "moonlight", "morning",  "neon",        "night",
+    "noon",      "overcast",    "rainy",     "shade",     "shadow",   "shadows",     "sky",
+    "spotlight", "studio",      "sun",       "sunlight",  "sunny",    "sunrise",     "sunset",
+    "torch",     "twilight",    "underwater"};
 
 std::set<std::string> known_light_words(const PriorVocabulary& vocabulary) {
     if (vocabulary.open()) return usual_light_words;
@@ -115,8 +115,7 @@ void add_words_options(CLI::App& command, RelightWords& words) {
         ->check(CLI::IsMember(precision_names()))
         ->capture_default_str()
         ->group(group);
-    command
-        .add_flag("--resume", words.resume, "Go on from the checkpoint in the output folder")
+    command.add_flag("--resume", words.resume, "Go on from the checkpoint in the output folder")
         ->group(group);
 }
 

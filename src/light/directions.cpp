@@ -19,9 +19,9 @@ torch::Tensor cube_directions(int size) {
     for (int face = 0; face < 6; ++face)
         for (int y = 0; y < size; ++y)
             for (int x = 0; x < size; ++x)
-                store(out, glm::normalize(kernels::cube_direction(
-                               face, kernels::texel_centre(x, size),
-                               kernels::texel_centre(y, size))));
+                store(out,
+                      glm::normalize(kernels::cube_direction(face, kernels::texel_centre(x, size),
+                                                             kernels::texel_centre(y, size))));
     return directions;
 }
 

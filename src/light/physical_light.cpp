@@ -17,13 +17,8 @@ struct Bounds {
     float low, high;
 };
 /// Of all but the azimuth, which has none: stops, a share, mired, mired, ratios, degrees.
-constexpr std::array<Bounds, 7> bounds{{{-3, 0.75f},
-                                        {0.03f, 0.85f},
-                                        {-110, 330},
-                                        {-110, 250},
-                                        {0.05f, 1},
-                                        {0, 3},
-                                        {3, 85}}};
+constexpr std::array<Bounds, 7> bounds{
+    {{-3, 0.75f}, {0.03f, 0.85f}, {-110, 330}, {-110, 250}, {0.05f, 1}, {0, 3}, {3, 85}}};
 /// How hard each is held to its start. The sky is, so that it is the sun that grows warm, and what
 /// hardly any word says.
 constexpr std::array<float, number_count> firmness{3, 1, 2, 4, 1, 0.3f, 10, 10};
@@ -57,8 +52,8 @@ float unbounded(float value, Bounds range) {
 
 /// [3] linear RGB of luminance 1.
 torch::Tensor color_of(const torch::Tensor& mired_from_white) {
-    const torch::Tensor slope = torch::tensor(
-        {log_color_per_mired[0], log_color_per_mired[1], log_color_per_mired[2]});
+    const torch::Tensor slope =
+        torch::tensor({log_color_per_mired[0], log_color_per_mired[1], log_color_per_mired[2]});
     const torch::Tensor color = torch::exp(mired_from_white * slope);
     const torch::Tensor weights = torch::tensor({0.2126f, 0.7152f, 0.0722f});
     return color / (color * weights).sum();
@@ -69,8 +64,7 @@ torch::Tensor color_of(const torch::Tensor& mired_from_white) {
 PhysicalLight::PhysicalLight(const Image& light, const LightModelOptions& options)
     : held_(options.from) {
     const LightDescription description = describe_light(light);
-    const SkyAngles dominant =
-        held_ ? *held_ : to_sky_angles(description.dominant_direction);
+    const SkyAngles dominant = held_ ? *held_ : to_sky_angles(description.dominant_direction);
     start_azimuth_ = dominant.azimuth * pi / 180;
     const float warmth =
         description.color_temperature
@@ -100,8 +94,7 @@ torch::Tensor PhysicalLight::sun_direction() const {
     const torch::Tensor air = 1 + torch::softplus(warmth / warmth_of_low_sun - 0.5f);
     const torch::Tensor up = bounded(numbers_[elevation], bounds[elevation]) / air * (pi / 180);
     const torch::Tensor around = start_azimuth_ + numbers_[azimuth];
-    return torch::stack(
-        {up.cos() * around.sin(), up.sin(), -(up.cos() * around.cos())});
+    return torch::stack({up.cos() * around.sin(), up.sin(), -(up.cos() * around.cos())});
 }
 
 torch::Tensor PhysicalLight::radiance(const torch::Tensor& directions) const {
@@ -121,8 +114,7 @@ torch::Tensor PhysicalLight::radiance(const torch::Tensor& directions) const {
     // Of the sky's light near the horizon, what has come the long way through the air.
     const torch::Tensor low =
         torch::exp(-up.clamp_min(0) / glow_height) * (0.25f + 0.1875f * (1 + facing).square());
-    const torch::Tensor sky =
-        (sky_color * (1 - low) + sun_color * low) * (1 + value(glow) * low);
+    const torch::Tensor sky = (sky_color * (1 - low) + sun_color * low) * (1 + value(glow) * low);
     const torch::Tensor earth =
         value(ground) * (0.5f * sky_color + 0.5f * sun_color) * torch::ones_like(up);
     const torch::Tensor above = torch::sigmoid(up / horizon_softness);
@@ -131,10 +123,9 @@ torch::Tensor PhysicalLight::radiance(const torch::Tensor& directions) const {
     // A Gaussian in the angle, as much energy as a mean radiance of 1.
     const float spread = 1 / (lobe_radius * lobe_radius);
     const torch::Tensor lobe = (4 * spread) * torch::exp(2 * spread * (facing - 1)) * sun_color;
-    const torch::Tensor stops = warm * bounded(numbers_[exposure], warm_exposure) +
-                                (1 - warm) * value(exposure);
-    return torch::exp2(stops) / (1 + 3 * share) *
-           ((1 - share) * ambient + share * lobe);
+    const torch::Tensor stops =
+        warm * bounded(numbers_[exposure], warm_exposure) + (1 - warm) * value(exposure);
+    return torch::exp2(stops) / (1 + 3 * share) * ((1 - share) * ambient + share * lobe);
 }
 
 torch::Tensor PhysicalLight::cube(int size) const {
@@ -162,12 +153,15 @@ PhysicalValues PhysicalLight::values() const {
         return bounded(numbers_[number], bounds[number]).item<float>();
     };
     const torch::Tensor d = sun_direction();
-    PhysicalValues values{value(exposure), value(sun_share), value(sun_warmth), value(sky_warmth),
-                          value(ground),   value(glow),      {}};
-    values.sun =
-        to_sky_angles(Vec3(d[0].item<float>(), d[1].item<float>(), d[2].item<float>()));
-    if (held_)
-        values.sun_share = least_spoken_share + (1 - least_spoken_share) * values.sun_share;
+    PhysicalValues values{value(exposure),
+                          value(sun_share),
+                          value(sun_warmth),
+                          value(sky_warmth),
+                          value(ground),
+                          value(glow),
+                          {}};
+    values.sun = to_sky_angles(Vec3(d[0].item<float>(), d[1].item<float>(), d[2].item<float>()));
+    if (held_) values.sun_share = least_spoken_share + (1 - least_spoken_share) * values.sun_share;
     return values;
 }
 

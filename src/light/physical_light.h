@@ -26,9 +26,9 @@ struct PhysicalValues {
 /// Wien's exp(-c2 / (lambda T)) for a difference in 1 / T at the wavelengths of the primaries: the
 /// Planckian locus around white, with no green or magenta to run off to, and smooth in mired.
 ///
-/// The warmer the sun, the lower it stands; a dark light is colder (moonlight), and a warm one is not
-/// as dark as a night. The direction is a parameter too, but a weak one: few words say it. It is no parameter where the
-/// options say where the light comes from.
+/// The warmer the sun, the lower it stands; a dark light is colder (moonlight), and a warm one is
+/// not as dark as a night. The direction is a parameter too, but a weak one: few words say it. It
+/// is no parameter where the options say where the light comes from.
 class PhysicalLight : public LightModel {
   public:
     PhysicalLight(const Image& light, const LightModelOptions& options);

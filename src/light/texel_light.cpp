@@ -28,10 +28,10 @@ torch::Tensor as_direction(const Vec3& v) {
 }  // namespace
 
 TexelLight::TexelLight(const Image& light, const LightModelOptions& options)
-    : start_(
-          to_tensor(options.from ? place_sun(light, {.from = *options.from, .strength = {}}) : light)
-              .permute({2, 0, 1})
-              .unsqueeze(0)),
+    : start_(to_tensor(options.from ? place_sun(light, {.from = *options.from, .strength = {}})
+                                    : light)
+                 .permute({2, 0, 1})
+                 .unsqueeze(0)),
       change_(torch::zeros({1, 3, change_height, 2 * change_height}).set_requires_grad(true)),
       solid_angles_(torch::empty({1, 1, change_height, 1})) {
     for (int y = 0; y < change_height; ++y)
@@ -48,13 +48,13 @@ TexelLight::TexelLight(const Image& light, const LightModelOptions& options)
 torch::Tensor TexelLight::radiance(int height) const {
     const int width = 2 * height;
     // The interpolation would stop at the map's left and right ends, which are neighbours.
-    const torch::Tensor around = torch::cat(
-        {change_.narrow(3, change_width - 1, 1), change_, change_.narrow(3, 0, 1)}, 3);
+    const torch::Tensor around =
+        torch::cat({change_.narrow(3, change_width - 1, 1), change_, change_.narrow(3, 0, 1)}, 3);
     const int margin = width / change_width;
     const torch::Tensor finer =
         torch::upsample_bilinear2d(around, {height, width + 2 * margin}, /*align_corners=*/false);
-    const torch::Tensor light = torch::adaptive_avg_pool2d(start_, {height, width}) *
-                                finer.narrow(3, margin, width).exp();
+    const torch::Tensor light =
+        torch::adaptive_avg_pool2d(start_, {height, width}) * finer.narrow(3, margin, width).exp();
     return light[0].permute({1, 2, 0}).contiguous();
 }
 
@@ -72,8 +72,8 @@ torch::Tensor TexelLight::regularization() const {
         return (values.square() * solid_angles_.narrow(2, 0, values.size(2))).mean();
     };
     const torch::Tensor along = change_ - change_.roll(1, 3);
-    const torch::Tensor down = change_.narrow(2, 1, change_height - 1) -
-                               change_.narrow(2, 0, change_height - 1);
+    const torch::Tensor down =
+        change_.narrow(2, 1, change_height - 1) - change_.narrow(2, 0, change_height - 1);
     const torch::Tensor chroma = change_ - change_.mean(1, true);
     const torch::Tensor green = (chroma * as_direction(green_direction)).sum(1, true);
     const torch::Tensor object = (chroma * object_direction_).sum(1, true);

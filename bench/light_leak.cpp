@@ -1,0 +1,152 @@
+// How much of the light that a texture was edited in is painted into its base colour.
+//
+//   light_leak -o DIR --mesh cow=spot.obj [--augment off --augment all] [--light noon]
+//
+// A white model is edited to red once for each way of varying the light. Then, over points of its
+// surface: the correlation of the base colour's luminance with the diffuse light of the edit there,
+// both as logarithms, and the slope (1: all of the shading is painted). And under three other
+// lights: the difference between pictures of the result and of the same material with its mean base
+// colour everywhere.
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/edit/edit.h"
+#include "item3d/evaluate/model_pictures.h"
+#include "item3d/field/surface_points.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/render/textured.h"
+#include "item3d/scene/environment.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/scene/io/save.h"
+#include "suite_models.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+using nlohmann::json;
+
+struct LeakOptions {
+    std::filesystem::path output, prior, mesh;
+    std::string noun;
+    std::vector<std::string> augment{"off", "rotate", "all"};
+    std::string light = "noon";
+    int iterations = 0;  ///< 0: the prior's own
+};
+
+constexpr int surface_points = 20000;
+constexpr int light_height = 24;  ///< enough for irradiance
+const std::vector<std::string> other_lights{"studio", "overcast", "sunset"};
+
+struct Leak {
+    double correlation = 0;
+    double slope = 0;
+    Vec3 mean_color{0};
+};
+
+Leak measure_leak(const Model& model, const std::string& light_name) {
+    const torch::NoGradGuard no_grad;
+    const Image light = make_light_preset(light_name, light_height);
+    std::vector<int> materials;
+    for (std::size_t i = 0; i < model.materials.size(); ++i)
+        materials.push_back(static_cast<int>(i));
+    const Geometry geometry = Geometry::from_model(model);
+    const FieldSpace space(model, materials);
+    Random random(0);
+    const Surface surface = SurfaceSampler(geometry, space).sample(surface_points, random);
+    const torch::Tensor color = TexturedMaterials(model).sample(surface).base_color;
+    const torch::Tensor weights = torch::tensor({0.2126f, 0.7152f, 0.0722f});
+    const torch::Tensor painted = (color * weights).sum(1).clamp_min(1e-4).log();
+    const torch::Tensor normals = surface.normal.contiguous();
+    torch::Tensor received = torch::empty({normals.size(0)});
+    const float* n = normals.const_data_ptr<float>();
+    float* out = received.data_ptr<float>();
+    for (std::int64_t i = 0; i < normals.size(0); ++i) {
+        const Vec3 rgb = irradiance_over_pi(light, Vec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]));
+        out[i] = std::log(0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z);
+    }
+    const torch::Tensor x = received - received.mean(), y = painted - painted.mean();
+    const double xy = (x * y).mean().item<double>(), xx = x.square().mean().item<double>(),
+                 yy = y.square().mean().item<double>();
+    const torch::Tensor mean = color.mean(0);
+    return {xy / std::sqrt(std::max(xx * yy, 1e-20)), xy / xx,
+            Vec3(mean[0].item<float>(), mean[1].item<float>(), mean[2].item<float>())};
+}
+
+/// Root mean square difference, in sRGB, over the model's pixels.
+double relit_difference(const Model& edited, const Vec3& mean_color, const std::string& light) {
+    Model even = edited;
+    for (Material& material : even.materials) {
+        material.base_color_texture = -1;
+        material.base_color_factor = Vec4(mean_color, 1);
+    }
+    const EnvironmentLight prefiltered = prefilter(make_light_preset(light), 64);
+    const auto cameras = picture_cameras(edited, 4);
+    const torch::Tensor a = draw_pictures(edited, prefiltered, cameras, 192);
+    const torch::Tensor b = draw_pictures(even, prefiltered, cameras, 192);
+    const torch::Tensor square = (over_white(a) - over_white(b)).square().sum();
+    return std::sqrt((square / (3 * a.select(3, 3).sum())).item<double>());
+}
+
+json run_case(const LeakOptions& options, const std::string& augment) {
+    EditRequest request;
+    request.output = options.output / augment;
+    make_output_folder(request.output);
+    request.model = request.output / "source.glb";
+    save_model(request.model, plain_model(load_model(options.mesh), Vec3(0.85f)));
+    request.prior = options.prior;
+    json overrides = {{"from", "a white " + options.noun},
+                      {"to", "a red " + options.noun},
+                      {"light", options.light},
+                      {"light_augment", augment}};
+    if (options.iterations > 0) overrides["iterations"] = options.iterations;
+    request.settings = resolve_settings(options.prior, overrides);
+    edit_model(request);
+    const Model edited = load_model(request.output / "model.glb");
+    const Leak leak = measure_leak(edited, options.light);
+    json relit = json::object();
+    for (const std::string& light : other_lights)
+        relit[light] = relit_difference(edited, leak.mean_color, light);
+    return {{"augment", augment},
+            {"correlation", leak.correlation},
+            {"slope", leak.slope},
+            {"mean_color", {leak.mean_color.x, leak.mean_color.y, leak.mean_color.z}},
+            {"relit_difference", relit}};
+}
+
+}  // namespace
+}  // namespace item3d
+
+int main(int argc, char** argv) {
+    item3d::LeakOptions options;
+    std::string mesh;
+    CLI::App app("Measures how much light an edit paints into the base colour.");
+    app.add_option("-o,--output", options.output, "Folder for all results")->required();
+    app.add_option("--prior", options.prior, "Prior; without it, the embedded one");
+    app.add_option("--mesh", mesh, "NOUN=FILE")->required();
+    app.add_option("--augment", options.augment, "off, rotate, all");
+    app.add_option("--light", options.light, "The preset that the edit is lit by");
+    app.add_option("--iterations", options.iterations, "Of each edit");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        options.prior = item3d::find_prior(options.prior.string());
+        const auto split = mesh.find('=');
+        if (split == std::string::npos) throw item3d::UsageError("--mesh takes NOUN=FILE");
+        options.noun = mesh.substr(0, split);
+        options.mesh = mesh.substr(split + 1);
+        for (const std::string& augment : options.augment)
+            fmt::print("{}\n", item3d::run_case(options, augment).dump());
+    } catch (const item3d::Error& error) {
+        fmt::print(stderr, "light_leak: error: {}\n", error.what());
+        return static_cast<int>(error.code());
+    }
+    return 0;
+}
