@@ -1,5 +1,5 @@
 # cmake --install BUILD --prefix PREFIX:
-#   bin/item3d, bin/parity   the programs
+#   bin/item3d, bin/parity   the programs; bin/item3d-commands, which item3d becomes
 #   lib/item3d/              LibTorch's libraries, found by the programs through $ORIGIN/../lib/item3d,
 #                            and libitem3d_cuda.so (cmake/Cuda.cmake), opened from there
 #   share/item3d/            assets: the embedded prior and the demo model
