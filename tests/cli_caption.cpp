@@ -40,6 +40,28 @@ TEST_F(Program, EditNamesWhatAnAdjustmentLacks) {
     expect_error(edit + " --settle 2", 3, "--settle");
 }
 
+TEST_F(Program, CaptionAndScoreTakeTheEmbeddedNetworks) {
+    const std::string mug = quoted(fs::path(ITEM3D_TEST_DATA) / "../../assets/demo/mug.glb");
+    const Result captions = run("caption " + mug + " --json");
+    ASSERT_EQ(captions.code, 0) << captions.error;
+    const auto said = nlohmann::json::parse(captions.out).at("captions");
+    ASSERT_EQ(said.size(), 4u);
+    EXPECT_NE(said.dump().find("red"), std::string::npos) << said;
+
+    const auto score = [&](const std::string& to) {
+        const Result result =
+            run("score " + mug + " " + mug + " --from 'a mug' --to '" + to + "' --views 2 --json");
+        EXPECT_EQ(result.code, 0) << result.error;
+        return nlohmann::json::parse(result.out).at("global").get<double>();
+    };
+    EXPECT_GT(score("a red mug"), score("a blue chair"));
+
+    const std::string nothing = "ITEM3D_ASSETS=" + quoted(folder_) + " ";
+    EXPECT_NE(run("caption " + mug, nothing).error.find("--captioner"), std::string::npos);
+    EXPECT_NE(run("score " + mug + " " + mug + " --from a --to b", nothing).error.find("--clip"),
+              std::string::npos);
+}
+
 TEST_F(Program, CaptionAndScoreNameWhatTheyLack) {
     expect_error("caption " + quoted(cube_) + " --captioner /nowhere", 3, "/nowhere/config.json");
     expect_error("caption " + quoted(folder_ / "no.png") + captioner(), 3, "no.png");

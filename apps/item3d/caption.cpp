@@ -90,10 +90,10 @@ void add_caption_command(CLI::App& app) {
         ->add_option("IMAGE|MODEL", options->input,
                      "A .png, .jpg, .hdr or .exr picture, or a .glb, .gltf or .obj model")
         ->required();
-    command
-        ->add_option("--captioner", options->captioner,
-                     "A folder with BLIP or BLIP-2 (OPT) in the transformers layout")
-        ->required();
+    command->add_option(
+        "--captioner", options->captioner,
+        "A folder with BLIP or BLIP-2 (OPT) in the transformers layout; without it, "
+        "the embedded prior's captioner");
     command->add_option("--prefix", options->caption.prefix,
                         "What the caption goes on from, as in \"a photo of\"");
     command->add_option("--beams", options->caption.beams, "Of the beam search; 1: greedy")
@@ -113,7 +113,11 @@ void add_caption_command(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--precision", options->precision, "Of the networks: auto, fp32 or bf16")
         ->capture_default_str();
-    command->callback([options] { run_caption(*options, start_command(*options)); });
+    command->callback([options] {
+        const torch::Device device = start_command(*options);
+        options->captioner = given_or_embedded(options->captioner, "captioner", "--captioner");
+        run_caption(*options, device);
+    });
 }
 
 }  // namespace item3d

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/hub/find_prior.h"
 #include "item3d/render/cuda/module.h"
 
 #include <ATen/Parallel.h>
@@ -10,6 +11,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 namespace item3d {
@@ -84,6 +86,16 @@ std::string command_line() {
         line += '\'';
     }
     return line;
+}
+
+std::string given_or_embedded(const std::string& folder, const std::string& network,
+                              const std::string& option) {
+    if (!folder.empty()) return folder;
+    const std::filesystem::path prior = find_prior("");
+    const std::filesystem::path found = find_in_prior(prior, network);
+    if (found.empty())
+        throw InputError(prior.string(), "has no " + network, "name a folder with " + option);
+    return found.string();
 }
 
 void print_json(const nlohmann::json& value) {

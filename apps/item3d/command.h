@@ -43,6 +43,11 @@ torch::Device start_command(const CommonOptions& options);
 /// The command line as typed, quoted for a shell.
 std::string command_line();
 
+/// `folder`, or where it is empty that of the embedded prior's own network ("clip", "captioner").
+/// Throws InputError that names `option` when there is none.
+std::string given_or_embedded(const std::string& folder, const std::string& network,
+                              const std::string& option);
+
 /// Writes one JSON object and a line end to stdout. Throws ResourceError when stdout is full.
 void print_json(const nlohmann::json& value);
 

@@ -88,8 +88,9 @@ void add_score_command(CLI::App& app) {
     command->add_option("AFTER", options->after, "The edited model")->required();
     command->add_option("--from", options->from, "What the model looked like")->required();
     command->add_option("--to", options->to, "What it should look like")->required();
-    command->add_option("--clip", options->clip, "A folder with CLIP in the transformers layout")
-        ->required();
+    command->add_option("--clip", options->clip,
+                        "A folder with CLIP in the transformers layout; without it, the embedded "
+                        "prior's, which knows its words alone");
     command->add_option("--views", options->views, "Around the model, the same for both")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
@@ -101,7 +102,11 @@ void add_score_command(CLI::App& app) {
         ->add_option("--light", options->light,
                      "studio, noon, sunset, overcast, night, or an .hdr or .exr file")
         ->capture_default_str();
-    command->callback([options] { run_score(*options, start_command(*options)); });
+    command->callback([options] {
+        const torch::Device device = start_command(*options);
+        options->clip = given_or_embedded(options->clip, "clip", "--clip");
+        run_score(*options, device);
+    });
 }
 
 }  // namespace item3d
