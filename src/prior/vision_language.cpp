@@ -96,7 +96,7 @@ LoopOptions vision_language_loop(const std::string& name, const TrainSettings& s
     options.samples = samples;
     options.rows = data.count();
     options.learning_rate = settings.learning_rate;
-    options.rise = 30000;
+    options.rise = std::min(30000.0, static_cast<double>(samples) / 8);
     options.seed = settings.seed;
     options.resume = settings.resume;
     options.stop_after = settings.stop_after;
