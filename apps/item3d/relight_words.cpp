@@ -57,7 +57,8 @@ std::string without_lit(const std::string& sentence) {
         if (word == "lit" || word == "lighted" || word == "illuminated") continue;
         result += (result.empty() ? "" : " ") + word;
     }
-    return result;
+    // "at night, lit from the left" leaves its comma.
+    return result.substr(0, result.find_last_not_of(" ,;.") + 1);
 }
 
 UsageError no_light(const std::string& to, const std::set<std::string>& known) {
