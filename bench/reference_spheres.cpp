@@ -2,12 +2,12 @@
 // (evaluated without our chain of levels, by summing over every texel of the map), what the choice
 // of reflectance model costs, and what our chain adds.
 #include "item3d/core/format.h"
-#include "item3d/core/parallel.h"
 #include "item3d/render/textured.h"
 #include "item3d/scene/environment.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/sphere.h"
 #include "reference_report.h"
+#include "reference_split_sum.h"
 
 #include <array>
 #include <cmath>
@@ -18,59 +18,6 @@ namespace {
 const Vec3 base_color(0.8f, 0.45f, 0.2f);
 constexpr int size = 256;
 constexpr int stride = 10;  ///< between the pixels whose split sum is summed exactly
-
-/// The map's texels as directions with radiance times solid angle.
-struct Texels {
-    std::vector<Vec3> direction, flux;
-    std::vector<float> solid_angle;
-};
-
-/// finer: sub-texels along each side, bilinear between the map's texels.
-Texels list_texels(const Image& map, int finer) {
-    const torch::Tensor pixels = to_tensor(map);
-    const auto source = pixels.accessor<float, 3>();
-    const int height = map.height * finer, width = map.width * finer;
-    Texels texels;
-    for (int y = 0; y < height; ++y) {
-        const auto angle = static_cast<float>(texel_solid_angle(y, height));
-        const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
-        const float row = std::clamp(v * static_cast<float>(map.height) - 0.5f, 0.0f,
-                                     static_cast<float>(map.height - 1));
-        const int y0 = static_cast<int>(row), y1 = std::min(y0 + 1, map.height - 1);
-        for (int x = 0; x < width; ++x) {
-            const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(width);
-            const float column = u * static_cast<float>(map.width) - 0.5f;
-            const float left = std::floor(column);
-            const int x0 = (static_cast<int>(left) + map.width) % map.width;
-            const int x1 = (x0 + 1) % map.width;
-            const float fx = column - left, fy = row - static_cast<float>(y0);
-            Vec3 radiance;
-            for (int c = 0; c < 3; ++c)
-                radiance[c] = (1 - fy) * ((1 - fx) * source[y0][x0][c] + fx * source[y0][x1][c]) +
-                              fy * ((1 - fx) * source[y1][x0][c] + fx * source[y1][x1][c]);
-            texels.direction.push_back(equirectangular_direction(u, v));
-            texels.flux.push_back(radiance * angle);
-            texels.solid_angle.push_back(angle);
-        }
-    }
-    return texels;
-}
-
-/// Karis' first sum at full precision: the mean of the map under D(h) (n.l) with n = v = direction.
-Vec3 prefiltered(const Texels& texels, Vec3 direction, float roughness) {
-    const float alpha2 = std::pow(roughness, 4.0f);
-    double sum[3] = {0, 0, 0}, norm = 0;
-    for (std::size_t i = 0; i < texels.direction.size(); ++i) {
-        const float cosine = glm::dot(direction, texels.direction[i]);
-        if (cosine <= 0) continue;
-        const float d = 0.5f * (1 + cosine) * (alpha2 - 1) + 1;  // (n.h)^2 = (1 + n.l) / 2
-        const float weight = cosine / (d * d);
-        for (int c = 0; c < 3; ++c)
-            sum[c] += static_cast<double>(weight) * texels.flux[i][c];
-        norm += static_cast<double>(weight) * texels.solid_angle[i];
-    }
-    return Vec3(sum[0] / norm, sum[1] / norm, sum[2] / norm);
-}
 
 struct PixelList {
     std::vector<std::int64_t> pixel;
@@ -99,45 +46,13 @@ PixelList inner_pixels(const torch::Tensor& mask, const Camera& camera, int step
     return list;
 }
 
-/// The split sum of those pixels, [P, 3].
-torch::Tensor exact_split_sum(const PixelList& pixels, const Texels& texels, const Image& map,
-                              float metallic, float roughness) {
-    const torch::Tensor table_tensor = bsdf_table();
-    const auto table = table_tensor.accessor<float, 3>();
-    const auto table_size = static_cast<int>(table_tensor.size(0));
-    torch::Tensor out = torch::empty({static_cast<std::int64_t>(pixels.pixel.size()), 3});
-    auto* values = out.data_ptr<float>();
-    parallel_for(
-        "exact_split_sum", out.size(0),
-        [&](std::int64_t i) {
-            const Vec3 n = pixels.normal[static_cast<std::size_t>(i)];
-            const Vec3 v = pixels.view[static_cast<std::size_t>(i)];
-            const float cosine = glm::dot(n, v);
-            const auto nearest = [&](float x) {
-                return std::clamp(static_cast<int>(x * static_cast<float>(table_size)), 0,
-                                  table_size - 1);
-            };
-            const auto entry = table[nearest(roughness)][nearest(cosine)];
-            const Vec3 f0 = Vec3(0.04f * (1 - metallic)) + metallic * base_color;
-            const Vec3 specular =
-                prefiltered(texels, glm::normalize(2 * cosine * n - v), roughness) *
-                (f0 * entry[0] + Vec3(entry[1]));
-            const Vec3 radiance =
-                specular + (1 - metallic) * base_color * irradiance_over_pi(map, n);
-            for (int c = 0; c < 3; ++c)
-                values[3 * i + c] = radiance[c];
-        },
-        1);
-    return out;
-}
-
 }  // namespace
 
 Section sphere_section(const Folders& folders, const std::string& light_name) {
     const auto folder = folders.data / "spheres" / light_name;
     const Image map = load_image(folders.data / "env" / (light_name + ".hdr"));
     const EnvironmentLight light = prefilter(map);
-    const Texels coarse = list_texels(map, 1), fine = list_texels(map, 3);
+    const ExactSplitSum coarse(map, 1), fine(map, 3);
     const Model sphere = make_unit_sphere(256, 512);
     const Geometry geometry = Geometry::from_model(sphere);
     Camera camera;
@@ -184,8 +99,10 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
             const torch::Tensor traced = load_reference(folder / ("lambertggx" + file));
             const torch::Tensor disney = load_reference(folder / ("principled" + file));
             const torch::Tensor split =
-                exact_split_sum(pixels, roughness < 0.4f ? fine : coarse, map,
-                                static_cast<float>(metallic), roughness);
+                (roughness < 0.4f ? fine : coarse)
+                    .radiance(pixels.normal, pixels.view,
+                              std::vector<Vec3>(pixels.normal.size(), base_color),
+                              static_cast<float>(metallic), roughness);
             Model model = sphere;
             model.materials[0].base_color_factor = Vec4(base_color, 1);
             model.materials[0].metallic_factor = static_cast<float>(metallic);

@@ -293,7 +293,8 @@ Rendered render_scene(const Scene& scene, torch::Device device) {
     torch::manual_seed(9);
     const torch::Tensor weights = torch::randn({2, scene.height, scene.width, 3}).to(device);
     std::vector<torch::Tensor> light_maps{testing::smooth_cube(16), testing::smooth_cube(32, 4),
-                                          testing::smooth_cube(16, 5)};
+                                          testing::smooth_cube(16, 5), testing::smooth_cube(16, 6),
+                                          testing::smooth_cube(16, 7)};
     Geometry geometry = device.is_cuda() ? on_device(scene.geometry) : scene.geometry;
     const auto leaf = [&](const torch::Tensor& tensor) {
         return tensor.detach().clone().to(device).set_requires_grad(true);
@@ -311,17 +312,19 @@ Rendered render_scene(const Scene& scene, torch::Device device) {
     material.orm = leaf(torch::rand({count, 3}) * 0.9f + 0.05f);
     material.normal = leaf(
         testing::unit_rows(torch::randn({count, 3}) * 0.2f + torch::tensor({0.0f, 0.0f, 1.0f})));
-    const EnvironmentLight light{light_maps[0], {light_maps[1], light_maps[2]}, {0.1f, 0.6f}};
+    const EnvironmentLight light{
+        light_maps[0], {light_maps.begin() + 1, light_maps.end()}, {0.1f, 0.25f, 0.5f, 0.9f}};
     const torch::Tensor radiance = shade(surface, material, light);
     const torch::Tensor background = leaf(torch::rand({3}));
     const torch::Tensor picture = scatter(radiance, surface, raster, background);
     const torch::Tensor smooth = antialias(picture, raster, geometry);
     (smooth * weights).sum().backward();
     Rendered rendered{smooth.detach().cpu(), {}};
-    for (const torch::Tensor& input :
-         {geometry.positions, geometry.normals, light_maps[0], light_maps[1], light_maps[2],
-          material.base_color, material.orm, material.normal, background})
+    for (const torch::Tensor& input : {geometry.positions, geometry.normals, material.base_color,
+                                       material.orm, material.normal, background})
         rendered.gradients.push_back(input.grad().cpu());
+    for (const torch::Tensor& map : light_maps)
+        rendered.gradients.push_back(map.grad().cpu());
     return rendered;
 }
 
@@ -392,8 +395,9 @@ TEST(CudaDevice, PicturesOfTexturedModelsAreTheCpus) {
     inner.material = 1;
     model.primitives.push_back(inner);
     const EnvironmentLight light{testing::smooth_cube(16),
-                                 {testing::smooth_cube(32, 4), testing::smooth_cube(16, 5)},
-                                 {0.1f, 0.6f}};
+                                 {testing::smooth_cube(32, 4), testing::smooth_cube(16, 5),
+                                  testing::smooth_cube(16, 6), testing::smooth_cube(16, 7)},
+                                 {0.1f, 0.25f, 0.5f, 0.9f}};
     RenderOptions options;
     options.width = 80;
     options.height = 64;

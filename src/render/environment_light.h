@@ -11,7 +11,7 @@ namespace item3d {
 /// [6, S, S, 3] linear radiance. All tensors carry gradients back to what `prefilter` was given.
 struct EnvironmentLight {
     torch::Tensor diffuse;                ///< [6, 128, 128, 3] irradiance / pi
-    std::vector<torch::Tensor> specular;  ///< GGX-prefiltered chain, finest first
+    std::vector<torch::Tensor> specular;  ///< GGX-prefiltered chain, finest first; 4 levels or more
     std::vector<float> roughness;         ///< perceptual roughness of each level
     EnvironmentLight to(torch::Device device) const;
 };
@@ -25,9 +25,9 @@ torch::Tensor equirectangular_to_cube(const torch::Tensor& equirectangular, int 
 torch::Tensor adjust_light(const torch::Tensor& equirectangular, const torch::Tensor& degrees,
                            const torch::Tensor& exposure);
 
-/// Differentiable in `cube` [6, S, S, 3]. S is a power of two in [16, 1024]; the chain halves S
-/// down to 32 with two lobes a resolution, roughness 0.08 .. 0.5 in equal ratios, then stays there
-/// for 0.5, 0.63, 0.79 and 1.
+/// Differentiable in `cube` [6, S, S, 3]. S is a power of two in [16, 1024]; the chain has
+/// eight lobes from roughness 0.08 on in equal ratios, spread over the resolutions from S down to
+/// 64, then 0.5, 0.63, 0.79 and 1 at 32. (S <= 32: the first, then these.)
 EnvironmentLight prefilter(const torch::Tensor& cube);
 
 /// Convenience for fixed lights. size: edge of the finest cube face.

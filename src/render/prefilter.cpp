@@ -27,11 +27,14 @@ constexpr int coarsest_size = 16;                    ///< of what far texels are
 constexpr int least_size = 16, largest_size = 1024;  ///< of an environment
 constexpr float finest_roughness = 0.08f;
 constexpr float chain_roughness = 0.5f;  ///< of the smallest level's first lobe
+/// Between these two. The shading blends neighbours, which shows when they are far apart.
+constexpr std::size_t narrow_lobes = 8;
 constexpr std::array<float, 4> wide_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
 constexpr float kept_energy = 0.999f;
-/// How far texels are summed at full resolution, in texels at a face's centre: between the
-/// reference report's error for smooth metal, which falls with it, and time, which grows.
-constexpr float near_texels = 2;
+/// How far texels are summed on a lobe's own resolution and on coarser ones before the next is
+/// enough, in texels at a face's centre. A lobe is smooth where its own resolution hands over; on
+/// coarser ones its tail falls with the distance itself, and the error with that in texels.
+constexpr float near_texels = 2, near_texels_coarser = 3;
 
 /// Solid angles of a face's texels, [size, size], exact.
 std::vector<float> texel_solid_angles(int size) {
@@ -105,7 +108,8 @@ struct Lobe {
 Lobe plan_lobe(float roughness, int size, std::size_t level, std::size_t last) {
     Lobe lobe{roughness, level, {}, ggx_kernel(roughness, kept_energy)};
     for (; lobe.last() < last; size /= 2) {
-        const float near = near_texels * 2 / static_cast<float>(size);
+        const float texels = lobe.near.empty() ? near_texels : near_texels_coarser;
+        const float near = texels * 2 / static_cast<float>(size);
         if (near * near >= 0.7f * lobe.far.outer) break;
         const SplitKernel split = split_kernel(lobe.far, near * near);
         lobe.near.push_back(split.near);
@@ -128,13 +132,13 @@ Plan plan_chain(int size) {
     const std::size_t smallest = levels > 1 ? levels - 2 : 0;  // 32 texels
     while (plan.sizes[plan.cosine] > irradiance_size)
         ++plan.cosine;
-    // Two lobes a resolution: the shading blends neighbours, which shows when they are far apart.
-    const std::size_t lobes = std::max<std::size_t>(1, 2 * smallest);
+    const std::size_t lobes = smallest > 0 ? narrow_lobes : 1;
     for (std::size_t i = 0; i < lobes; ++i) {
         const float step = static_cast<float>(i) / static_cast<float>(lobes);
+        const std::size_t level = i * smallest / lobes;
         plan.lobes.push_back(
             plan_lobe(finest_roughness * std::pow(chain_roughness / finest_roughness, step),
-                      plan.sizes[i / 2], i / 2, levels - 1));
+                      plan.sizes[level], level, smallest));
     }
     // Lobes this wide lose nothing by one level more.
     for (const float roughness : wide_roughness)

@@ -25,8 +25,8 @@ class CubeDirections {
 /// Gets the sums of row_tile texels of all planes, [planes, row_tile].
 using RowSums = std::function<void(int row, int column, const float* sums)>;
 
-/// Sums of a kernel that reaches at most two texels at a face's centre (five at a corner), at the
-/// source's own size, plus `coarse` upsampled, a map of half the size (null: none). Halos: the
+/// Sums of a kernel that reaches at most three texels at a face's centre (eight at a corner), at
+/// the source's own size, plus `coarse` upsampled, a map of half the size (null: none). Halos: the
 /// source's full, one texel of the coarse map's.
 void near_sums(const kernels::CubePlanes& source, const CubeDirections& directions,
                const kernels::ZonalKernel& kernel, const kernels::CubePlanes* coarse,

@@ -10,6 +10,7 @@
 #include <torch/csrc/autograd/custom_function.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace item3d {
 namespace {
@@ -60,7 +61,17 @@ ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings&
         const torch::Tensor& map = inputs[first_level + static_cast<std::size_t>(level)];
         p.specular[level] = pointer(map);
         p.specular_size[level] = static_cast<int>(map.size(1));
-        p.specular_roughness[level] = settings.roughness[static_cast<std::size_t>(level)];
+        p.specular_log_roughness[level] =
+            std::log(settings.roughness[static_cast<std::size_t>(level)]);
+    }
+    for (int first = 0; first + 4 <= p.levels; ++first) {
+        const float* nodes = p.specular_log_roughness + first;
+        for (int i = 0; i < 4; ++i) {
+            float product = 1;
+            for (int j = 0; j < 4; ++j)
+                if (j != i) product *= nodes[i] - nodes[j];
+            p.specular_scale[first][i] = 1 / product;
+        }
     }
     return p;
 }
@@ -172,9 +183,9 @@ torch::Tensor shade(const Surface& surface, const MaterialSample& material,
     constexpr auto real = torch::kFloat32;
     const torch::Device device = operation_device(op, material.base_color);
     const std::int64_t count = surface.count();
-    ITEM3D_CHECK(!light.specular.empty() && light.specular.size() == light.roughness.size() &&
+    ITEM3D_CHECK(light.specular.size() >= 4 && light.specular.size() == light.roughness.size() &&
                      light.specular.size() <= kernels::max_specular_levels,
-                 "shade: light.specular needs 1 to 16 levels with a roughness each");
+                 "shade: light.specular needs 4 to 16 levels with a roughness each, ascending");
     const auto cube = [&](const char* name, const torch::Tensor& map) {
         torch::Tensor good = checked(op, name, map, real, {6, -1, -1, 3}, device);
         ITEM3D_CHECK(good.size(1) == good.size(2) && good.size(1) >= 2,

@@ -103,15 +103,28 @@ ITEM3D_HOST_DEVICE inline std::int32_t texel_over_edge(const CubeFrame& frame, i
     return (face * size + row) * size + column;
 }
 
-ITEM3D_HOST_DEVICE inline CubeTaps cube_taps(Vec3 d, int size) {
+/// Where a direction leaves the cube: what lookups at all sizes share.
+struct CubePoint {
+    int face;
+    float s, t;
+    float inverse;  ///< length of a unit of direction along s or t, on the face
+};
+
+ITEM3D_HOST_DEVICE inline CubePoint cube_point(Vec3 d) {
+    const int face = cube_face(d);
+    const FaceCoordinates on_face = face_coordinates(face, d);
+    const float inverse = 1.0f / on_face.major;
+    return {face, on_face.s * inverse, on_face.t * inverse, inverse};
+}
+
+ITEM3D_HOST_DEVICE inline CubeTaps cube_taps(const CubePoint& point, int size) {
+    const float half = 0.5f * size;
     CubeTaps taps;
-    taps.face = cube_face(d);
+    taps.face = point.face;
     taps.corner = -1;
-    const FaceCoordinates on_face = face_coordinates(taps.face, d);
-    const float inverse = 1.0f / on_face.major, half = 0.5f * size;
-    taps.s = on_face.s * inverse;
-    taps.t = on_face.t * inverse;
-    taps.texels_by = half * inverse;
+    taps.s = point.s;
+    taps.t = point.t;
+    taps.texels_by = half * point.inverse;
 
     const float x = taps.s * half + half - 0.5f, y = taps.t * half + half - 0.5f;
     const int x0 = static_cast<int>(x + 1.0f) - 1, y0 = static_cast<int>(y + 1.0f) - 1;

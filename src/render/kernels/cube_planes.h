@@ -35,7 +35,7 @@ template <int N>
 /// texels, unfolded over its edges; beyond its corners there is nothing (0).
 class CubePlanes {
   public:
-    static constexpr int halo = 6;
+    static constexpr int halo = 8;
 
     CubePlanes(int size, bool shared_plane)
         : size_(size),

@@ -30,7 +30,9 @@ struct ShadeParameters {
     int levels;
     const float* specular[max_specular_levels];  ///< [6, S, S, 3] each
     int specular_size[max_specular_levels];
-    float specular_roughness[max_specular_levels];  ///< ascending
+    float specular_log_roughness[max_specular_levels];  ///< ascending
+    /// Of the cubic through levels [first, first + 4): 1 / (differences of a node to the others).
+    float specular_scale[max_specular_levels][4];
 
     float* radiance;  ///< [P, 3]
 
@@ -117,24 +119,33 @@ ITEM3D_HOST_DEVICE inline BsdfValue bsdf_lookup(const float* table, int size, fl
     return {value[0], value[1], by_x[0], by_x[1], by_y[0], by_y[1]};
 }
 
-/// The two levels of the chain around a roughness.
+/// Four adjacent levels around a roughness, and their shares.
 struct SpecularLevels {
-    int low, high;
-    float fraction;  ///< weight of `high`
-    float slope;     ///< d fraction / d roughness
+    int first;
+    float weight[4];
+    float slope[4];  ///< d weight / d roughness
 };
 
+/// The cubic through the levels, by the logarithm of roughness: lobes keep their shape over it, so
+/// that few of them are enough. Constant beyond the chain's ends.
 ITEM3D_HOST_DEVICE inline SpecularLevels specular_levels(const ShadeParameters& p,
                                                          float roughness) {
-    const float* steps = p.specular_roughness;
-    if (p.levels == 1 || roughness <= steps[0]) return {0, 0, 0, 0};
-    if (roughness >= steps[p.levels - 1]) return {p.levels - 1, p.levels - 1, 0, 0};
-    int low = 0;
-    while (roughness >= steps[low + 1])
-        ++low;
-    // By the logarithm a blend of two lobes comes nearest to the lobe between them.
-    const float scale = 1 / std::log(steps[low + 1] / steps[low]);
-    return {low, low + 1, std::log(roughness / steps[low]) * scale, scale / roughness};
+    const float* nodes = p.specular_log_roughness;
+    const float limit = nodes[p.levels - 1];
+    const float raw = std::log(roughness > 1e-6f ? roughness : 1e-6f);
+    const float x = raw < nodes[0] ? nodes[0] : (raw > limit ? limit : raw);
+    int first = 0;
+    while (first + 4 < p.levels && x >= nodes[first + 2])
+        ++first;
+    const float slope = raw == x ? 1 / roughness : 0.0f;
+    const float* scale = p.specular_scale[first];
+    const float a = x - nodes[first], b = x - nodes[first + 1];
+    const float c = x - nodes[first + 2], d = x - nodes[first + 3];
+    const float ab = a * b, cd = c * d;
+    return {first,
+            {scale[0] * b * cd, scale[1] * a * cd, scale[2] * ab * d, scale[3] * ab * c},
+            {slope * scale[0] * (cd + b * (c + d)), slope * scale[1] * (cd + a * (c + d)),
+             slope * scale[2] * (ab + d * (a + b)), slope * scale[3] * (ab + c * (a + b))}};
 }
 
 /// Rough lobes lean from the mirror direction towards the normal (Lagarde and de Rousiers 2014,
@@ -166,9 +177,9 @@ struct ShadingPoint {
     DominantDirection dominant;
     float occlusion, roughness, metallic, n_dot_v;
     bool view_clamped;
-    CubeTaps diffuse_taps, low_taps, high_taps;
+    CubeTaps diffuse_taps, specular_taps[4];
     SpecularLevels levels;
-    Vec3 irradiance, low, high, specular;
+    Vec3 irradiance, prefiltered[4], specular;
     BsdfValue bsdf;
     float albedo, lost;  ///< single-scattering albedo at F0 = 1, and 1 / albedo - 1
     Vec3 single, boost;  ///< reflectance F0 A + B, and the factor for multiple scattering
@@ -191,17 +202,17 @@ ITEM3D_HOST_DEVICE inline ShadingPoint shading_point(const ShadeParameters& p, s
     s.dominant = dominant_direction(s.roughness);
     s.reflected = s.frame.normal + s.dominant.value * (s.mirrored - s.frame.normal);
 
-    s.diffuse_taps = cube_taps(s.frame.normal, p.diffuse_size);
+    s.diffuse_taps = cube_taps(cube_point(s.frame.normal), p.diffuse_size);
     s.irradiance = cube_value(p.diffuse, s.diffuse_taps);
     s.levels = specular_levels(p, s.roughness);
-    s.low_taps = cube_taps(s.reflected, p.specular_size[s.levels.low]);
-    s.low = cube_value(p.specular[s.levels.low], s.low_taps);
-    s.high = s.low;
-    if (s.levels.high != s.levels.low) {
-        s.high_taps = cube_taps(s.reflected, p.specular_size[s.levels.high]);
-        s.high = cube_value(p.specular[s.levels.high], s.high_taps);
+    const CubePoint reflected = cube_point(s.reflected);
+    s.specular = Vec3(0.0f);
+    for (int k = 0; k < 4; ++k) {
+        const int level = s.levels.first + k;
+        s.specular_taps[k] = cube_taps(reflected, p.specular_size[level]);
+        s.prefiltered[k] = cube_value(p.specular[level], s.specular_taps[k]);
+        s.specular += s.levels.weight[k] * s.prefiltered[k];
     }
-    s.specular = s.low + s.levels.fraction * (s.high - s.low);
 
     s.bsdf = bsdf_lookup(p.bsdf, p.bsdf_size, s.n_dot_v, s.roughness);
     s.albedo = s.bsdf.scale + s.bsdf.bias;
@@ -243,26 +254,24 @@ ITEM3D_HOST_DEVICE inline void shade_backward(const ShadeParameters& p, std::int
     if (p.base_color_gradient != nullptr)
         store3(p.base_color_gradient + 3 * i,
                (1 - s.metallic) * g * s.irradiance + s.metallic * by_f0);
-    const Vec3 by_low = (1 - s.levels.fraction) * by_specular;
-    const Vec3 by_high = s.levels.fraction * by_specular;
-    const bool two_levels = s.levels.high != s.levels.low;
     if (light.diffuse >= 0)
         cube_add_gradient(light.sums, light.diffuse, s.diffuse_taps, by_irradiance);
-    if (light.specular[s.levels.low] >= 0)
-        cube_add_gradient(light.sums, light.specular[s.levels.low], s.low_taps, by_low);
-    if (two_levels && light.specular[s.levels.high] >= 0)
-        cube_add_gradient(light.sums, light.specular[s.levels.high], s.high_taps, by_high);
-
-    Vec3 by_reflected = cube_direction_gradient(p.specular[s.levels.low], s.low_taps, by_low);
-    if (two_levels)
-        by_reflected += cube_direction_gradient(p.specular[s.levels.high], s.high_taps, by_high);
+    Vec3 by_reflected(0.0f);
+    float by_roughness = 0;  // through the levels' shares
+    for (int k = 0; k < 4; ++k) {
+        const int level = s.levels.first + k;
+        const Vec3 by_level = s.levels.weight[k] * by_specular;
+        if (light.specular[level] >= 0)
+            cube_add_gradient(light.sums, light.specular[level], s.specular_taps[k], by_level);
+        by_reflected += cube_direction_gradient(p.specular[level], s.specular_taps[k], by_level);
+        by_roughness += s.levels.slope[k] * glm::dot(by_specular, s.prefiltered[k]);
+    }
     const Vec3 by_mirrored = s.dominant.value * by_reflected;
     if (p.orm_gradient != nullptr) {
         p.orm_gradient[3 * i] = sum(out * (s.diffuse_part + s.specular_part));
         p.orm_gradient[3 * i + 1] =
             by_scale * s.bsdf.scale_by_roughness + by_bias * s.bsdf.bias_by_roughness +
-            s.levels.slope * sum(by_specular * (s.high - s.low)) +
-            s.dominant.slope * glm::dot(by_reflected, s.mirrored - s.frame.normal);
+            by_roughness + s.dominant.slope * glm::dot(by_reflected, s.mirrored - s.frame.normal);
         p.orm_gradient[3 * i + 2] = sum(by_f0 * (s.base_color - Vec3(dielectric_f0))) -
                                     sum(g * s.base_color * s.irradiance);
     }

@@ -1,0 +1,33 @@
+// The split sum itself (Karis 2013), without our chain of levels: summed over every texel of a map.
+#pragma once
+
+#include "item3d/core/math.h"
+#include "item3d/scene/image.h"
+
+#include <torch/types.h>
+
+#include <vector>
+
+namespace item3d::reference {
+
+class ExactSplitSum {
+  public:
+    /// map: equirectangular. finer: sub-texels along each side, bilinear between the map's texels;
+    /// smooth lobes need them.
+    ExactSplitSum(const Image& map, int finer);
+
+    /// Radiance [P, 3] at points with those unit normals and directions to the viewer.
+    torch::Tensor radiance(const std::vector<Vec3>& normals, const std::vector<Vec3>& views,
+                           const std::vector<Vec3>& base_colors, float metallic,
+                           float roughness) const;
+
+  private:
+    /// Of GGX around a direction: Karis' first sum.
+    Vec3 prefiltered(Vec3 direction, float roughness) const;
+
+    Image map_;
+    std::vector<Vec3> direction_, flux_;  ///< of the texels; flux: radiance times solid angle
+    std::vector<float> solid_angle_;
+};
+
+}  // namespace item3d::reference
