@@ -29,12 +29,13 @@ constexpr float finest_roughness = 0.08f;
 constexpr float chain_roughness = 0.5f;  ///< of the smallest level's first lobe
 /// Between these two. The shading blends neighbours, which shows when they are far apart.
 constexpr std::size_t narrow_lobes = 8;
-constexpr std::array<float, 4> wide_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
+constexpr std::array<float, 4> coarsest_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
+constexpr float wide = 0.3f;  ///< lobes from here on lose nothing on a resolution coarser still
 constexpr float kept_energy = 0.999f;
 /// How far texels are summed on a lobe's own resolution and on coarser ones before the next is
 /// enough, in texels at a face's centre. A lobe is smooth where its own resolution hands over; on
 /// coarser ones its tail falls with the distance itself, and the error with that in texels.
-constexpr float near_texels = 2, near_texels_coarser = 3;
+constexpr float near_texels = 1.5f, near_texels_coarser = 3;
 
 /// Solid angles of a face's texels, [size, size], exact.
 std::vector<float> texel_solid_angles(int size) {
@@ -132,17 +133,17 @@ Plan plan_chain(int size) {
     const std::size_t smallest = levels > 1 ? levels - 2 : 0;  // 32 texels
     while (plan.sizes[plan.cosine] > irradiance_size)
         ++plan.cosine;
+    const auto add = [&](float roughness, std::size_t level) {
+        plan.lobes.push_back(plan_lobe(roughness, plan.sizes[level], level,
+                                       roughness < wide ? smallest : levels - 1));
+    };
     const std::size_t lobes = smallest > 0 ? narrow_lobes : 1;
-    for (std::size_t i = 0; i < lobes; ++i) {
-        const float step = static_cast<float>(i) / static_cast<float>(lobes);
-        const std::size_t level = i * smallest / lobes;
-        plan.lobes.push_back(
-            plan_lobe(finest_roughness * std::pow(chain_roughness / finest_roughness, step),
-                      plan.sizes[level], level, smallest));
-    }
-    // Lobes this wide lose nothing by one level more.
-    for (const float roughness : wide_roughness)
-        plan.lobes.push_back(plan_lobe(roughness, plan.sizes[smallest], smallest, levels - 1));
+    for (std::size_t i = 0; i < lobes; ++i)
+        add(finest_roughness * std::pow(chain_roughness / finest_roughness,
+                                        static_cast<float>(i) / static_cast<float>(lobes)),
+            i * smallest / lobes);
+    for (const float roughness : coarsest_roughness)
+        add(roughness, smallest);
     return plan;
 }
 
