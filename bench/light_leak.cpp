@@ -1,22 +1,24 @@
 // How much of the light that a texture was edited in is painted into its base colour.
 //
-//   light_leak -o DIR --mesh cow=spot.obj [--augment off --augment all] [--light noon]
+//   light_leak -o DIR --mesh cow=spot.obj [--word red] [--augment off] [--light noon]
 //
-// A white model is edited to red once for each way of varying the light. Then, over points of its
-// surface: the correlation of the base colour's luminance with the diffuse light of the edit there,
-// both as logarithms, and the slope (1: all of the shading is painted). And under three other
-// lights: the difference between pictures of the result and of the same material with its mean base
-// colour everywhere.
+// A white model is edited to each word, once for each way of varying the light. Then, over points
+// of its surface: the correlation of the base colour's luminance with the diffuse light of the edit
+// there, both as logarithms, and the slope (1: all of the shading is painted). And under three
+// other lights: the difference between pictures of the result and of the same material with its
+// mean base colour everywhere.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/edit.h"
 #include "item3d/evaluate/model_pictures.h"
+#include "item3d/evaluate/picture.h"
 #include "item3d/field/surface_points.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/render/textured.h"
 #include "item3d/scene/environment.h"
+#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 #include "suite_models.h"
@@ -25,6 +27,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -37,9 +40,10 @@ using nlohmann::json;
 struct LeakOptions {
     std::filesystem::path output, prior, mesh;
     std::string noun;
+    std::vector<std::string> words{"red", "blue", "wooden", "golden"};
     std::vector<std::string> augment{"off", "rotate", "all"};
     std::string light = "noon";
-    int iterations = 0;  ///< 0: the prior's own
+    json overrides = json::object();
 };
 
 constexpr int surface_points = 20000;
@@ -54,7 +58,7 @@ struct Leak {
 
 Leak measure_leak(const Model& model, const std::string& light_name) {
     const torch::NoGradGuard no_grad;
-    const Image light = make_light_preset(light_name, light_height);
+    const Image light = resize(load_light(light_name), 2 * light_height, light_height);
     std::vector<int> materials;
     for (std::size_t i = 0; i < model.materials.size(); ++i)
         materials.push_back(static_cast<int>(i));
@@ -96,18 +100,19 @@ double relit_difference(const Model& edited, const Vec3& mean_color, const std::
     return std::sqrt((square / (3 * a.select(3, 3).sum())).item<double>());
 }
 
-json run_case(const LeakOptions& options, const std::string& augment) {
+json run_case(const LeakOptions& options, const std::string& word, const std::string& augment) {
     EditRequest request;
-    request.output = options.output / augment;
+    request.output = options.output / (word + "-" + augment);
     make_output_folder(request.output);
     request.model = request.output / "source.glb";
     save_model(request.model, plain_model(load_model(options.mesh), Vec3(0.85f)));
     request.prior = options.prior;
     json overrides = {{"from", "a white " + options.noun},
-                      {"to", "a red " + options.noun},
+                      {"to", "a " + word + " " + options.noun},
                       {"light", options.light},
-                      {"light_augment", augment}};
-    if (options.iterations > 0) overrides["iterations"] = options.iterations;
+                      {"light_augment", augment},
+                      {"detail", "off"}};
+    overrides.update(options.overrides);
     request.settings = resolve_settings(options.prior, overrides);
     edit_model(request);
     const Model edited = load_model(request.output / "model.glb");
@@ -115,7 +120,8 @@ json run_case(const LeakOptions& options, const std::string& augment) {
     json relit = json::object();
     for (const std::string& light : other_lights)
         relit[light] = relit_difference(edited, leak.mean_color, light);
-    return {{"augment", augment},
+    return {{"word", word},
+            {"augment", augment},
             {"correlation", leak.correlation},
             {"slope", leak.slope},
             {"mean_color", {leak.mean_color.x, leak.mean_color.y, leak.mean_color.z}},
@@ -128,13 +134,15 @@ json run_case(const LeakOptions& options, const std::string& augment) {
 int main(int argc, char** argv) {
     item3d::LeakOptions options;
     std::string mesh;
+    std::string settings = "{}";
     CLI::App app("Measures how much light an edit paints into the base colour.");
     app.add_option("-o,--output", options.output, "Folder for all results")->required();
     app.add_option("--prior", options.prior, "Prior; without it, the embedded one");
     app.add_option("--mesh", mesh, "NOUN=FILE")->required();
+    app.add_option("--word", options.words, "What the model shall become");
     app.add_option("--augment", options.augment, "off, rotate, all");
-    app.add_option("--light", options.light, "The preset that the edit is lit by");
-    app.add_option("--iterations", options.iterations, "Of each edit");
+    app.add_option("--light", options.light, "The preset or file that the edit is lit by");
+    app.add_option("--settings", settings, "Settings of the edit as JSON, {\"seed\": 1}");
     CLI11_PARSE(app, argc, argv);
     try {
         options.prior = item3d::find_prior(options.prior.string());
@@ -142,8 +150,13 @@ int main(int argc, char** argv) {
         if (split == std::string::npos) throw item3d::UsageError("--mesh takes NOUN=FILE");
         options.noun = mesh.substr(0, split);
         options.mesh = mesh.substr(split + 1);
-        for (const std::string& augment : options.augment)
-            fmt::print("{}\n", item3d::run_case(options, augment).dump());
+        options.overrides = nlohmann::json::parse(settings);
+        for (const std::string& word : options.words) {
+            for (const std::string& augment : options.augment) {
+                fmt::print("{}\n", item3d::run_case(options, word, augment).dump());
+                std::fflush(stdout);
+            }
+        }
     } catch (const item3d::Error& error) {
         fmt::print(stderr, "light_leak: error: {}\n", error.what());
         return static_cast<int>(error.code());

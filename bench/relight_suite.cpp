@@ -4,7 +4,8 @@
 //
 // Each mesh goes to the dark, to a sunset, to bright light and to the night. Right is: darker;
 // warmer; brighter; darker and colder. Brightness is that of the pictures, warmth that of the
-// light.
+// light. The model is written with its light each time, and must otherwise be the same, bit for
+// bit.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -15,6 +16,7 @@
 #include "item3d/evaluate/picture.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/scene/environment.h"
+#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 #include "item3d/scene/light_description.h"
@@ -22,6 +24,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
@@ -67,6 +70,32 @@ LitPicture look(const Model& model, const Image& light) {
             (sum / linear.select(3, 3).sum()).item<double>()};
 }
 
+/// Whether `lit` has the materials and meshes of `source`, and all its pictures and vertices byte
+/// for byte. The light's own pictures come behind them.
+bool is_untouched(const std::filesystem::path& source, const std::filesystem::path& lit) {
+    const auto before = parse_gltf(source, read_bytes(source));
+    const auto after = parse_gltf(lit, read_bytes(lit));
+    for (const char* list : {"materials", "textures", "samplers", "meshes", "accessors"})
+        if (before->json.value(list, Json()) != after->json.value(list, Json())) return false;
+    const std::size_t pictures = before->json.value("images", Json::array()).size();
+    if (after->json.value("images", Json::array()).size() < pictures) return false;
+    for (std::size_t i = 0; i < pictures; ++i)
+        if (read_image_bytes(*before, i) != read_image_bytes(*after, i)) return false;
+    const Bytes& vertices = before->buffers[0];
+    return after->buffers[0].size() >= vertices.size() &&
+           std::equal(vertices.begin(), vertices.end(), after->buffers[0].begin());
+}
+
+bool is_untouched_in(const Image& light, const std::filesystem::path& source,
+                     const std::filesystem::path& lit) {
+    const LightLobe lobe = brightest_lobe(light);
+    ModelLights lights;
+    lights.sun = DirectionalLight{lobe.direction, Vec3(lobe.irradiance)};
+    lights.surroundings = make_image_based_light(light);
+    save_lit_model(lit, load_model(source), lights);
+    return is_untouched(source, lit);
+}
+
 json run_case(const std::string& noun, const std::filesystem::path& mesh, const Wish& wish,
               const RelightSuiteOptions& options, std::vector<Tile>& tiles) {
     const std::string article = std::string("aeiou").find(noun.front()) != noun.npos ? "an " : "a ";
@@ -98,6 +127,7 @@ json run_case(const std::string& noun, const std::filesystem::path& mesh, const 
             {"luminance", {before.luminance, after.luminance}},
             {"color_temperature", {kelvin_before, kelvin_after}},
             {"right", right},
+            {"untouched", is_untouched_in(found.light, mesh, options.output / "lit.glb")},
             {"values", found.record.value("values", json())},
             {"seconds", found.record["seconds"]}};
 }
@@ -105,13 +135,16 @@ json run_case(const std::string& noun, const std::filesystem::path& mesh, const 
 void run_suite(const RelightSuiteOptions& options) {
     std::vector<json> results;
     std::vector<Tile> tiles;
-    int right = 0;
+    int right = 0, untouched = 0;
     make_output_folder(options.output);
     for (const auto& [noun, mesh] : options.meshes) {
+        const std::filesystem::path source = options.output / (noun + ".glb");
+        save_model(source, load_model(mesh));
         for (const Wish& wish : wishes) {
-            results.push_back(run_case(noun, mesh, wish, options, tiles));
+            results.push_back(run_case(noun, source, wish, options, tiles));
             const json& result = results.back();
             right += result["right"].get<bool>() ? 1 : 0;
+            untouched += result["untouched"].get<bool>() ? 1 : 0;
             note(fmt::format("{}: {} {} {}", result["to"].dump(), result["luminance"].dump(),
                              result["color_temperature"].dump(), result["right"].dump()));
         }
@@ -119,9 +152,12 @@ void run_suite(const RelightSuiteOptions& options) {
     ContactSheetOptions sheet;
     sheet.columns = static_cast<int>(wishes.size()) + 1;
     save_image(options.output / "sheet.png", contact_sheet(tiles, sheet));
-    const json summary = {{"right", right}, {"cases", results.size()}, {"results", results}};
+    const json summary = {{"right", right},
+                          {"untouched", untouched},
+                          {"cases", results.size()},
+                          {"results", results}};
     write_atomically(options.output / "relight.json", summary.dump(2) + "\n");
-    fmt::print("{} of {} right\n", right, results.size());
+    fmt::print("{} of {} right, {} untouched\n", right, results.size(), untouched);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -129,6 +130,30 @@ BENCHMARK(prefilter_cube)
     ->Args({512, 0})
     ->Args({512, 1})
     ->Unit(benchmark::kMillisecond);
+
+/// What someone who turns through lights waits for, once they are prefiltered: a textured model from
+/// triangles to sRGB, under another light each time.
+void preview_under_another_light(benchmark::State& state) {
+    const char* path = std::getenv("ITEM3D_BENCH_MODEL");
+    const Model model = path != nullptr ? load_model(path) : make_unit_sphere(54, 54);
+    const Geometry geometry = Geometry::from_model(model);
+    const TexturedMaterials materials(model);
+    const auto cameras = turntable(model.bounds(), 1, 0.3f, 0.6f);
+    torch::manual_seed(0);
+    const std::array lights = {prefilter(torch::rand({6, 256, 256, 3})),
+                               prefilter(torch::rand({6, 256, 256, 3}))};
+    RenderOptions options;
+    options.width = options.height = static_cast<int>(state.range(0));
+    options.supersampling = 1;
+    const torch::NoGradGuard no_grad;
+    std::size_t turn = 0;
+    for (auto _ : state) {
+        const torch::Tensor picture =
+            render(geometry, materials, lights[turn++ % lights.size()], cameras, options);
+        benchmark::DoNotOptimize(linear_to_srgb(picture.narrow(3, 0, 3).clamp(0, 1)));
+    }
+}
+BENCHMARK(preview_under_another_light)->Arg(512)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace item3d

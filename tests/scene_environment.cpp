@@ -1,5 +1,6 @@
 #include "item3d/core/error.h"
 #include "item3d/scene/environment.h"
+#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 #include "item3d/scene/sky_model.h"
@@ -172,10 +173,20 @@ TEST(LoadLight, ReadsFilesAndExplainsWhatItCannotUse) {
 
     light.at(0, 0, 0) = std::nanf("");
     save_image(folder / "item3d_light_nan.exr", light);
-    save_image(folder / "item3d_light.png", Image(8, 4, 3, 0.5f));
-    for (const std::string name : {"item3d_light_nan.exr", "item3d_light.png", "nothing.hdr"}) {
+    save_image(folder / "item3d_light_black.hdr", Image(8, 4, 3));
+    save_image(folder / "item3d_light_below.exr", Image(8, 4, 3, -0.5f));
+    save_image(folder / "item3d_light_point.exr", Image(1, 1, 3, 1));
+    for (const std::string name : {"item3d_light_nan.exr", "item3d_light_black.hdr",
+                                   "item3d_light_below.exr", "item3d_light_point.exr",
+                                   "nothing.hdr"}) {
         EXPECT_THROW(load_light((folder / name).string()), InputError) << name;
     }
+    // A picture under any name is read by its content, as sRGB where it is a PNG.
+    save_image(folder / "item3d_light.png", Image(8, 4, 3, 0.5f));
+    std::filesystem::copy_file(folder / "item3d_light.png", folder / "item3d_light_png.hdr",
+                               std::filesystem::copy_options::overwrite_existing);
+    for (const std::string name : {"item3d_light.png", "item3d_light_png.hdr"})
+        EXPECT_NEAR(load_light((folder / name).string()).at(0, 0, 0), 0.2158f, 2e-3f) << name;
     EXPECT_THROW(load_light("stduio"), InputError);
 }
 

@@ -94,7 +94,8 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
                          "Of a light that is optimised: physical, texels, or auto");
     setting<std::string>(command, options, "--light-augment", "light_augment",
                          "How the light varies while a texture is edited, so that no shading is "
-                         "painted: off, rotate, or all (other presets and brightness too)");
+                         "painted: off, rotate, or all (other presets and brightness too; the "
+                         "default)");
     setting<std::string>(command, options, "--background", "background",
                          "A colour, or vary: another grey each step");
     setting<int>(command, options, "--texture-size", "texture_size",
@@ -124,7 +125,24 @@ void warn_of_words(const EditRequest& request, const EditSettings& settings) {
     }
 }
 
+/// What the options say of the light must be of use.
+void refuse_contradictions(const EditCommandOptions& options) {
+    const std::string optimize = options.overrides.value("optimize", "texture");
+    const auto given = [&](const char* key) { return options.overrides.contains(key); };
+    if (optimize != "texture" && given("light_augment"))
+        throw UsageError(
+            "--light-augment varies a light that --optimize " + optimize +
+            " is to find: leave out one of them");
+    if (optimize == "texture" && given("light_model"))
+        throw UsageError("--light-model is that of --optimize light or both");
+    if (optimize == "light" && (given("keep") || given("texture_size") || given("metallic")))
+        throw UsageError(
+            "--optimize light changes no texture: without --keep, --texture-size and --metallic");
+}
+
 void run_edit(EditCommandOptions& options) {
+    refuse_contradictions(options);
+
     EditRequest& request = options.request;
     request.device = start_command(options);
     request.prior = find_prior(options.prior);

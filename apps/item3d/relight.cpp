@@ -9,6 +9,7 @@
 #include "item3d/evaluate/contact_sheet.h"
 #include "item3d/evaluate/model_pictures.h"
 #include "item3d/evaluate/picture.h"
+#include "item3d/render/image_based_light.h"
 #include "item3d/render/occlusion.h"
 #include "item3d/render/shade.h"
 #include "item3d/render/textured.h"
@@ -47,6 +48,7 @@ struct RelightCommand : CommonOptions {
     LightOptions change;
     RelightWords words;
     bool punctual = false;
+    bool image_based = false;
     bool shadows = true;
     int views = 6;
     int frames = 30;
@@ -190,10 +192,23 @@ void write_pictures(const RelightCommand& options, const Model& model, const Ima
                      std::span<const std::uint8_t>(encode_animation(frames)));
 }
 
+/// What model.glb is to bring along. Viewers add up all lights, so where the brightest lobe is one
+/// by itself, the surroundings do without.
+ModelLights lights_for_model(const RelightCommand& options, const Image& light,
+                             const LightLobe& lobe) {
+    ModelLights lights;
+    if (options.punctual) lights.sun = DirectionalLight{lobe.direction, Vec3(lobe.irradiance)};
+    if (options.image_based) {
+        lights.surroundings =
+            make_image_based_light(options.punctual ? without_lobe(light, lobe) : light);
+    }
+    return lights;
+}
+
 void run_relight(const RelightCommand& options, torch::Device device) {
     const std::optional<SunSetting> placed_sun = chosen_sun(options.change);
     const Model model = load_model(options.model);
-    const Image old_light = load_light(options.from_light, LightLayout::automatic);
+    const Image old_light = load_light(options.from_light);
     const fs::path folder = options.output;
     nlohmann::json by_words = nullptr;
     Image new_light;
@@ -225,17 +240,17 @@ void run_relight(const RelightCommand& options, torch::Device device) {
                              {"description", to_json(description)},
                              {"description_before", to_json(describe_light(old_light))},
                              {"words", by_words},
-                             {"punctual", nullptr}};
+                             {"punctual", nullptr},
+                             {"image_based", options.image_based}};
     if (options.sky || options.words.given()) record["light"] = nullptr;
     if (options.sky) record["sky"] = *options.sky;
-    std::optional<DirectionalLight> sun;
-    if (options.punctual) {
-        sun = DirectionalLight{description.lobe.direction, Vec3(description.lobe.irradiance)};
-        record["punctual"] = {
-            {"direction", {sun->direction.x, sun->direction.y, sun->direction.z}},
-            {"irradiance", {sun->irradiance.x, sun->irradiance.y, sun->irradiance.z}}};
+    const ModelLights lights = lights_for_model(options, new_light, description.lobe);
+    if (lights.sun) {
+        const Vec3 from = lights.sun->direction, irradiance = lights.sun->irradiance;
+        record["punctual"] = {{"direction", {from.x, from.y, from.z}},
+                              {"irradiance", {irradiance.x, irradiance.y, irradiance.z}}};
     }
-    save_lit_model(folder / "model.glb", model, sun);
+    save_lit_model(folder / "model.glb", model, lights);
     write_atomically(folder / "relight.json", std::string_view(record.dump(2) + "\n"));
     if (options.json) {
         print_json(record);
@@ -271,6 +286,9 @@ void add_relight_command(CLI::App& app) {
     command->add_flag("--punctual", options->punctual,
                       "Add the light's brightest lobe to model.glb as a directional light "
                       "(KHR_lights_punctual)");
+    command->add_flag("--image-based", options->image_based,
+                      "Add the light to model.glb as an image-based light "
+                      "(EXT_lights_image_based); with --punctual, all of it but that lobe");
     command->add_flag("!--no-shadows", options->shadows,
                       "Draw without the shadows that the model throws upon itself");
     command->add_option("--views", options->views, "Of before.png and after.png")

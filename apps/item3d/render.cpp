@@ -10,6 +10,7 @@
 #include "item3d/render/textured.h"
 #include "item3d/scene/camera.h"
 #include "item3d/scene/environment.h"
+#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 #include "light_options.h"

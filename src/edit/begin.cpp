@@ -6,6 +6,7 @@
 #include "item3d/edit/surface_means.h"
 #include "item3d/field/fit.h"
 #include "item3d/scene/environment.h"
+#include "item3d/scene/light_layout.h"
 
 #include <algorithm>
 

@@ -51,9 +51,10 @@ EditScene load_scene(const EditRequest& request) {
     scene.textured = std::make_unique<TexturedMaterials>(scene.model, device);
     scene.source = std::make_unique<MaterialSource>(scene.model, *scene.textured, *scene.space,
                                                     scene.materials, scene.channels, device);
-    scene.lights =
-        std::make_unique<LightRig>(settings.light, settings.light_augment,
-                                   settings.resolution <= small_picture ? 64 : 256, device);
+    // A light that is optimised is the only one.
+    scene.lights = std::make_unique<LightRig>(
+        settings.light, edits_light(settings) ? "off" : settings.light_augment,
+        settings.resolution <= small_picture ? 64 : 256, device);
     scene.prior =
         std::make_shared<Pipeline>(Pipeline::load(request.prior, device, scene.precision));
     apply_extras(*scene.prior, settings);

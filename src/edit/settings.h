@@ -56,7 +56,7 @@ struct EditSettings : PipelineExtras {
     /// empty: from anywhere.
     std::vector<float> light_from;
     /// How the light varies while a texture is edited: off, rotate, or all (views.h).
-    std::string light_augment = "rotate";
+    std::string light_augment = "all";
     std::string background = "vary";  ///< a colour, or "vary": another grey each iteration
     int texture_size = 0;             ///< 0: as the input, or 1024 where it has no texture
     std::vector<std::string> keep = {"occlusion", "normal"};

@@ -4,6 +4,7 @@
 #include "item3d/core/random.h"
 #include "item3d/evaluate/color.h"
 #include "item3d/scene/environment.h"
+#include "item3d/scene/light_layout.h"
 
 #include <array>
 #include <cmath>

@@ -2,7 +2,6 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
-#include "item3d/scene/io/load.h"
 #include "item3d/scene/light_description.h"
 #include "item3d/scene/sky_model.h"
 #include "item3d/scene/studio_light.h"
@@ -13,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 
 namespace item3d {
 
@@ -138,48 +136,6 @@ Image make_light_preset(const std::string& name, int height) {
     }
     normalize_peak(image, peak);
     return image;
-}
-
-Image load_light(const std::string& name_or_path) {
-    const auto& names = light_preset_names();
-    if (std::find(names.begin(), names.end(), name_or_path) != names.end()) {
-        return make_light_preset(name_or_path);
-    }
-    std::error_code ignored;
-    if (!std::filesystem::exists(name_or_path, ignored)) {
-        throw InputError(
-            "light '" + name_or_path + "'", "neither a preset nor a file that is there",
-            fmt::format("give {} or an equirectangular .hdr or .exr file", fmt::join(names, ", ")));
-    }
-    std::string extension = std::filesystem::path(name_or_path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension != ".hdr" && extension != ".exr") {
-        throw InputError(name_or_path,
-                         "expected a light as .hdr or .exr, found '" + extension + "'",
-                         "a light needs unclamped linear radiance");
-    }
-    const Image source = load_image(name_or_path);
-    if (source.width < 2 || source.height < 2) {
-        throw InputError(name_or_path,
-                         fmt::format("expected an equirectangular picture, found {}x{}",
-                                     source.width, source.height));
-    }
-    Image light(source.width, source.height, 3);
-    for (int y = 0; y < light.height; ++y) {
-        for (int x = 0; x < light.width; ++x) {
-            for (int c = 0; c < 3; ++c) {
-                const float value = source.at(x, y, source.channels >= 3 ? c : 0);
-                if (!std::isfinite(value)) {
-                    throw InputError(name_or_path, fmt::format("pixel ({}, {}) is not a finite "
-                                                               "number",
-                                                               x, y));
-                }
-                light.at(x, y, c) = std::max(0.0f, value);
-            }
-        }
-    }
-    return light;
 }
 
 Image adjust_light(const Image& light, float degrees, float exposure) {

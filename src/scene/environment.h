@@ -20,10 +20,6 @@ const std::vector<std::string>& light_preset_names();
 /// white surface has radiance 1 (sunset 0.7, night 0.15). Throws InputError on other names.
 Image make_light_preset(const std::string& name, int height = 256);
 
-/// A preset by name, or an .hdr/.exr file: three channels, negative values set to 0. Throws
-/// InputError.
-Image load_light(const std::string& name_or_path);
-
 /// Turns the light around +Y by `degrees` (positive: what stood at -Z moves towards +X) and
 /// multiplies radiance by 2^exposure.
 Image adjust_light(const Image& light, float degrees, float exposure);

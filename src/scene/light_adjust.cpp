@@ -15,36 +15,6 @@ namespace {
 /// Of a new sun: enough that it is plainly seen from where, with fill in the shadows.
 constexpr double usual_strength = 6;
 
-/// Replaces the lobe, with its blurred rim, by the mean of a ring around it.
-void remove_lobe(Image& light, const LightLobe& lobe) {
-    const auto texel = static_cast<float>(M_PI / std::min(light.height, light.width / 2));
-    const float rim = static_cast<float>(lobe.radius()) + 3 * texel;
-    const float ring = rim + 4 * texel;
-    glm::dvec3 sum(0);
-    double weights = 0;
-    std::vector<std::pair<int, int>> inside;
-    for (int y = 0; y < light.height; ++y) {
-        for (int x = 0; x < light.width; ++x) {
-            const Vec3 d = equirectangular_direction((static_cast<float>(x) + 0.5f) / light.width,
-                                                     (static_cast<float>(y) + 0.5f) / light.height);
-            const float cosine = glm::dot(d, lobe.direction);
-            if (cosine >= std::cos(rim)) {
-                inside.emplace_back(x, y);
-            } else if (cosine >= std::cos(ring)) {
-                const double weight = texel_solid_angle(y, light.height);
-                weights += weight;
-                for (int c = 0; c < 3; ++c)
-                    sum[c] += weight * light.at(x, y, c);
-            }
-        }
-    }
-    if (weights == 0) return;
-    for (const auto& [x, y] : inside) {
-        for (int c = 0; c < 3; ++c)
-            light.at(x, y, c) = std::min(light.at(x, y, c), static_cast<float>(sum[c] / weights));
-    }
-}
-
 }  // namespace
 
 Image tilt_light(const Image& light, float degrees) {
@@ -70,6 +40,37 @@ Image tint_light(const Image& light, Vec3 linear_color) {
     return tinted;
 }
 
+Image without_lobe(const Image& light, const LightLobe& lobe) {
+    const auto texel = static_cast<float>(M_PI / std::min(light.height, light.width / 2));
+    const float rim = static_cast<float>(lobe.radius()) + 3 * texel;
+    const float ring = rim + 4 * texel;
+    glm::dvec3 sum(0);
+    double weights = 0;
+    std::vector<std::pair<int, int>> inside;
+    for (int y = 0; y < light.height; ++y) {
+        for (int x = 0; x < light.width; ++x) {
+            const Vec3 d = equirectangular_direction((static_cast<float>(x) + 0.5f) / light.width,
+                                                     (static_cast<float>(y) + 0.5f) / light.height);
+            const float cosine = glm::dot(d, lobe.direction);
+            if (cosine >= std::cos(rim)) {
+                inside.emplace_back(x, y);
+            } else if (cosine >= std::cos(ring)) {
+                const double weight = texel_solid_angle(y, light.height);
+                weights += weight;
+                for (int c = 0; c < 3; ++c)
+                    sum[c] += weight * light.at(x, y, c);
+            }
+        }
+    }
+    Image result = light;
+    if (weights == 0) return result;
+    for (const auto& [x, y] : inside) {
+        for (int c = 0; c < 3; ++c)
+            result.at(x, y, c) = std::min(light.at(x, y, c), static_cast<float>(sum[c] / weights));
+    }
+    return result;
+}
+
 Image place_sun(const Image& light, const SunSetting& setting) {
     const float peak = peak_irradiance_over_pi(light);
     const LightLobe lobe = brightest_lobe(light);
@@ -77,7 +78,7 @@ Image place_sun(const Image& light, const SunSetting& setting) {
     glm::dvec3 color(1);
     if (lobe.is_sun()) {
         color = lobe.irradiance / luminance(lobe.irradiance);
-        remove_lobe(result, lobe);
+        result = without_lobe(light, lobe);
     }
     const double rest = M_PI * luminance(mean_radiance(result));
     double irradiance = lobe.is_sun() ? luminance(lobe.irradiance) : usual_strength * rest;

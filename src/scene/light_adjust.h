@@ -16,6 +16,9 @@ Image tilt_light(const Image& light, float degrees);
 /// not darken. Throws InputError for black.
 Image tint_light(const Image& light, Vec3 linear_color);
 
+/// The light with `lobe` and its blurred rim replaced by the mean of a ring around it.
+Image without_lobe(const Image& light, const LightLobe& lobe);
+
 struct SunSetting {
     SkyAngles from;
     /// Irradiance facing the sun over the mean irradiance of the rest of the light; none: what the

@@ -17,13 +17,7 @@ namespace {
 
 enum Face { right, left, up, down, front, back };
 
-/// As seen from inside.
-struct FaceAxes {
-    Vec3 forward;
-    Vec3 right;
-    Vec3 up;
-};
-const std::array<FaceAxes, 6> face_axes = {{
+const std::array<CubeFaceAxes, 6> face_axes = {{
     {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
     {{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
     {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
@@ -69,14 +63,15 @@ Vec3 bilinear(const Image& picture, float x, float y, int left, int top, int wid
     return glm::mix(above, below, row - static_cast<float>(y0));
 }
 
-Vec3 look_up_cube(const Image& picture, const FacePlaces& places, Vec3 direction) {
-    int face = 0;
-    for (int other = 1; other < 6; ++other) {
-        if (glm::dot(direction, face_axes[other].forward) >
-            glm::dot(direction, face_axes[face].forward))
+Vec3 look_up_cube(const Image& picture, const FacePlaces& places,
+                  const std::array<CubeFaceAxes, 6>& all_axes, Vec3 direction) {
+    std::size_t face = 0;
+    for (std::size_t other = 1; other < 6; ++other) {
+        if (glm::dot(direction, all_axes[other].forward) >
+            glm::dot(direction, all_axes[face].forward))
             face = other;
     }
-    const FaceAxes& axes = face_axes[face];
+    const CubeFaceAxes& axes = all_axes[face];
     const float depth = glm::dot(direction, axes.forward);
     Vec2 p(glm::dot(direction, axes.right) / depth, -glm::dot(direction, axes.up) / depth);
     if (face == back && places.back_is_upside_down) p = -p;
@@ -140,7 +135,7 @@ Image to_equirectangular(const Image& picture, LightLayout layout, const std::st
          {is_cross ? &wide_cross : &row_strip, is_cross ? &tall_cross : &column_strip}) {
         if (!fits(picture, *places)) continue;
         return light_from(2 * (picture.width / places->columns), [&](Vec3 direction) {
-            return look_up_cube(picture, *places, direction);
+            return look_up_cube(picture, *places, face_axes, direction);
         });
     }
     throw InputError(subject, fmt::format("{} expected, found {}x{}",
@@ -149,11 +144,11 @@ Image to_equirectangular(const Image& picture, LightLayout layout, const std::st
                                           picture.width, picture.height));
 }
 
-Image load_light(const std::string& name_or_path, LightLayout layout) {
-    const Image light = load_light(name_or_path);
-    const auto& presets = light_preset_names();
-    const bool is_preset = std::find(presets.begin(), presets.end(), name_or_path) != presets.end();
-    return is_preset ? light : to_equirectangular(light, layout, name_or_path);
+Image faces_to_equirectangular(const Image& row, const std::array<CubeFaceAxes, 6>& axes) {
+    ITEM3D_CHECK(row.channels == 3 && fits(row, row_strip), "six square faces in a row");
+    return light_from(2 * row.height, [&](Vec3 direction) {
+        return look_up_cube(row, row_strip, axes, direction);
+    });
 }
 
 Image light_from(int height, const std::function<Vec3(Vec3)>& radiance) {

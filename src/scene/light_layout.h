@@ -4,6 +4,7 @@
 #include "item3d/core/math.h"
 #include "item3d/scene/image.h"
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -36,8 +37,21 @@ LightLayout parse_light_layout(const std::string& name);
 /// that names `subject` when the sides do not fit the layout, or tell of none.
 Image to_equirectangular(const Image& picture, LightLayout layout, const std::string& subject);
 
-/// load_light of environment.h for files in any layout; presets are equirectangular already.
-Image load_light(const std::string& name_or_path, LightLayout layout);
+/// A cube's face as it is seen from inside.
+struct CubeFaceAxes {
+    Vec3 forward;
+    Vec3 right;
+    Vec3 up;
+};
+
+/// Six square faces in a row to an equirectangular light of two faces' height.
+Image faces_to_equirectangular(const Image& row, const std::array<CubeFaceAxes, 6>& axes);
+
+/// A preset by name, or a file: .hdr and .exr; .png and .jpg, which are taken as sRGB with a warning;
+/// or the image-based light of a .glb or .gltf (EXT_lights_image_based). Three channels,
+/// equirectangular. Negative values become 0, with a warning. Throws InputError for what cannot be
+/// read, is not finite, or black all over.
+Image load_light(const std::string& name_or_path, LightLayout layout = LightLayout::automatic);
 
 /// An equirectangular light of `height` rows from radiance by direction, four samples a texel.
 Image light_from(int height, const std::function<Vec3(Vec3)>& radiance);

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/scene/io/gltf_builder.h"
 #include "item3d/scene/io/gltf_document.h"
+#include "item3d/scene/io/gltf_image_light.h"
 #include "item3d/scene/io/gltf_write.h"
 #include "item3d/scene/io/resources.h"
 #include "item3d/scene/io/save.h"
@@ -54,6 +55,21 @@ Json root_nodes(const Json& json) {
     return roots;
 }
 
+/// Without scenes viewers show what they like; the loader took all nodes.
+Json& default_scene(Json& json) {
+    if (!json.contains("scenes") || json["scenes"].empty()) {
+        json["scenes"] = Json::array({Json{{"nodes", root_nodes(json)}}});
+        json["scene"] = 0;
+    }
+    return json["scenes"][json.value("scene", std::size_t{0})];
+}
+
+void use_extension(Json& json, const char* name) {
+    if (!json.contains("extensionsUsed")) json["extensionsUsed"] = Json::array();
+    Json& used = json["extensionsUsed"];
+    if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
+}
+
 void add_sun(Json& json, const DirectionalLight& sun) {
     const float strongest = std::max({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z});
     ITEM3D_CHECK(strongest > 0, "a directional light shines");
@@ -63,44 +79,49 @@ void add_sun(Json& json, const DirectionalLight& sun) {
                                           {"name", "sun"},
                                           {"color", {color.x, color.y, color.z}},
                                           {"intensity", strongest}});
-    const std::size_t node = append(json, "nodes",
-                                    Json{{"name", "sun"},
-                                         {"rotation", rotation_towards(sun.direction)},
-                                         {"extensions", {{punctual, {{"light", light}}}}}});
-    // Without scenes viewers show what they like; the loader took all nodes.
-    if (!json.contains("scenes") || json["scenes"].empty()) {
-        json["scenes"] = Json::array({Json{{"nodes", root_nodes(json)}}});
-        json["scene"] = 0;
-    } else {
-        append(json["scenes"][json.value("scene", std::size_t{0})], "nodes", node);
+    Json& scene = default_scene(json);
+    append(scene, "nodes", json["nodes"].size());
+    append(json, "nodes",
+           Json{{"name", "sun"},
+                {"rotation", rotation_towards(sun.direction)},
+                {"extensions", {{punctual, {{"light", light}}}}}});
+    use_extension(json, punctual);
+}
+
+Bytes with_lights(const SourceDocument& document, const ModelLights& lights) {
+    Json json = document.json;
+    GltfBuilder builder(json, 0, document.has_binary_chunk ? document.buffers[0] : Bytes(), false,
+                        "");
+    if (lights.sun) add_sun(json, *lights.sun);
+    if (lights.surroundings) {
+        const std::size_t light = add_image_based_light(builder, *lights.surroundings);
+        default_scene(json)["extensions"][image_based_extension] = Json{{"light", light}};
+        use_extension(json, image_based_extension);
     }
-    if (!json.contains("extensionsUsed")) json["extensionsUsed"] = Json::array();
-    Json& used = json["extensionsUsed"];
-    if (std::find(used.begin(), used.end(), punctual) == used.end()) used.push_back(punctual);
+    builder.finish();
+    return to_glb(json, builder.binary(), document);
 }
 
 }  // namespace
 
-void save_lit_model(const fs::path& path, const Model& model,
-                    const std::optional<DirectionalLight>& sun) {
+void save_lit_model(const fs::path& path, const Model& model, const ModelLights& lights) {
     if (to_lower(path.extension().string()) != ".glb") {
         throw InputError(path.string(), "a model with its light is written as .glb");
     }
     const bool is_whole_glb = model.source &&
                               to_lower(model.source->path.extension().string()) == ".glb" &&
                               !refers_to_files(model.source->json);
-    if (!sun && is_whole_glb) {
+    const bool has_lights = lights.sun || lights.surroundings;
+    if (!has_lights && is_whole_glb) {
         write_atomically(path, std::span<const std::uint8_t>(read_bytes(model.source->path)));
         return;
     }
     write_atomically(path, [&](const fs::path& temporary) {
         save_model(temporary, model);
-        if (!sun) return;
+        if (!has_lights) return;
         const auto document = parse_gltf(temporary, read_bytes(temporary));
-        Json json = document->json;
-        add_sun(json, *sun);
-        const Bytes binary = document->has_binary_chunk ? document->buffers[0] : Bytes();
-        write_atomically(temporary, std::span<const std::uint8_t>(to_glb(json, binary, *document)));
+        write_atomically(temporary,
+                         std::span<const std::uint8_t>(with_lights(*document, lights)));
     });
 }
 

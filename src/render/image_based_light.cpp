@@ -1,0 +1,72 @@
+#include "item3d/render/image_based_light.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/parallel.h"
+#include "item3d/render/environment_light.h"
+#include "item3d/render/kernels/shade.h"
+#include "item3d/render/shade.h"
+
+#include <functional>
+
+namespace item3d {
+namespace {
+
+constexpr int levels = 5;
+
+Image draw_faces(int size, const std::function<Vec3(Vec3)>& radiance) {
+    Image row(6 * size, size, 3);
+    parallel_for("faces", row.height, [&](std::int64_t y) {
+        const float t = kernels::texel_centre(static_cast<int>(y), size);
+        for (int x = 0; x < row.width; ++x) {
+            const CubeFaceAxes& axes = gltf_face_axes[static_cast<std::size_t>(x / size)];
+            const float s = kernels::texel_centre(x % size, size);
+            const Vec3 value =
+                radiance(glm::normalize(axes.forward + s * axes.right - t * axes.up));
+            for (int c = 0; c < 3; ++c)
+                row.at(x, static_cast<int>(y), c) = value[c];
+        }
+    });
+    return row;
+}
+
+kernels::ShadeParameters chain_of(const EnvironmentLight& light) {
+    kernels::ShadeParameters chain{};
+    chain.levels = static_cast<int>(light.specular.size());
+    for (std::size_t i = 0; i < light.specular.size(); ++i) {
+        chain.specular[i] = light.specular[i].const_data_ptr<float>();
+        chain.specular_size[i] = static_cast<int>(light.specular[i].size(1));
+        chain.specular_roughness[i] = light.roughness[i];
+    }
+    return chain;
+}
+
+}  // namespace
+
+ImageBasedLight make_image_based_light(const Image& light, int size) {
+    ITEM3D_CHECK(size >= 256 && size <= 1024, "an image-based light has faces of 256 to 1024");
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor cube = equirectangular_to_cube(to_tensor(light), size).contiguous();
+    const EnvironmentLight prefiltered = prefilter(cube);
+    const kernels::ShadeParameters chain = chain_of(prefiltered);
+    const auto look_up = [](const float* map, int map_size, Vec3 direction) {
+        return kernels::cube_value(map, kernels::cube_taps(direction, map_size));
+    };
+    ImageBasedLight result;
+    result.irradiance = irradiance_harmonics(light);
+    result.specular.push_back(draw_faces(size, [&](Vec3 direction) {
+        return look_up(cube.const_data_ptr<float>(), size, direction);
+    }));
+    for (int level = 1; level < levels; ++level) {
+        const float roughness = static_cast<float>(level) / (levels - 1);
+        const kernels::SpecularLevels between = kernels::specular_levels(chain, roughness);
+        result.specular.push_back(draw_faces(size >> level, [&](Vec3 direction) {
+            const auto at = [&](int i) {
+                return look_up(chain.specular[i], chain.specular_size[i], direction);
+            };
+            return glm::mix(at(between.low), at(between.high), between.fraction);
+        }));
+    }
+    return result;
+}
+
+}  // namespace item3d
