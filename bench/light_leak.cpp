@@ -18,9 +18,9 @@
 #include "item3d/hub/find_prior.h"
 #include "item3d/render/textured.h"
 #include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
+#include "item3d/scene/light_layout.h"
 #include "suite_models.h"
 
 #include <CLI/CLI.hpp>

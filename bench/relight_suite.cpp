@@ -15,11 +15,14 @@
 #include "item3d/evaluate/model_pictures.h"
 #include "item3d/evaluate/picture.h"
 #include "item3d/hub/find_prior.h"
+#include "item3d/render/image_based_light.h"
 #include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
+#include "item3d/scene/io/gltf_document.h"
+#include "item3d/scene/io/gltf_light.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 #include "item3d/scene/light_description.h"
+#include "item3d/scene/light_layout.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

@@ -131,8 +131,8 @@ BENCHMARK(prefilter_cube)
     ->Args({512, 1})
     ->Unit(benchmark::kMillisecond);
 
-/// What someone who turns through lights waits for, once they are prefiltered: a textured model from
-/// triangles to sRGB, under another light each time.
+/// What someone who turns through lights waits for, once they are prefiltered: a textured model
+/// from triangles to sRGB, under another light each time.
 void preview_under_another_light(benchmark::State& state) {
     const char* path = std::getenv("ITEM3D_BENCH_MODEL");
     const Model model = path != nullptr ? load_model(path) : make_unit_sphere(54, 54);

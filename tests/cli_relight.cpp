@@ -122,7 +122,8 @@ TEST_F(RelightProgram, WordsOfDirectionAloneNeedNoPrior) {
     EXPECT_FALSE(record["words"].contains("prior"));
 }
 
-// The viewer stands at azimuth 145, so left is 235, behind 325, and two o'clock 60 degrees from there.
+// The viewer stands at azimuth 145, so left is 235, behind 325, and two o'clock 60 degrees from
+// there.
 TEST_F(RelightProgram, TwelveDirectionsInSentences) {
     struct Spoken {
         const char* words;

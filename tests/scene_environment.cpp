@@ -1,8 +1,8 @@
 #include "item3d/core/error.h"
 #include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
+#include "item3d/scene/light_layout.h"
 #include "item3d/scene/sky_model.h"
 
 #include <gtest/gtest.h>
@@ -176,9 +176,9 @@ TEST(LoadLight, ReadsFilesAndExplainsWhatItCannotUse) {
     save_image(folder / "item3d_light_black.hdr", Image(8, 4, 3));
     save_image(folder / "item3d_light_below.exr", Image(8, 4, 3, -0.5f));
     save_image(folder / "item3d_light_point.exr", Image(1, 1, 3, 1));
-    for (const std::string name : {"item3d_light_nan.exr", "item3d_light_black.hdr",
-                                   "item3d_light_below.exr", "item3d_light_point.exr",
-                                   "nothing.hdr"}) {
+    for (const std::string name :
+         {"item3d_light_nan.exr", "item3d_light_black.hdr", "item3d_light_below.exr",
+          "item3d_light_point.exr", "nothing.hdr"}) {
         EXPECT_THROW(load_light((folder / name).string()), InputError) << name;
     }
     // A picture under any name is read by its content, as sRGB where it is a PNG.

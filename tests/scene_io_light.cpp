@@ -63,12 +63,12 @@ TEST(ImageBasedLight, HarmonicsAreTheIrradianceOfSmoothLight) {
 
 // The orientation that the extension asks for, written out: OpenGL's faces mirrored.
 TEST(ImageBasedLight, FacesAreOpenGlsMirrored) {
-    const std::array<Vec3, 6> upper_left = {{{1, 1, -1},    // +X
-                                             {-1, 1, 1},    // -X
-                                             {1, 1, -1},    // +Y
-                                             {1, -1, 1},    // -Y
-                                             {1, 1, 1},     // +Z
-                                             {-1, 1, -1}}}; // -Z
+    const std::array<Vec3, 6> upper_left = {{{1, 1, -1},     // +X
+                                             {-1, 1, 1},     // -X
+                                             {1, 1, -1},     // +Y
+                                             {1, -1, 1},     // -Y
+                                             {1, 1, 1},      // +Z
+                                             {-1, 1, -1}}};  // -Z
     for (std::size_t face = 0; face < 6; ++face) {
         const CubeFaceAxes& axes = gltf_face_axes[face];
         EXPECT_EQ(axes.forward - axes.right + axes.up, upper_left[face]) << face;
@@ -149,9 +149,8 @@ TEST(ImageBasedLight, ExplainsWhatItCannotRead) {
     expect_refused([](auto& light) { light["specularImages"][0].erase(0); });
     expect_refused([](auto& light) { light["specularImages"][0][2] = 4711; });
     expect_refused([](auto& light) { light["specularImages"][0][2] = "two"; });
-    expect_refused([](auto& light) {
-        light["specularImages"][0][3] = light["specularImages"][1][3];
-    });
+    expect_refused(
+        [](auto& light) { light["specularImages"][0][3] = light["specularImages"][1][3]; });
     expect_refused([](auto& light) { light["intensity"] = -1; });
     expect_refused([](auto& light) { light["rotation"] = {0, 0, 0, 0}; });
 }

@@ -7,8 +7,8 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
+#include "item3d/scene/light_layout.h"
 
 #include <omp.h>
 

@@ -8,8 +8,8 @@
 #include "item3d/models/captioner.h"
 #include "item3d/models/precision.h"
 #include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
+#include "item3d/scene/light_layout.h"
 #include "picture_options.h"
 
 #include <chrono>

@@ -130,9 +130,8 @@ void refuse_contradictions(const EditCommandOptions& options) {
     const std::string optimize = options.overrides.value("optimize", "texture");
     const auto given = [&](const char* key) { return options.overrides.contains(key); };
     if (optimize != "texture" && given("light_augment"))
-        throw UsageError(
-            "--light-augment varies a light that --optimize " + optimize +
-            " is to find: leave out one of them");
+        throw UsageError("--light-augment varies a light that --optimize " + optimize +
+                         " is to find: leave out one of them");
     if (optimize == "texture" && given("light_model"))
         throw UsageError("--light-model is that of --optimize light or both");
     if (optimize == "light" && (given("keep") || given("texture_size") || given("metallic")))

@@ -12,8 +12,8 @@
 #include "item3d/models/precision.h"
 #include "item3d/prior/vocabulary.h"
 #include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
 #include "item3d/scene/light_adjust.h"
+#include "item3d/scene/light_layout.h"
 #include "item3d/scene/light_words.h"
 #include "picture_options.h"
 

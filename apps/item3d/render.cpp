@@ -10,9 +10,9 @@
 #include "item3d/render/textured.h"
 #include "item3d/scene/camera.h"
 #include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
+#include "item3d/scene/light_layout.h"
 #include "light_options.h"
 #include "picture_options.h"
 

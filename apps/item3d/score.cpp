@@ -6,8 +6,8 @@
 #include "item3d/evaluate/model_pictures.h"
 #include "item3d/models/precision.h"
 #include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
+#include "item3d/scene/light_layout.h"
 
 #include <chrono>
 #include <memory>

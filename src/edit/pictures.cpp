@@ -5,8 +5,8 @@
 #include "item3d/evaluate/model_pictures.h"
 #include "item3d/evaluate/picture.h"
 #include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/save.h"
+#include "item3d/scene/light_layout.h"
 
 namespace item3d {
 namespace {

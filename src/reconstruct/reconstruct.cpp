@@ -8,9 +8,9 @@
 #include "item3d/reconstruct/outputs.h"
 #include "item3d/reconstruct/surface/plain_model.h"
 #include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
+#include "item3d/scene/light_layout.h"
 
 #include <algorithm>
 

@@ -19,11 +19,11 @@ extern const std::array<CubeFaceAxes, 6> gltf_face_axes;
 std::array<float, 9> spherical_harmonics(Vec3 d);
 
 struct ImageBasedLight {
-    /// Irradiance on a surface that faces d is their sum, weighted by spherical_harmonics(d). Linear
-    /// RGB; a white surface has the radiance irradiance / pi.
+    /// Irradiance on a surface that faces d is their sum, weighted by spherical_harmonics(d).
+    /// Linear RGB; a white surface has the radiance irradiance / pi.
     std::array<Vec3, 9> irradiance;
-    /// Linear RGB radiance, prefiltered by GGX: level k of n for the roughness k / (n - 1), each half
-    /// as fine as the one before. Six faces in a row, gltf_face_axes.
+    /// Linear RGB radiance, prefiltered by GGX: level k of n for the roughness k / (n - 1), each
+    /// half as fine as the one before. Six faces in a row, gltf_face_axes.
     std::vector<Image> specular;
 };
 

@@ -97,7 +97,7 @@ LightLayout detect(const Image& picture, const std::string& subject) {
         subject,
         fmt::format("{}x{} is the shape of no layout of lights", picture.width, picture.height),
         "equirectangular is 2:1, a cross 4:3 or 3:4, a strip 6:1 or 1:6, angular 1:1; or say "
-        "--layout equirectangular");
+        "--layout equirectangular to item3d light, which converts");
 }
 
 }  // namespace

@@ -71,8 +71,7 @@ void make_usable(Image& light, const std::string& path) {
             path, negative > 0 ? "has no value above 0: no light" : "is black all over: no light",
             "give another one, or a preset");
     }
-    if (negative > 0)
-        warn(fmt::format("{}: {} negative values are taken as 0", path, negative));
+    if (negative > 0) warn(fmt::format("{}: {} negative values are taken as 0", path, negative));
 }
 
 }  // namespace

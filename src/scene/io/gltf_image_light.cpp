@@ -73,7 +73,8 @@ Image read_faces(const SourceDocument& document, const GltfObject& light) {
         const Json& index = levels->front()[static_cast<std::size_t>(face)];
         if (!index.is_number_unsigned() ||
             index.get<std::size_t>() >= root_of(document).list_size("images"))
-            light.fail(fmt::format("specularImages: '{}' is no image of the document", index.dump()));
+            light.fail(
+                fmt::format("specularImages: '{}' is no image of the document", index.dump()));
         const std::string subject =
             fmt::format("{}: images[{}]", document.path.string(), index.dump());
         const Image image =

@@ -20,9 +20,9 @@ inline constexpr const char* image_based_extension = "EXT_lights_image_based";
 /// disk, of which the others hold the energy).
 std::size_t add_image_based_light(GltfBuilder& builder, const ImageBasedLight& light);
 
-/// The image-based light of a .glb's or .gltf's scene, or the first there is, in its finest level as
-/// an equirectangular light; rotation and intensity are applied. Throws InputError where the file
-/// has none.
+/// The image-based light of a .glb's or .gltf's scene, or the first there is, in its finest level
+/// as an equirectangular light; rotation and intensity are applied. Throws InputError where the
+/// file has none.
 Image load_image_based_light(const std::filesystem::path& path);
 
 }  // namespace item3d

@@ -120,8 +120,7 @@ void save_lit_model(const fs::path& path, const Model& model, const ModelLights&
         save_model(temporary, model);
         if (!has_lights) return;
         const auto document = parse_gltf(temporary, read_bytes(temporary));
-        write_atomically(temporary,
-                         std::span<const std::uint8_t>(with_lights(*document, lights)));
+        write_atomically(temporary, std::span<const std::uint8_t>(with_lights(*document, lights)));
     });
 }
 

@@ -19,8 +19,8 @@ struct DirectionalLight {
 /// What shines on a model.
 struct ModelLights {
     /// Becomes a node of the default scene with a directional light (KHR_lights_punctual), its
-    /// intensity the irradiance: what viewers that shade a white surface with intensity / pi need to
-    /// show it as item3d does.
+    /// intensity the irradiance: what viewers that shade a white surface with intensity / pi need
+    /// to show it as item3d does.
     std::optional<DirectionalLight> sun;
     /// Becomes the default scene's image-based light (EXT_lights_image_based).
     std::optional<ImageBasedLight> surroundings;
