@@ -175,6 +175,12 @@ TEST_F(RelightProgram, ExplainsSentencesAndContradictions) {
     expect_error(model + words + "--rotate 20", 2, "--rotate");
     expect_error(model + "--seed 3", 2, "--from and --to");
     EXPECT_EQ(run(model + words + "--light-model sphere").code, 2);
+    const std::string edit = "edit " + quoted(cube_) + " -o " + quoted(folder_ / "out") +
+                             " --from 'a box' --to 'a red box' ";
+    expect_error(edit + "--optimize light", 2, "names no light");
+    expect_error(edit + "--optimize both --light-augment all", 2, "--light-augment");
+    expect_error(edit + "--light-model texels", 2, "--light-model");
+    expect_error(edit + "--optimize light --texture-size 64", 2, "--texture-size");
     expect_error(model + words + "--from-light nowhere.hdr", 3, "nowhere.hdr");
     expect_error(model + words + "--prior nowhere", 3, "nowhere");
 }

@@ -9,6 +9,7 @@
 #include "item3d/hub/find_prior.h"
 #include "item3d/models/precision.h"
 #include "item3d/prior/vocabulary.h"
+#include "relight_words.h"
 
 #include <cstdio>
 #include <memory>
@@ -145,6 +146,8 @@ void run_edit(EditCommandOptions& options) {
     EditRequest& request = options.request;
     request.device = start_command(options);
     request.prior = find_prior(options.prior);
+    if (options.overrides.value("optimize", "") == "light")
+        require_light_words(request.prior, options.to);
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
     if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
     options.overrides["from"] = options.from;

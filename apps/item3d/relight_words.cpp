@@ -121,6 +121,11 @@ void add_words_options(CLI::App& command, RelightWords& words) {
         ->group(group);
 }
 
+void require_light_words(const std::filesystem::path& prior, const std::string& sentence) {
+    const auto known = known_light_words(PriorVocabulary::load(prior));
+    if (!names_light(sentence, known)) throw no_light(sentence, known);
+}
+
 WordsLight light_by_words(const RelightWords& words, const std::filesystem::path& model,
                           const std::string& from_light, const std::filesystem::path& output,
                           torch::Device device) {

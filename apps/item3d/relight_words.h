@@ -30,6 +30,9 @@ struct RelightWords {
 /// --resume.
 void add_words_options(CLI::App& command, RelightWords& words);
 
+/// Throws UsageError where the sentence names no light that the prior (a folder) knows.
+void require_light_words(const std::filesystem::path& prior, const std::string& sentence);
+
 struct WordsLight {
     Image light;
     nlohmann::json record;  ///< what goes into relight.json as "words"
