@@ -13,13 +13,12 @@
 #include "item3d/core/progress.h"
 #include "item3d/edit/edit.h"
 #include "item3d/edit/surface_means.h"
-#include "item3d/evaluate/color.h"
 #include "item3d/evaluate/html.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/prior/vocabulary.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
-#include "suite_models.h"
+#include "suite_cases.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -34,12 +33,10 @@ namespace {
 
 using nlohmann::json;
 
-struct SuiteCase {
-    std::string group;               ///< "colors", "materials" or "stripes"
-    std::string mesh;                ///< its noun
-    std::string source;              ///< colour, or "red and white striped"
-    std::string target;              ///< colour, "golden", "covered in grass", ...
-    std::string method = "learned";  ///< "learned", "off" or "sds"
+/// A case and how it is edited: "learned", "off" or "sds".
+struct SuiteEdit {
+    SuiteCase test;
+    std::string method = "learned";
 };
 
 struct SuiteOptions {
@@ -50,75 +47,20 @@ struct SuiteOptions {
     std::uint64_t seed = 0;
 };
 
-std::string with_article(const std::string& words) {
-    const bool vowel = std::string("aeiou").find(words.front()) != std::string::npos;
-    return (vowel ? "an " : "a ") + words;
-}
-
-/// "a golden mug", but "a mug covered in grass".
-std::string prompt_of(const std::string& look, const std::string& noun) {
-    return look.starts_with("covered") ? with_article(noun) + " " + look
-                                       : with_article(look + " " + noun);
-}
-
-std::vector<SuiteCase> make_cases(const std::vector<std::string>& nouns) {
-    const std::vector<std::vector<std::pair<std::string, std::string>>> colors = {
-        {{"white", "red"}, {"red", "blue"}, {"blue", "yellow"}, {"yellow", "black"}},
-        {{"white", "green"}, {"green", "purple"}, {"purple", "orange"}, {"orange", "white"}},
-        {{"gray", "pink"}, {"pink", "brown"}, {"brown", "cyan"}, {"cyan", "gray"}}};
-    const std::vector<std::vector<std::pair<std::string, std::string>>> materials = {
-        {{"red", "golden"}, {"blue", "marble"}},
-        {{"brown", "silver"}, {"white", "stone"}},
-        {{"white", "wooden"}, {"gray", "covered in grass"}}};
-    std::vector<SuiteCase> cases;
-    for (std::size_t i = 0; i < nouns.size(); ++i) {
-        for (const auto& [from, to] : colors[i % colors.size()]) {
-            cases.push_back({"colors", nouns[i], from, to});
-        }
-        for (const auto& [from, to] : materials[i % materials.size()]) {
-            cases.push_back({"materials", nouns[i], from, to});
-        }
+std::vector<SuiteEdit> suite_edits(const std::vector<std::string>& nouns) {
+    std::vector<SuiteEdit> edits;
+    for (const SuiteCase& test : suite_cases(nouns)) {
+        edits.push_back({test});
+        if (test.group != "stripes") continue;
+        edits.push_back({test, "off"});
+        edits.push_back({test, "sds"});
     }
-    for (const auto& [noun, from, to] :
-         {std::tuple{"mug", "red and white striped", "blue and white striped"},
-          std::tuple{"cow", "green and white striped", "purple and white striped"}}) {
-        if (std::find(nouns.begin(), nouns.end(), noun) == nouns.end()) continue;
-        for (const char* method : {"learned", "off", "sds"}) {
-            cases.push_back({"stripes", noun, from, to, method});
-        }
-    }
-    return cases;
+    return edits;
 }
 
-/// The first word of a look that is one of the prior's colours; linear base colour.
-Vec3 color_of(const PriorVocabulary& vocabulary, const std::string& word) {
-    for (const KnownWord& known : vocabulary.words()) {
-        if (known.kind == "colors" && known.word == word && known.base_color)
-            return *known.base_color;
-    }
-    throw InputError("prior.json", "has no base colour for '" + word + "'",
-                     "run item3d prior measure on the prior");
-}
-
-std::vector<NamedColor> named_colors(const PriorVocabulary& vocabulary) {
-    std::vector<NamedColor> colors;
-    for (const KnownWord& known : vocabulary.words_of("colors")) {
-        if (!known.base_color) continue;
-        const Vec3 c = *known.base_color;
-        colors.push_back(
-            {known.word, Vec3(linear_to_srgb(c.x), linear_to_srgb(c.y), linear_to_srgb(c.z))});
-    }
-    return colors;
-}
-
-Model source_model(const SuiteCase& test, const Model& mesh, const PriorVocabulary& vocabulary) {
-    if (test.group != "stripes") return plain_model(mesh, color_of(vocabulary, test.source));
-    const std::string first = test.source.substr(0, test.source.find(' '));
-    return striped_model(mesh, color_of(vocabulary, first), color_of(vocabulary, "white"), 1, 5);
-}
-
-json run_case(const SuiteCase& test, const SuiteOptions& options, const PriorVocabulary& vocabulary,
+json run_edit(const SuiteEdit& edit, const SuiteOptions& options, const PriorVocabulary& vocabulary,
               const std::filesystem::path& folder) {
+    const SuiteCase& test = edit.test;
     make_output_folder(folder);
     const Model mesh = load_model(options.meshes.at(test.mesh));
     EditRequest request;
@@ -129,8 +71,8 @@ json run_case(const SuiteCase& test, const SuiteOptions& options, const PriorVoc
     json overrides = {{"from", prompt_of(test.source, test.mesh)},
                       {"to", prompt_of(test.target, test.mesh)},
                       {"seed", options.seed}};
-    if (test.method == "sds") overrides["guidance"] = "sds";
-    if (test.method == "off") overrides["adjust"] = "off";
+    if (edit.method == "sds") overrides["guidance"] = "sds";
+    if (edit.method == "off") overrides["adjust"] = "off";
     request.settings = resolve_settings(options.prior, overrides);
     request.command = fmt::format("item3d edit {} --from '{}' --to '{}'", request.model.string(),
                                   request.settings.from, request.settings.to);
@@ -140,7 +82,7 @@ json run_case(const SuiteCase& test, const SuiteOptions& options, const PriorVoc
                    {"mesh", test.mesh},
                    {"from", summary["from"]},
                    {"to", summary["to"]},
-                   {"method", test.method},
+                   {"method", edit.method},
                    {"scores", summary["scores"]},
                    {"seconds", summary["seconds"]["total"]},
                    {"peak_memory_bytes", summary["peak_memory_bytes"]}};
@@ -202,10 +144,11 @@ void run_suite(const SuiteOptions& options) {
     for (const auto& [noun, path] : options.meshes)
         nouns.push_back(noun);
     std::vector<json> results;
-    for (const SuiteCase& test : make_cases(nouns)) {
+    for (const SuiteEdit& edit : suite_edits(nouns)) {
+        const SuiteCase& test = edit.test;
         if (!options.only.empty() && test.group != options.only) continue;
         const std::string name = fmt::format("{:02}-{}-{}", results.size(), test.group, test.mesh);
-        json result = run_case(test, options, vocabulary, options.output / name);
+        json result = run_edit(edit, options, vocabulary, options.output / name);
         result["folder"] = name;
         note(fmt::format("{} -> {}: {}", result["from"].get<std::string>(),
                          result["to"].get<std::string>(), verdict(result)));

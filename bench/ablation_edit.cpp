@@ -1,0 +1,137 @@
+#include "ablation_edit.h"
+
+#include "item3d/core/files.h"
+#include "item3d/core/stage_times.h"
+#include "item3d/edit/outputs.h"
+#include "item3d/edit/surface_means.h"
+#include "item3d/evaluate/clip_score.h"
+#include "item3d/evaluate/model_pictures.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/scene/environment.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/scene/io/save.h"
+
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+using nlohmann::json;
+
+constexpr int view_count = 6;
+constexpr int view_pixels = 256;
+
+EditRequest request_of(const Contender& contender, const SuiteCase& test, std::uint64_t seed,
+                       const AblationOptions& options, const std::filesystem::path& folder) {
+    EditRequest request;
+    request.model = folder / "source.glb";
+    request.prior = options.prior;
+    request.output = folder;
+    json overrides = contender.overrides;
+    overrides.update({{"from", prompt_of(test.source, test.mesh)},
+                      {"to", prompt_of(test.target, test.mesh)},
+                      {"seed", seed},
+                      {"iterations", std::lround(options.rows / contender.rows)},
+                      // All take the steps that they are given, and draw no detail of the prior's
+                      // own afterwards: guidance alone is compared.
+                      {"settle", 0},
+                      {"detail", "off"},
+                      {"texture_size", test.group == "stripes" ? 512 : 256}});
+    request.settings = resolve_settings(options.prior, overrides);
+    if (wants_captions(request.settings))
+        request.captioner = find_in_prior(options.prior, "captioner");
+    return request;
+}
+
+/// Which of the prior's colours and materials CLIP sees in the pictures.
+std::string look_by_clip(const torch::Tensor& pictures, const std::string& noun,
+                         const AblationJudge& judge) {
+    std::vector<std::string> words, sentences;
+    for (const char* kind : {"colors", "materials"}) {
+        for (const KnownWord& known : judge.vocabulary.words_of(kind)) {
+            // As the suite's sentences have it.
+            const std::string look = known.word == "gold"    ? "golden"
+                                     : known.word == "wood"  ? "wooden"
+                                     : known.word == "rust"  ? "rusty"
+                                     : known.word == "grass" ? "covered in grass"
+                                     : known.word == "snow"  ? "covered in snow"
+                                                             : known.word;
+            words.push_back(look);
+            sentences.push_back(prompt_of(look, noun));
+        }
+    }
+    const torch::Tensor scores =
+        judge.clip.embed_images(pictures).matmul(judge.clip.embed_texts(sentences).t()).mean(0);
+    return words[static_cast<std::size_t>(scores.argmax().item<std::int64_t>())];
+}
+
+/// "right" and how that was found; nothing for stripes.
+json success(const SuiteCase& test, const SurfaceMeans& means, const torch::Tensor& pictures,
+             const AblationJudge& judge) {
+    if (test.group == "stripes") return json::object();
+    std::string found;
+    if (test.group == "colors") {
+        const auto colors = named_colors(judge.vocabulary);
+        found = colors[nearest_color(means.base_color, colors)].name;
+    } else {
+        found = look_by_clip(pictures, test.mesh, judge);
+    }
+    return {{"found", found}, {"right", found == test.target}};
+}
+
+void save_first(const std::filesystem::path& path, const torch::Tensor& pictures) {
+    save_image(path, to_image(pictures[0].permute({1, 2, 0})));
+}
+
+}  // namespace
+
+json run_ablation_edit(const Contender& contender, const SuiteCase& test, std::uint64_t seed,
+                       const AblationOptions& options, const AblationJudge& judge,
+                       const std::filesystem::path& folder) {
+    StageTimes times;
+    const EditRequest request = request_of(contender, test, seed, options, folder);
+    save_model(request.model,
+               source_model(test, load_model(options.meshes.at(test.mesh)), judge.vocabulary));
+    const EditScene scene = load_scene(request);
+    EditState state = begin_or_resume(request, scene);
+    times.end_stage("load and fit");
+    const IterationTimes iterations = optimize(request, scene, state);
+    times.end_stage("optimize");
+    const Model edited = bake_and_save(request, scene, state).model;
+    times.end_stage("bake");
+
+    const torch::NoGradGuard no_grad;
+    const EnvironmentLight light = prefilter(load_light(request.settings.light), 64);
+    const auto cameras = picture_cameras(scene.model, view_count);
+    const torch::Tensor was = draw_pictures(scene.model, light, cameras, view_pixels);
+    const torch::Tensor is = draw_pictures(edited, light, cameras, view_pixels);
+    const ClipScores scores = clip_scores(judge.clip, over_white(was), over_white(is),
+                                          request.settings.from, request.settings.to);
+    const SurfaceMeans means = surface_means(edited, scene.materials);
+    save_first(folder / "before.png", over_white(was));
+    save_first(folder / "after.png", over_white(is));
+
+    json result = success(test, means, over_white(is), judge);
+    result.update(
+        {{"contender", contender.name},
+         {"group", test.group},
+         {"mesh", test.mesh},
+         {"from", request.settings.from},
+         {"to", request.settings.to},
+         {"seed", seed},
+         {"rows", options.rows},
+         {"iterations", request.settings.iterations},
+         {"directional", scores.mean.directional},
+         {"global", scores.mean.global},
+         {"global_before", scores.mean.global_before},
+         {"kept", detail_kept(was, is)},
+         {"base_color_linear", {means.base_color.x, means.base_color.y, means.base_color.z}},
+         {"metallic", means.metallic},
+         {"roughness", means.roughness},
+         {"seconds_optimize", times.stages()[1].second},
+         {"seconds_adjust", iterations.adjust},
+         {"seconds", times.total()}});
+    return result;
+}
+
+}  // namespace item3d

@@ -1,0 +1,79 @@
+#include "suite_cases.h"
+
+#include "item3d/core/error.h"
+#include "suite_models.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace item3d {
+namespace {
+
+std::string with_article(const std::string& words) {
+    const bool vowel = std::string("aeiou").find(words.front()) != std::string::npos;
+    return (vowel ? "an " : "a ") + words;
+}
+
+/// The first word of a look that is one of the prior's colours; linear base colour.
+Vec3 color_of(const PriorVocabulary& vocabulary, const std::string& word) {
+    for (const KnownWord& known : vocabulary.words()) {
+        if (known.kind == "colors" && known.word == word && known.base_color)
+            return *known.base_color;
+    }
+    throw InputError("prior.json", "has no base colour for '" + word + "'",
+                     "run item3d prior measure on the prior");
+}
+
+}  // namespace
+
+std::string prompt_of(const std::string& look, const std::string& noun) {
+    return look.starts_with("covered") ? with_article(noun) + " " + look
+                                       : with_article(look + " " + noun);
+}
+
+std::vector<SuiteCase> suite_cases(const std::vector<std::string>& nouns) {
+    const std::vector<std::vector<std::pair<std::string, std::string>>> colors = {
+        {{"white", "red"}, {"red", "blue"}, {"blue", "yellow"}, {"yellow", "black"}},
+        {{"white", "green"}, {"green", "purple"}, {"purple", "orange"}, {"orange", "white"}},
+        {{"gray", "pink"}, {"pink", "brown"}, {"brown", "cyan"}, {"cyan", "gray"}}};
+    const std::vector<std::vector<std::pair<std::string, std::string>>> materials = {
+        {{"red", "golden"}, {"blue", "marble"}},
+        {{"brown", "silver"}, {"white", "stone"}},
+        {{"white", "wooden"}, {"gray", "covered in grass"}}};
+    std::vector<SuiteCase> cases;
+    for (std::size_t i = 0; i < nouns.size(); ++i) {
+        for (const auto& [from, to] : colors[i % colors.size()]) {
+            cases.push_back({"colors", nouns[i], from, to});
+        }
+        for (const auto& [from, to] : materials[i % materials.size()]) {
+            cases.push_back({"materials", nouns[i], from, to});
+        }
+    }
+    for (const auto& [noun, from, to] :
+         {std::tuple{"mug", "red and white striped", "blue and white striped"},
+          std::tuple{"cow", "green and white striped", "purple and white striped"}}) {
+        if (std::find(nouns.begin(), nouns.end(), noun) == nouns.end()) continue;
+        cases.push_back({"stripes", noun, from, to});
+    }
+    return cases;
+}
+
+std::vector<NamedColor> named_colors(const PriorVocabulary& vocabulary) {
+    std::vector<NamedColor> colors;
+    for (const KnownWord& known : vocabulary.words_of("colors")) {
+        if (!known.base_color) continue;
+        const Vec3 c = *known.base_color;
+        colors.push_back(
+            {known.word, Vec3(linear_to_srgb(c.x), linear_to_srgb(c.y), linear_to_srgb(c.z))});
+    }
+    return colors;
+}
+
+Model source_model(const SuiteCase& test, const Model& mesh, const PriorVocabulary& vocabulary) {
+    if (test.group != "stripes") return plain_model(mesh, color_of(vocabulary, test.source));
+    const std::string first = test.source.substr(0, test.source.find(' '));
+    return striped_model(mesh, color_of(vocabulary, first), color_of(vocabulary, "white"), 1, 5);
+}
+
+}  // namespace item3d
