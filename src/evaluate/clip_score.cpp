@@ -2,11 +2,14 @@
 
 #include "item3d/core/error.h"
 
+#include <algorithm>
+
 namespace item3d {
 namespace {
 
-/// Enough to keep matrix products busy; more would only take memory.
-constexpr int pictures_at_once = 8;
+/// Patches of all pictures that go through the network together: enough to keep matrix products
+/// busy, and few copies of the weights from memory; more would only take memory themselves.
+constexpr std::int64_t patches_at_once = 2048;
 
 /// Shorter differences of unit vectors have no direction but rounding's.
 constexpr double least_length = 1e-5;
@@ -28,13 +31,13 @@ ClipScores clip_scores(const Clip& clip, const torch::Tensor& before, const torc
                  "both image sets must be of one shape");
     const torch::NoGradGuard no_grad;
     const torch::Tensor texts = clip.embed_texts({from, to}).cpu().to(torch::kFloat64);
-    const auto embed = [&](const torch::Tensor& pictures) {
-        std::vector<torch::Tensor> rows;
-        for (const torch::Tensor& some : pictures.split(pictures_at_once))
-            rows.push_back(clip.embed_images(some).cpu().to(torch::kFloat64));
-        return torch::cat(rows);
-    };
-    const torch::Tensor was = embed(before), is = embed(after);
+    const auto at_once =
+        std::max<std::int64_t>(1, patches_at_once / clip.model->config().vision.tokens());
+    std::vector<torch::Tensor> rows;
+    for (const torch::Tensor& some : torch::cat({before, after}).split(at_once))
+        rows.push_back(clip.embed_images(some).cpu().to(torch::kFloat64));
+    const auto both = torch::cat(rows).chunk(2);
+    const torch::Tensor was = both[0], is = both[1];
     const torch::Tensor target = texts.narrow(0, 1, 1);
     const torch::Tensor scores = torch::stack({cosines(is, target), cosines(was, target),
                                                cosines(is - was, target - texts.narrow(0, 0, 1))},

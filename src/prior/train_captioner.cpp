@@ -21,8 +21,9 @@ void write_tokenizer(const std::filesystem::path& folder, const std::vector<Word
     std::string lines;
     for (const char* token : special_tokens)
         lines += std::string(token) + "\n";
+    // The words are as CLIP's tokenizer splits them, to which "3d" is two; d alone never comes.
     for (const WordCount& word : words)
-        lines += word.word + "\n";
+        lines += (word.word == "d" ? "3d" : word.word) + "\n";
     write_atomically(folder / "vocab.txt", lines);
     const nlohmann::json config{{"tokenizer_class", "BertTokenizer"},
                                 {"do_lower_case", true},
