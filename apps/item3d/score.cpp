@@ -43,7 +43,14 @@ void print_table(const ClipScores& scores, const std::vector<double>& kept, doub
     line("all", scores.mean, kept_mean);
 }
 
+void check_sentence(const std::string& option, const std::string& sentence) {
+    if (sentence.find_first_not_of(" \t\n") == std::string::npos)
+        throw InputError(option, "the sentence is empty", "say what the model looks like");
+}
+
 void run_score(const ScoreCommand& options, torch::Device device) {
+    check_sentence("--from", options.from);
+    check_sentence("--to", options.to);
     const Model before = load_model(options.before), after = load_model(options.after);
     const Clip clip = Clip::load(options.clip, device, choose_precision(options.precision, device));
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
@@ -51,9 +58,10 @@ void run_score(const ScoreCommand& options, torch::Device device) {
     const std::vector<Camera> cameras = picture_cameras(before, options.views);
     const torch::Tensor was = draw_pictures(before, light, cameras, view_pixels);
     const torch::Tensor is = draw_pictures(after, light, cameras, view_pixels);
+    const torch::Tensor before_pictures = over_white(was), after_pictures = over_white(is);
     const auto begin = std::chrono::steady_clock::now();
     const ClipScores scores =
-        clip_scores(clip, over_white(was), over_white(is), options.from, options.to);
+        clip_scores(clip, before_pictures, after_pictures, options.from, options.to);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
 
     std::vector<double> kept;

@@ -2,14 +2,11 @@
 
 #include "item3d/core/error.h"
 
-#include <algorithm>
-
 namespace item3d {
 namespace {
 
-/// Patches of all pictures that go through the network together: enough to keep matrix products
-/// busy, and few copies of the weights from memory; more would only take memory themselves.
-constexpr std::int64_t patches_at_once = 2048;
+/// Enough to keep matrix products busy; more take memory, and time to get it.
+constexpr int pictures_at_once = 8;
 
 /// Shorter differences of unit vectors have no direction but rounding's.
 constexpr double least_length = 1e-5;
@@ -31,10 +28,8 @@ ClipScores clip_scores(const Clip& clip, const torch::Tensor& before, const torc
                  "both image sets must be of one shape");
     const torch::NoGradGuard no_grad;
     const torch::Tensor texts = clip.embed_texts({from, to}).cpu().to(torch::kFloat64);
-    const auto at_once =
-        std::max<std::int64_t>(1, patches_at_once / clip.model->config().vision.tokens());
     std::vector<torch::Tensor> rows;
-    for (const torch::Tensor& some : torch::cat({before, after}).split(at_once))
+    for (const torch::Tensor& some : torch::cat({before, after}).split(pictures_at_once))
         rows.push_back(clip.embed_images(some).cpu().to(torch::kFloat64));
     const auto both = torch::cat(rows).chunk(2);
     const torch::Tensor was = both[0], is = both[1];

@@ -21,16 +21,19 @@ torch::Tensor lightness(const torch::Tensor& images) {
                         y * (24389.0 / 2700.0));
 }
 
+/// [size, size]: blurs a column of so many values, with nothing beyond its ends. As a matrix
+/// product it is many times quicker than as a convolution, which copies each row once for each
+/// weight.
+torch::Tensor blur_matrix(std::int64_t size, double sigma) {
+    const torch::Tensor place = torch::arange(size, torch::kFloat64);
+    const torch::Tensor distance = place.unsqueeze(1) - place.unsqueeze(0);
+    return torch::exp(-distance.square() / (2 * sigma * sigma))
+        .masked_fill(distance.abs() > std::ceil(3 * sigma), 0);
+}
+
 torch::Tensor blur(const torch::Tensor& images, double sigma) {
-    const auto radius = static_cast<std::int64_t>(std::ceil(3 * sigma));
-    const torch::Tensor offset = torch::arange(-radius, radius + 1, torch::kFloat64);
-    const torch::Tensor kernel = torch::exp(-offset.square() / (2 * sigma * sigma));
-    const auto filter = [](const torch::Tensor& input, const torch::Tensor& weight,
-                           torch::IntArrayRef padding) {
-        return torch::conv2d(input, weight, {}, /*stride=*/1, padding);
-    };
-    return filter(filter(images, kernel.view({1, 1, 1, -1}), {0, radius}),
-                  kernel.view({1, 1, -1, 1}), {radius, 0});
+    return torch::matmul(torch::matmul(blur_matrix(images.size(2), sigma), images),
+                         blur_matrix(images.size(3), sigma));
 }
 
 /// The detail at the P pixels inside the mask, zero mean.
