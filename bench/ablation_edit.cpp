@@ -131,6 +131,12 @@ json run_ablation_edit(const Contender& contender, const SuiteCase& test, std::u
          {"seconds_optimize", times.stages()[1].second},
          {"seconds_adjust", iterations.adjust},
          {"seconds", times.total()}});
+    if (wants_captions(request.settings)) {
+        result["captions"] = json::array();
+        for (const AdjustmentRecord& record : state.adjustment.records)
+            result["captions"].push_back(record);
+        result["caption_failure"] = state.adjustment.failure;
+    }
     return result;
 }
 
