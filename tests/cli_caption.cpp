@@ -69,7 +69,8 @@ TEST_F(Program, CaptionAndScoreNameWhatTheyLack) {
     const std::string models = quoted(cube_) + " " + quoted(cube_) + " --from a --to b --clip ";
     expect_error("score " + models + "/nowhere", 3, "/nowhere/config.json");
     expect_error("score " + models + "'" ITEM3D_TEST_DATA "/models/blip'", 3, "CLIPModel");
-    expect_error("score " + quoted(cube_) + " " + quoted(cube_) + " --from ' ' --to b", 3, "--from");
+    expect_error("score " + quoted(cube_) + " " + quoted(cube_) + " --from ' ' --to b", 3,
+                 "--from");
 }
 
 }  // namespace
