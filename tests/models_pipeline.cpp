@@ -2,7 +2,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
 #include "item3d/models/depth_condition.h"
-#include "item3d/models/pipeline.h"
+#include "item3d/models/pipeline_extras.h"
 #include "models_testing.h"
 
 #include <torch/csrc/autograd/autograd.h>
@@ -230,7 +230,7 @@ TEST(Pipeline, KnowsItsPromptsAfterTheEncodersAreFreed) {
     Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
     const torch::Tensor duck = pipeline.encode_text({"a duck"}).states,
                         none = pipeline.encode_no_text().states;
-    pipeline.keep_what_runs({"a duck", "a golden duck"});
+    pipeline.keep_texts({"a duck", "a golden duck"});
     EXPECT_EQ(pipeline.text_encoder->parameters()[0].numel(), 0);
     EXPECT_TRUE(pipeline.encode_text({"a duck"}).states.equal(duck));
     EXPECT_TRUE(pipeline.encode_no_text().states.equal(none));
@@ -239,6 +239,25 @@ TEST(Pipeline, KnowsItsPromptsAfterTheEncodersAreFreed) {
     EXPECT_TRUE(both.row(1).states.equal(duck));
     EXPECT_FALSE(both.row(0).states.equal(duck));
     EXPECT_ANY_THROW(pipeline.encode_text({"a cat"}));
+}
+
+TEST(Pipeline, LoadedToRunIsTheSameButForWhatItDoesNotNeed) {
+    const Pipeline whole = Pipeline::load(fixture("pipeline_sd"));
+    const Pipeline running = load_to_run(fixture("pipeline_sd"), torch::kCPU, torch::kFloat32, {},
+                                         {{"a duck"}, /*decoder=*/false});
+    const torch::NoGradGuard no_grad;
+    torch::manual_seed(0);
+    const torch::Tensor image = torch::rand({1, 3, 64, 64}) * 2 - 1;
+    const torch::Tensor latents = whole.encode_image(image);
+    EXPECT_LT(largest_difference(running.encode_image(image), latents), 1e-5);
+    const TextEmbedding text = whole.encode_text({"a duck"});
+    EXPECT_TRUE(running.encode_text({"a duck"}).states.equal(text.states));
+    const torch::Tensor timestep = torch::full({1}, 400, torch::kInt64);
+    EXPECT_LT(largest_difference(running.predict_noise(latents, timestep, text),
+                                 whole.predict_noise(latents, timestep, text)),
+              1e-5);
+    EXPECT_ANY_THROW(running.decode_image(latents));
+    EXPECT_LT(running.vae->parameters().size(), whole.vae->parameters().size());
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "item3d/models/conv3x3.h"
+#include "item3d/models/direct_convolution.h"
 #include "item3d/models/winograd.h"
 #include "models_testing.h"
 
@@ -31,11 +32,12 @@ bool runs_here(torch::Dtype dtype) {
 }
 
 /// Errors against float64 of the output and of the input's gradient, each as a multiple of the
-/// direct convolution's own.
+/// library's direct convolution's own.
+template <typename Convolution>
 void compare(torch::Dtype dtype, const std::vector<std::int64_t>& shape, int out, double most) {
     SCOPED_TRACE(::testing::Message() << "height " << shape[2] << ", width " << shape[3]);
     const Convolutions layer(static_cast<int>(shape[1]), out, dtype);
-    WinogradConvolution fast(layer.weight);
+    Convolution fast(layer.weight);
     const torch::Tensor x = torch::randn(shape).to(dtype).requires_grad_(true);
     const torch::Tensor exact_x = x.detach().to(torch::kFloat64).requires_grad_(true);
     const torch::Tensor exact = layer.direct(exact_x), direct = layer.direct(x);
@@ -54,12 +56,36 @@ TEST(Winograd, ErrsLittleMoreThanTheDirectConvolution) {
          {std::pair(torch::kFloat32, 10.0), std::pair(torch::kBFloat16, 3.0)}) {
         if (!runs_here(dtype)) continue;
         // Whole tiles, cut tiles in each direction, pictures of a tile or less.
-        compare(dtype, {2, 64, 16, 16}, 128, most);
-        compare(dtype, {1, 128, 13, 18}, 64, most);
-        compare(dtype, {3, 64, 18, 15}, 64, most);
-        compare(dtype, {5, 64, 3, 1}, 64, most);
-        compare(dtype, {1, 64, 1, 7}, 192, most);
+        compare<WinogradConvolution>(dtype, {2, 64, 16, 16}, 128, most);
+        compare<WinogradConvolution>(dtype, {1, 128, 13, 18}, 64, most);
+        compare<WinogradConvolution>(dtype, {3, 64, 18, 15}, 64, most);
+        compare<WinogradConvolution>(dtype, {5, 64, 3, 1}, 64, most);
+        compare<WinogradConvolution>(dtype, {1, 64, 1, 7}, 192, most);
     }
+}
+
+TEST(DirectConvolution, ErrsNoMoreThanTheLibrarys) {
+    for (const torch::Dtype dtype : {torch::kFloat32, torch::kBFloat16}) {
+        if (!runs_here(dtype)) continue;
+        // Sums in another order, so float32's errors differ a little.
+        const double most = dtype == torch::kFloat32 ? 3 : 1.1;
+        compare<DirectConvolution>(dtype, {4, 128, 4, 4}, 64, most);
+        compare<DirectConvolution>(dtype, {2, 64, 7, 5}, 192, most);
+        compare<DirectConvolution>(dtype, {1, 64, 1, 1}, 64, most);
+        compare<DirectConvolution>(dtype, {3, 64, 20, 13}, 128, most);  // several ranges of pixels
+    }
+}
+
+TEST(DirectConvolution, IsTakenForSmallMaps) {
+    if (!runs_here(torch::kBFloat16)) GTEST_SKIP() << "no AVX-512 for bfloat16";
+    const torch::Tensor weight = torch::randn({64, 64, 3, 3}).to(torch::kBFloat16);
+    const auto made_for = [&](const std::vector<std::int64_t>& shape) {
+        return FrozenConvolution::make(torch::empty(shape, torch::kBFloat16), weight);
+    };
+    EXPECT_NE(std::dynamic_pointer_cast<DirectConvolution>(made_for({4, 64, 8, 8})), nullptr);
+    EXPECT_NE(std::dynamic_pointer_cast<WinogradConvolution>(made_for({4, 64, 16, 16})), nullptr);
+    EXPECT_EQ(FrozenConvolution::make(torch::empty({4, 64, 8, 8}), weight), nullptr)
+        << "another type than the weights'";
 }
 
 TEST(Winograd, GivesTheSameOnOneThreadAndOnMany) {

@@ -9,6 +9,7 @@
 #include "item3d/guidance/guidance.h"
 #include "item3d/guidance/noised_latents.h"
 #include "item3d/hub/find_prior.h"
+#include "item3d/models/pipeline_extras.h"
 #include "item3d/models/precision.h"
 
 #include <algorithm>
@@ -36,14 +37,13 @@ void run(const BenchGuidanceCommand& options, torch::Device device) {
     const auto folder = find_prior(options.prior);
     const torch::Dtype precision = choose_precision(options.precision, device);
     const double begin = seconds_now();
-    const auto prior = std::make_shared<Pipeline>(Pipeline::load(folder, device, precision));
-    const double loaded = seconds_now();
-
     GuidanceOptions guidance_options;
     guidance_options.method = options.method;
     guidance_options.adjust = options.adjust;
     const std::string from = "a red mug", to = "a golden mug";
-    prior->keep_what_runs({from, to, default_negative_prompt()});  // as an edit does
+    const auto prior = std::make_shared<Pipeline>(load_to_run(  // as an edit does
+        folder, device, precision, {}, {{from, to, default_negative_prompt()}, false}));
+    const double loaded = seconds_now();
     const auto guidance = make_guidance(prior, from, to, guidance_options);
     const int size =
         options.size > 0 ? options.size : prior->unet->config().sample_size * prior->downscale();

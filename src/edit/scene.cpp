@@ -23,6 +23,20 @@ std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& reques
     return load_captioner(request.captioner, request.device, precision);
 }
 
+Pipeline load_prior(const EditRequest& request, const EditScene& scene) {
+    const EditSettings& settings = request.settings;
+    if (scene.captioner) {  // whose sentences are not known yet
+        Pipeline prior = Pipeline::load(request.prior, scene.device, scene.precision);
+        apply_extras(prior, settings);
+        return prior;
+    }
+    RunNeeds needs;
+    needs.prompts = {settings.from, settings.to, settings.negative_prompt,
+                     default_negative_prompt()};
+    needs.decoder = wants_detail(settings);
+    return load_to_run(request.prior, scene.device, scene.precision, settings, needs);
+}
+
 }  // namespace
 
 EditScene load_scene(const EditRequest& request) {
@@ -55,13 +69,8 @@ EditScene load_scene(const EditRequest& request) {
     scene.lights = std::make_unique<LightRig>(
         settings.light, edits_light(settings) ? "off" : settings.light_augment,
         settings.resolution <= small_picture ? 64 : 256, device);
-    scene.prior =
-        std::make_shared<Pipeline>(Pipeline::load(request.prior, device, scene.precision));
-    apply_extras(*scene.prior, settings);
+    scene.prior = std::make_shared<Pipeline>(load_prior(request, scene));
     if (low_memory) scene.prior->vae->recompute_in_backward(true);
-    if (!scene.captioner)  // whose sentences are not known yet
-        scene.prior->keep_what_runs(
-            {settings.from, settings.to, settings.negative_prompt, default_negative_prompt()});
     return scene;
 }
 

@@ -108,7 +108,8 @@ struct LatentDistribution {
 /// Stable Diffusion's autoencoder (Rombach et al. 2022).
 class AutoencoderKL : public Autoencoder {
   public:
-    explicit AutoencoderKL(const AutoencoderKLConfig& config);
+    /// Without a decoder it cannot decode() and has none of the decoder's parameters.
+    explicit AutoencoderKL(const AutoencoderKLConfig& config, bool with_decoder = true);
     LatentDistribution encode_distribution(const torch::Tensor& images);
     torch::Tensor encode(const torch::Tensor& images) override;
     torch::Tensor decode(const torch::Tensor& latents) override;
@@ -131,10 +132,11 @@ class AutoencoderKL : public Autoencoder {
 };
 
 /// Reads FOLDER/config.json (its _class_name decides the kind) and
-/// FOLDER/diffusion_pytorch_model.*; old spellings of the attention's names are understood. Throws
-/// InputError.
+/// FOLDER/diffusion_pytorch_model.*; old spellings of the attention's names are understood. Without
+/// a decoder, an AutoencoderKL's is not read and takes no memory. Throws InputError.
 std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folder,
                                               torch::Device device = torch::kCPU,
-                                              torch::Dtype dtype = torch::kFloat32);
+                                              torch::Dtype dtype = torch::kFloat32,
+                                              bool with_decoder = true);
 
 }  // namespace item3d

@@ -179,14 +179,15 @@ class AutoencoderKL::Decoder : public nn::Module {
     std::shared_ptr<MidBlock> mid_block_;
 };
 
-AutoencoderKL::AutoencoderKL(const AutoencoderKLConfig& config) : config_(config) {
+AutoencoderKL::AutoencoderKL(const AutoencoderKLConfig& config, bool with_decoder)
+    : config_(config) {
     const int latent = config_.latent_channels;
     encoder_ = register_module("encoder", std::make_shared<Encoder>(config_));
-    decoder_ = register_module("decoder", std::make_shared<Decoder>(config_));
+    if (with_decoder) decoder_ = register_module("decoder", std::make_shared<Decoder>(config_));
     if (config_.use_quant_conv)
         quant_conv_ =
             register_module("quant_conv", nn::Conv2d(nn::Conv2dOptions(2 * latent, 2 * latent, 1)));
-    if (config_.use_post_quant_conv)
+    if (with_decoder && config_.use_post_quant_conv)
         post_quant_conv_ =
             register_module("post_quant_conv", nn::Conv2d(nn::Conv2dOptions(latent, latent, 1)));
 }
@@ -207,6 +208,7 @@ void AutoencoderKL::recompute_in_backward(bool on) {
 }
 
 torch::Tensor AutoencoderKL::decode(const torch::Tensor& latents) {
+    ITEM3D_CHECK(decoder_, "was made without a decoder");
     if (!post_quant_conv_) return decoder_->forward(latents);
     return decoder_->forward(post_quant_conv_(latents.to(post_quant_conv_->weight.scalar_type())));
 }
@@ -280,7 +282,8 @@ double AutoencoderKLConfig::least_parameters() const {
 }
 
 std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folder,
-                                              torch::Device device, torch::Dtype dtype) {
+                                              torch::Device device, torch::Dtype dtype,
+                                              bool with_decoder) {
     const Config config = Config::read(folder / "config.json");
     const std::string kind = config.text("_class_name", "");
     const bool tiny = kind == "AutoencoderTiny";
@@ -289,12 +292,15 @@ std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folde
 
     Weights weights = Weights::open(folder, "diffusion_pytorch_model");
     // The first published checkpoints called the attention's layers otherwise.
-    weights.rename([](const std::string& name) {
+    weights.rename([&](const std::string& name) {
         static const std::pair<std::string, std::string> old_names[] = {
             {".query.", ".to_q."},
             {".key.", ".to_k."},
             {".value.", ".to_v."},
             {".proj_attn.", ".to_out.0."}};
+        if (!tiny && !with_decoder &&
+            (name.starts_with("decoder.") || name.starts_with("post_quant_conv.")))
+            return std::string();
         for (const auto& [old_name, new_name] : old_names) {
             const auto at = name.find(old_name);
             if (at == std::string::npos || name.find(".attentions.") == std::string::npos) continue;
@@ -311,7 +317,8 @@ std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folde
     } else {
         const auto values = AutoencoderKLConfig::from_config(config);
         check_plausible(weights, values.least_parameters());
-        result = without_initial_values([&] { return std::make_shared<AutoencoderKL>(values); });
+        result = without_initial_values(
+            [&] { return std::make_shared<AutoencoderKL>(values, with_decoder); });
     }
     load_parameters(*result, weights, device, dtype);
     result->eval();

@@ -5,6 +5,8 @@
 
 #include <immintrin.h>
 
+#include <initializer_list>
+
 namespace item3d::avx512 {
 
 /// Numbers of a register.
@@ -29,6 +31,18 @@ inline __m512 load(const BrainFloat* from) {
 
 inline void store(BrainFloat* to, __m512 value) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), narrow(value));
+}
+
+/// e^x to float's precision: 2^n e^r with |r| <= ln(2) / 2, e^r by its Taylor series.
+inline __m512 exponential(__m512 x) {
+    const __m512 n = _mm512_roundscale_ps(x * _mm512_set1_ps(1.44269504f),
+                                          _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+    const __m512 high = _mm512_fnmadd_ps(n, _mm512_set1_ps(0.693359375f), x);
+    const __m512 r = _mm512_fnmadd_ps(n, _mm512_set1_ps(-2.12194440e-4f), high);
+    __m512 series = _mm512_set1_ps(1.0f / 5040);
+    for (const float term : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f})
+        series = _mm512_fmadd_ps(series, r, _mm512_set1_ps(term));
+    return _mm512_scalef_ps(series, n);
 }
 
 }  // namespace item3d::avx512

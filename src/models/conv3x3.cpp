@@ -11,15 +11,15 @@ using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
 struct ConvolutionHolder : torch::CustomClassHolder {
-    explicit ConvolutionHolder(std::shared_ptr<WinogradConvolution> held)
+    explicit ConvolutionHolder(std::shared_ptr<FrozenConvolution> held)
         : convolution(std::move(held)) {}
-    std::shared_ptr<WinogradConvolution> convolution;
+    std::shared_ptr<FrozenConvolution> convolution;
 };
 
 /// Differentiable in x alone.
-struct FrozenConvolution : torch::autograd::Function<FrozenConvolution> {
+struct FrozenStep : torch::autograd::Function<FrozenStep> {
     static torch::Tensor forward(AutogradContext* context, const torch::Tensor& x,
-                                 const std::shared_ptr<WinogradConvolution>& convolution,
+                                 const std::shared_ptr<FrozenConvolution>& convolution,
                                  const torch::Tensor& bias) {
         context->saved_data["convolution"] =
             c10::IValue::make_capsule(c10::intrusive_ptr<torch::CustomClassHolder>(
@@ -43,15 +43,16 @@ torch::Tensor Conv3x3Impl::forward(const torch::Tensor& x) {
     if (!weight_given_up_) {
         const bool frozen = !weight.requires_grad() && !(bias.defined() && bias.requires_grad()) &&
                             !at::autocast::is_autocast_enabled(x.device().type());
-        if (!frozen || !WinogradConvolution::gains(x, weight)) return Conv2dImpl::forward(x);
-        if (!fast_ || !fast_->is_of(weight)) fast_ = std::make_shared<WinogradConvolution>(weight);
+        if (!frozen) return Conv2dImpl::forward(x);
+        if (!fast_ || !fast_->is_of(weight)) fast_ = FrozenConvolution::make(x, weight);
+        if (!fast_) return Conv2dImpl::forward(x);
         if (only_runs_ && fast_->forget_weight()) {
             weight.set_data(torch::empty({0}, weight.options()));
             weight_given_up_ = true;
         }
     }
     if (torch::GradMode::is_enabled() && x.requires_grad())
-        return FrozenConvolution::apply(x, fast_, bias);
+        return FrozenStep::apply(x, fast_, bias);
     return fast_->forward(x, bias);
 }
 

@@ -1,7 +1,7 @@
 // The convolution that most of a diffusion network's time goes into.
 #pragma once
 
-#include "item3d/models/winograd.h"
+#include "item3d/models/frozen_convolution.h"
 
 #include <torch/nn/modules/conv.h>
 #include <torch/types.h>
@@ -11,8 +11,9 @@
 namespace item3d {
 
 /// nn.Conv2d with kernel 3, stride 1, padding 1. Where neither weights nor bias ask for a gradient
-/// it takes the faster way of winograd.h, if that gains, and its backward pass, which goes to the
-/// input alone, keeps no activations. Weights may be changed at any time before give_up_weights().
+/// it takes a faster way (frozen_convolution.h), if there is one, and its backward pass, which goes
+/// to the input alone, keeps no activations. Weights may be changed at any time before
+/// give_up_weights().
 class Conv3x3Impl : public torch::nn::Conv2dImpl {
   public:
     Conv3x3Impl(int in_channels, int out_channels, bool with_bias = true);
@@ -23,7 +24,7 @@ class Conv3x3Impl : public torch::nn::Conv2dImpl {
     void give_up_weights() { only_runs_ = true; }
 
   private:
-    std::shared_ptr<WinogradConvolution> fast_;
+    std::shared_ptr<FrozenConvolution> fast_;
     bool only_runs_ = false;
     bool weight_given_up_ = false;
 };

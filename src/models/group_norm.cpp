@@ -99,6 +99,8 @@ NormValues measure(const NormMap& map, const Number* x, const float* weight, con
                              to + channels);
         });
     const NormValues values(map);
+    float *scale = values.scale(), *offset = values.offset(), *group_mean = values.mean(),
+          *deviation = values.deviation();
     for (std::int64_t n = 0; n < map.pictures; ++n) {
         const double* sum = sums.data() + 2 * n * channels;
         for (std::int64_t g = 0; g < map.groups; ++g) {
@@ -115,11 +117,11 @@ NormValues measure(const NormMap& map, const Number* x, const float* weight, con
             const double inverse = 1 / std::sqrt(variance + epsilon);
             for (std::int64_t c = g * width; c < (g + 1) * width; ++c) {
                 const std::int64_t i = n * channels + c;
-                const double scale = inverse * weight[c];
-                values.scale()[i] = static_cast<float>(scale);
-                values.offset()[i] = static_cast<float>(bias[c] - mean * scale);
-                values.mean()[i] = static_cast<float>(mean);
-                values.deviation()[i] = static_cast<float>(inverse);
+                const double factor = inverse * weight[c];
+                scale[i] = static_cast<float>(factor);
+                offset[i] = static_cast<float>(bias[c] - mean * factor);
+                group_mean[i] = static_cast<float>(mean);
+                deviation[i] = static_cast<float>(inverse);
             }
         }
     }

@@ -14,6 +14,7 @@ namespace item3d {
 
 namespace {
 
+using avx512::exponential;
 using avx512::lanes;
 using avx512::load;
 using avx512::store;
@@ -23,18 +24,6 @@ static_assert(norm_lanes == lanes);
 
 /// Pixels whose sums are kept in float, before they go into double.
 constexpr int64_t float_pixels = 32;
-
-/// e^x to float's precision: 2^n e^r with |r| <= ln(2) / 2, e^r by its Taylor series.
-__m512 exponential(__m512 x) {
-    const __m512 n = _mm512_roundscale_ps(x * _mm512_set1_ps(1.44269504f),
-                                          _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
-    const __m512 high = _mm512_fnmadd_ps(n, _mm512_set1_ps(0.693359375f), x);
-    const __m512 r = _mm512_fnmadd_ps(n, _mm512_set1_ps(-2.12194440e-4f), high);
-    __m512 series = _mm512_set1_ps(1.0f / 5040);
-    for (const float term : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f})
-        series = _mm512_fmadd_ps(series, r, _mm512_set1_ps(term));
-    return _mm512_scalef_ps(series, n);
-}
 
 __m512 sigmoid(__m512 x) {
     // Beyond 80 either way nothing changes, and e^80 is still a float.

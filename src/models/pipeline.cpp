@@ -76,6 +76,12 @@ void use_channels_last(torch::nn::Module& module) {
 }
 
 Pipeline Pipeline::load(const fs::path& folder, torch::Device device, torch::Dtype dtype) {
+    Pipeline pipeline = load_text(folder, device);
+    pipeline.load_networks(folder, device, dtype);
+    return pipeline;
+}
+
+Pipeline Pipeline::load_text(const fs::path& folder, torch::Device device) {
     if (!fs::is_directory(folder))
         throw InputError(folder.string(), "no such folder",
                          "name a folder in the diffusers layout (it holds model_index.json)");
@@ -97,13 +103,18 @@ Pipeline Pipeline::load(const fs::path& folder, torch::Device device, torch::Dty
         pipeline.text_encoder_2 = load_clip_text(folder / "text_encoder_2", device);
         pipeline.force_zeros_for_empty_prompt = index.boolean("force_zeros_for_empty_prompt", true);
     }
-    pipeline.unet = load_unet(folder / "unet", device, dtype);
-    pipeline.vae = load_autoencoder(folder / "vae", device, dtype);
-    pipeline.scheduler = NoiseSchedule::load(folder / "scheduler");
-    use_channels_last(*pipeline.unet);
-    use_channels_last(*pipeline.vae);
-    pipeline.check_fit(folder);
+    pipeline.check_tokenizers_fit(folder);
     return pipeline;
+}
+
+void Pipeline::load_networks(const fs::path& folder, torch::Device device, torch::Dtype dtype,
+                             bool with_decoder) {
+    unet = load_unet(folder / "unet", device, dtype);
+    vae = load_autoencoder(folder / "vae", device, dtype, with_decoder);
+    scheduler = NoiseSchedule::load(folder / "scheduler");
+    use_channels_last(*unet);
+    use_channels_last(*vae);
+    check_fit(folder);
 }
 
 namespace {
@@ -138,18 +149,23 @@ void Pipeline::check_fit(const fs::path& folder) const {
                              config.in_channels, config.out_channels, vae->latent_channels()));
 }
 
-void Pipeline::check_text_fit(const fs::path& folder) const {
+void Pipeline::check_tokenizers_fit(const fs::path& folder) const {
     check_tokenizer_fit(folder, "text_encoder", *tokenizer, text_encoder->config());
+    if (!is_sdxl()) return;
+    const ClipTextConfig& second = text_encoder_2->config();
+    if (!second.with_projection)
+        mismatch(folder, "text_encoder_2",
+                 "architectures must be CLIPTextModelWithProjection for SDXL");
+    check_tokenizer_fit(folder, "text_encoder_2", *tokenizer_2, second);
+    if (tokenizer_2->model_max_length() != tokenizer->model_max_length())
+        mismatch(folder, "text_encoder_2", "the two tokenizers pad to different lengths");
+}
+
+void Pipeline::check_text_fit(const fs::path& folder) const {
     int width_given = text_encoder->config().hidden_size;
     int added = 0;
     if (is_sdxl()) {
         const ClipTextConfig& second = text_encoder_2->config();
-        if (!second.with_projection)
-            mismatch(folder, "text_encoder_2",
-                     "architectures must be CLIPTextModelWithProjection for SDXL");
-        check_tokenizer_fit(folder, "text_encoder_2", *tokenizer_2, second);
-        if (tokenizer_2->model_max_length() != tokenizer->model_max_length())
-            mismatch(folder, "text_encoder_2", "the two tokenizers pad to different lengths");
         width_given += second.hidden_size;
         added = second.projection_dim;
     }
@@ -207,7 +223,7 @@ void Pipeline::save(const fs::path& folder, torch::Dtype dtype) const {
     write_json(folder / "model_index.json", model_index(*this));
 }
 
-void Pipeline::keep_what_runs(const std::vector<std::string>& prompts) {
+void Pipeline::keep_texts(const std::vector<std::string>& prompts) {
     std::map<std::string, TextEmbedding> encoded{{"", encode_text({""})}};
     for (const std::string& prompt : prompts)
         encoded[prompt] = encode_text({prompt});
@@ -217,12 +233,16 @@ void Pipeline::keep_what_runs(const std::vector<std::string>& prompts) {
         for (torch::Tensor& parameter : (*encoder)->parameters())
             parameter.set_data(torch::empty({0}, parameter.options()));
     }
+    // What was let go lies in pieces between what stays; the system gets whole pages of it back.
+    malloc_trim(0);
+}
+
+void Pipeline::give_up_weights() {
     std::vector<std::shared_ptr<torch::nn::Module>> networks{unet.ptr(), vae};
     if (!controlnet.is_empty()) networks.push_back(controlnet.ptr());
     for (const auto& network : networks)
         for (const auto& layer : network->modules())
             if (auto* convolution = layer->as<Conv3x3>()) convolution->give_up_weights();
-    // What was let go lies in pieces between what stays; the system gets whole pages of it back.
     malloc_trim(0);
 }
 
@@ -239,10 +259,11 @@ TextEmbedding Pipeline::encode_text(const std::vector<std::string>& prompts) con
     }
     const torch::NoGradGuard no_grad;
     ClipTextModel model = text_encoder;
-    const ClipTextOutput first = model(tokenizer->encode_batch(prompts).to(device()));
+    const torch::Device place = text_encoder->parameters()[0].device();
+    const ClipTextOutput first = model(tokenizer->encode_batch(prompts).to(place));
     if (!is_sdxl()) return {first.last_hidden_state};
     ClipTextModel model_2 = text_encoder_2;
-    const ClipTextOutput second = model_2(tokenizer_2->encode_batch(prompts).to(device()));
+    const ClipTextOutput second = model_2(tokenizer_2->encode_batch(prompts).to(place));
     const auto last_but_one = [](const ClipTextOutput& output) {
         return output.hidden_states[output.hidden_states.size() - 2];
     };

@@ -28,6 +28,13 @@ class Pipeline {
     /// missing, of the wrong shape, or unsupported.
     static Pipeline load(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
                          torch::Dtype dtype = torch::kFloat32);
+    /// load() in two parts, for who is done with the text before the other networks are needed:
+    /// the tokenizers and text encoders, for encode_text() and keep_texts(); then U-Net,
+    /// autoencoder and schedule. Throw as load().
+    static Pipeline load_text(const std::filesystem::path& folder,
+                              torch::Device device = torch::kCPU);
+    void load_networks(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
+                       torch::Dtype dtype = torch::kFloat32, bool with_decoder = true);
     /// Writes the same layout, weights as `dtype` (float32 or float16), each file atomically and
     /// model_index.json last, so that a folder that has one is whole.
     void save(const std::filesystem::path& folder, torch::Dtype dtype = torch::kFloat16) const;
@@ -38,10 +45,12 @@ class Pipeline {
     /// One row: what classifier-free guidance goes away from when nobody says what. The empty
     /// prompt, or zeros where model_index.json says force_zeros_for_empty_prompt (SDXL).
     TextEmbedding encode_no_text() const;
-    /// For pipelines that run and do nothing else from now on: encodes these prompts and no text,
-    /// lets the text encoders go, and lets convolutions give up weights that they keep transformed.
-    /// From then on encode_text() knows these prompts alone; the pipeline cannot be saved any more.
-    void keep_what_runs(const std::vector<std::string>& prompts);
+    /// Encodes these prompts and no text, and lets the text encoders go. From then on encode_text()
+    /// knows these prompts alone; the pipeline cannot be saved any more.
+    void keep_texts(const std::vector<std::string>& prompts);
+    /// For pipelines that run and do nothing else from now on: lets convolutions give up weights
+    /// that they keep packed. The pipeline cannot be saved any more.
+    void give_up_weights();
     /// images [N, 3, H, W] in [-1, 1] -> latents [N, C, h, w], scaled (mean of the posterior);
     /// differentiable in images. float32.
     torch::Tensor encode_image(const torch::Tensor& images) const;
@@ -80,9 +89,10 @@ class Pipeline {
     double controlnet_scale = 1;
 
   private:
-    std::map<std::string, TextEmbedding> encoded_;  ///< by keep_what_runs(), a row each
+    std::map<std::string, TextEmbedding> encoded_;  ///< by keep_texts(), a row each
 
     void check_fit(const std::filesystem::path& folder) const;
+    void check_tokenizers_fit(const std::filesystem::path& folder) const;
     void check_text_fit(const std::filesystem::path& folder) const;
     torch::Tensor sizes_of(const torch::Tensor& latents) const;
 };

@@ -43,9 +43,9 @@ void add_embeddings(Pipeline& pipeline, const std::vector<std::string>& argument
     }
 }
 
-void replace_vae(Pipeline& pipeline, const fs::path& folder) {
+void replace_vae(Pipeline& pipeline, const fs::path& folder, bool with_decoder) {
     const auto dtype = pipeline.vae->parameters()[0].scalar_type();
-    const auto vae = load_autoencoder(folder, pipeline.device(), dtype);
+    const auto vae = load_autoencoder(folder, pipeline.device(), dtype, with_decoder);
     const auto reject = [&](const std::string& problem) {
         throw InputError((folder / "config.json").string(), problem,
                          "use an autoencoder that was made for this model");
@@ -104,14 +104,36 @@ void add_controlnet(Pipeline& pipeline, const fs::path& folder, float scale) {
     pipeline.controlnet_scale = scale;
 }
 
+void change_networks(Pipeline& pipeline, const PipelineExtras& extras, bool with_decoder) {
+    if (!extras.vae.empty()) replace_vae(pipeline, extras.vae, with_decoder);
+    if (!extras.controlnet.empty())
+        add_controlnet(pipeline, extras.controlnet, extras.controlnet_scale);
+}
+
 }  // namespace
 
 void apply_extras(Pipeline& pipeline, const PipelineExtras& extras) {
     add_loras(pipeline, extras.lora);
     add_embeddings(pipeline, extras.embedding);
-    if (!extras.vae.empty()) replace_vae(pipeline, extras.vae);
-    if (!extras.controlnet.empty())
-        add_controlnet(pipeline, extras.controlnet, extras.controlnet_scale);
+    change_networks(pipeline, extras, /*with_decoder=*/true);
+}
+
+Pipeline load_to_run(const std::filesystem::path& folder, torch::Device device, torch::Dtype dtype,
+                     const PipelineExtras& extras, const RunNeeds& needs) {
+    Pipeline pipeline = Pipeline::load_text(folder, device);
+    const auto load_networks = [&] {
+        pipeline.load_networks(folder, device, dtype, needs.decoder);
+    };
+    if (!extras.lora.empty()) {
+        load_networks();
+        add_loras(pipeline, extras.lora);
+    }
+    add_embeddings(pipeline, extras.embedding);
+    pipeline.keep_texts(needs.prompts);
+    if (extras.lora.empty()) load_networks();
+    change_networks(pipeline, extras, needs.decoder);
+    pipeline.give_up_weights();
+    return pipeline;
 }
 
 }  // namespace item3d

@@ -1,6 +1,5 @@
 #include "item3d/models/winograd.h"
 
-#include "item3d/core/error.h"
 #include "item3d/models/winograd_kernel.h"
 
 #include <ATen/Parallel.h>
@@ -26,34 +25,21 @@ Number* numbers(const torch::Tensor& tensor) {
 }
 
 template <typename Number>
-torch::Tensor pack(const torch::Tensor& weight) {
+torch::Tensor transform_weight(const torch::Tensor& weight) {
     const int64_t out = weight.size(0), in = weight.size(1);
     const torch::Tensor ordered = weight.contiguous(torch::MemoryFormat::ChannelsLast);
     const torch::Tensor packed =
         torch::empty({winograd_points<Number> * out * in}, weight.options());
-    at::parallel_for(0, out / winograd_columns, 1, [&](int64_t first, int64_t last) {
-        pack_winograd_weights(numbers<const Number>(ordered), out, in, first * winograd_columns,
-                              last * winograd_columns, numbers<Number>(packed));
+    at::parallel_for(0, out / packed_columns, 1, [&](int64_t first, int64_t last) {
+        pack_winograd_weights(numbers<const Number>(ordered), out, in, first * packed_columns,
+                              last * packed_columns, numbers<Number>(packed));
     });
     return packed;
 }
 
-torch::Tensor pack(const torch::Tensor& weight) {
-    return is_bfloat16(weight) ? pack<BrainFloat>(weight) : pack<float>(weight);
-}
-
-/// The packed weights of the way back from those of the way there, for tiles of 2 x 2: their points
-/// are 0, 1, -1 and infinity, and turning a kernel round swaps the first and the last.
-torch::Tensor turn_round(const torch::Tensor& packed, int64_t out, int64_t in) {
-    const torch::Tensor swapped = torch::tensor({3, 1, 2, 0}, torch::kInt64);
-    return packed.view({4, 4, out / winograd_columns, in / 2, winograd_columns, 2})
-        .index_select(0, swapped)
-        .index_select(1, swapped)
-        .permute({0, 1, 3, 5, 2, 4})  // [4, 4, in / 2, 2, out / columns, columns]
-        .reshape({16, in / winograd_columns, winograd_columns, out / 2, 2})
-        .permute({0, 1, 3, 2, 4})
-        .reshape({-1})
-        .contiguous();
+torch::Tensor transform_any(const torch::Tensor& weight) {
+    return is_bfloat16(weight) ? transform_weight<BrainFloat>(weight)
+                               : transform_weight<float>(weight);
 }
 
 /// How the work is cut: every task has its tiles, and of those some output channels.
@@ -66,7 +52,7 @@ struct Division {
 /// As many tiles a task as keep its scratch memory within a core's cache, and enough tasks for all
 /// threads.
 template <typename Number>
-Division divide(const WinogradShape& shape) {
+Division divide(const ConvolutionShape& shape) {
     constexpr int64_t cache = 1200 << 10;  // measured best with 1 MB of second-level cache
     // Fewer would read the weights from the memory too often.
     constexpr int64_t fewest = 48;
@@ -78,19 +64,19 @@ Division divide(const WinogradShape& shape) {
         groups = (threads + ranges - 1) / ranges;
     else
         ranges = round_up(ranges, threads);
-    const int64_t columns = shape.out_channels / winograd_columns;
+    const int64_t columns = shape.out_channels / packed_columns;
     const int64_t columns_a_task = (columns + groups - 1) / groups;
     Division result;
     result.tiles = (tiles + ranges - 1) / ranges;
-    result.channels = columns_a_task * winograd_columns;
+    result.channels = columns_a_task * packed_columns;
     result.tile_ranges = (tiles + result.tiles - 1) / result.tiles;
     result.channel_ranges = (columns + columns_a_task - 1) / columns_a_task;
     return result;
 }
 
 template <typename Number>
-void convolve(const WinogradShape& shape, const Number* x, const Number* packed, const float* bias,
-              Number* y) {
+void convolve_tiles(const ConvolutionShape& shape, const Number* x, const Number* packed,
+                    const float* bias, Number* y) {
     const Division division = divide<Number>(shape);
     const int64_t tiles = shape.tiles(winograd_tile<Number>);
     const int64_t scratch_bytes = winograd_scratch<Number>(division.tiles, shape.in_channels);
@@ -109,74 +95,52 @@ void convolve(const WinogradShape& shape, const Number* x, const Number* packed,
         });
 }
 
-torch::Tensor convolve(const torch::Tensor& input, const torch::Tensor& packed,
-                       int64_t out_channels, const torch::Tensor& bias) {
-    const torch::Tensor x = input.contiguous(torch::MemoryFormat::ChannelsLast);
-    const WinogradShape shape{x.size(0), x.size(2), x.size(3), x.size(1), out_channels};
-    const torch::Tensor y =
-        torch::empty({shape.pictures, out_channels, shape.height, shape.width},
-                     x.options().memory_format(torch::MemoryFormat::ChannelsLast));
-    torch::Tensor float_bias;
-    if (bias.defined()) float_bias = bias.to(torch::kFloat32).contiguous();
-    const float* added = bias.defined() ? float_bias.data_ptr<float>() : nullptr;
-    if (is_bfloat16(x))
-        convolve(shape, numbers<const BrainFloat>(x), numbers<const BrainFloat>(packed), added,
-                 numbers<BrainFloat>(y));
-    else
-        convolve(shape, numbers<const float>(x), numbers<const float>(packed), added,
-                 numbers<float>(y));
-    return y;
-}
-
-bool kernel_runs(torch::Dtype dtype) {
-    static const bool float_runs = winograd_kernel_runs<float>();
-    static const bool bfloat_runs = winograd_kernel_runs<BrainFloat>();
-    return (dtype == torch::kFloat32 && float_runs) || (dtype == torch::kBFloat16 && bfloat_runs);
-}
-
 }  // namespace
 
 bool WinogradConvolution::gains(const torch::Tensor& x, const torch::Tensor& weight) {
     constexpr int64_t fewest_pixels = 512;
-    return x.is_cpu() && x.scalar_type() == weight.scalar_type() && kernel_runs(x.scalar_type()) &&
-           weight.size(0) % winograd_columns == 0 && weight.size(1) % winograd_columns == 0 &&
-           x.size(0) * x.size(2) * x.size(3) >= fewest_pixels;
+    return fits(x, weight) && x.size(0) * x.size(2) * x.size(3) >= fewest_pixels;
 }
 
 WinogradConvolution::WinogradConvolution(const torch::Tensor& weight)
-    : out_channels_(weight.size(0)),
-      in_channels_(weight.size(1)),
-      dtype_(weight.scalar_type()),
-      weight_(weight.detach()),
-      version_(static_cast<std::uint32_t>(weight._version())),
-      packed_(pack(weight_)) {}
+    : FrozenConvolution(weight, transform_any(weight.detach())) {}
 
-bool WinogradConvolution::is_of(const torch::Tensor& weight) const {
-    return weight_.defined() && weight.data_ptr() == weight_.data_ptr() &&
-           weight.strides() == weight_.strides() &&
-           static_cast<std::uint32_t>(weight_._version()) == version_;
+torch::Tensor WinogradConvolution::pack(const torch::Tensor& weight) const {
+    return transform_any(weight);
 }
 
-bool WinogradConvolution::forget_weight() {
-    if (dtype_ != torch::kBFloat16) return false;
-    weight_ = torch::Tensor();
-    return true;
+bool WinogradConvolution::can_turn_round() const {
+    return dtype() == torch::kBFloat16;  // of tiles of 2 x 2
 }
 
-torch::Tensor WinogradConvolution::forward(const torch::Tensor& x,
-                                           const torch::Tensor& bias) const {
-    ITEM3D_CHECK(x.dim() == 4 && x.size(1) == in_channels_ && x.scalar_type() == dtype_,
-                 "x must be [N, C, H, W] with the weights' channels and type");
-    return convolve(x, packed_, out_channels_, bias);
+torch::Tensor WinogradConvolution::turn_round(const torch::Tensor& packed) const {
+    const int64_t out = out_channels(), in = in_channels();
+    // Their points are 0, 1, -1 and infinity; turning a kernel round swaps the first and the last.
+    const torch::Tensor swapped = torch::tensor({3, 1, 2, 0}, torch::kInt64);
+    return packed.view({4, 4, out / packed_columns, in / 2, packed_columns, 2})
+        .index_select(0, swapped)
+        .index_select(1, swapped)
+        .permute({0, 1, 3, 5, 2, 4})  // [4, 4, in / 2, 2, out / columns, columns]
+        .reshape({16, in / packed_columns, packed_columns, out / 2, 2})
+        .permute({0, 1, 3, 2, 4})
+        .reshape({-1})
+        .contiguous();
 }
 
-torch::Tensor WinogradConvolution::backward(const torch::Tensor& gradient) {
-    // The way back is the convolution with the weights turned round and their channels swapped.
-    if (!packed_backward_.defined())
-        packed_backward_ = dtype_ == torch::kBFloat16
-                               ? turn_round(packed_, out_channels_, in_channels_)
-                               : pack(weight_.flip({2, 3}).transpose(0, 1));
-    return convolve(gradient.to(dtype_), packed_backward_, in_channels_, {});
+torch::Tensor WinogradConvolution::convolve(const torch::Tensor& x, const torch::Tensor& packed,
+                                            int64_t out_channels, const torch::Tensor& bias) const {
+    const ConvolutionShape shape{x.size(0), x.size(2), x.size(3), x.size(1), out_channels};
+    const torch::Tensor y =
+        torch::empty({shape.pictures, out_channels, shape.height, shape.width},
+                     x.options().memory_format(torch::MemoryFormat::ChannelsLast));
+    const float* added = bias.defined() ? bias.data_ptr<float>() : nullptr;
+    if (is_bfloat16(x))
+        convolve_tiles(shape, numbers<const BrainFloat>(x), numbers<const BrainFloat>(packed),
+                       added, numbers<BrainFloat>(y));
+    else
+        convolve_tiles(shape, numbers<const float>(x), numbers<const float>(packed), added,
+                       numbers<float>(y));
+    return y;
 }
 
 }  // namespace item3d

@@ -3,7 +3,7 @@
 #if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512VL__) && \
     defined(__AVX512BF16__)
 #define ITEM3D_WINOGRAD 1
-#include "item3d/models/avx512_numbers.h"
+#include "item3d/models/matrix_tile.h"
 #endif
 
 namespace item3d {
@@ -16,52 +16,8 @@ using std::int64_t;
 
 using avx512::lanes;
 using avx512::load;
+using avx512::rows;
 using avx512::store;
-
-constexpr int column_registers = winograd_columns / lanes;
-/// Tiles multiplied at a time: with four registers of columns each, 24 sums stay in registers.
-constexpr int rows = 6;
-
-// What differs between the numbers. A `group` of input channels is multiplied by one instruction.
-template <typename Number>
-struct Arithmetic;
-
-template <>
-struct Arithmetic<BrainFloat> {
-    static constexpr int group = 2;
-    static __m512i broadcast(const BrainFloat* from) {
-        int pair;
-        __builtin_memcpy(&pair, from, sizeof pair);
-        return _mm512_set1_epi32(pair);
-    }
-    static __m512i operand(const BrainFloat* from) { return _mm512_loadu_si512(from); }
-    static __m512 multiply_add(__m512i a, __m512i b, __m512 sum) {
-        return _mm512_dpbf16_ps(sum, reinterpret_cast<__m512bh>(a), reinterpret_cast<__m512bh>(b));
-    }
-    /// Sixteen input channels of one output channel, each pair `winograd_columns` pairs on.
-    static void scatter(BrainFloat* to, __m512 value) {
-        const __m256i places =
-            _mm256_mullo_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
-                               _mm256_set1_epi32(static_cast<int>(winograd_columns)));
-        _mm256_i32scatter_epi32(to, places, avx512::narrow(value), 4);
-    }
-};
-
-template <>
-struct Arithmetic<float> {
-    static constexpr int group = 1;
-    static __m512 broadcast(const float* from) { return _mm512_set1_ps(*from); }
-    static __m512 operand(const float* from) { return _mm512_loadu_ps(from); }
-    static __m512 multiply_add(__m512 a, __m512 b, __m512 sum) {
-        return _mm512_fmadd_ps(a, b, sum);
-    }
-    static void scatter(float* to, __m512 value) {
-        const __m512i places = _mm512_mullo_epi32(
-            _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
-            _mm512_set1_epi32(static_cast<int>(winograd_columns)));
-        _mm512_i32scatter_ps(to, places, value, 4);
-    }
-};
 
 // The transforms in one direction, Lavin & Gray (2016), "Fast Algorithms for Convolutional Neural
 // Networks", sections 4.1 and 4.3: of weights (G), input (B^T) and sums (A^T). `step` is the
@@ -142,7 +98,7 @@ struct Transform<4> {
 struct Place {
     int64_t picture, y, x;  ///< of its first output pixel
 
-    Place(const WinogradShape& shape, int tile, int64_t index) {
+    Place(const ConvolutionShape& shape, int tile, int64_t index) {
         const int64_t across = (shape.width + tile - 1) / tile;
         const int64_t down = (shape.height + tile - 1) / tile;
         picture = index / across / down;
@@ -151,13 +107,9 @@ struct Place {
     }
 };
 
-int64_t whole_rows(int64_t tiles) {
-    return (tiles + rows - 1) / rows * rows;
-}
-
 /// The input pixels of each tile -> transformed [points, stride, in_channels].
 template <typename Number>
-void transform_input(const WinogradShape& shape, const Number* x, int64_t first, int64_t last,
+void transform_input(const ConvolutionShape& shape, const Number* x, int64_t first, int64_t last,
                      int64_t stride, Number* transformed) {
     constexpr int tile = winograd_tile<Number>, side = tile + 2, points = side * side;
     const int64_t channels = shape.in_channels;
@@ -192,50 +144,18 @@ void transform_input(const WinogradShape& shape, const Number* x, int64_t first,
     }
 }
 
-/// sums [rows, columns] = a [rows, depth] times b [depth / group, columns, group].
-template <typename Number>
-void multiply(int64_t depth, const Number* a, const Number* b, float* sums) {
-    using Maths = Arithmetic<Number>;
-    __m512 sum[rows][column_registers];
-#pragma GCC unroll 6
-    for (int i = 0; i < rows; ++i)
-#pragma GCC unroll 4
-        for (int j = 0; j < column_registers; ++j)
-            sum[i][j] = _mm512_setzero_ps();
-    for (int64_t k = 0; k < depth; k += Maths::group) {
-        const Number* from = b + k * winograd_columns;
-        const auto b0 = Maths::operand(from);
-        const auto b1 = Maths::operand(from + lanes * Maths::group);
-        const auto b2 = Maths::operand(from + 2 * lanes * Maths::group);
-        const auto b3 = Maths::operand(from + 3 * lanes * Maths::group);
-#pragma GCC unroll 6
-        for (int i = 0; i < rows; ++i) {
-            const auto factor = Maths::broadcast(a + i * depth + k);
-            sum[i][0] = Maths::multiply_add(factor, b0, sum[i][0]);
-            sum[i][1] = Maths::multiply_add(factor, b1, sum[i][1]);
-            sum[i][2] = Maths::multiply_add(factor, b2, sum[i][2]);
-            sum[i][3] = Maths::multiply_add(factor, b3, sum[i][3]);
-        }
-    }
-#pragma GCC unroll 6
-    for (int i = 0; i < rows; ++i)
-#pragma GCC unroll 4
-        for (int j = 0; j < column_registers; ++j)
-            _mm512_storeu_ps(sums + i * winograd_columns + j * lanes, sum[i][j]);
-}
-
 /// sums [points, stride, columns] -> output pixels of the tiles, in the column from `channel` on.
 template <typename Number>
-void transform_sums(const WinogradShape& shape, const float* sums, const float* bias, int64_t first,
-                    int64_t last, int64_t stride, int64_t channel, Number* y) {
+void transform_sums(const ConvolutionShape& shape, const float* sums, const float* bias,
+                    int64_t first, int64_t last, int64_t stride, int64_t channel, Number* y) {
     constexpr int tile = winograd_tile<Number>, side = tile + 2, points = side * side;
     for (int64_t t = first; t < last; ++t) {
         const Place place(shape, tile, t);
-        for (int c = 0; c < winograd_columns; c += lanes) {
+        for (int c = 0; c < packed_columns; c += lanes) {
             __m512 s[points], half[tile * side], pixels[tile * tile];
 #pragma GCC unroll 36
             for (int i = 0; i < points; ++i)
-                s[i] = _mm512_loadu_ps(sums + (i * stride + t - first) * winograd_columns + c);
+                s[i] = _mm512_loadu_ps(sums + (i * stride + t - first) * packed_columns + c);
 #pragma GCC unroll 6
             for (int j = 0; j < side; ++j)
                 Transform<tile>::sums(s + j, side, half + j, side);
@@ -259,26 +179,14 @@ void transform_sums(const WinogradShape& shape, const float* sums, const float* 
 
 }  // namespace
 
-template <>
-bool winograd_kernel_runs<float>() {
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
-}
-
-template <>
-bool winograd_kernel_runs<BrainFloat>() {
-    return winograd_kernel_runs<float>() && __builtin_cpu_supports("avx512bf16") &&
-           !__builtin_cpu_supports("amx-bf16");
-}
-
 template <typename Number>
 void pack_winograd_weights(const Number* weights, int64_t out_channels, int64_t in_channels,
                            int64_t first, int64_t last, Number* packed) {
-    using Maths = Arithmetic<Number>;
+    using Maths = avx512::Arithmetic<Number>;
     constexpr int tile = winograd_tile<Number>, side = tile + 2, points = side * side;
-    for (int64_t column = first; column < last; column += winograd_columns) {
+    for (int64_t column = first; column < last; column += packed_columns) {
         for (int64_t c = 0; c < in_channels; c += lanes) {
-            for (int64_t o = 0; o < winograd_columns; ++o) {
+            for (int64_t o = 0; o < packed_columns; ++o) {
                 __m512 g[9], half[3 * side], u[points];
                 const Number* from = weights + (column + o) * 9 * in_channels + c;
 #pragma GCC unroll 9
@@ -290,8 +198,7 @@ void pack_winograd_weights(const Number* weights, int64_t out_channels, int64_t 
 #pragma GCC unroll 6
                 for (int i = 0; i < side; ++i)
                     Transform<tile>::weights(half + i * 3, 1, u + i * side, 1);
-                Number* to =
-                    packed + column * in_channels + c * winograd_columns + o * Maths::group;
+                Number* to = packed + column * in_channels + c * packed_columns + o * Maths::group;
 #pragma GCC unroll 36
                 for (int i = 0; i < points; ++i)
                     Maths::scatter(to + i * out_channels * in_channels, u[i]);
@@ -302,43 +209,38 @@ void pack_winograd_weights(const Number* weights, int64_t out_channels, int64_t 
 
 template <typename Number>
 int64_t winograd_scratch(int64_t tiles, int64_t in_channels) {
-    return winograd_points<Number> * whole_rows(tiles) *
+    return winograd_points<Number> * avx512::whole_rows(tiles) *
            (in_channels * static_cast<int64_t>(sizeof(Number)) +
-            winograd_columns * static_cast<int64_t>(sizeof(float)));
+            packed_columns * static_cast<int64_t>(sizeof(float)));
 }
 
 template <typename Number>
-void convolve_winograd(const WinogradShape& shape, const Number* x, const Number* packed,
+void convolve_winograd(const ConvolutionShape& shape, const Number* x, const Number* packed,
                        const float* bias, Number* y, const WinogradPart& part, void* scratch) {
     constexpr int points = winograd_points<Number>;
     const int64_t channels = shape.in_channels, first = part.first_tile, last = part.last_tile;
     // The last rows may stay as they were: what comes of them is not looked at.
-    const int64_t stride = whole_rows(last - first);
+    const int64_t stride = avx512::whole_rows(last - first);
     auto* transformed = static_cast<Number*>(scratch);
     auto* sums = reinterpret_cast<float*>(transformed + points * stride * channels);
     transform_input(shape, x, first, last, stride, transformed);
     for (int64_t channel = part.first_channel; channel < part.last_channel;
-         channel += winograd_columns) {
+         channel += packed_columns) {
         for (int64_t i = 0; i < points; ++i) {
             const Number* b = packed + (i * shape.out_channels + channel) * channels;
-            for (int64_t r = i * stride; r < (i + 1) * stride; r += rows)
-                multiply(channels, transformed + r * channels, b, sums + r * winograd_columns);
+            for (int64_t r = i * stride; r < (i + 1) * stride; r += rows) {
+                const Number* a[rows];
+                for (int j = 0; j < rows; ++j)
+                    a[j] = transformed + (r + j) * channels;
+                avx512::multiply<Number, 4>(a, channels, b, sums + r * packed_columns,
+                                            packed_columns, false);
+            }
         }
         transform_sums(shape, sums, bias, first, last, stride, channel, y);
     }
 }
 
 #else
-
-template <>
-bool winograd_kernel_runs<float>() {
-    return false;
-}
-
-template <>
-bool winograd_kernel_runs<BrainFloat>() {
-    return false;
-}
 
 template <typename Number>
 void pack_winograd_weights(const Number*, std::int64_t, std::int64_t, std::int64_t, std::int64_t,
@@ -350,7 +252,7 @@ std::int64_t winograd_scratch(std::int64_t, std::int64_t) {
 }
 
 template <typename Number>
-void convolve_winograd(const WinogradShape&, const Number*, const Number*, const float*, Number*,
+void convolve_winograd(const ConvolutionShape&, const Number*, const Number*, const float*, Number*,
                        const WinogradPart&, void*) {}
 
 #endif
@@ -359,7 +261,7 @@ void convolve_winograd(const WinogradShape&, const Number*, const Number*, const
     template void pack_winograd_weights(const Number*, std::int64_t, std::int64_t, std::int64_t, \
                                         std::int64_t, Number*);                                  \
     template std::int64_t winograd_scratch<Number>(std::int64_t, std::int64_t);                  \
-    template void convolve_winograd(const WinogradShape&, const Number*, const Number*,          \
+    template void convolve_winograd(const ConvolutionShape&, const Number*, const Number*,       \
                                     const float*, Number*, const WinogradPart&, void*);
 ITEM3D_INSTANTIATE(float)
 ITEM3D_INSTANTIATE(BrainFloat)

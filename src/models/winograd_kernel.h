@@ -1,17 +1,12 @@
 // The arithmetic of winograd.h on plain memory: AVX-512, compiled for it alone
-// (src/CMakeLists.txt), so nothing here may be called where winograd_kernel_runs() says no.
+// (src/CMakeLists.txt), so nothing here may be called where matrix_kernel_runs() says no.
 #pragma once
 
-#include "item3d/models/brain_float.h"
+#include "item3d/models/matrix_kernel.h"
 
 #include <cstdint>
 
 namespace item3d {
-
-/// Whether this processor has what the kernels for float or BrainFloat need, and gains by them: one
-/// with matrix units (AMX) multiplies bfloat16 faster than the transforms can follow.
-template <typename Number>
-bool winograd_kernel_runs();
 
 /// Output pixels of a tile's side, F(m x m, 3 x 3) in Lavin & Gray's notation: each tile of m x m
 /// takes (m + 2)^2 multiplications a channel pair instead of 9 m^2. The larger tile loses about
@@ -22,20 +17,6 @@ constexpr int winograd_tile = sizeof(Number) == 4 ? 4 : 2;
 /// Points of a transformed tile.
 template <typename Number>
 constexpr int winograd_points = (winograd_tile<Number> + 2) * (winograd_tile<Number> + 2);
-
-/// Output channels are worked at in columns of this many, input channels in as many at most; both
-/// counts must be multiples of it.
-constexpr std::int64_t winograd_columns = 64;
-
-/// A 3x3 convolution of stride 1 and padding 1 over maps in memory as [pictures, height, width,
-/// channels].
-struct WinogradShape {
-    std::int64_t pictures, height, width, in_channels, out_channels;
-
-    std::int64_t tiles(int tile) const {
-        return pictures * ((height + tile - 1) / tile) * ((width + tile - 1) / tile);
-    }
-};
 
 /// Part of the work: a range of tiles, and of output channels in whole columns.
 struct WinogradPart {
@@ -55,7 +36,7 @@ std::int64_t winograd_scratch(std::int64_t tiles, std::int64_t in_channels);
 
 /// y = conv(x, weights) + bias, for one part. bias: [out] or null.
 template <typename Number>
-void convolve_winograd(const WinogradShape& shape, const Number* x, const Number* packed,
+void convolve_winograd(const ConvolutionShape& shape, const Number* x, const Number* packed,
                        const float* bias, Number* y, const WinogradPart& part, void* scratch);
 
 }  // namespace item3d

@@ -1,0 +1,213 @@
+#include "item3d/models/attention_kernel.h"
+
+#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512VL__) && \
+    defined(__AVX512BF16__)
+#define ITEM3D_ATTENTION 1
+#include "item3d/models/matrix_tile.h"
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace item3d {
+
+using std::int64_t;
+
+#ifdef ITEM3D_ATTENTION
+
+namespace {
+
+using avx512::lanes;
+using avx512::rows;
+
+int64_t round_up(int64_t value, int64_t step) {
+    return (value + step - 1) / step * step;
+}
+
+/// Columns of `count`, the last of them as narrow as whole registers allow: calls f(first column,
+/// registers).
+template <typename Function>
+void for_each_column(int64_t count, const Function& f) {
+    for (int64_t first = 0; first < count; first += packed_columns)
+        f(first, std::min<int64_t>(4, (count - first + lanes - 1) / lanes));
+}
+
+/// What one head needs beside its inputs. Places and widths are rounded up to whole registers.
+template <typename Number>
+struct Scratch {
+    int64_t keys, width;
+    float *scores, *sums;                           ///< [rows, keys], [rows, packed_columns]
+    Number *weights, *keys_packed, *values_packed;  ///< [rows, keys], and as multiply() wants them
+
+    Scratch(const AttentionShape& shape, void* memory)
+        : keys(round_up(shape.keys, 2 * lanes)),
+          width(round_up(shape.width, lanes)),
+          scores(static_cast<float*>(memory)),
+          sums(scores + rows * keys),
+          weights(reinterpret_cast<Number*>(sums + rows * packed_columns)),
+          keys_packed(weights + rows * keys),
+          values_packed(keys_packed + keys * shape.width) {}
+    static int64_t bytes(const AttentionShape& shape) {
+        const int64_t keys = round_up(shape.keys, 2 * lanes);
+        const int64_t width = round_up(shape.width, lanes);
+        return static_cast<int64_t>(sizeof(float)) * rows * (keys + packed_columns) +
+               static_cast<int64_t>(sizeof(Number)) * keys * (rows + shape.width + width);
+    }
+};
+
+/// [places, stride] -> the transposed matrix [width, places], packed; zero beyond `count` places.
+template <typename Number>
+void pack_transposed(const Number* from, int64_t stride, int64_t count, int64_t places,
+                     int64_t width, Number* to) {
+    constexpr int group = avx512::Arithmetic<Number>::group;
+    for_each_column(places, [&](int64_t first, int64_t registers) {
+        const int64_t columns = registers * lanes;
+        Number* packed = to + first * width;
+        for (int64_t j = 0; j < columns; ++j) {
+            const Number* place = from + (first + j) * stride;
+            const bool there = first + j < count;
+            for (int64_t c = 0; c < width; ++c)
+                packed[(c / group * columns + j) * group + c % group] = there ? place[c] : Number{};
+        }
+    });
+}
+
+/// [places, stride] -> the matrix [places, width], packed; zero beyond `count` and `width`.
+template <typename Number>
+void pack_straight(const Number* from, int64_t stride, int64_t count, int64_t places, int64_t width,
+                   Number* to) {
+    constexpr int group = avx512::Arithmetic<Number>::group;
+    for_each_column(width, [&](int64_t first, int64_t registers) {
+        const int64_t columns = registers * lanes;
+        Number* packed = to + first * places;
+        for (int64_t i = 0; i < places; ++i)
+            for (int64_t j = 0; j < columns; ++j)
+                packed[(i / group * columns + j) * group + i % group] =
+                    i < count && first + j < width ? from[i * stride + first + j] : Number{};
+    });
+}
+
+__mmask16 first_lanes(int64_t count) {
+    return static_cast<__mmask16>(count >= lanes ? 0xffff : (1 << count) - 1);
+}
+
+/// 2^x to float's precision: 2^n 2^r with |r| <= 1/2, 2^r by its Taylor series. 0 far below.
+__m512 power_of_two(__m512 x) {
+    const __m512 n = _mm512_roundscale_ps(x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+    const __m512 r = x - n;
+    __m512 series = _mm512_set1_ps(1.5403530e-4f);
+    for (const float term :
+         {1.3333558e-3f, 9.6181291e-3f, 5.5504109e-2f, 2.4022651e-1f, 6.9314718e-1f, 1.0f})
+        series = _mm512_fmadd_ps(series, r, _mm512_set1_ps(term));
+    return _mm512_scalef_ps(series, n);
+}
+
+/// weights = e^(scale (score - the largest)), zero beyond `count`; returns their sum.
+template <typename Number>
+float soften(const float* scores, int64_t count, int64_t places, float scale, Number* weights) {
+    const int64_t whole = count / lanes * lanes;
+    const __mmask16 last = first_lanes(count - whole);
+    __m512 most = _mm512_set1_ps(std::numeric_limits<float>::lowest());
+    for (int64_t i = 0; i < whole; i += lanes)
+        most = _mm512_max_ps(most, avx512::load(scores + i));
+    most = _mm512_mask_max_ps(most, last, most, _mm512_maskz_loadu_ps(last, scores + whole));
+    const float factor = scale * 1.44269504f;
+    const __m512 slope = _mm512_set1_ps(factor);
+    const __m512 largest = _mm512_set1_ps(factor * _mm512_reduce_max_ps(most));
+    __m512 sum = _mm512_setzero_ps();
+    for (int64_t i = 0; i < whole; i += lanes) {
+        const __m512 value =
+            power_of_two(_mm512_fmsub_ps(slope, avx512::load(scores + i), largest));
+        sum += value;
+        avx512::store(weights + i, value);
+    }
+    if (last != 0) {
+        const __m512 score = _mm512_maskz_loadu_ps(last, scores + whole);
+        const __m512 value =
+            _mm512_maskz_mov_ps(last, power_of_two(_mm512_fmsub_ps(slope, score, largest)));
+        sum += value;
+        avx512::store(weights + whole, value);
+    }
+    for (int64_t i = whole + (last != 0 ? lanes : 0); i < places; i += lanes)
+        avx512::store(weights + i, _mm512_setzero_ps());
+    return _mm512_reduce_add_ps(sum);
+}
+
+void store_some(float* to, __mmask16 which, __m512 value) {
+    _mm512_mask_storeu_ps(to, which, value);
+}
+
+void store_some(BrainFloat* to, __mmask16 which, __m512 value) {
+    _mm256_mask_storeu_epi16(to, which, avx512::narrow(value));
+}
+
+}  // namespace
+
+template <typename Number>
+int64_t attention_scratch(const AttentionShape& shape) {
+    return Scratch<Number>::bytes(shape);
+}
+
+template <typename Number>
+void attend(const AttentionShape& shape, const Number* query, const Number* key,
+            const Number* value, const AttentionPart& part, Number* result, void* memory) {
+    const Scratch<Number> scratch(shape, memory);
+    const int64_t stride = shape.heads * shape.width, keys = scratch.keys, width = shape.width;
+    const int64_t offset = part.head * width;
+    const int64_t keys_begin = part.row * shape.keys * stride + offset;
+    pack_transposed(key + keys_begin, stride, shape.keys, keys, width, scratch.keys_packed);
+    pack_straight(value + keys_begin, stride, shape.keys, keys, width, scratch.values_packed);
+    const float scale = 1 / std::sqrt(static_cast<float>(width));
+    for (int64_t first = part.first_query; first < part.last_query; first += rows) {
+        const int64_t count = std::min<int64_t>(rows, part.last_query - first);
+        const int64_t begin = (part.row * shape.queries + first) * stride + offset;
+        const Number *queries[rows], *weights[rows];
+        for (int i = 0; i < rows; ++i) {
+            queries[i] = query + begin + std::min<int64_t>(i, count - 1) * stride;
+            weights[i] = scratch.weights + i * keys;
+        }
+        for_each_column(keys, [&](int64_t place, int64_t registers) {
+            avx512::multiply(registers, queries, width, scratch.keys_packed + place * width,
+                             scratch.scores + place, keys, false);
+        });
+        float total[rows];
+        for (int i = 0; i < rows; ++i)
+            total[i] = soften(scratch.scores + i * keys, shape.keys, keys, scale,
+                              scratch.weights + i * keys);
+        for_each_column(width, [&](int64_t channel, int64_t registers) {
+            avx512::multiply(registers, weights, keys, scratch.values_packed + channel * keys,
+                             scratch.sums, packed_columns, false);
+            for (int64_t i = 0; i < count; ++i) {
+                const __m512 share = _mm512_set1_ps(1 / total[i]);
+                for (int64_t c = 0; c < registers * lanes && channel + c < width; c += lanes)
+                    store_some(result + begin + i * stride + channel + c,
+                               first_lanes(width - channel - c),
+                               share * avx512::load(scratch.sums + i * packed_columns + c));
+            }
+        });
+    }
+}
+
+#else
+
+template <typename Number>
+int64_t attention_scratch(const AttentionShape&) {
+    return 0;
+}
+
+template <typename Number>
+void attend(const AttentionShape&, const Number*, const Number*, const Number*,
+            const AttentionPart&, Number*, void*) {}
+
+#endif
+
+#define ITEM3D_INSTANTIATE(Number)                                                           \
+    template int64_t attention_scratch<Number>(const AttentionShape&);                       \
+    template void attend(const AttentionShape&, const Number*, const Number*, const Number*, \
+                         const AttentionPart&, Number*, void*);
+ITEM3D_INSTANTIATE(float)
+ITEM3D_INSTANTIATE(BrainFloat)
+#undef ITEM3D_INSTANTIATE
+
+}  // namespace item3d

@@ -1,0 +1,125 @@
+#include "item3d/models/direct_kernel.h"
+
+#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512VL__) && \
+    defined(__AVX512BF16__)
+#define ITEM3D_DIRECT 1
+#include "item3d/models/matrix_tile.h"
+#endif
+
+#include <cstring>
+
+namespace item3d {
+
+using std::int64_t;
+
+#ifdef ITEM3D_DIRECT
+
+namespace {
+
+using avx512::lanes;
+using avx512::rows;
+
+constexpr int taps = 9;
+
+/// The pixels under one tap for each of `rows` output pixels from `first` on; `outside` beyond the
+/// edge, and after `last`. False where all are outside.
+template <typename Number>
+bool find_pixels(const ConvolutionShape& shape, const Number* x, const Number* outside, int tap,
+                 int64_t first, int64_t last, const Number** found) {
+    const int64_t down = tap / 3 - 1, right = tap % 3 - 1;
+    bool any = false;
+    for (int i = 0; i < rows; ++i) {
+        const int64_t pixel = first + i;
+        const int64_t row = pixel / shape.width % shape.height + down;
+        const int64_t column = pixel % shape.width + right;
+        const bool inside =
+            pixel < last && row >= 0 && row < shape.height && column >= 0 && column < shape.width;
+        found[i] = inside ? x + (pixel + down * shape.width + right) * shape.in_channels : outside;
+        any = any || inside;
+    }
+    return any;
+}
+
+}  // namespace
+
+template <typename Number>
+void pack_taps(const Number* weights, int64_t out_channels, int64_t in_channels, int64_t first,
+               int64_t last, Number* packed) {
+    using Maths = avx512::Arithmetic<Number>;
+    for (int64_t column = first; column < last; column += packed_columns) {
+        for (int tap = 0; tap < taps; ++tap) {
+            Number* to = packed + (tap * out_channels + column) * in_channels;
+            for (int64_t o = 0; o < packed_columns; ++o) {
+                const Number* from = weights + ((column + o) * taps + tap) * in_channels;
+                for (int64_t c = 0; c < in_channels; c += lanes)
+                    Maths::scatter(to + c * packed_columns + o * Maths::group,
+                                   avx512::load(from + c));
+            }
+        }
+    }
+}
+
+template <typename Number>
+int64_t taps_scratch(int64_t pixels, int64_t in_channels) {
+    return avx512::whole_rows(pixels) * packed_columns * static_cast<int64_t>(sizeof(float)) +
+           in_channels * static_cast<int64_t>(sizeof(Number));
+}
+
+template <typename Number>
+void convolve_taps(const ConvolutionShape& shape, const Number* x, const Number* packed,
+                   const float* bias, Number* y, const PixelPart& part, void* scratch) {
+    const int64_t in = shape.in_channels, out = shape.out_channels;
+    const int64_t pixels = part.last_pixel - part.first_pixel;
+    auto* sums = static_cast<float*>(scratch);
+    auto* outside = reinterpret_cast<Number*>(sums + avx512::whole_rows(pixels) * packed_columns);
+    std::memset(outside, 0, static_cast<std::size_t>(in) * sizeof(Number));
+    for (int64_t channel = part.first_channel; channel < part.last_channel;
+         channel += packed_columns) {
+        std::memset(
+            sums, 0,
+            static_cast<std::size_t>(avx512::whole_rows(pixels) * packed_columns) * sizeof(float));
+        for (int tap = 0; tap < taps; ++tap) {
+            const Number* b = packed + (tap * out + channel) * in;
+            for (int64_t r = 0; r < pixels; r += rows) {
+                const Number* a[rows];
+                if (find_pixels(shape, x, outside, tap, part.first_pixel + r, part.last_pixel, a))
+                    avx512::multiply<Number, 4>(a, in, b, sums + r * packed_columns, packed_columns,
+                                                true);
+            }
+        }
+        for (int64_t r = 0; r < pixels; ++r) {
+            for (int64_t c = 0; c < packed_columns; c += lanes) {
+                const __m512 add = bias ? avx512::load(bias + channel + c) : _mm512_setzero_ps();
+                avx512::store(y + (part.first_pixel + r) * out + channel + c,
+                              avx512::load(sums + r * packed_columns + c) + add);
+            }
+        }
+    }
+}
+
+#else
+
+template <typename Number>
+void pack_taps(const Number*, int64_t, int64_t, int64_t, int64_t, Number*) {}
+
+template <typename Number>
+int64_t taps_scratch(int64_t, int64_t) {
+    return 0;
+}
+
+template <typename Number>
+void convolve_taps(const ConvolutionShape&, const Number*, const Number*, const float*, Number*,
+                   const PixelPart&, void*) {}
+
+#endif
+
+#define ITEM3D_INSTANTIATE(Number)                                                       \
+    template void pack_taps(const Number*, int64_t, int64_t, int64_t, int64_t, Number*); \
+    template int64_t taps_scratch<Number>(int64_t, int64_t);                             \
+    template void convolve_taps(const ConvolutionShape&, const Number*, const Number*,   \
+                                const float*, Number*, const PixelPart&, void*);
+ITEM3D_INSTANTIATE(float)
+ITEM3D_INSTANTIATE(BrainFloat)
+#undef ITEM3D_INSTANTIATE
+
+}  // namespace item3d

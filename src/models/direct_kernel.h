@@ -1,0 +1,31 @@
+// 3x3 convolutions without transforms on plain memory, for maps too small for winograd.h: AVX-512,
+// compiled for it alone (src/CMakeLists.txt), so nothing here may be called where
+// matrix_kernel_runs() says no.
+#pragma once
+
+#include "item3d/models/matrix_kernel.h"
+
+namespace item3d {
+
+/// Weights [out, 3, 3, in] -> [9, out / 64, in / group, 64, group], a group being the input
+/// channels that one instruction multiplies (2 of BrainFloat, 1 of float); for output channels
+/// [first, last) in whole columns.
+template <typename Number>
+void pack_taps(const Number* weights, std::int64_t out_channels, std::int64_t in_channels,
+               std::int64_t first, std::int64_t last, Number* packed);
+
+/// Pixels of all pictures together, and output channels in whole columns.
+struct PixelPart {
+    std::int64_t first_pixel, last_pixel, first_channel, last_channel;
+};
+
+/// Bytes of scratch memory (64-byte aligned) for a part of `pixels` pixels.
+template <typename Number>
+std::int64_t taps_scratch(std::int64_t pixels, std::int64_t in_channels);
+
+/// y = conv(x, weights) + bias, for one part. bias: [out] or null.
+template <typename Number>
+void convolve_taps(const ConvolutionShape& shape, const Number* x, const Number* packed,
+                   const float* bias, Number* y, const PixelPart& part, void* scratch);
+
+}  // namespace item3d

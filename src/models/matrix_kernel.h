@@ -1,0 +1,31 @@
+// What the kernels that multiply matrices have in common; see matrix_tile.h.
+#pragma once
+
+#include "item3d/models/brain_float.h"
+
+#include <cstdint>
+
+namespace item3d {
+
+/// Whether this processor has what the kernels for float or BrainFloat need, and gains by them: one
+/// with matrix units (AMX) multiplies bfloat16 faster by the library's ways.
+template <typename Number>
+bool matrix_kernel_runs();
+
+/// Output channels of a convolution are packed in columns of this many; input channels must be a
+/// multiple of it too.
+constexpr std::int64_t packed_columns = 64;
+
+/// A 3x3 convolution of stride 1 and padding 1 over maps in memory as [pictures, height, width,
+/// channels].
+struct ConvolutionShape {
+    std::int64_t pictures, height, width, in_channels, out_channels;
+
+    /// Squares of `tile` pixels a side that cover the maps.
+    std::int64_t tiles(int tile) const {
+        return pictures * ((height + tile - 1) / tile) * ((width + tile - 1) / tile);
+    }
+    std::int64_t pixels() const { return pictures * height * width; }
+};
+
+}  // namespace item3d
