@@ -7,9 +7,9 @@
 #include "item3d/evaluate/clip_score.h"
 #include "item3d/evaluate/model_pictures.h"
 #include "item3d/hub/find_prior.h"
-#include "item3d/scene/environment.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
+#include "item3d/scene/light_layout.h"
 
 #include <cmath>
 

@@ -3,8 +3,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/environment_light.h"
-#include "item3d/render/kernels/shade.h"
 #include "item3d/render/shade.h"
+#include "item3d/render/specular_chain.h"
 
 #include <functional>
 
@@ -29,17 +29,6 @@ Image draw_faces(int size, const std::function<Vec3(Vec3)>& radiance) {
     return row;
 }
 
-kernels::ShadeParameters chain_of(const EnvironmentLight& light) {
-    kernels::ShadeParameters chain{};
-    chain.levels = static_cast<int>(light.specular.size());
-    for (std::size_t i = 0; i < light.specular.size(); ++i) {
-        chain.specular[i] = light.specular[i].const_data_ptr<float>();
-        chain.specular_size[i] = static_cast<int>(light.specular[i].size(1));
-        chain.specular_roughness[i] = light.roughness[i];
-    }
-    return chain;
-}
-
 }  // namespace
 
 ImageBasedLight make_image_based_light(const Image& light, int size) {
@@ -47,9 +36,11 @@ ImageBasedLight make_image_based_light(const Image& light, int size) {
     const torch::NoGradGuard no_grad;
     const torch::Tensor cube = equirectangular_to_cube(to_tensor(light), size).contiguous();
     const EnvironmentLight prefiltered = prefilter(cube);
-    const kernels::ShadeParameters chain = chain_of(prefiltered);
+    kernels::ShadeParameters chain{};
+    set_specular_chain(chain, prefiltered.specular, prefiltered.roughness);
     const auto look_up = [](const float* map, int map_size, Vec3 direction) {
-        return kernels::cube_value(map, kernels::cube_taps(direction, map_size));
+        return kernels::cube_value(map,
+                                   kernels::cube_taps(kernels::cube_point(direction), map_size));
     };
     ImageBasedLight result;
     result.irradiance = irradiance_harmonics(light);
@@ -60,10 +51,13 @@ ImageBasedLight make_image_based_light(const Image& light, int size) {
         const float roughness = static_cast<float>(level) / (levels - 1);
         const kernels::SpecularLevels between = kernels::specular_levels(chain, roughness);
         result.specular.push_back(draw_faces(size >> level, [&](Vec3 direction) {
-            const auto at = [&](int i) {
-                return look_up(chain.specular[i], chain.specular_size[i], direction);
-            };
-            return glm::mix(at(between.low), at(between.high), between.fraction);
+            Vec3 radiance(0.0f);
+            for (int i = 0; i < 4; ++i) {
+                const int lobe = between.first + i;
+                radiance += between.weight[i] *
+                            look_up(chain.specular[lobe], chain.specular_size[lobe], direction);
+            }
+            return radiance;
         }));
     }
     return result;

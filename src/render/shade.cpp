@@ -6,11 +6,11 @@
 #include "item3d/render/cuda/module.h"
 #include "item3d/render/kernels/shade.h"
 #include "item3d/render/scatter_sum.h"
+#include "item3d/render/specular_chain.h"
 
 #include <torch/csrc/autograd/custom_function.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace item3d {
 namespace {
@@ -56,23 +56,7 @@ ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings&
     p.multiple_scattering = settings.multiple_scattering;
     p.diffuse = pointer(inputs[4]);
     p.diffuse_size = static_cast<int>(inputs[4].size(1));
-    p.levels = static_cast<int>(inputs.size() - first_level);
-    for (int level = 0; level < p.levels; ++level) {
-        const torch::Tensor& map = inputs[first_level + static_cast<std::size_t>(level)];
-        p.specular[level] = pointer(map);
-        p.specular_size[level] = static_cast<int>(map.size(1));
-        p.specular_log_roughness[level] =
-            std::log(settings.roughness[static_cast<std::size_t>(level)]);
-    }
-    for (int first = 0; first + 4 <= p.levels; ++first) {
-        const float* nodes = p.specular_log_roughness + first;
-        for (int i = 0; i < 4; ++i) {
-            float product = 1;
-            for (int j = 0; j < 4; ++j)
-                if (j != i) product *= nodes[i] - nodes[j];
-            p.specular_scale[first][i] = 1 / product;
-        }
-    }
+    set_specular_chain(p, {inputs.begin() + first_level, inputs.end()}, settings.roughness);
     return p;
 }
 
