@@ -84,6 +84,7 @@ class EditTest : public ::testing::Test {
         request.settings.batch = 1;
         request.settings.resolution = 32;
         request.precision = "fp32";
+        request.picture_pixels = 32;
         request.command = "item3d edit";
         return request;
     }

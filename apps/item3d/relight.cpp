@@ -268,9 +268,10 @@ void add_relight_command(CLI::App& app) {
     command->add_option("-o,--output", options->output, "A folder")->required();
     CLI::Option* light =
         command
-            ->add_option("--light", options->light,
-                         "The new light: studio, noon, sunset, overcast, night, or an .hdr or .exr "
-                         "file")
+            ->add_option(
+                "--light", options->light,
+                "The new light: studio, noon, sunset, overcast, night, or a .hdr, .exr or .glb "
+                "file")
             ->capture_default_str();
     command
         ->add_option(

@@ -25,6 +25,7 @@ struct EditRequest {
     torch::Device device = torch::kCPU;
     std::string precision = "auto";  ///< of the networks: auto, fp32, bf16, fp16
     std::string memory = "auto";     ///< auto, low (less memory, more time), high
+    int picture_pixels = 384;        ///< side of the report's views; its turntable has 3/4 of it
     std::string command;             ///< as typed, for edit.json and the resume hint
 };
 

@@ -12,9 +12,7 @@ namespace item3d {
 namespace {
 
 constexpr int view_count = 6;
-constexpr int view_pixels = 384;
 constexpr int turntable_frames = 30;
-constexpr int turntable_pixels = 288;
 const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
 
 std::vector<Image> to_pictures(const torch::Tensor& linear) {
@@ -48,6 +46,7 @@ std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
                          const EditedModel& edited, const std::optional<Clip>& clip) {
     const EnvironmentLight light = prefilter(load_light(request.settings.light), 256, scene.device);
+    const int view_pixels = request.picture_pixels;
     const auto cameras = picture_cameras(scene.model, view_count);
     const torch::Tensor before = draw_pictures(scene.model, light, cameras, view_pixels);
     const EnvironmentLight new_light =
@@ -65,7 +64,7 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     std::vector<Image> frames;
     for (const Camera& camera : picture_cameras(scene.model, turntable_frames)) {
         const torch::Tensor frame =
-            draw_pictures(edited.model, new_light, {camera}, turntable_pixels);
+            draw_pictures(edited.model, new_light, {camera}, view_pixels * 3 / 4);
         frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
     }
     pictures.turntable = {request.settings.to, encode_animation(frames)};

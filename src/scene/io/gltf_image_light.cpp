@@ -97,9 +97,10 @@ Image read_faces(const SourceDocument& document, const GltfObject& light) {
 
 std::size_t add_image_based_light(GltfBuilder& builder, const ImageBasedLight& light) {
     ITEM3D_CHECK(light.specular.size() > 1, "an image-based light has several levels");
+    // A sun keeps all of its light: the dark parts have fewer steps instead.
     float intensity = 1;
-    for (std::size_t level = 1; level < light.specular.size(); ++level)
-        intensity = std::max(intensity, brightest(light.specular[level]) / largest);
+    for (const Image& level : light.specular)
+        intensity = std::max(intensity, brightest(level) / largest);
 
     Json levels = Json::array();
     for (std::size_t level = 0; level < light.specular.size(); ++level) {
