@@ -11,7 +11,7 @@
 namespace item3d {
 namespace {
 
-constexpr int levels = 5;
+constexpr int level_count = 5;
 
 Image draw_faces(int size, const std::function<Vec3(Vec3)>& radiance) {
     Image row(6 * size, size, 3);
@@ -47,8 +47,8 @@ ImageBasedLight make_image_based_light(const Image& light, int size) {
     result.specular.push_back(draw_faces(size, [&](Vec3 direction) {
         return look_up(cube.const_data_ptr<float>(), size, direction);
     }));
-    for (int level = 1; level < levels; ++level) {
-        const float roughness = static_cast<float>(level) / (levels - 1);
+    for (int level = 1; level < level_count; ++level) {
+        const float roughness = static_cast<float>(level) / (level_count - 1);
         const kernels::SpecularLevels between = kernels::specular_levels(chain, roughness);
         result.specular.push_back(draw_faces(size >> level, [&](Vec3 direction) {
             Vec3 radiance(0.0f);
