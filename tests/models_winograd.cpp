@@ -67,8 +67,8 @@ TEST(Winograd, ErrsLittleMoreThanTheDirectConvolution) {
 TEST(DirectConvolution, ErrsNoMoreThanTheLibrarys) {
     for (const torch::Dtype dtype : {torch::kFloat32, torch::kBFloat16}) {
         if (!runs_here(dtype)) continue;
-        // Sums in another order, so float32's errors differ a little.
-        const double most = dtype == torch::kFloat32 ? 3 : 1.1;
+        // Sums in another order: float32's errors differ by a few units in the last place.
+        const double most = dtype == torch::kFloat32 ? 8 : 1.1;
         compare<DirectConvolution>(dtype, {4, 128, 4, 4}, 64, most);
         compare<DirectConvolution>(dtype, {2, 64, 7, 5}, 192, most);
         compare<DirectConvolution>(dtype, {1, 64, 1, 1}, 64, most);
