@@ -90,8 +90,10 @@ Image load_light(const std::string& name_or_path, LightLayout layout) {
     if (extension == ".glb" || extension == ".gltf") return load_image_based_light(name_or_path);
     Image light = read_picture(name_or_path);
     if (light.width < 2 || light.height < 2) {
-        throw InputError(name_or_path, fmt::format("a picture of {}x{} shows no surroundings",
-                                                   light.width, light.height));
+        throw InputError(
+            name_or_path,
+            fmt::format("a picture of {}x{} shows no surroundings", light.width, light.height),
+            "give one of all directions, or a preset");
     }
     make_usable(light, name_or_path);
     return to_equirectangular(light, layout, name_or_path);
