@@ -1,9 +1,8 @@
 #include "item3d/render/kernels/equirectangular.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
-#include "item3d/render/cuda/module.h"
+#include "item3d/render/dispatch.h"
 #include "item3d/render/environment_light.h"
 #include "item3d/render/scatter_sum.h"
 
@@ -36,11 +35,9 @@ struct EquirectangularToCube : torch::autograd::Function<EquirectangularToCube> 
         p.map = map.const_data_ptr<float>();
         torch::Tensor cube = torch::empty({6, size, size, 3}, map.options());
         p.cube = cube.data_ptr<float>();
-        if (cube.is_cuda())
-            cuda::run(cuda::render_table().equirectangular, p, 6 * size * size, cube.device());
-        else
-            parallel_for("equirectangular_to_cube", 6 * size * size,
-                         [=](std::int64_t i) { kernels::equirectangular_forward(p, i); });
+        dispatch<kernels::equirectangular_forward>(cube.device(), "equirectangular_to_cube",
+                                                   &cuda::RenderTable::equirectangular, p,
+                                                   6 * size * size);
         context->saved_data["height"] = map.size(0);
         context->saved_data["width"] = map.size(1);
         return cube;

@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
-#include "item3d/render/cuda/module.h"
+#include "item3d/render/dispatch.h"
 #include "item3d/render/rasterize.h"
 
 #include <torch/csrc/autograd/custom_function.h>
@@ -76,12 +76,9 @@ struct Interpolate : torch::autograd::Function<Interpolate> {
         kernels::InterpolateParameters p =
             interpolate_parameters(input, attributes, positions_clip);
         p.values = values.data_ptr<float>();
-        if (values.is_cuda())
-            cuda::run(cuda::render_table().interpolate, p, values.size(0), values.device());
-        else
-            parallel_for(
-                "interpolate", values.size(0),
-                [=](std::int64_t i) { kernels::interpolate_forward(p, i); }, 8192);
+        dispatch<kernels::interpolate_forward>(values.device(), "interpolate",
+                                               &cuda::RenderTable::interpolate, p, values.size(0),
+                                               8192);
         context->save_for_backward({attributes, positions_clip, input.triangles, input.barycentrics,
                                     input.triangle, input.pixel});
         return values;
@@ -205,12 +202,9 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
         surface.view.data_ptr<float>(),
         surface.material.data_ptr<std::int64_t>(),
         surface.primitive.data_ptr<std::int64_t>()};
-    if (device.is_cuda())
-        cuda::run(cuda::render_table().interpolate_surface, parameters, count, device);
-    else
-        parallel_for(
-            "interpolate_surface", count,
-            [=](std::int64_t i) { kernels::interpolate_surface_point(parameters, i); }, 8192);
+    dispatch<kernels::interpolate_surface_point>(device, "interpolate_surface",
+                                                 &cuda::RenderTable::interpolate_surface,
+                                                 parameters, count, 8192);
 
     const bool moves = positions.requires_grad() || raster.positions_clip.requires_grad();
     if (torch::GradMode::is_enabled() && (moves || normals.requires_grad())) {

@@ -1,28 +1,25 @@
-// Irradiance over a chain of cube maps, on the CPU's threads: what a matte surface sees.
+// Irradiance over a chain of cube maps: what a matte surface sees.
 #pragma once
 
-#include "item3d/render/kernels/cube_planes.h"
-
-#include <cstdint>
-#include <vector>
+#include "item3d/render/cube_planes.h"
+#include "item3d/render/kernels/irradiance.h"
 
 namespace item3d {
 
-/// Of an irradiance map. Bilinear lookups in a coarser one show where a sun sets.
-inline constexpr int irradiance_size = 128;
+using kernels::irradiance_size;
 
 /// Texels that hold so much of the light, a sun's, that max(0, n.l) of each shows its kink where it
-/// sets: indices into [6, S, S], ascending. flux: radiance times solid angle.
-std::vector<std::int64_t> bright_texels(const kernels::CubePlanes& flux);
+/// sets: [64] int64 indices into [6, S, S], -1 where there are no more. flux: radiance times solid
+/// angle. Does not wait for a device.
+torch::Tensor bright_texels(const CubePlanes& flux);
 
 /// Sums of max(0, n.l) at irradiance_size: of the bright texels one by one, of all others at half
 /// that size, upsampled. flux: at most irradiance_size, its halo full. The result has no halo.
-kernels::CubePlanes irradiance_sums(const kernels::CubePlanes& flux,
-                                    const std::vector<std::int64_t>& bright);
+CubePlanes irradiance_sums(const CubePlanes& flux, const torch::Tensor& bright);
 
 /// The transpose for the same bright texels: a gradient of the sums, its halo full -> of the flux,
 /// with `size` texels and without a halo.
-kernels::CubePlanes irradiance_sums_transposed(const kernels::CubePlanes& gradient, int size,
-                                               const std::vector<std::int64_t>& bright);
+CubePlanes irradiance_sums_transposed(const CubePlanes& gradient, int size,
+                                      const torch::Tensor& bright);
 
 }  // namespace item3d

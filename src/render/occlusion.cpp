@@ -1,10 +1,10 @@
 #include "item3d/render/occlusion.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/parallel.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/render/checks.h"
+#include "item3d/render/dispatch.h"
 #include "item3d/render/kernels/occlusion.h"
 #include "item3d/render/occlusion_grid.h"
 #include "item3d/render/occlusion_light.h"
@@ -158,9 +158,8 @@ Occlusion::Occlusion(const Geometry& geometry, const Model* model,
     const RayScene scene(geometry, model);
     const Tracer tracer(grid, scene, options);
 
-    auto state = std::make_shared<State>();
-    state->values = torch::full({grid.points(), 2}, 255, torch::kUInt8);
-    std::uint8_t* values = state->values.data_ptr<std::uint8_t>();
+    const torch::Tensor openness = torch::full({grid.points(), 2}, 255, torch::kUInt8);
+    std::uint8_t* values = openness.data_ptr<std::uint8_t>();
     const auto groups = static_cast<std::int64_t>(grid.begin.size()) - 1;
     constexpr std::int64_t groups_a_step = 4096;
     Progress progress("occlusion", groups);
@@ -182,12 +181,11 @@ Occlusion::Occlusion(const Geometry& geometry, const Model* model,
     progress.finish();
     join_grids(grid, values);
 
-    state->positions = grid.positions;
-    state->normals = grid.normals;
-    state->triangles = grid.triangles;
-    state->first = to_tensor(grid.first, torch::kInt64);
-    state->resolution = to_tensor(grid.resolution, torch::kInt32);
-    state_ = std::move(state);
+    const torch::Device device = geometry.positions.device();
+    state_ = std::make_shared<State>(
+        State{grid.positions.to(device), grid.normals.to(device), grid.triangles.to(device),
+              to_tensor(grid.first, torch::kInt64).to(device),
+              to_tensor(grid.resolution, torch::kInt32).to(device), openness.to(device)});
 }
 
 std::int64_t Occlusion::points() const {
@@ -196,32 +194,35 @@ std::int64_t Occlusion::points() const {
 
 torch::Tensor Occlusion::at(const Raster& raster, const Surface& surface) const {
     constexpr const char* op = "Occlusion::at";
-    const auto on_cpu = [](const torch::Tensor& tensor) { return tensor.detach().cpu(); };
+    const torch::Device device = operation_device(op, surface.pixel);
+    const State& state = *state_;
+    ITEM3D_CHECK(state.values.device() == device,
+                 "Occlusion::at: a surface on the device of the geometry it was made for");
     const std::int64_t count = surface.count();
     const torch::Tensor triangle =
-        checked(op, "raster.triangle", on_cpu(raster.triangle), torch::kInt32, {-1, -1, -1});
+        checked(op, "raster.triangle", raster.triangle, torch::kInt32, {-1, -1, -1}, device);
     const torch::Tensor barycentrics =
-        checked(op, "raster.barycentrics", on_cpu(raster.barycentrics), torch::kFloat32,
-                {raster.views(), raster.height(), raster.width(), 2});
+        checked(op, "raster.barycentrics", raster.barycentrics.detach(), torch::kFloat32,
+                {raster.views(), raster.height(), raster.width(), 2}, device);
     const torch::Tensor pixel =
-        checked(op, "surface.pixel", on_cpu(surface.pixel), torch::kInt64, {count});
+        checked(op, "surface.pixel", surface.pixel, torch::kInt64, {count}, device);
     const torch::Tensor normal =
-        checked(op, "surface.normal", on_cpu(surface.normal), torch::kFloat32, {count, 3});
-    torch::Tensor openness = torch::empty({count}, torch::kFloat32);
-    const kernels::OcclusionParameters parameters{state_->normals.const_data_ptr<float>(),
-                                                  state_->positions.const_data_ptr<float>(),
-                                                  state_->triangles.const_data_ptr<std::int32_t>(),
-                                                  state_->first.const_data_ptr<std::int64_t>(),
-                                                  state_->resolution.const_data_ptr<std::int32_t>(),
-                                                  state_->values.const_data_ptr<std::uint8_t>(),
-                                                  barycentrics.const_data_ptr<float>(),
-                                                  triangle.const_data_ptr<std::int32_t>(),
-                                                  pixel.const_data_ptr<std::int64_t>(),
-                                                  normal.const_data_ptr<float>(),
-                                                  openness.data_ptr<float>()};
-    parallel_for(
-        "occlusion", count, [=](std::int64_t i) { kernels::occlusion_at(parameters, i); }, 8192);
-    return openness.to(surface.pixel.device());
+        checked(op, "surface.normal", surface.normal.detach(), torch::kFloat32, {count, 3}, device);
+    torch::Tensor openness = torch::empty({count}, normal.options());
+    const kernels::OcclusionParameters p{state.normals.const_data_ptr<float>(),
+                                         state.positions.const_data_ptr<float>(),
+                                         state.triangles.const_data_ptr<std::int32_t>(),
+                                         state.first.const_data_ptr<std::int64_t>(),
+                                         state.resolution.const_data_ptr<std::int32_t>(),
+                                         state.values.const_data_ptr<std::uint8_t>(),
+                                         barycentrics.const_data_ptr<float>(),
+                                         triangle.const_data_ptr<std::int32_t>(),
+                                         pixel.const_data_ptr<std::int64_t>(),
+                                         normal.const_data_ptr<float>(),
+                                         openness.data_ptr<float>()};
+    dispatch<kernels::occlusion_at>(device, "occlusion", &cuda::RenderTable::occlusion, p, count,
+                                    8192);
+    return openness;
 }
 
 MaterialSample Occlusion::shadowed(const MaterialSample& material, const Raster& raster,

@@ -23,8 +23,8 @@ struct OcclusionOptions {
     Image light;
 };
 
-/// Precomputed for geometry that does not move, and materials whose alpha does not change. A
-/// copy shares the values.
+/// Precomputed for geometry that does not move, and materials whose alpha does not change; traced
+/// on the CPU, looked up on the geometry's device. A copy shares the values.
 ///
 /// Each triangle has a grid of points as fine as it is large, shared along edges where positions
 /// and normals agree, so that smooth surfaces get smooth occlusion. Every point has a value for

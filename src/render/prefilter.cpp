@@ -1,8 +1,8 @@
 // The prefiltered chain of split-sum lighting. Every step is linear in the environment.
 
 #include "item3d/core/error.h"
-#include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
+#include "item3d/render/dispatch.h"
 #include "item3d/render/environment_light.h"
 #include "item3d/render/irradiance_sums.h"
 #include "item3d/render/prefilter_sums.h"
@@ -13,11 +13,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace item3d {
 namespace {
 
-using kernels::CubePlanes;
 using kernels::row_tile;
 using kernels::ZonalKernel;
 using torch::autograd::AutogradContext;
@@ -38,7 +38,7 @@ constexpr float kept_energy = 0.999f;
 constexpr float near_texels = 1.5f, near_texels_coarser = 3;
 
 /// Solid angles of a face's texels, [size, size], exact.
-std::vector<float> texel_solid_angles(int size) {
+torch::Tensor texel_solid_angles(int size, torch::Device device) {
     // Of the rectangle from the face's centre to a texel's corner; an eighth of the face has all.
     const int half = size / 2;
     std::vector<double> corner(static_cast<std::size_t>(half + 1) * (half + 1));
@@ -51,16 +51,15 @@ std::vector<float> texel_solid_angles(int size) {
             at(y, x) = at(x, y) = std::atan2(s * t, std::sqrt(s * s + t * t + 1));
         }
     }
-    std::vector<float> angles;
-    angles.reserve(static_cast<std::size_t>(size) * size);
+    torch::Tensor angles = torch::empty({size, size});
+    float* out = angles.data_ptr<float>();
     for (int row = 0; row < size; ++row)
         for (int column = 0; column < size; ++column) {
             const int y = row < half ? half - 1 - row : row - half;
             const int x = column < half ? half - 1 - column : column - half;
-            angles.push_back(
-                static_cast<float>(at(y + 1, x + 1) - at(y, x + 1) - at(y + 1, x) + at(y, x)));
+            *out++ = static_cast<float>(at(y + 1, x + 1) - at(y, x + 1) - at(y + 1, x) + at(y, x));
         }
-    return angles;
+    return angles.to(device);
 }
 
 /// energy: the share of the lobe's half vectors that is kept, below 1.
@@ -150,134 +149,122 @@ Plan plan_chain(int size) {
 /// Directions of a plan's levels, made when they are first asked for.
 class LevelDirections {
   public:
-    explicit LevelDirections(const Plan& plan) : sizes_(plan.sizes), levels_(sizes_.size()) {}
+    LevelDirections(const Plan& plan, torch::Device device)
+        : sizes_(plan.sizes), levels_(sizes_.size()), device_(device) {}
     const CubeDirections& at(std::size_t level) {
-        if (!levels_[level]) levels_[level] = std::make_unique<CubeDirections>(sizes_[level]);
+        if (!levels_[level]) levels_[level].emplace(sizes_[level], device_);
         return *levels_[level];
     }
 
   private:
     std::vector<int> sizes_;
-    std::vector<std::unique_ptr<CubeDirections>> levels_;
+    std::vector<std::optional<CubeDirections>> levels_;
+    torch::Device device_;
 };
 
 /// Sums of radiance over those of solid angle, texel by texel.
 struct MeanRadiance {
     torch::Tensor mean;            ///< [6, S, S, 3]
     torch::Tensor inverse_weight;  ///< [S, S], the same on each face
-    explicit MeanRadiance(int size)
-        : mean(torch::empty({6, size, size, 3})), inverse_weight(torch::empty({size, size})) {}
-    void store(int row, int column, int count, const float* sums, std::int64_t plane_step) const {
-        const std::int64_t size = mean.size(1);
-        float* inverse = inverse_weight.data_ptr<float>() + row * size + column;
-        for (int x = 0; x < count; ++x)
-            inverse[x] = 1 / std::max(sums[18 * plane_step + x], 1e-30f);
-        for (int face = 0; face < 6; ++face) {
-            float* out = mean.data_ptr<float>() + 3 * ((face * size + row) * size + column);
-            const float* in = sums + 3 * face * plane_step;
-            for (int x = 0; x < count; ++x)
-                for (int c = 0; c < 3; ++c)
-                    out[3 * x + c] = in[c * plane_step + x] * inverse[x];
-        }
+    MeanRadiance(int size, const torch::TensorOptions& options)
+        : mean(torch::empty({6, size, size, 3}, options)),
+          inverse_weight(torch::empty({size, size}, options)) {}
+    explicit MeanRadiance(const CubePlanes& sums) : MeanRadiance(sums.size(), sums.options()) {
+        kernels::MeansParameters p = parameters();
+        p.sums = sums.view();
+        p.length = run_length(sums.device(), sums.size());
+        dispatch<kernels::planes_to_means>(
+            sums.device(), "planes_to_means", &cuda::RenderTable::planes_to_means, p,
+            static_cast<std::int64_t>(sums.size()) * (sums.size() / p.length), 16);
     }
-    void store(const CubePlanes& sums) const {
-        for (int row = 0; row < sums.size(); ++row)
-            store(row, 0, sums.size(), sums.row(0, row), sums.plane_step());
+    kernels::MeansParameters parameters() const {
+        kernels::MeansParameters p{};
+        p.map = mean.data_ptr<float>();
+        p.inverse_weight = inverse_weight.data_ptr<float>();
+        p.sums.size = static_cast<int>(mean.size(1));
+        return p;
     }
 };
 
-/// The transpose of MeanRadiance: a gradient of the means -> of the sums, with a full halo.
-CubePlanes sums_gradient(const torch::Tensor& mean_gradient, const torch::Tensor& inverse_weight) {
-    const auto size = static_cast<int>(inverse_weight.size(0));
-    CubePlanes planes(size, false);
-    const float* in = mean_gradient.const_data_ptr<float>();
-    const float* inverse = inverse_weight.const_data_ptr<float>();
-    const at::IntArrayRef step = mean_gradient.strides();
-    parallel_for(
-        "sums_gradient", 6 * static_cast<std::int64_t>(size),
-        [&](std::int64_t i) {
-            const auto face = static_cast<int>(i / size), row = static_cast<int>(i % size);
-            const float* from = in + face * step[0] + row * step[1];
-            for (int c = 0; c < 3; ++c) {
-                float* out = planes.row(3 * face + c, row);
-                for (int x = 0; x < size; ++x)
-                    out[x] = from[x * step[2] + c * step[3]] * inverse[row * size + x];
-            }
-        },
-        16);
-    kernels::fill_halo(planes, CubePlanes::halo);
-    return planes;
+/// The kernel's sums plus `coarse`, of half the size, its halo filled.
+CubePlanes finer_sums(const CubePlanes& source, const CubeDirections& directions,
+                      const ZonalKernel& kernel, const CubePlanes& coarse) {
+    if (source.device().is_cuda()) {
+        CubePlanes sums = upsampled(coarse);
+        add_near_sums(source, directions, kernel, sums);
+        return sums;
+    }
+    CubePlanes sums(source.size(), source.shared_plane(), source.device());
+    const kernels::Planes out = sums.writable();
+    near_sums(source, directions, kernel, &coarse, [&](int row, int column, const float* values) {
+        for (int plane = 0; plane < out.count; ++plane)
+            std::copy_n(values + plane * row_tile, row_tile, out.row(plane, row) + column);
+    });
+    return sums;
 }
 
-/// cube [6, S, S, 3] times its texels' solid angles, and these in the shared plane.
-CubePlanes flux_planes(const torch::Tensor& cube) {
-    const auto size = static_cast<int>(cube.size(1));
-    const std::vector<float> angles = texel_solid_angles(size);
-    CubePlanes planes(size, true);
-    const float* in = cube.const_data_ptr<float>();
-    parallel_for(
-        "flux_planes", 7 * static_cast<std::int64_t>(size),
-        [&](std::int64_t i) {
-            const auto face = static_cast<int>(i / size), row = static_cast<int>(i % size);
-            const float* angle = angles.data() + row * size;
-            if (face == 6) {
-                std::copy(angle, angle + size, planes.row(18, row));
-                return;
-            }
-            const float* from = in + 3 * i * size;
-            for (int c = 0; c < 3; ++c) {
-                float* out = planes.row(3 * face + c, row);
-                for (int x = 0; x < size; ++x)
-                    out[x] = from[3 * x + c] * angle[x];
-            }
-        },
-        16);
-    kernels::fill_halo(planes, CubePlanes::halo);
-    return planes;
+/// The means of those sums. On the CPU they never are in memory all together.
+MeanRadiance finest_means(const CubePlanes& source, const CubeDirections& directions,
+                          const ZonalKernel& kernel, const CubePlanes& coarse) {
+    if (source.device().is_cuda())
+        return MeanRadiance(finer_sums(source, directions, kernel, coarse));
+    const MeanRadiance map(source.size(), source.options());
+    const kernels::MeansParameters p = map.parameters();
+    near_sums(source, directions, kernel, &coarse, [&](int row, int column, const float* values) {
+        kernels::store_means(p, {0, row, column, column + row_tile}, values, row_tile);
+    });
+    return map;
+}
+
+/// Adds the kernel's sums to planes of the same size.
+void add_sums(const CubePlanes& source, const CubeDirections& directions, const ZonalKernel& kernel,
+              CubePlanes& to) {
+    if (source.device().is_cuda()) {
+        add_near_sums(source, directions, kernel, to);
+        return;
+    }
+    const kernels::Planes out = to.writable();
+    near_sums(source, directions, kernel, nullptr, [&](int row, int column, const float* values) {
+        for (int plane = 0; plane < out.count; ++plane) {
+            float* __restrict sums = out.row(plane, row) + column;
+            for (int x = 0; x < row_tile; ++x)
+                sums[x] += values[plane * row_tile + x];
+        }
+    });
 }
 
 /// cube [6, S, S, 3] -> the irradiance map, then a map a lobe.
 struct Prefilter : torch::autograd::Function<Prefilter> {
     static tensor_list forward(AutogradContext* context, const torch::Tensor& cube) {
         const Plan plan = plan_chain(static_cast<int>(cube.size(1)));
+        // Radiance times solid angle, and that in the shared plane.
         std::vector<CubePlanes> flux;
-        flux.push_back(flux_planes(cube));
+        flux.push_back(
+            to_planes(cube, texel_solid_angles(plan.sizes.front(), cube.device()), true));
         while (flux.size() < plan.sizes.size())
-            flux.push_back(kernels::restricted(flux.back()));
-        LevelDirections directions(plan);
+            flux.push_back(restricted(flux.back()));
+        LevelDirections directions(plan, cube.device());
         tensor_list maps, weights;
         const auto keep = [&](const MeanRadiance& map) {
             maps.push_back(map.mean);
             weights.push_back(map.inverse_weight);
         };
-        const std::vector<std::int64_t> bright = bright_texels(flux[plan.cosine]);
-        const MeanRadiance irradiance(irradiance_size);
-        irradiance.store(irradiance_sums(flux[plan.cosine], bright));
-        keep(irradiance);
+        const torch::Tensor bright = bright_texels(flux[plan.cosine]);
+        keep(MeanRadiance(irradiance_sums(flux[plan.cosine], bright)));
         for (const Lobe& lobe : plan.lobes) {
             CubePlanes sums = far_sums(flux[lobe.last()], lobe.far);
-            const MeanRadiance map(plan.sizes[lobe.level]);
-            if (lobe.near.empty()) map.store(sums);
-            for (std::size_t level = lobe.last(); level-- > lobe.level;) {
-                const ZonalKernel& kernel = lobe.near[level - lobe.level];
-                kernels::fill_halo(sums, 1);
-                if (level == lobe.level) {
-                    near_sums(flux[level], directions.at(level), kernel, &sums,
-                              [&](int row, int column, const float* values) {
-                                  map.store(row, column, row_tile, values, row_tile);
-                              });
-                } else {
-                    CubePlanes finer(plan.sizes[level], true);
-                    near_sums(flux[level], directions.at(level), kernel, &sums,
-                              [&](int row, int column, const float* values) {
-                                  for (int plane = 0; plane < 19; ++plane)
-                                      std::copy_n(values + plane * row_tile, row_tile,
-                                                  finer.row(plane, row) + column);
-                              });
-                    sums = std::move(finer);
-                }
+            for (std::size_t level = lobe.last(); level-- > lobe.level + 1;) {
+                fill_halo(sums, 1);
+                sums = finer_sums(flux[level], directions.at(level), lobe.near[level - lobe.level],
+                                  sums);
             }
-            keep(map);
+            if (lobe.near.empty()) {
+                keep(MeanRadiance(sums));
+                continue;
+            }
+            fill_halo(sums, 1);
+            keep(
+                finest_means(flux[lobe.level], directions.at(lobe.level), lobe.near.front(), sums));
         }
         context->set_materialize_grads(false);
         context->saved_data["weights"] = weights;
@@ -291,60 +278,32 @@ struct Prefilter : torch::autograd::Function<Prefilter> {
         const auto size = static_cast<int>(context->saved_data["size"].toInt());
         const Plan plan = plan_chain(size);
         const std::vector<torch::Tensor> weights = context->saved_data["weights"].toTensorVector();
+        const torch::Device device = weights.front().device();
         std::vector<CubePlanes> flux;
-        LevelDirections directions(plan);
+        LevelDirections directions(plan, device);
         for (const int level_size : plan.sizes) {
-            flux.emplace_back(level_size, false);
+            flux.emplace_back(level_size, false, device);
             flux.back().clear();
         }
         if (gradients[0].defined())
-            kernels::add(flux[plan.cosine],
-                         irradiance_sums_transposed(sums_gradient(gradients[0], weights[0]),
-                                                    plan.sizes[plan.cosine],
-                                                    context->saved_data["bright"].toIntVector()));
+            flux[plan.cosine].add(irradiance_sums_transposed(
+                to_planes(gradients[0], weights[0], false), plan.sizes[plan.cosine],
+                context->saved_data["bright"].toTensor()));
         for (std::size_t i = 0; i < plan.lobes.size(); ++i) {
             if (!gradients[i + 1].defined()) continue;
             const Lobe& lobe = plan.lobes[i];
-            CubePlanes sums = sums_gradient(gradients[i + 1], weights[i + 1]);
+            CubePlanes sums = to_planes(gradients[i + 1], weights[i + 1], false);
             for (std::size_t level = lobe.level; level < lobe.last(); ++level) {
-                near_sums(sums, directions.at(level), lobe.near[level - lobe.level], nullptr,
-                          [&](int row, int column, const float* values) {
-                              for (int plane = 0; plane < 18; ++plane) {
-                                  float* __restrict out = flux[level].row(plane, row) + column;
-                                  for (int x = 0; x < row_tile; ++x)
-                                      out[x] += values[plane * row_tile + x];
-                              }
-                          });
-                sums = kernels::restricted(sums);
+                add_sums(sums, directions.at(level), lobe.near[level - lobe.level], flux[level]);
+                sums = restricted(sums);
             }
-            kernels::add(flux[lobe.last()], far_sums(sums, lobe.far));
+            flux[lobe.last()].add(far_sums(sums, lobe.far));
         }
         for (std::size_t level = flux.size() - 1; level-- > 0;) {
-            kernels::fill_halo(flux[level + 1], 1);
-            kernels::add_upsampled(flux[level], flux[level + 1]);
+            fill_halo(flux[level + 1], 1);
+            add_upsampled(flux[level], flux[level + 1]);
         }
-        return {cube_gradient(flux[0])};
-    }
-
-    static torch::Tensor cube_gradient(const CubePlanes& flux) {
-        const int size = flux.size();
-        const std::vector<float> angles = texel_solid_angles(size);
-        torch::Tensor gradient = torch::empty({6, size, size, 3});
-        float* out = gradient.data_ptr<float>();
-        parallel_for(
-            "cube_gradient", 6 * static_cast<std::int64_t>(size),
-            [&](std::int64_t i) {
-                const auto face = static_cast<int>(i / size), row = static_cast<int>(i % size);
-                const float* angle = angles.data() + row * size;
-                float* to = out + 3 * i * size;
-                for (int c = 0; c < 3; ++c) {
-                    const float* in = flux.row(3 * face + c, row);
-                    for (int x = 0; x < size; ++x)
-                        to[3 * x + c] = in[x] * angle[x];
-                }
-            },
-            16);
-        return gradient;
+        return {from_planes(flux[0], texel_solid_angles(size, device))};
     }
 };
 
@@ -358,7 +317,8 @@ EnvironmentLight EnvironmentLight::to(torch::Device device) const {
 }
 
 EnvironmentLight prefilter(const torch::Tensor& cube_) {
-    const torch::Tensor cube = checked("prefilter", "cube", cube_, torch::kFloat32, {6, -1, -1, 3});
+    const torch::Tensor cube = checked("prefilter", "cube", cube_, torch::kFloat32, {6, -1, -1, 3},
+                                       operation_device("prefilter", cube_));
     const int size = static_cast<int>(cube.size(1));
     ITEM3D_CHECK(cube.size(2) == size && size >= least_size && size <= largest_size &&
                      (size & (size - 1)) == 0,
@@ -377,7 +337,7 @@ EnvironmentLight prefilter(const Image& equirectangular, int size, torch::Device
     const torch::NoGradGuard no_gradient;
     torch::Tensor pixels = to_tensor(equirectangular);
     ITEM3D_CHECK(pixels.dim() == 3 && pixels.size(2) >= 3, "prefilter: an image of RGB radiance");
-    return prefilter(equirectangular_to_cube(pixels.narrow(2, 0, 3), size)).to(device);
+    return prefilter(equirectangular_to_cube(pixels.narrow(2, 0, 3).to(device), size));
 }
 
 }  // namespace item3d

@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
-#include "item3d/render/cuda/module.h"
+#include "item3d/render/dispatch.h"
 #include "item3d/render/kernels/project.h"
 #include "item3d/render/kernels/raster.h"
 
@@ -27,13 +27,9 @@ struct ProjectVertices : torch::autograd::Function<ProjectVertices> {
         const kernels::ProjectParameters parameters{positions.const_data_ptr<float>(),
                                                     world_to_clip.const_data_ptr<float>(),
                                                     positions_clip.data_ptr<float>(), vertices};
-        if (positions.is_cuda())
-            cuda::run(cuda::render_table().project_vertices, parameters, views * vertices,
-                      positions.device());
-        else
-            parallel_for(
-                "project_vertices", views * vertices,
-                [=](std::int64_t i) { kernels::project_vertex(parameters, i); }, 32768);
+        dispatch<kernels::project_vertex>(positions.device(), "project_vertices",
+                                          &cuda::RenderTable::project_vertices, parameters,
+                                          views * vertices, 32768);
         context->save_for_backward({world_to_clip});
         return positions_clip;
     }

@@ -1,7 +1,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
-#include "item3d/render/cuda/module.h"
+#include "item3d/render/dispatch.h"
 #include "item3d/render/kernels/texture.h"
 #include "item3d/render/textured.h"
 
@@ -145,12 +145,8 @@ struct HalveTexture : torch::autograd::Function<HalveTexture> {
                                          static_cast<int>(fine.size(1)),
                                          static_cast<int>(fine.size(2)), coarse.data_ptr<float>()};
         const std::int64_t count = coarse.size(0) * coarse.size(1);
-        if (fine.is_cuda())
-            cuda::run(cuda::render_table().halve_texture, p, count, fine.device());
-        else
-            parallel_for(
-                "halve_texture", count, [=](std::int64_t i) { kernels::halve_texture(p, i); },
-                16384);
+        dispatch<kernels::halve_texture>(fine.device(), "halve_texture",
+                                         &cuda::RenderTable::halve_texture, p, count, 16384);
         return coarse;
     }
     static tensor_list backward(AutogradContext*, tensor_list gradients) {
@@ -161,12 +157,9 @@ struct HalveTexture : torch::autograd::Function<HalveTexture> {
                                          static_cast<int>(fine.size(1)),
                                          static_cast<int>(fine.size(2)), fine.data_ptr<float>()};
         const std::int64_t count = coarse.size(0) * coarse.size(1);
-        if (fine.is_cuda())
-            cuda::run(cuda::render_table().halve_texture_backward, p, count, fine.device());
-        else
-            parallel_for(
-                "halve_texture backward", count,
-                [=](std::int64_t i) { kernels::halve_texture_backward(p, i); }, 16384);
+        dispatch<kernels::halve_texture_backward>(fine.device(), "halve_texture backward",
+                                                  &cuda::RenderTable::halve_texture_backward, p,
+                                                  count, 16384);
         return {fine};
     }
 };

@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
-#include "item3d/render/cuda/module.h"
+#include "item3d/render/dispatch.h"
 #include "item3d/render/kernels/shade.h"
 #include "item3d/render/scatter_sum.h"
 #include "item3d/render/specular_chain.h"
@@ -82,12 +82,8 @@ struct Shade : torch::autograd::Function<Shade> {
         const torch::Tensor bsdf = bsdf_table_on(radiance.device());
         ShadeParameters p = shade_parameters(inputs, settings, bsdf);
         p.radiance = radiance.data_ptr<float>();
-        if (radiance.is_cuda())
-            cuda::run(cuda::render_table().shade, p, radiance.size(0), radiance.device());
-        else
-            parallel_for(
-                "shade", radiance.size(0), [&p](std::int64_t i) { kernels::shade_forward(p, i); },
-                2048);
+        dispatch<kernels::shade_forward>(radiance.device(), "shade", &cuda::RenderTable::shade, p,
+                                         radiance.size(0), 2048);
 
         tensor_list saved = inputs;
         saved.push_back(settings.tangent);

@@ -1,7 +1,6 @@
 #include "item3d/core/error.h"
-#include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
-#include "item3d/render/cuda/module.h"
+#include "item3d/render/dispatch.h"
 #include "item3d/render/kernels/footprint.h"
 #include "item3d/render/rasterize.h"
 
@@ -32,12 +31,8 @@ torch::Tensor uv_footprints(const Geometry& geometry, const Raster& raster,
                                                   raster.width(),
                                                   raster.height(),
                                                   footprint.data_ptr<float>()};
-    if (device.is_cuda())
-        cuda::run(cuda::render_table().uv_footprints, parameters, surface.count(), device);
-    else
-        parallel_for(
-            "uv_footprints", surface.count(),
-            [=](std::int64_t i) { kernels::uv_footprint(parameters, i); }, 4096);
+    dispatch<kernels::uv_footprint>(device, "uv_footprints", &cuda::RenderTable::uv_footprints,
+                                    parameters, surface.count(), 4096);
     return footprint;
 }
 

@@ -65,6 +65,12 @@ int scatter_values(const kernels::ScatterParameters& p, std::int64_t count, Stre
         "scatter", count, [=] __device__(std::int64_t i) { kernels::scatter_value(p, i); }, stream);
 }
 
+int occlusion(const kernels::OcclusionParameters& p, std::int64_t count, Stream stream) {
+    return launch(
+        "occlusion", count, [=] __device__(std::int64_t i) { kernels::occlusion_at(p, i); },
+        stream);
+}
+
 int finish_sums(const FinishSumsParameters& p, std::int64_t count, Stream stream) {
     return launch(
         "finish_sums", count, [=] __device__(std::int64_t i) { finish_sum(p, i); }, stream);
@@ -99,7 +105,26 @@ constexpr RenderTable table{{table_version, sizeof(RenderTable)},
                             halve_texture_backward,
                             scatter_background,
                             scatter_values,
-                            finish_sums};
+                            finish_sums,
+                            occlusion,
+                            fill_halo_side,
+                            fill_halo_corner,
+                            upsample_cube,
+                            restrict_cube,
+                            map_to_planes,
+                            planes_to_map,
+                            planes_to_means,
+                            cube_directions,
+                            add_near_sums,
+                            turn_planes,
+                            far_sums,
+                            far_absolute_cosine,
+                            fold,
+                            row_moments,
+                            join_cosine,
+                            add_bright,
+                            sum_bright,
+                            set_bright};
 
 }  // namespace
 }  // namespace item3d::cuda

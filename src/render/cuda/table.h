@@ -8,11 +8,14 @@
 #include "item3d/render/kernels/equirectangular.h"
 #include "item3d/render/kernels/footprint.h"
 #include "item3d/render/kernels/interpolate.h"
+#include "item3d/render/kernels/irradiance.h"
+#include "item3d/render/kernels/occlusion.h"
 #include "item3d/render/kernels/project.h"
 #include "item3d/render/kernels/raster.h"
 #include "item3d/render/kernels/scatter.h"
 #include "item3d/render/kernels/shade.h"
 #include "item3d/render/kernels/texture.h"
+#include "item3d/render/kernels/zonal.h"
 
 #include <cstdint>
 
@@ -30,7 +33,7 @@ struct TableHeader {
 };
 
 /// To be raised by whoever changes a table or the parameters of one of its kernels.
-inline constexpr std::uint32_t table_version = 2;
+inline constexpr std::uint32_t table_version = 3;
 
 /// A texture lookup and its gradients, with what each of them reads and writes.
 struct TextureLaunchParameters {
@@ -66,6 +69,25 @@ struct RenderTable {
     Kernel<kernels::ScatterParameters> scatter_background;    ///< count: pixels
     Kernel<kernels::ScatterParameters> scatter_values;        ///< count: values
     Kernel<FinishSumsParameters> finish_sums;
+    Kernel<kernels::OcclusionParameters> occlusion;
+    Kernel<kernels::HaloParameters> fill_halo_side;
+    Kernel<kernels::HaloParameters> fill_halo_corner;
+    Kernel<kernels::ResizeParameters> upsample_cube;
+    Kernel<kernels::ResizeParameters> restrict_cube;
+    Kernel<kernels::MapToPlanesParameters> map_to_planes;
+    Kernel<kernels::PlanesToMapParameters> planes_to_map;
+    Kernel<kernels::MeansParameters> planes_to_means;
+    Kernel<kernels::DirectionParameters> cube_directions;
+    Kernel<kernels::NearParameters> add_near_sums;
+    Kernel<kernels::TurnParameters> turn_planes;
+    Kernel<kernels::FarParameters> far_sums;
+    Kernel<kernels::FarParameters> far_absolute_cosine;
+    Kernel<kernels::FoldParameters> fold;
+    Kernel<kernels::MomentParameters> row_moments;
+    Kernel<kernels::CosineParameters> join_cosine;
+    Kernel<kernels::BrightParameters> add_bright;
+    Kernel<kernels::BrightParameters> sum_bright;
+    Kernel<kernels::BrightParameters> set_bright;
 };
 
 /// Exported as item3d_cuda_render.

@@ -38,15 +38,29 @@ struct PairCoordinates {
     float u, v;
 };
 
-ITEM3D_HOST_DEVICE inline PairCoordinates pair_coordinates(const AntialiasParameters& p,
-                                                           const float* clip, std::int64_t pixel,
-                                                           bool vertical, int direction) {
-    const std::int64_t in_view = pixel % (static_cast<std::int64_t>(p.width) * p.height);
-    const float inverse = 1.0f / clip[3];
-    const float x = (clip[0] * inverse + 1) * 0.5f * p.width - (in_view % p.width + 0.5f);
-    const float y = (1 - clip[1] * inverse) * 0.5f * p.height - (in_view / p.width + 0.5f);
-    return vertical ? PairCoordinates{direction * y, x} : PairCoordinates{direction * x, y};
-}
+/// Where a pair of pixels is.
+struct PairFrame {
+    float centre_x, centre_y;  ///< of the foreground, in pixels
+    float half_width, half_height;
+    bool vertical;
+    int direction;
+
+    ITEM3D_HOST_DEVICE PairFrame(const AntialiasParameters& p, const Crossing& crossing)
+        : half_width(0.5f * p.width),
+          half_height(0.5f * p.height),
+          vertical(crossing.vertical != 0),
+          direction(crossing.direction) {
+        const std::int64_t row = crossing.foreground / p.width;
+        centre_x = crossing.foreground - row * p.width + 0.5f;
+        centre_y = row % p.height + 0.5f;
+    }
+    ITEM3D_HOST_DEVICE PairCoordinates at(const float* clip) const {
+        const float inverse = 1.0f / clip[3];
+        const float x = (clip[0] * inverse + 1) * half_width - centre_x;
+        const float y = (1 - clip[1] * inverse) * half_height - centre_y;
+        return vertical ? PairCoordinates{direction * y, x} : PairCoordinates{direction * x, y};
+    }
+};
 
 /// Orientation of a triangle on the screen; the sign is right behind the camera as well.
 ITEM3D_HOST_DEVICE inline double orientation(const float* a, const float* b, const float* c) {
@@ -71,17 +85,26 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
     constexpr int most_steps = 256;
     const std::int64_t view = pixel / (static_cast<std::int64_t>(p.width) * p.height);
     const float* clip = p.positions_clip + 4 * view * p.vertices;
+    const PairFrame frame(p, crossing);
     std::int64_t t = near_here ? here : there;
     const std::int64_t last = near_here ? there : here;
-    int entered = -1;  // the corner that faces the edge through which the walk came
+    int entered = -1;                 // the corner that faces the edge through which the walk came
+    std::int32_t edge[2] = {-1, -1};  // that edge's ends
+    PairCoordinates edge_at[2] = {};
     for (int step = 0; step < most_steps; ++step) {
         const std::int32_t* corners = p.triangles + 3 * t;
         const float* v[3];
         PairCoordinates at[3];
         for (int k = 0; k < 3; ++k) {
             v[k] = clip + 4 * static_cast<std::int64_t>(corners[k]);
-            if (!(v[k][3] > 1e-12f)) return false;
-            at[k] = pair_coordinates(p, v[k], crossing.foreground, vertical, crossing.direction);
+            if (corners[k] == edge[0]) {
+                at[k] = edge_at[0];
+            } else if (corners[k] == edge[1]) {
+                at[k] = edge_at[1];
+            } else {
+                if (!(v[k][3] > 1e-12f)) return false;
+                at[k] = frame.at(v[k]);
+            }
         }
         // The edge through which the line v = 0 leaves the triangle.
         int leaves = -1;
@@ -117,6 +140,10 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
             crossing.distance = farthest < 0 ? 0.0f : (farthest > 1 ? 1.0f : farthest);
             return true;
         }
+        edge[0] = corners[first];
+        edge[1] = corners[second];
+        edge_at[0] = at[first];
+        edge_at[1] = at[second];
         t = neighbour / 3;
         // One surface from centre to centre, as nearly everywhere on fine meshes.
         if (t == last) return false;
@@ -143,10 +170,9 @@ ITEM3D_HOST_DEVICE inline void crossing_backward(const AntialiasParameters& p,
     if (crossing.distance <= 0 || crossing.distance >= 1) return;
     const bool vertical = crossing.vertical != 0;
     const std::int64_t ends[2] = {crossing.first, crossing.second};
-    PairCoordinates at[2];
-    for (int k = 0; k < 2; ++k)
-        at[k] = pair_coordinates(p, p.positions_clip + 4 * ends[k], crossing.foreground, vertical,
-                                 crossing.direction);
+    const PairFrame frame(p, crossing);
+    const PairCoordinates at[2] = {frame.at(p.positions_clip + 4 * ends[0]),
+                                   frame.at(p.positions_clip + 4 * ends[1])};
     const float span = at[1].v - at[0].v;
     const float u = crossing.distance;
     const PairCoordinates by_end[2] = {{at[1].v / span, (u - at[1].u) / span},

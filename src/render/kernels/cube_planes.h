@@ -1,73 +1,56 @@
 // Cube maps as planes with halos: for stencils and sums that run along rows.
 #pragma once
 
+#include "item3d/core/host_device.h"
 #include "item3d/core/math.h"
-#include "item3d/core/parallel.h"
 #include "item3d/render/kernels/cube.h"
 
-#include <algorithm>
 #include <cstdint>
-#include <memory>
 
 namespace item3d::kernels {
-
-/// N floats at once. Written as a vector where the compiler does not make one by itself.
-template <int N>
-struct Vector {
-    typedef float Type __attribute__((vector_size(4 * N)));  // GCC 12 loses it in a `using`
-};
-template <int N>
-using Lanes = typename Vector<N>::Type;
-
-template <int N>
-[[gnu::always_inline]] inline Lanes<N> load_lanes(const float* values) {
-    Lanes<N> lanes;
-    __builtin_memcpy(&lanes, values, sizeof lanes);
-    return lanes;
-}
-template <int N>
-[[gnu::always_inline]] inline void store_lanes(float* values, const Lanes<N>& lanes) {
-    __builtin_memcpy(values, &lanes, sizeof lanes);
-}
 
 /// Three colours of six faces, [6, 3, S, S], and perhaps a 19th plane: a quantity that is the same
 /// on all faces, however they are turned. Around each plane lies a halo of the neighbouring faces'
 /// texels, unfolded over its edges; beyond its corners there is nothing (0).
-class CubePlanes {
-  public:
+template <typename Float>
+struct BasicPlanes {
     static constexpr int halo = 8;
 
-    CubePlanes(int size, bool shared_plane)
-        : size_(size),
-          count_(shared_plane ? 19 : 18),
-          values_(std::make_unique_for_overwrite<float[]>(
-              static_cast<std::size_t>(count_ * plane_step()))) {}
+    Float* values;  ///< of plane 0, texel (0, 0)
+    int size, count;
 
-    int size() const { return size_; }
-    int count() const { return count_; }
-    bool shared_plane() const { return count_ == 19; }
     /// Floats from a row to the next.
-    std::int64_t row_step() const { return size_ + 2 * halo; }
+    ITEM3D_HOST_DEVICE std::int64_t row_step() const { return size + 2 * halo; }
     /// Floats from a plane to the next; not a multiple of a page, for which all would compete for
-    /// the same lines of the cache.
-    std::int64_t plane_step() const { return row_step() * row_step() + 80; }
-    float* plane(int index) { return values_.get() + offset(index); }
-    const float* plane(int index) const { return values_.get() + offset(index); }
-    float* row(int plane_, int y) { return plane(plane_) + y * row_step(); }
-    const float* row(int plane_, int y) const { return plane(plane_) + y * row_step(); }
-    void clear() { std::fill_n(values_.get(), count_ * plane_step(), 0.0f); }
-
-  private:
-    /// Of texel (0, 0).
-    std::int64_t offset(int index) const { return index * plane_step() + halo * (row_step() + 1); }
-
-    int size_, count_;
-    std::unique_ptr<float[]> values_;
+    /// the same lines of a processor's cache.
+    ITEM3D_HOST_DEVICE std::int64_t plane_step() const { return row_step() * row_step() + 80; }
+    ITEM3D_HOST_DEVICE Float* row(int plane, int y) const {
+        return values + plane * plane_step() + y * row_step();
+    }
 };
+using Planes = BasicPlanes<float>;
+using ConstPlanes = BasicPlanes<const float>;
+
+/// Adjacent texels of a row: what one index of a kernel stands for. Processors take long runs, and
+/// devices short ones.
+struct Run {
+    int plane, row, begin, end;
+};
+/// length: of a run; divides size.
+ITEM3D_HOST_DEVICE inline Run run_of(std::int64_t index, int size, int length) {
+    const std::int64_t runs = size / length, rows = index / runs;
+    const int begin = static_cast<int>(index % runs) * length;
+    return {static_cast<int>(rows / size), static_cast<int>(rows % size), begin, begin + length};
+}
+
+ITEM3D_HOST_DEVICE inline Vec3 unit_direction(int face, int row, int column, int size) {
+    return glm::normalize(
+        cube_direction(face, texel_centre(column, size), texel_centre(row, size)));
+}
 
 /// Direction of a texel beyond a face's edge, not unit. side: left, right, above, below; along:
 /// texels along the edge; beyond: 1, 2, ..
-inline Vec3 halo_direction(int face, int side, int along, int beyond, int size) {
+ITEM3D_HOST_DEVICE inline Vec3 halo_direction(int face, int side, int along, int beyond, int size) {
     const CubeFrame frame = cube_frame(face);
     const Vec3 over = side < 2 ? frame.s : frame.t, edge = side < 2 ? frame.t : frame.s;
     return (side % 2 == 1 ? over : -over) + texel_centre(along, size) * edge -
@@ -78,156 +61,208 @@ inline Vec3 halo_direction(int face, int side, int along, int beyond, int size) 
 struct FaceTexel {
     int face, row, column;
 };
-inline FaceTexel face_texel(Vec3 d, int size) {
+ITEM3D_HOST_DEVICE inline FaceTexel face_texel(Vec3 d, int size) {
     const int face = cube_face(d);
     const FaceCoordinates at = face_coordinates(face, d);
-    const auto index = [&](float x) { return static_cast<int>((x / at.major + 1) * 0.5f * size); };
-    return {face, index(at.t), index(at.s)};
+    return {face, static_cast<int>((at.t / at.major + 1) * 0.5f * size),
+            static_cast<int>((at.s / at.major + 1) * 0.5f * size)};
 }
 
-/// Copies the neighbours' texels into the halo, `depth` deep. The two by two texels diagonally off
-/// a corner become means over the three faces that meet there; that, and 0 beyond, makes
-/// restricted() the transpose of upsampling at corners too.
-inline void fill_halo(CubePlanes& planes, int depth) {
-    const int size = planes.size();
-    const std::int64_t row = planes.row_step();
-    parallel_for(
-        "fill_halo", planes.count(),
-        [&](std::int64_t index) {
-            const int plane = static_cast<int>(index), face = plane < 18 ? plane / 3 : 0;
-            float* out = planes.plane(plane);
-            for (int side = 0; side < 4; ++side) {
-                const auto place = [&](int along, int beyond) {
-                    return face_texel(halo_direction(face, side, along, beyond, size), size);
-                };
-                const FaceTexel first = place(0, 1), along = place(1, 1), beyond = place(0, 2);
-                const auto step = [&](const FaceTexel& to) {
-                    return (to.row - first.row) * row + to.column - first.column;
-                };
-                const float* in = planes.plane(plane < 18 ? 3 * first.face + plane % 3 : plane) +
-                                  first.row * row + first.column;
-                const std::int64_t source_along = step(along), source_beyond = step(beyond);
-                const std::int64_t target_along = side < 2 ? row : 1;
-                const std::int64_t target_beyond = (side < 2 ? 1 : row) * (side % 2 == 1 ? 1 : -1);
-                float* target =
-                    out + (side % 2 == 1 ? size - 1 : 0) * (side < 2 ? 1 : row) + target_beyond;
-                for (int k = 0; k < depth; ++k)
-                    for (int i = 0; i < size; ++i)
-                        target[k * target_beyond + i * target_along] =
-                            in[k * source_beyond + i * source_along];
-            }
-            for (int corner = 0; corner < 4; ++corner) {
-                const int right = corner & 1, below = corner >> 1;
-                // From the corner on, outwards: across its edges mirrored, then over both.
-                const std::int64_t over = right ? 1 : -1, under = below ? row : -row;
-                float* at = out + (below ? size - 1 : 0) * row + (right ? size - 1 : 0);
-                for (int j = 0; j < depth; ++j)
-                    for (int i = 0; i < depth; ++i) {
-                        const std::int64_t x = (1 + i) * over, y = (1 + j) * under;
-                        at[x + y] = i < 2 && j < 2 ? (at[-i * over - j * under] +
-                                                      at[x - j * under] + at[y - i * over]) /
-                                                         3
-                                                   : 0.0f;
-                    }
-            }
-        },
-        1);
+struct HaloParameters {
+    Planes planes;
+    int depth;  ///< of what is filled
+    int length;
+};
+
+/// Copies the neighbours' texels beyond an edge. index: a run along it, of each row of the halo, of
+/// each side, of each plane.
+ITEM3D_HOST_DEVICE inline void fill_halo_side(const HaloParameters& p, std::int64_t index) {
+    const int size = p.planes.size;
+    const std::int64_t runs = size / p.length, strip = index / runs;
+    const int begin = static_cast<int>(index % runs) * p.length;
+    const int k = static_cast<int>(strip % p.depth), side = static_cast<int>(strip / p.depth % 4);
+    const int plane = static_cast<int>(strip / p.depth / 4), face = plane < 18 ? plane / 3 : 0;
+    const FaceTexel first = face_texel(halo_direction(face, side, begin, k + 1, size), size);
+    const FaceTexel next = face_texel(halo_direction(face, side, begin ^ 1, k + 1, size), size);
+    const std::int64_t row = p.planes.row_step();
+    const std::int64_t step =
+        ((next.row - first.row) * row + next.column - first.column) * ((begin & 1) != 0 ? -1 : 1);
+    const float* in =
+        p.planes.row(plane < 18 ? 3 * first.face + plane % 3 : plane, first.row) + first.column;
+    const int beyond = side % 2 == 1 ? size + k : -1 - k;
+    float* out =
+        side < 2 ? p.planes.row(plane, begin) + beyond : p.planes.row(plane, beyond) + begin;
+    const std::int64_t out_step = side < 2 ? row : 1;
+    for (int i = 0; i < p.length; ++i)
+        out[i * out_step] = in[i * step];
 }
 
-/// Texels of a row that are worked on together.
-inline constexpr int row_tile = 32;
+/// Fills what is diagonally off a corner, when the sides are there: two by two texels become means
+/// over the three faces that meet there; that, and 0 beyond, makes restricting the transpose of
+/// upsampling at corners too. index: a corner of a plane.
+ITEM3D_HOST_DEVICE inline void fill_halo_corner(const HaloParameters& p, std::int64_t index) {
+    const int plane = static_cast<int>(index / 4), right = static_cast<int>(index % 2),
+              below = static_cast<int>(index / 2 % 2), last = p.planes.size - 1;
+    const std::int64_t row = p.planes.row_step();
+    // From the corner on, outwards: across its edges mirrored, then over both.
+    const std::int64_t over = right != 0 ? 1 : -1, under = below != 0 ? row : -row;
+    float* at = p.planes.row(plane, below != 0 ? last : 0) + (right != 0 ? last : 0);
+    for (int j = 0; j < p.depth; ++j)
+        for (int i = 0; i < p.depth; ++i) {
+            const std::int64_t x = (1 + i) * over, y = (1 + j) * under;
+            at[x + y] = i < 2 && j < 2
+                            ? (at[-i * over - j * under] + at[x - j * under] + at[y - i * over]) / 3
+                            : 0.0f;
+        }
+}
 
 /// Going from a resolution to the next finer one: the parabola through a texel and its two
 /// neighbours, in both directions, a quarter of a texel off its middle.
-inline constexpr float toward = 5.0f / 32, middle = 30.0f / 32, away = -3.0f / 32;
+inline constexpr float weight_toward = 5.0f / 32, weight_middle = 30.0f / 32,
+                       weight_away = -3.0f / 32;
 
-/// Twice as fine a plane: row_tile texels from (row, column) on. coarse: texel (0, 0), its halo at
-/// least one texel deep.
-[[gnu::always_inline]] inline void upsample_row(const float* coarse, std::int64_t coarse_row,
-                                                int row, int column, float* out) {
-    constexpr int half = row_tile / 2;
+/// Twice as fine a plane: Length texels from (row, column) on. coarse: its texel (0, 0), with a
+/// halo of at least one texel.
+template <int Length>
+ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline void upsample_run(const float* coarse,
+                                                                 std::int64_t coarse_row, int row,
+                                                                 int column, float* out) {
+    constexpr int half = Length / 2;
     const float* centre = coarse + (row / 2) * coarse_row + column / 2 - 1;
     const float* near = centre + (row % 2 == 1 ? coarse_row : -coarse_row);
     const float* far = centre - (row % 2 == 1 ? coarse_row : -coarse_row);
     float blend[half + 4];
     for (int i = 0; i < half + 4; ++i)
-        blend[i] = middle * centre[i] + toward * near[i] + away * far[i];
+        blend[i] = weight_middle * centre[i] + weight_toward * near[i] + weight_away * far[i];
     for (int i = 0; i < half; ++i) {
-        out[2 * i] = toward * blend[i] + middle * blend[i + 1] + away * blend[i + 2];
-        out[2 * i + 1] = away * blend[i] + middle * blend[i + 1] + toward * blend[i + 2];
+        out[2 * i] =
+            weight_toward * blend[i] + weight_middle * blend[i + 1] + weight_away * blend[i + 2];
+        out[2 * i + 1] =
+            weight_away * blend[i] + weight_middle * blend[i + 1] + weight_toward * blend[i + 2];
     }
 }
 
-/// The transpose of upsampling, with a full halo. fine: its halo at least two texels deep.
-inline CubePlanes restricted(const CubePlanes& fine) {
-    const int half = fine.size() / 2;
-    CubePlanes coarse(half, fine.shared_plane());
-    parallel_for(
-        "restrict_cube", static_cast<std::int64_t>(fine.count()) * half,
-        [&](std::int64_t i) {
-            const int plane = static_cast<int>(i / half), y = static_cast<int>(i % half);
-            const float* in = fine.row(plane, 2 * y - 2);
-            const std::int64_t row = fine.row_step();
-            const auto six = [](const float* at, std::int64_t step) {
-                return away * (at[0] + at[5 * step]) + toward * (at[step] + at[4 * step]) +
-                       middle * (at[2 * step] + at[3 * step]);
-            };
-            float* out = coarse.row(plane, y);
-            for (int begin = 0; begin < 2 * half; begin += row_tile) {
-                float blend[row_tile + 4];
-                for (int x = 0; x < row_tile + 4; ++x)
-                    blend[x] = six(in + begin + x - 2, row);
-                for (int x = 0; x < row_tile / 2; ++x)
-                    out[begin / 2 + x] = six(blend + 2 * x, 1);
-            }
-        },
-        16);
-    fill_halo(coarse, CubePlanes::halo);
-    return coarse;
+/// Fine texels that a device's thread resizes.
+inline constexpr int device_resized_run = 2;
+
+/// Between a map and one of half its size.
+struct ResizeParameters {
+    ConstPlanes from;
+    Planes to;
+    bool add;  ///< to what is there; upsampling alone
+};
+
+/// index: a run of the finer map's texels.
+template <int Length>
+ITEM3D_HOST_DEVICE inline void upsample(const ResizeParameters& p, std::int64_t index) {
+    const Run run = run_of(index, p.to.size, Length);
+    float fine[Length];
+    upsample_run<Length>(p.from.row(run.plane, 0), p.from.row_step(), run.row, run.begin, fine);
+    float* out = p.to.row(run.plane, run.row) + run.begin;
+    for (int i = 0; i < Length; ++i)
+        out[i] = p.add ? out[i] + fine[i] : fine[i];
 }
 
-/// Adds the planes of a map of the same size.
-inline void add(CubePlanes& to, const CubePlanes& map) {
-    const int size = to.size();
-    for (int plane = 0; plane < to.count(); ++plane)
-        for (int y = 0; y < size; ++y)
-            for (int x = 0; x < size; ++x)
-                to.row(plane, y)[x] += map.row(plane, y)[x];
+/// The transpose of upsampling. from: its halo at least two texels deep. index: a run of Length / 2
+/// texels of the coarser map.
+template <int Length>
+ITEM3D_HOST_DEVICE inline void restrict_run(const ResizeParameters& p, std::int64_t index) {
+    const Run run = run_of(index, p.to.size, Length / 2);
+    const float* in = p.from.row(run.plane, 2 * run.row - 2) + 2 * run.begin - 2;
+    const std::int64_t row = p.from.row_step();
+    float blend[Length + 4];
+    for (int x = 0; x < Length + 4; ++x)
+        blend[x] = weight_away * (in[x] + in[x + 5 * row]) +
+                   weight_toward * (in[x + row] + in[x + 4 * row]) +
+                   weight_middle * (in[x + 2 * row] + in[x + 3 * row]);
+    float* out = p.to.row(run.plane, run.row) + run.begin;
+    for (int x = 0; x < Length / 2; ++x) {
+        const float* six = blend + 2 * x;
+        out[x] = weight_away * (six[0] + six[5]) + weight_toward * (six[1] + six[4]) +
+                 weight_middle * (six[2] + six[3]);
+    }
 }
 
-/// Calls f(plane, row, column, values) for row_tile texels after another of the map, twice as fine.
-template <typename F>
-void for_each_upsampled(const CubePlanes& coarse, const F& f) {
-    const int size = 2 * coarse.size();
-    parallel_for(
-        "upsample_cube", static_cast<std::int64_t>(coarse.count()) * size,
-        [&](std::int64_t i) {
-            const int plane = static_cast<int>(i / size), row = static_cast<int>(i % size);
-            for (int column = 0; column < size; column += row_tile) {
-                float fine[row_tile];
-                upsample_row(coarse.plane(plane), coarse.row_step(), row, column, fine);
-                f(plane, row, column, fine);
-            }
-        },
-        16);
+/// [6, S, S, 3], with any steps, -> planes.
+struct MapToPlanesParameters {
+    const float* map;
+    std::int64_t step[4];
+    const float* weight;  ///< [S, S], the same on each face
+    Planes planes;
+    int length;
+};
+
+/// map * weight -> planes, and the weights themselves -> the shared plane, where there is one.
+/// index: a run of each of six faces, or seven.
+ITEM3D_HOST_DEVICE inline void map_to_planes(const MapToPlanesParameters& p, std::int64_t index) {
+    const Run run = run_of(index, p.planes.size, p.length);
+    const float* weight = p.weight + static_cast<std::int64_t>(run.row) * p.planes.size;
+    if (run.plane == 6) {
+        float* out = p.planes.row(18, run.row);
+        for (int x = run.begin; x < run.end; ++x)
+            out[x] = weight[x];
+        return;
+    }
+    const float* in = p.map + run.plane * p.step[0] + run.row * p.step[1];
+    for (int c = 0; c < 3; ++c) {
+        float* out = p.planes.row(3 * run.plane + c, run.row);
+        for (int x = run.begin; x < run.end; ++x)
+            out[x] = in[x * p.step[2] + c * p.step[3]] * weight[x];
+    }
 }
 
-/// Adds a map of half the size; its halo at least one texel deep.
-inline void add_upsampled(CubePlanes& to, const CubePlanes& coarse) {
-    for_each_upsampled(coarse, [&](int plane, int row, int column, const float* fine) {
-        float* out = to.row(plane, row) + column;
-        for (int k = 0; k < row_tile; ++k)
-            out[k] += fine[k];
-    });
+struct PlanesToMapParameters {
+    ConstPlanes planes;
+    const float* weight;  ///< [S, S]
+    float* map;           ///< [6, S, S, 3]
+    int length;
+};
+
+/// planes * weight -> map. index: a run of each of six faces.
+ITEM3D_HOST_DEVICE inline void planes_to_map(const PlanesToMapParameters& p, std::int64_t index) {
+    const Run run = run_of(index, p.planes.size, p.length);
+    const std::int64_t size = p.planes.size;
+    const float* weight = p.weight + run.row * size;
+    float* out = p.map + 3 * (run.plane * size + run.row) * size;
+    for (int c = 0; c < 3; ++c) {
+        const float* in = p.planes.row(3 * run.plane + c, run.row);
+        for (int x = run.begin; x < run.end; ++x)
+            out[3 * x + c] = in[x] * weight[x];
+    }
 }
 
-/// Twice as fine a map, without a halo. coarse: its halo at least one texel deep.
-inline CubePlanes upsampled(const CubePlanes& coarse) {
-    CubePlanes map(2 * coarse.size(), coarse.shared_plane());
-    for_each_upsampled(coarse, [&](int plane, int row, int column, const float* fine) {
-        std::copy_n(fine, row_tile, map.row(plane, row) + column);
-    });
-    return map;
+/// Where means of radiance go.
+struct MeansParameters {
+    float* map;             ///< [6, S, S, 3]
+    float* inverse_weight;  ///< [S, S]
+    ConstPlanes sums;       ///< the shared plane has those of solid angle
+    int length;
+};
+
+/// Sums of radiance over those of solid angle. sums: the run's first texel of plane 0.
+ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline void store_means(const MeansParameters& p,
+                                                                const Run& run, const float* sums,
+                                                                std::int64_t plane_step) {
+    const int count = run.end - run.begin;
+    const std::int64_t size = p.sums.size;
+    float* inverse = p.inverse_weight + run.row * size + run.begin;
+    for (int x = 0; x < count; ++x) {
+        const float angle = sums[18 * plane_step + x];
+        inverse[x] = 1 / (angle > 1e-30f ? angle : 1e-30f);
+    }
+    for (int face = 0; face < 6; ++face) {
+        float* out = p.map + 3 * ((face * size + run.row) * size + run.begin);
+        const float* in = sums + 3 * face * plane_step;
+        for (int x = 0; x < count; ++x)
+            for (int c = 0; c < 3; ++c)
+                out[3 * x + c] = in[c * plane_step + x] * inverse[x];
+    }
+}
+
+/// index: a run of one face, for all six.
+ITEM3D_HOST_DEVICE inline void planes_to_means(const MeansParameters& p, std::int64_t index) {
+    const Run run = run_of(index, p.sums.size, p.length);
+    store_means(p, run, p.sums.row(0, run.row) + run.begin, p.sums.plane_step());
 }
 
 }  // namespace item3d::kernels

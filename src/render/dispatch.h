@@ -1,0 +1,22 @@
+// One call for a kernel on the CPU's threads or on a CUDA device.
+#pragma once
+
+#include "item3d/core/parallel.h"
+#include "item3d/render/cuda/module.h"
+
+namespace item3d {
+
+/// Runs a kernel over the indices in [0, count): kernel(parameters, i) on the CPU, or the entry of
+/// the device's table. Throws as cuda::run does.
+template <auto kernel, typename Parameters>
+void dispatch(torch::Device device, const char* name,
+              cuda::Kernel<Parameters> cuda::RenderTable::*entry, const Parameters& parameters,
+              std::int64_t count, std::int64_t grain = 256) {
+    if (device.is_cuda())
+        cuda::run(cuda::render_table().*entry, parameters, count, device);
+    else
+        parallel_for(
+            name, count, [&](std::int64_t i) { kernel(parameters, i); }, grain);
+}
+
+}  // namespace item3d

@@ -1,0 +1,242 @@
+// Zonal sums of adjacent texels together, for a processor's vectors: the sums of zonal.h.
+#pragma once
+
+#include "item3d/render/kernels/zonal.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace item3d::kernels {
+
+/// N floats at once. Written as a vector where the compiler does not make one by itself.
+template <int N>
+struct Vector {
+    typedef float Type __attribute__((vector_size(4 * N)));  // GCC 12 loses it in a `using`
+};
+template <int N>
+using Lanes = typename Vector<N>::Type;
+
+template <int N>
+ITEM3D_ALWAYS_INLINE inline Lanes<N> load_lanes(const float* values) {
+    Lanes<N> lanes;
+    __builtin_memcpy(&lanes, values, sizeof lanes);
+    return lanes;
+}
+template <int N>
+ITEM3D_ALWAYS_INLINE inline void store_lanes(float* values, const Lanes<N>& lanes) {
+    __builtin_memcpy(values, &lanes, sizeof lanes);
+}
+
+/// Texels of a row that are worked on together.
+inline constexpr int row_tile = 32;
+
+/// Whether a lane is below the limit (1) or none (0).
+template <int N>
+ITEM3D_ALWAYS_INLINE inline int any_below(const Lanes<N>& lanes, float limit) {
+    const auto below = lanes < limit;
+    std::int64_t pairs[N / 2];
+    __builtin_memcpy(pairs, &below, sizeof pairs);
+    std::int64_t any = 0;
+    for (const std::int64_t pair : pairs)
+        any |= pair;
+    return any != 0;
+}
+
+/// Two rows of all planes, one above the other mirrored at a face's middle.
+struct NearSums {
+    float rows[2][most_planes][row_tile];
+};
+
+/// The texels within reach of N adjacent ones of a row, relative to the first of these.
+template <int N>
+struct NearTaps {
+    static constexpr int halo = Planes::halo, most = (2 * halo + 1) * (2 * halo + 1);
+    int count;
+    Lanes<N> weight[most];
+    /// In a plane, and for the row that is mirrored at the face's middle.
+    std::int32_t place[most], mirrored[most];
+};
+
+template <int N>
+ITEM3D_ALWAYS_INLINE inline void near_taps(const NearParameters& p, int row, int x,
+                                           NearTaps<N>& taps) {
+    const NearWindow window = near_window(p, row, x, N);
+    // A copy: the compiler makes vectors of the lanes only if nothing there can be aliased.
+    const ZonalKernel kernel = p.kernel;
+    const std::int64_t row_step = p.source.row_step();
+    const float* centre = p.directions + row * row_step + x;
+    const std::int64_t plane = p.direction_plane;
+    const Lanes<N> n[3] = {load_lanes<N>(centre), load_lanes<N>(centre + plane),
+                           load_lanes<N>(centre + 2 * plane)};
+    int count = 0;
+    for (int dy = window.rows.begin; dy < window.rows.end; ++dy) {
+        for (int dx = window.columns.begin; dx < window.columns.end; ++dx) {
+            const float* tap = centre + dy * row_step + dx;
+            const Lanes<N> a = n[0] - load_lanes<N>(tap);
+            const Lanes<N> b = n[1] - load_lanes<N>(tap + plane);
+            const Lanes<N> c = n[2] - load_lanes<N>(tap + 2 * plane);
+            const Lanes<N> d = a * a + b * b + c * c;
+            taps.weight[count] = kernel.value(d);
+            taps.place[count] = static_cast<std::int32_t>(dy * row_step + dx);
+            taps.mirrored[count] = static_cast<std::int32_t>(-dy * row_step + dx);
+            count += any_below<N>(d, kernel.outer);
+        }
+    }
+    taps.count = count;
+}
+
+/// Adds the sums of Count planes from one on, at N texels of both rows. The lanes are adjacent
+/// texels: they share the taps' places, and all faces and both rows share the weights.
+template <int N, int Count>
+ITEM3D_ALWAYS_INLINE inline void add_near(const NearTaps<N>& taps, const float* upper,
+                                          const float* lower, std::int64_t plane_step,
+                                          float* upper_sums, float* lower_sums) {
+    Lanes<N> above[Count], below[Count];
+    for (int c = 0; c < Count; ++c) {
+        above[c] = load_lanes<N>(upper_sums + c * row_tile);
+        below[c] = load_lanes<N>(lower_sums + c * row_tile);
+    }
+    for (int i = 0; i < taps.count; ++i) {
+        const Lanes<N> weight = taps.weight[i];
+        const float *up = upper + taps.place[i], *down = lower + taps.mirrored[i];
+#pragma GCC unroll 4
+        for (int c = 0; c < Count; ++c) {
+            above[c] += weight * load_lanes<N>(up + c * plane_step);
+            below[c] += weight * load_lanes<N>(down + c * plane_step);
+        }
+    }
+    for (int c = 0; c < Count; ++c) {
+        store_lanes<N>(upper_sums + c * row_tile, above[c]);
+        store_lanes<N>(lower_sums + c * row_tile, below[c]);
+    }
+}
+
+/// Texels [column, column + row_tile) of the rows `row` and S - 1 - row. coarse: a map of half the
+/// size, upsampled and added; null: none.
+template <int N>
+ITEM3D_ALWAYS_INLINE inline void near_sums(const NearParameters& p, const ConstPlanes* coarse,
+                                           int row, int column, NearSums& sums) {
+    const std::int64_t row_step = p.source.row_step(), plane_step = p.source.plane_step();
+    const int rows[2] = {row, p.source.size - 1 - row};
+    for (int half = 0; half < 2; ++half)
+        for (int plane = 0; plane < p.source.count; ++plane) {
+            float* out = sums.rows[half][plane];
+            if (coarse != nullptr)
+                upsample_run<row_tile>(coarse->row(plane, 0), coarse->row_step(), rows[half],
+                                       column, out);
+            else
+                std::fill_n(out, row_tile, 0.0f);
+        }
+    constexpr int groups = row_tile / N;
+    NearTaps<N> taps[groups];
+    for (int group = 0; group < groups; ++group)
+        near_taps<N>(p, row, column + group * N, taps[group]);
+    const float* upper = p.source.values + rows[0] * row_step + column;
+    const float* lower = p.source.values + rows[1] * row_step + column;
+    const auto add = [&]<int Count>(std::integral_constant<int, Count>, int plane) {
+        for (int group = 0; group < row_tile; group += N)
+            add_near<N, Count>(taps[group / N], upper + plane * plane_step + group,
+                               lower + plane * plane_step + group, plane_step,
+                               sums.rows[0][plane] + group, sums.rows[1][plane] + group);
+    };
+    // Few planes at a time, whose neighbourhood stays in the first cache while all groups read it;
+    // four, so that no sum waits for its last.
+    for (int plane = 0; plane < 16; plane += 4)
+        add(std::integral_constant<int, 4>{}, plane);
+    if (p.source.count == 19)
+        add(std::integral_constant<int, 3>{}, 16);
+    else
+        add(std::integral_constant<int, 2>{}, 16);
+}
+
+/// Kernel values of a few rows of texels, and what they weigh, for all planes of the output.
+template <int N>
+struct FarBatch {
+    static constexpr int most_weights = 4096, most_rows = 128;
+    Lanes<N> weights[most_weights / N];
+    std::int64_t first[most_rows];  ///< index into a plane
+    int groups[most_rows];          ///< of lanes
+    int rows = 0, used = 0;
+    Lanes<N> sums[most_planes] = {};  ///< a sum for every N-th texel
+
+    /// Count planes from `plane` on, so many that none waits for its last sum.
+    template <int Count>
+    ITEM3D_ALWAYS_INLINE void add(const FarParameters& p, int plane) {
+        const std::int64_t step = far_plane(p.source_size);
+        const float* source = p.source + plane * step;
+        Lanes<N> sum[Count];
+        for (int i = 0; i < Count; ++i)
+            sum[i] = sums[plane + i];
+        const Lanes<N>* k = weights;
+        for (int row = 0; row < rows; ++row) {
+            const float* values = source + first[row];
+            for (int group = 0; group < groups[row]; ++group, ++k, values += N)
+#pragma GCC unroll 9
+                for (int i = 0; i < Count; ++i)
+                    sum[i] += *k * load_lanes<N>(values + i * step);
+        }
+        for (int i = 0; i < Count; ++i)
+            sums[plane + i] = sum[i];
+    }
+    ITEM3D_ALWAYS_INLINE void add(const FarParameters& p) {
+        int plane = 0;
+        for (; plane + 9 <= p.planes; plane += 9)
+            add<9>(p, plane);
+        if (plane < p.planes) add<1>(p, plane);
+        rows = used = 0;
+    }
+};
+
+/// One texel of all faces of the output; index: row * R + column. Rows and tables have a multiple
+/// of N texels, and those outside the cone add nothing, so ranges are rounded out to whole groups
+/// of lanes. AbsoluteCosine: k = |n.l| over the faces 0, 2 and 4 alone.
+template <int N, bool AbsoluteCosine>
+ITEM3D_ALWAYS_INLINE inline void far_sums(const FarParameters& p, std::int64_t index) {
+    const int out_row = static_cast<int>(index / p.out.size);
+    const int out_column = static_cast<int>(index % p.out.size);
+    const Vec3 n = unit_direction(0, out_row, out_column, p.out.size);
+    const int size = p.source_size;
+    const ZonalKernel kernel = p.kernel;
+    FarBatch<N> batch;
+    for (int face = 0; face < 6; face += AbsoluteCosine ? 2 : 1) {
+        const CubeFrame frame = cube_frame(face);
+        const float normal = glm::dot(frame.normal, n);
+        if (!AbsoluteCosine && normal < p.face_cut) continue;
+        const float along_s = glm::dot(frame.s, n), along_t = glm::dot(frame.t, n);
+        const TexelRange all{0, size};
+        const TexelRange rows = AbsoluteCosine ? all : cone_range(along_t, normal, p.sine, size);
+        if (rows.begin >= rows.end) continue;
+        const TexelRange columns = AbsoluteCosine ? all : cone_range(along_s, normal, p.sine, size);
+        if (columns.begin >= columns.end) continue;
+        const int first = columns.begin / N * N;
+        const int groups = (columns.end - first + N - 1) / N;
+        for (int row = rows.begin; row < rows.end; ++row) {
+            if (batch.rows == FarBatch<N>::most_rows ||
+                N * (batch.used + groups) > FarBatch<N>::most_weights)
+                batch.add(p);
+            const float rest = along_t * p.centres[row] + normal;
+            const float* lengths = p.inverse_lengths + row * size + first;
+            const float* centres = p.centres + first;
+            for (int i = 0; i < groups; ++i) {
+                const Lanes<N> c = (along_s * load_lanes<N>(centres + i * N) + rest) *
+                                   load_lanes<N>(lengths + i * N);
+                if constexpr (AbsoluteCosine)
+                    batch.weights[batch.used++] = c < 0 ? -c : c;
+                else
+                    batch.weights[batch.used++] = kernel.value(2 - 2 * c);
+            }
+            batch.first[batch.rows] = (face * size + row) * far_row(size) + first;
+            batch.groups[batch.rows++] = groups;
+        }
+    }
+    batch.add(p);
+    for (int plane = 0; plane < p.planes; ++plane) {
+        float lanes[N], sum = 0;
+        store_lanes<N>(lanes, batch.sums[plane]);
+        for (const float lane : lanes)
+            sum += lane;
+        p.out.row(plane, out_row)[out_column] = sum;
+    }
+}
+
+}  // namespace item3d::kernels
