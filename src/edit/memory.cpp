@@ -6,6 +6,7 @@
 #include "item3d/models/precision.h"
 #include "item3d/models/verify.h"
 
+#include <algorithm>
 #include <fstream>
 
 namespace item3d {
@@ -34,11 +35,14 @@ Need estimate(const EditRequest& request, torch::Dtype precision) {
     const double pictures = request.settings.batch * side * side;
     for (const MemoryReport& memory : report.memory) {
         if (memory.precision != precision_name(precision)) continue;
-        const auto weights = static_cast<double>(memory.weights);
+        const auto all = static_cast<double>(memory.weights);
+        const auto text = static_cast<double>(memory.text_encoders);
+        // Sentences that are not known yet, and LoRA files, want all networks at once.
+        const bool at_once = wants_captions(request.settings) || !request.settings.lora.empty();
+        const double weights = at_once ? all : std::max(all - text, text);
         const double base = weights + static_cast<double>(memory.program);
         return {weights, base + pictures * static_cast<double>(memory.kept_by_gradients),
-                base - static_cast<double>(memory.text_encoders) +
-                    pictures * static_cast<double>(memory.kept_when_low)};
+                base + pictures * static_cast<double>(memory.kept_when_low)};
     }
     ITEM3D_CHECK(false, "a precision without an estimate");
 }

@@ -1,6 +1,7 @@
 // What a prior's folder holds and whether it can be used, told by configurations and headers alone.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -23,12 +24,14 @@ struct MemoryReport {
     std::uint64_t weights = 0;        ///< exact; the text encoders stay fp32
     std::uint64_t text_encoders = 0;  ///< their part of it
     // Estimates, of the right order:
-    std::uint64_t program = 0;            ///< everything that is not the prior's
+    std::uint64_t program = 0;            ///< all else that does not grow with pictures
     std::uint64_t kept_by_gradients = 0;  ///< of one picture of the U-Net's own size
     std::uint64_t kept_when_low = 0;      ///< the same with the encoder's values computed again
 
-    /// With one such picture in each step.
-    std::uint64_t edit_peak_estimate() const { return weights + program + kept_by_gradients; }
+    /// With one such picture in each step. The text encoders go before the others come.
+    std::uint64_t edit_peak_estimate() const {
+        return std::max(weights - text_encoders + program + kept_by_gradients, text_encoders);
+    }
 };
 
 struct PriorReport {
