@@ -46,7 +46,7 @@ const char* name_of_dtype(torch::Dtype dtype) {
 class File {
   public:
     explicit File(const std::filesystem::path& path)
-        : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+        : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
     ~File() {
         if (descriptor_ >= 0) ::close(descriptor_);
     }
