@@ -4,14 +4,14 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/version.h"
-
-#include <malloc.h>
+#include "tensor_memory.h"
 
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <regex>
 #include <string>
 #include <system_error>
 
@@ -42,6 +42,17 @@ bool says_out_of_memory(const std::string& message) {
            message.find("not enough memory") != std::string::npos;
 }
 
+/// What LibTorch says has the size that it lacked, among names of its files.
+int fail_out_of_memory(const std::string& message) {
+    std::smatch size;
+    std::string lacking;
+    if (std::regex_search(message, size, std::regex("allocate ([0-9]+) bytes")))
+        lacking = fmt::format(" ({:.3g} GB more were wanted)", std::stod(size[1]) / 1e9);
+    return fail(ExitCode::no_resource, "error: out of memory" + lacking +
+                                           "; close other programs, or choose smaller pictures "
+                                           "or fewer at a time");
+}
+
 int run(int argc, char** argv) {
     CLI::App app("Edits the look of textured 3D models from two sentences.", "item3d");
     app.set_version_flag("--version", fmt::format("item3d {}", item3d::version()));
@@ -57,19 +68,12 @@ int run(int argc, char** argv) {
     return static_cast<int>(ExitCode::done);
 }
 
-/// Large tensors come and go each iteration. Kept in the heap they are reused; given back to the
-/// system each of their pages would be cleared anew.
-void keep_large_blocks() {
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);
-    mallopt(M_TRIM_THRESHOLD, 256 << 20);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
     // A file that may not grow any more is an error of write(), not the end of the program.
     std::signal(SIGXFSZ, SIG_IGN);
-    keep_large_blocks();
+    item3d::give_large_tensors_a_region();
     try {
         return run(argc, argv);
     } catch (const item3d::Interrupted& stop) {
@@ -77,16 +81,14 @@ int main(int argc, char** argv) {
     } catch (const item3d::Error& error) {
         return fail(error.code(), std::string("error: ") + error.what());
     } catch (const std::bad_alloc&) {
-        return fail(ExitCode::no_resource, "error: out of memory");
+        return fail_out_of_memory("");
     } catch (const std::filesystem::filesystem_error& error) {
         const bool full = error.code() == std::errc::no_space_on_device;
         return fail(full ? ExitCode::no_resource : ExitCode::bad_input,
                     std::string("error: ") + error.what());
     } catch (const c10::Error& error) {
         const std::string message = first_line(error.what_without_backtrace());
-        if (says_out_of_memory(message)) {
-            return fail(ExitCode::no_resource, "error: out of memory: " + message);
-        }
+        if (says_out_of_memory(message)) return fail_out_of_memory(message);
         return fail_as_bug(message);
     } catch (const std::exception& error) {
         return fail_as_bug(error.what());

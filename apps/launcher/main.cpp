@@ -29,12 +29,6 @@ int main(int argc, char** argv) {
         if (option == "--help" || option == "-h") return say(help_text);
         if (option == "--version") return say(version_text);
     }
-    // Large pages for large tensors, whose small ones take time to clear and look up. And pages of
-    // their own for those above 4 MB: weights that a large prior gives up once they are packed
-    // leave holes else, 0.4 GB of Stable Diffusion's. glibc reads this when a program starts; what
-    // the user set stays.
-    setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1:glibc.malloc.mmap_threshold=4194304",
-           /*overwrite=*/0);
     std::error_code code;
     const auto here = std::filesystem::read_symlink("/proc/self/exe", code);
     const auto commands = here.parent_path() / "item3d-commands";
