@@ -1,5 +1,6 @@
 #include "item3d/models/conv3x3.h"
 #include "item3d/models/direct_convolution.h"
+#include "item3d/models/unet_blocks.h"
 #include "item3d/models/winograd.h"
 #include "models_testing.h"
 
@@ -37,7 +38,7 @@ template <typename Convolution>
 void compare(torch::Dtype dtype, const std::vector<std::int64_t>& shape, int out, double most) {
     SCOPED_TRACE(::testing::Message() << "height " << shape[2] << ", width " << shape[3]);
     const Convolutions layer(static_cast<int>(shape[1]), out, dtype);
-    Convolution fast(layer.weight);
+    Convolution fast(layer.weight, dtype);
     const torch::Tensor x = torch::randn(shape).to(dtype).requires_grad_(true);
     const torch::Tensor exact_x = x.detach().to(torch::kFloat64).requires_grad_(true);
     const torch::Tensor exact = layer.direct(exact_x), direct = layer.direct(x);
@@ -84,14 +85,14 @@ TEST(DirectConvolution, IsTakenForSmallMaps) {
     };
     EXPECT_NE(std::dynamic_pointer_cast<DirectConvolution>(made_for({4, 64, 8, 8})), nullptr);
     EXPECT_NE(std::dynamic_pointer_cast<WinogradConvolution>(made_for({4, 64, 16, 16})), nullptr);
-    EXPECT_EQ(FrozenConvolution::make(torch::empty({4, 64, 8, 8}), weight), nullptr)
-        << "another type than the weights'";
+    EXPECT_EQ(FrozenConvolution::make(torch::empty({4, 64, 8, 8}, torch::kFloat64), weight),
+              nullptr);
 }
 
 TEST(Winograd, GivesTheSameOnOneThreadAndOnMany) {
     if (!runs_here(torch::kFloat32)) GTEST_SKIP() << "no AVX-512";
     const Convolutions layer(64, 128, torch::kFloat32);
-    const WinogradConvolution fast(layer.weight);
+    const WinogradConvolution fast(layer.weight, torch::kFloat32);
     const torch::Tensor x = torch::randn({1, 64, 40, 24});
     const torch::Tensor one = fast.forward(x, layer.bias);
     at::set_num_threads(5);  // more than there are ranges of tiles
@@ -154,6 +155,62 @@ TEST(Conv3x3, RunsWithoutTheWeightsThatItGaveUp) {
     const torch::Tensor x = torch::randn({2, 128, 16, 16}).to(torch::kBFloat16);
     // Pictures that would not have been worth it are convolved the same way now.
     EXPECT_TRUE(torch::allclose(layer(x.slice(2, 0, 4)).slice(2, 0, 3), layer(x).slice(2, 0, 3)));
+}
+
+/// A layer that asks for no gradient of its weights, in bfloat16.
+Conv3x3 frozen_layer(int in, int out) {
+    torch::manual_seed(in);
+    Conv3x3 layer(in, out);
+    for (torch::Tensor& parameter : layer->parameters()) {
+        parameter.set_requires_grad(false);
+        parameter.set_data(parameter.to(torch::kBFloat16));
+    }
+    return layer;
+}
+
+TEST(Conv3x3, RunsFromTheWeightsOfAFile) {
+    if (!runs_here(torch::kBFloat16)) GTEST_SKIP() << "no AVX-512 for bfloat16";
+    for (const int in : {128, 24}) {  // packed, and left to the library
+        Conv3x3 layer = frozen_layer(in, 64), from_file = frozen_layer(in, 64);
+        const torch::Tensor stored = torch::randn({64, in, 3, 3}).to(torch::kFloat16);
+        layer->weight.set_data(
+            stored.to(torch::kBFloat16).contiguous(torch::MemoryFormat::ChannelsLast));
+        int forgotten = 0;
+        from_file->run_from(stored, [&] { ++forgotten; });
+        for (const int side : {16, 4}) {
+            const torch::Tensor x =
+                torch::randn({2, in, side, side}).to(torch::kBFloat16).requires_grad_(true);
+            const torch::Tensor y = layer(x), same = from_file(x), way = torch::randn_like(y);
+            EXPECT_TRUE(torch::equal(y, same));
+            EXPECT_TRUE(torch::equal(torch::autograd::grad({y}, {x}, {way})[0],
+                                     torch::autograd::grad({same}, {x}, {way})[0]));
+        }
+        EXPECT_EQ(forgotten, 1) << in << " channels";
+    }
+}
+
+TEST(FrozenConvolution, TurnsLargeWeightsRoundEachTime) {
+    if (!runs_here(torch::kBFloat16)) GTEST_SKIP() << "no AVX-512 for bfloat16";
+    // 5.3 MB and 3 MB of packed weights: those that are kept are turned by the same code.
+    compare<WinogradConvolution>(torch::kBFloat16, {1, 384, 8, 8}, 448, 3.0);
+    compare<DirectConvolution>(torch::kBFloat16, {1, 640, 4, 4}, 512, 1.1);
+    compare<DirectConvolution>(torch::kFloat32, {1, 320, 4, 4}, 512, 8);
+}
+
+TEST(Downsample, HasTheLibrarysGradientWithoutKeepingItsInput) {
+    for (const int padding : {0, 1}) {
+        torch::manual_seed(1);
+        Downsample down(8, padding);
+        const torch::Tensor x = torch::randn({2, 8, 9, 12}).requires_grad_(true);
+        const torch::Tensor y = down(x), way = torch::randn_like(y);
+        const torch::Tensor exact = torch::autograd::grad({y}, {x}, {way})[0];
+        for (torch::Tensor& parameter : down->parameters())
+            parameter.set_requires_grad(false);
+        const torch::Tensor frozen = down(x);
+        EXPECT_TRUE(torch::allclose(frozen, y, 1e-5, 1e-6));
+        EXPECT_TRUE(
+            torch::allclose(torch::autograd::grad({frozen}, {x}, {way})[0], exact, 1e-5, 1e-6));
+    }
 }
 
 }  // namespace

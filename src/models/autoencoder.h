@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/models/config.h"
+#include "item3d/models/weights.h"
 
 #include <torch/nn/modules/container/modulelist.h>
 #include <torch/nn/modules/conv.h>
@@ -137,6 +138,7 @@ class AutoencoderKL : public Autoencoder {
 std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folder,
                                               torch::Device device = torch::kCPU,
                                               torch::Dtype dtype = torch::kFloat32,
-                                              bool with_decoder = true);
+                                              bool with_decoder = true,
+                                              WeightUse use = WeightUse::any);
 
 }  // namespace item3d

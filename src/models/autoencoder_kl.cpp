@@ -283,7 +283,7 @@ double AutoencoderKLConfig::least_parameters() const {
 
 std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folder,
                                               torch::Device device, torch::Dtype dtype,
-                                              bool with_decoder) {
+                                              bool with_decoder, WeightUse use) {
     const Config config = Config::read(folder / "config.json");
     const std::string kind = config.text("_class_name", "");
     const bool tiny = kind == "AutoencoderTiny";
@@ -320,7 +320,7 @@ std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folde
         result = without_initial_values(
             [&] { return std::make_shared<AutoencoderKL>(values, with_decoder); });
     }
-    load_parameters(*result, weights, device, dtype);
+    load_parameters(*result, weights, device, dtype, use);
     result->eval();
     return result;
 }

@@ -1,4 +1,5 @@
-// float and BrainFloat in registers of sixteen, for the files that are compiled for AVX-512 alone.
+// float, BrainFloat and HalfFloat in registers of sixteen, for the files that are compiled for
+// AVX-512 alone.
 #pragma once
 
 #include "item3d/models/brain_float.h"
@@ -27,6 +28,10 @@ inline __m256i narrow(__m512 value) {
 inline __m512 load(const BrainFloat* from) {
     const __m256i bits = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
     return _mm512_castsi512_ps(_mm512_slli_epi32(_mm512_cvtepu16_epi32(bits), 16));
+}
+
+inline __m512 load(const HalfFloat* from) {
+    return _mm512_cvtph_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
 }
 
 inline void store(BrainFloat* to, __m512 value) {

@@ -1,12 +1,17 @@
-// bfloat16 for files that know nothing of LibTorch.
+// Floating-point numbers of 16 bits for files that know nothing of LibTorch.
 #pragma once
 
 #include <cstdint>
 
 namespace item3d {
 
-/// The upper half of a float's bits.
+/// bfloat16: the upper half of a float's bits.
 struct BrainFloat {
+    std::uint16_t bits;
+};
+
+/// IEEE 754's binary16, fp16.
+struct HalfFloat {
     std::uint16_t bits;
 };
 

@@ -4,6 +4,8 @@
 #include <torch/csrc/autograd/custom_function.h>
 #include <torch/custom_class.h>
 
+#include <utility>
+
 namespace item3d {
 namespace {
 
@@ -39,14 +41,32 @@ Conv3x3Impl::Conv3x3Impl(int in_channels, int out_channels, bool with_bias)
     : Conv2dImpl(
           torch::nn::Conv2dOptions(in_channels, out_channels, 3).padding(1).bias(with_bias)) {}
 
+void Conv3x3Impl::run_from(const torch::Tensor& stored, std::function<void()> forget) {
+    weight.set_data(stored);
+    forget_ = std::move(forget);
+}
+
+void Conv3x3Impl::take_from_file(torch::Dtype dtype) {
+    if (!runs_from_file()) return;
+    weight.set_data(torch::empty(weight.sizes(), weight.options().dtype(dtype),
+                                 torch::MemoryFormat::ChannelsLast)
+                        .copy_(weight));
+    std::exchange(forget_, nullptr)();
+}
+
 torch::Tensor Conv3x3Impl::forward(const torch::Tensor& x) {
     if (!weight_given_up_) {
         const bool frozen = !weight.requires_grad() && !(bias.defined() && bias.requires_grad()) &&
                             !at::autocast::is_autocast_enabled(x.device().type());
         if (!frozen) return Conv2dImpl::forward(x);
-        if (!fast_ || !fast_->is_of(weight)) fast_ = FrozenConvolution::make(x, weight);
-        if (!fast_) return Conv2dImpl::forward(x);
-        if (only_runs_ && fast_->forget_weight()) {
+        const bool packs = runs_from_file() || x.scalar_type() == weight.scalar_type();
+        if (!fast_ || !fast_->is_of(weight))
+            fast_ = packs ? FrozenConvolution::make(x, weight, forget_) : nullptr;
+        if (!fast_) {
+            take_from_file(x.scalar_type());
+            return Conv2dImpl::forward(x);
+        }
+        if (only_runs_ && !runs_from_file() && fast_->forget_weight()) {
             weight.set_data(torch::empty({0}, weight.options()));
             weight_given_up_ = true;
         }

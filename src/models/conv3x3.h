@@ -6,6 +6,7 @@
 #include <torch/nn/modules/conv.h>
 #include <torch/types.h>
 
+#include <functional>
 #include <memory>
 
 namespace item3d {
@@ -13,7 +14,7 @@ namespace item3d {
 /// nn.Conv2d with kernel 3, stride 1, padding 1. Where neither weights nor bias ask for a gradient
 /// it takes a faster way (frozen_convolution.h), if there is one, and its backward pass, which goes
 /// to the input alone, keeps no activations. Weights may be changed at any time before
-/// give_up_weights().
+/// give_up_weights() or run_from().
 class Conv3x3Impl : public torch::nn::Conv2dImpl {
   public:
     Conv3x3Impl(int in_channels, int out_channels, bool with_bias = true);
@@ -23,7 +24,18 @@ class Conv3x3Impl : public torch::nn::Conv2dImpl {
     /// `weight` (which is then empty) as soon as it has them.
     void give_up_weights() { only_runs_ = true; }
 
+    /// From now on the layer only runs, on the CPU, from weights as a file has them: contiguous,
+    /// of any floating type. They are packed when it runs first, in the type of its input, and
+    /// `forget` is called, which lets go of the memory that they take until they are looked at
+    /// again.
+    void run_from(const torch::Tensor& stored, std::function<void()> forget);
+    bool runs_from_file() const { return static_cast<bool>(forget_); }
+
   private:
+    /// Nothing is faster than the library for these weights: they are made ready for it.
+    void take_from_file(torch::Dtype dtype);
+
+    std::function<void()> forget_;
     std::shared_ptr<FrozenConvolution> fast_;
     bool only_runs_ = false;
     bool weight_given_up_ = false;

@@ -12,24 +12,6 @@ namespace {
 using std::int64_t;
 
 template <typename Number>
-torch::Tensor pack_weight(const torch::Tensor& weight) {
-    const int64_t out = weight.size(0), in = weight.size(1);
-    const torch::Tensor ordered = weight.contiguous(torch::MemoryFormat::ChannelsLast);
-    const torch::Tensor packed = torch::empty({9 * out * in}, weight.options());
-    const auto* from = static_cast<const Number*>(ordered.data_ptr());
-    auto* to = static_cast<Number*>(packed.data_ptr());
-    at::parallel_for(0, out / packed_columns, 1, [&](int64_t first, int64_t last) {
-        pack_taps(from, out, in, first * packed_columns, last * packed_columns, to);
-    });
-    return packed;
-}
-
-torch::Tensor pack_any(const torch::Tensor& weight) {
-    return weight.scalar_type() == torch::kBFloat16 ? pack_weight<BrainFloat>(weight)
-                                                    : pack_weight<float>(weight);
-}
-
-template <typename Number>
 void convolve_any(const ConvolutionShape& shape, const torch::Tensor& x,
                   const torch::Tensor& packed, const float* bias, const torch::Tensor& y) {
     // As many as keep a column's sums and their inputs in a core's cache, beside its weights.
@@ -60,23 +42,23 @@ bool DirectConvolution::gains(const torch::Tensor& x, const torch::Tensor& weigh
     return fits(x, weight);
 }
 
-DirectConvolution::DirectConvolution(const torch::Tensor& weight)
-    : FrozenConvolution(weight, pack_any(weight.detach())) {}
-
-torch::Tensor DirectConvolution::pack(const torch::Tensor& weight) const {
-    return pack_any(weight);
+DirectConvolution::DirectConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget)
+    : FrozenConvolution(weight, dtype, std::move(forget)) {
+    pack_forward();
 }
 
-torch::Tensor DirectConvolution::turn_round(const torch::Tensor& packed) const {
-    const int64_t group = dtype() == torch::kBFloat16 ? 2 : 1;
-    const int64_t out = out_channels(), in = in_channels();
-    return packed.view({9, out / packed_columns, in / group, packed_columns, group})
-        .flip({0})
-        .permute({0, 2, 4, 1, 3})  // [9, in / group, group, out / columns, columns]
-        .reshape({9, in / packed_columns, packed_columns, out / group, group})
-        .permute({0, 1, 3, 2, 4})
-        .reshape({-1})
-        .contiguous();
+std::vector<int64_t> DirectConvolution::turned_points() const {
+    return {8, 7, 6, 5, 4, 3, 2, 1, 0};
+}
+
+void DirectConvolution::pack_column(const void* weights, int64_t out_channels, int64_t in_channels,
+                                    int64_t column, void* packed) const {
+    if (dtype() == torch::kBFloat16)
+        pack_taps(static_cast<const BrainFloat*>(weights), out_channels, in_channels, column,
+                  static_cast<BrainFloat*>(packed));
+    else
+        pack_taps(static_cast<const float*>(weights), out_channels, in_channels, column,
+                  static_cast<float*>(packed));
 }
 
 torch::Tensor DirectConvolution::convolve(const torch::Tensor& x, const torch::Tensor& packed,

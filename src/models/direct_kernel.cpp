@@ -43,18 +43,15 @@ bool find_pixels(const ConvolutionShape& shape, const Number* x, const Number* o
 }  // namespace
 
 template <typename Number>
-void pack_taps(const Number* weights, int64_t out_channels, int64_t in_channels, int64_t first,
-               int64_t last, Number* packed) {
+void pack_taps(const Number* weights, int64_t out_channels, int64_t in_channels, int64_t column,
+               Number* packed) {
     using Maths = avx512::Arithmetic<Number>;
-    for (int64_t column = first; column < last; column += packed_columns) {
-        for (int tap = 0; tap < taps; ++tap) {
-            Number* to = packed + (tap * out_channels + column) * in_channels;
-            for (int64_t o = 0; o < packed_columns; ++o) {
-                const Number* from = weights + ((column + o) * taps + tap) * in_channels;
-                for (int64_t c = 0; c < in_channels; c += lanes)
-                    Maths::scatter(to + c * packed_columns + o * Maths::group,
-                                   avx512::load(from + c));
-            }
+    for (int tap = 0; tap < taps; ++tap) {
+        Number* to = packed + (tap * out_channels + column) * in_channels;
+        for (int64_t o = 0; o < packed_columns; ++o) {
+            const Number* from = weights + (o * taps + tap) * in_channels;
+            for (int64_t c = 0; c < in_channels; c += lanes)
+                Maths::scatter(to + c * packed_columns + o * Maths::group, avx512::load(from + c));
         }
     }
 }
@@ -100,7 +97,7 @@ void convolve_taps(const ConvolutionShape& shape, const Number* x, const Number*
 #else
 
 template <typename Number>
-void pack_taps(const Number*, int64_t, int64_t, int64_t, int64_t, Number*) {}
+void pack_taps(const Number*, int64_t, int64_t, int64_t, Number*) {}
 
 template <typename Number>
 int64_t taps_scratch(int64_t, int64_t) {
@@ -113,10 +110,10 @@ void convolve_taps(const ConvolutionShape&, const Number*, const Number*, const 
 
 #endif
 
-#define ITEM3D_INSTANTIATE(Number)                                                       \
-    template void pack_taps(const Number*, int64_t, int64_t, int64_t, int64_t, Number*); \
-    template int64_t taps_scratch<Number>(int64_t, int64_t);                             \
-    template void convolve_taps(const ConvolutionShape&, const Number*, const Number*,   \
+#define ITEM3D_INSTANTIATE(Number)                                                     \
+    template void pack_taps(const Number*, int64_t, int64_t, int64_t, Number*);        \
+    template int64_t taps_scratch<Number>(int64_t, int64_t);                           \
+    template void convolve_taps(const ConvolutionShape&, const Number*, const Number*, \
                                 const float*, Number*, const PixelPart&, void*);
 ITEM3D_INSTANTIATE(float)
 ITEM3D_INSTANTIATE(BrainFloat)

@@ -7,12 +7,12 @@
 
 namespace item3d {
 
-/// Weights [out, 3, 3, in] -> [9, out / 64, in / group, 64, group], a group being the input
-/// channels that one instruction multiplies (2 of BrainFloat, 1 of float); for output channels
-/// [first, last) in whole columns.
+/// Weights [64, 3, 3, in] of the output channels from `column` on, to their places in `packed`, [9,
+/// out / 64, in / group, 64, group]. A group is the input channels that one instruction multiplies
+/// (2 of BrainFloat, 1 of float).
 template <typename Number>
 void pack_taps(const Number* weights, std::int64_t out_channels, std::int64_t in_channels,
-               std::int64_t first, std::int64_t last, Number* packed);
+               std::int64_t column, Number* packed);
 
 /// Pixels of all pictures together, and output channels in whole columns.
 struct PixelPart {

@@ -3,10 +3,16 @@
 #include "item3d/core/error.h"
 #include "item3d/models/direct_convolution.h"
 #include "item3d/models/matrix_kernel.h"
+#include "item3d/models/weight_kernel.h"
+#include "item3d/models/weight_memory.h"
 #include "item3d/models/winograd.h"
+
+#include <ATen/Parallel.h>
 
 namespace item3d {
 namespace {
+
+constexpr std::int64_t taps = 9;
 
 bool kernel_runs(torch::Dtype dtype) {
     static const bool float_runs = matrix_kernel_runs<float>();
@@ -14,27 +20,68 @@ bool kernel_runs(torch::Dtype dtype) {
     return (dtype == torch::kFloat32 && float_runs) || (dtype == torch::kBFloat16 && bfloat_runs);
 }
 
+bool can_be_packed(torch::Dtype stored) {
+    return stored == torch::kFloat32 || stored == torch::kBFloat16 || stored == torch::kFloat16;
+}
+
+/// Output channels [column, column + 64) of contiguous `weight` in the order that packing reads.
+template <typename Stored>
+void order_column(const torch::Tensor& weight, std::int64_t column, const torch::Tensor& ordered) {
+    const std::int64_t in = weight.size(1);
+    const auto* from = static_cast<const Stored*>(weight.data_ptr()) + column * in * taps;
+    if (ordered.scalar_type() == torch::kBFloat16)
+        order_taps(from, packed_columns, in, static_cast<BrainFloat*>(ordered.data_ptr()));
+    else
+        order_taps(from, packed_columns, in, static_cast<float*>(ordered.data_ptr()));
+}
+
+/// 64 input and 64 output channels of one point: [in, out] -> [out, in].
+void swap_channels(const float* from, float* to) {
+    for (std::int64_t out = 0; out < packed_columns; ++out)
+        for (std::int64_t in = 0; in < packed_columns; ++in)
+            to[out * packed_columns + in] = from[in * packed_columns + out];
+}
+
+/// The same of bfloat16, [in / 2, out, 2] -> [out / 2, in, 2], four at a time: two input by two
+/// output channels.
+void swap_channels(const std::uint64_t* from, std::uint64_t* to) {
+    constexpr std::int64_t pairs = packed_columns / 2;
+    constexpr std::uint64_t outer = 0xffff00000000ffff, inner = 0xffff0000;
+    for (std::int64_t out = 0; out < pairs; ++out)
+        for (std::int64_t in = 0; in < pairs; ++in) {
+            const std::uint64_t four = from[in * pairs + out];
+            to[out * pairs + in] = (four & outer) | (four >> 16 & inner) | (four & inner) << 16;
+        }
+}
+
 }  // namespace
 
 std::shared_ptr<FrozenConvolution> FrozenConvolution::make(const torch::Tensor& x,
-                                                           const torch::Tensor& weight) {
-    if (WinogradConvolution::gains(x, weight)) return std::make_shared<WinogradConvolution>(weight);
-    if (DirectConvolution::gains(x, weight)) return std::make_shared<DirectConvolution>(weight);
+                                                           const torch::Tensor& weight,
+                                                           const Forget& forget) {
+    if (WinogradConvolution::gains(x, weight))
+        return std::make_shared<WinogradConvolution>(weight, x.scalar_type(), forget);
+    if (DirectConvolution::gains(x, weight))
+        return std::make_shared<DirectConvolution>(weight, x.scalar_type(), forget);
     return nullptr;
 }
 
 bool FrozenConvolution::fits(const torch::Tensor& x, const torch::Tensor& weight) {
-    return x.is_cpu() && x.scalar_type() == weight.scalar_type() && kernel_runs(x.scalar_type()) &&
+    return x.is_cpu() && kernel_runs(x.scalar_type()) && can_be_packed(weight.scalar_type()) &&
            weight.size(0) % packed_columns == 0 && weight.size(1) % packed_columns == 0;
 }
 
-FrozenConvolution::FrozenConvolution(const torch::Tensor& weight, torch::Tensor packed)
+FrozenConvolution::FrozenConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget)
     : out_channels_(weight.size(0)),
       in_channels_(weight.size(1)),
-      dtype_(weight.scalar_type()),
+      dtype_(dtype),
       weight_(weight.detach()),
       version_(static_cast<std::uint32_t>(weight._version())),
-      packed_(std::move(packed)) {}
+      forget_(std::move(forget)) {}
+
+void FrozenConvolution::pack_forward() {
+    packed_ = pack(weight_);
+}
 
 bool FrozenConvolution::is_of(const torch::Tensor& weight) const {
     return weight_.defined() && weight.data_ptr() == weight_.data_ptr() &&
@@ -43,9 +90,62 @@ bool FrozenConvolution::is_of(const torch::Tensor& weight) const {
 }
 
 bool FrozenConvolution::forget_weight() {
-    if (!can_turn_round()) return false;
+    if (turned_points().empty()) return false;
     weight_ = torch::Tensor();
     return true;
+}
+
+torch::Tensor FrozenConvolution::pack(const torch::Tensor& weight) const {
+    const std::int64_t out = weight.size(0), in = weight.size(1);
+    const bool ordered =
+        weight.scalar_type() == dtype_ && weight.is_contiguous(torch::MemoryFormat::ChannelsLast);
+    const torch::Tensor source = ordered ? weight : weight.contiguous();
+    const auto order = source.scalar_type() == torch::kFloat16    ? order_column<HalfFloat>
+                       : source.scalar_type() == torch::kBFloat16 ? order_column<BrainFloat>
+                                                                  : order_column<float>;
+    const torch::Tensor packed = empty_weight({points() * out * in}, dtype_);
+    at::parallel_for(0, out / packed_columns, 1, [&](std::int64_t first, std::int64_t last) {
+        torch::Tensor scratch;
+        if (!ordered) scratch = torch::empty({packed_columns * taps * in}, dtype_);
+        for (std::int64_t column = first * packed_columns; column < last * packed_columns;
+             column += packed_columns) {
+            const char* rows = nullptr;
+            if (ordered) {
+                rows = static_cast<const char*>(source.data_ptr()) +
+                       static_cast<std::size_t>(column * taps * in) * source.element_size();
+            } else {
+                order(source, column, scratch);
+                rows = static_cast<const char*>(scratch.data_ptr());
+            }
+            pack_column(rows, out, in, column, packed.data_ptr());
+        }
+    });
+    if (forget_) forget_();
+    return packed;
+}
+
+torch::Tensor FrozenConvolution::turn_round(const std::vector<std::int64_t>& points) const {
+    const auto count = static_cast<std::int64_t>(points.size());
+    const torch::Tensor turned =
+        torch::empty({count * in_channels_ * out_channels_}, torch::dtype(dtype_));
+    const std::int64_t outs = out_channels_ / packed_columns, ins = in_channels_ / packed_columns;
+    constexpr std::int64_t square = packed_columns * packed_columns;
+    const bool pairs = dtype_ == torch::kBFloat16;
+    at::parallel_for(0, count * ins, 1, [&](std::int64_t first, std::int64_t last) {
+        for (std::int64_t i = first; i < last; ++i) {
+            const std::int64_t point = points[static_cast<std::size_t>(i / ins)], in = i % ins;
+            for (std::int64_t out = 0; out < outs; ++out) {
+                const std::int64_t from = ((point * outs + out) * ins + in) * square;
+                const std::int64_t to = (i * outs + out) * square;
+                if (pairs)
+                    swap_channels(static_cast<const std::uint64_t*>(packed_.data_ptr()) + from / 4,
+                                  static_cast<std::uint64_t*>(turned.data_ptr()) + to / 4);
+                else
+                    swap_channels(packed_.data_ptr<float>() + from, turned.data_ptr<float>() + to);
+            }
+        }
+    });
+    return turned;
 }
 
 torch::Tensor FrozenConvolution::run(const torch::Tensor& x, const torch::Tensor& packed,
@@ -58,16 +158,22 @@ torch::Tensor FrozenConvolution::run(const torch::Tensor& x, const torch::Tensor
 
 torch::Tensor FrozenConvolution::forward(const torch::Tensor& x, const torch::Tensor& bias) const {
     ITEM3D_CHECK(x.dim() == 4 && x.size(1) == in_channels_ && x.scalar_type() == dtype_,
-                 "x must be [N, C, H, W] with the weights' channels and type");
+                 "x must be [N, C, H, W] with the weights' channels and the packed type");
     return run(x, packed_, out_channels_, bias);
 }
 
 torch::Tensor FrozenConvolution::backward(const torch::Tensor& gradient) {
     // The way back is the convolution with the weights turned round and their channels swapped.
-    if (!packed_backward_.defined())
-        packed_backward_ =
-            can_turn_round() ? turn_round(packed_) : pack(weight_.flip({2, 3}).transpose(0, 1));
-    return run(gradient.to(dtype_), packed_backward_, in_channels_, {});
+    torch::Tensor packed = packed_backward_;
+    if (!packed.defined()) {
+        const torch::NoGradGuard no_grad;
+        const std::vector<std::int64_t> points = turned_points();
+        packed = points.empty() ? pack(weight_.flip({2, 3}).transpose(0, 1)) : turn_round(points);
+        // To turn large ones takes little beside the convolution, and to keep them much memory.
+        constexpr std::size_t most_kept = 5 << 20;
+        if (points.empty() || packed.nbytes() <= most_kept) packed_backward_ = packed;
+    }
+    return run(gradient.to(dtype_), packed, in_channels_, {});
 }
 
 }  // namespace item3d

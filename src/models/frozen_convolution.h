@@ -5,19 +5,27 @@
 #include <torch/types.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <vector>
 
 namespace item3d {
 
-/// The weights are packed once for the way there and, when first needed, once for the way back.
+/// The weights are packed once for the way there; for the way back, when first needed, or each time
+/// where that is quick and what it makes is large.
 class FrozenConvolution {
   public:
+    /// Called after weights were read: lets go of the memory that they take until they are read
+    /// again. May be empty.
+    using Forget = std::function<void()>;
+
     /// The kind that is fastest for this map, or none where the library's own is: on another
     /// device or a CPU without the instructions, for other types than float32 and bfloat16, and for
-    /// channels that are no multiples of 64. What it gives convolves maps of all sizes.
-    /// x: [N, C, H, W], weight: [O, C, 3, 3].
+    /// channels that are no multiples of 64. What it gives convolves maps of all sizes in x's type.
+    /// x: [N, C, H, W], weight: [O, C, 3, 3] of float32, bfloat16 or float16.
     static std::shared_ptr<FrozenConvolution> make(const torch::Tensor& x,
-                                                   const torch::Tensor& weight);
+                                                   const torch::Tensor& weight,
+                                                   const Forget& forget = {});
     virtual ~FrozenConvolution() = default;
 
     /// False once `weight` is another tensor than the one packed, or was written to.
@@ -27,34 +35,45 @@ class FrozenConvolution {
     /// False where they are not.
     bool forget_weight();
 
-    /// x [N, C, H, W] of the weights' type, bias [O] or none -> [N, O, H, W] in channels-last
-    /// order.
+    /// x [N, C, H, W] of the type that make() saw, bias [O] or none -> [N, O, H, W] in
+    /// channels-last order.
     torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& bias) const;
     /// Gradient of the output -> of the input.
     torch::Tensor backward(const torch::Tensor& gradient);
 
   protected:
-    /// `packed`: of `weight`, as pack() has it.
-    FrozenConvolution(const torch::Tensor& weight, torch::Tensor packed);
+    /// Who derives from this calls pack_forward() in its constructor. dtype: float32 or bfloat16.
+    FrozenConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget);
+    void pack_forward();
 
     /// Whether a kernel of ours can convolve this and is told to: see make().
     static bool fits(const torch::Tensor& x, const torch::Tensor& weight);
 
-    std::int64_t out_channels() const { return out_channels_; }
-    std::int64_t in_channels() const { return in_channels_; }
     torch::Dtype dtype() const { return dtype_; }
 
   private:
-    /// weight [O, C, 3, 3] as convolve() wants it.
-    virtual torch::Tensor pack(const torch::Tensor& weight) const = 0;
-    /// Whether turn_round() can do what it says.
-    virtual bool can_turn_round() const = 0;
-    /// The packed weights of the way back from those of the way there.
-    virtual torch::Tensor turn_round(const torch::Tensor& packed) const = 0;
+    /// Channels of a convolution: those of the way there, or swapped.
+    struct Channels {
+        std::int64_t out, in;
+    };
+
+    /// The numbers that packing makes of the nine of a channel pair.
+    virtual std::int64_t points() const = 0;
+    /// By point of the packed weights of the way back, the one of the way there that it equals;
+    /// empty where they differ.
+    virtual std::vector<std::int64_t> turned_points() const = 0;
+    /// Weights [64, 3, 3, in] of dtype() and of the output channels from `column` on, to their
+    /// places in `packed`: [points, out / 64, in / group, 64, group], group of a bfloat16 being 2,
+    /// of a float32 1.
+    virtual void pack_column(const void* weights, std::int64_t out_channels,
+                             std::int64_t in_channels, std::int64_t column, void* packed) const = 0;
     /// x and the result are channels-last; bias is float32 or undefined.
     virtual torch::Tensor convolve(const torch::Tensor& x, const torch::Tensor& packed,
                                    std::int64_t out_channels, const torch::Tensor& bias) const = 0;
 
+    torch::Tensor pack(const torch::Tensor& weight) const;
+    /// The packed weights of the way back from those of the way there.
+    torch::Tensor turn_round(const std::vector<std::int64_t>& points) const;
     torch::Tensor run(const torch::Tensor& x, const torch::Tensor& packed,
                       std::int64_t out_channels, const torch::Tensor& bias) const;
 
@@ -62,8 +81,9 @@ class FrozenConvolution {
     torch::Dtype dtype_;
     torch::Tensor weight_;  ///< empty once forgotten
     std::uint32_t version_;
+    Forget forget_;
     torch::Tensor packed_;
-    torch::Tensor packed_backward_;  ///< made by the first backward()
+    torch::Tensor packed_backward_;  ///< made by the first backward(), where it is kept
 };
 
 }  // namespace item3d

@@ -7,6 +7,8 @@
 
 #include <malloc.h>
 
+#include <algorithm>
+
 namespace item3d {
 namespace {
 
@@ -70,9 +72,13 @@ void write_json(const fs::path& path, const nlohmann::json& json) {
 }  // namespace
 
 void use_channels_last(torch::nn::Module& module) {
-    for (torch::Tensor& parameter : module.parameters())
-        if (parameter.dim() == 4)
-            parameter.set_data(parameter.contiguous(torch::MemoryFormat::ChannelsLast));
+    for (const auto& layer : module.modules()) {
+        const auto* convolution = layer->as<Conv3x3>();
+        if (convolution && convolution->runs_from_file()) continue;
+        for (torch::Tensor& parameter : layer->parameters(/*recurse=*/false))
+            if (parameter.dim() == 4)
+                parameter.set_data(parameter.contiguous(torch::MemoryFormat::ChannelsLast));
+    }
 }
 
 Pipeline Pipeline::load(const fs::path& folder, torch::Device device, torch::Dtype dtype) {
@@ -108,9 +114,9 @@ Pipeline Pipeline::load_text(const fs::path& folder, torch::Device device) {
 }
 
 void Pipeline::load_networks(const fs::path& folder, torch::Device device, torch::Dtype dtype,
-                             bool with_decoder) {
-    unet = load_unet(folder / "unet", device, dtype);
-    vae = load_autoencoder(folder / "vae", device, dtype, with_decoder);
+                             bool with_decoder, WeightUse use) {
+    unet = load_unet(folder / "unet", device, dtype, use);
+    vae = load_autoencoder(folder / "vae", device, dtype, with_decoder, use);
     scheduler = NoiseSchedule::load(folder / "scheduler");
     use_channels_last(*unet);
     use_channels_last(*vae);
@@ -224,10 +230,13 @@ void Pipeline::save(const fs::path& folder, torch::Dtype dtype) const {
 }
 
 void Pipeline::keep_texts(const std::vector<std::string>& prompts) {
-    std::map<std::string, TextEmbedding> encoded{{"", encode_text({""})}};
-    for (const std::string& prompt : prompts)
-        encoded[prompt] = encode_text({prompt});
-    encoded_ = std::move(encoded);
+    std::vector<std::string> all = prompts;
+    all.emplace_back();
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    const TextEmbedding texts = encode_text(all);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        encoded_[all[i]] = texts.row(static_cast<std::int64_t>(i));
     for (ClipTextModel* encoder : {&text_encoder, &text_encoder_2}) {
         if (encoder->is_empty()) continue;
         for (torch::Tensor& parameter : (*encoder)->parameters())

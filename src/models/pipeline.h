@@ -34,7 +34,8 @@ class Pipeline {
     static Pipeline load_text(const std::filesystem::path& folder,
                               torch::Device device = torch::kCPU);
     void load_networks(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
-                       torch::Dtype dtype = torch::kFloat32, bool with_decoder = true);
+                       torch::Dtype dtype = torch::kFloat32, bool with_decoder = true,
+                       WeightUse use = WeightUse::any);
     /// Writes the same layout, weights as `dtype` (float32 or float16), each file atomically and
     /// model_index.json last, so that a folder that has one is whole.
     void save(const std::filesystem::path& folder, torch::Dtype dtype = torch::kFloat16) const;

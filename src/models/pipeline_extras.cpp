@@ -121,16 +121,16 @@ void apply_extras(Pipeline& pipeline, const PipelineExtras& extras) {
 Pipeline load_to_run(const std::filesystem::path& folder, torch::Device device, torch::Dtype dtype,
                      const PipelineExtras& extras, const RunNeeds& needs) {
     Pipeline pipeline = Pipeline::load_text(folder, device);
-    const auto load_networks = [&] {
-        pipeline.load_networks(folder, device, dtype, needs.decoder);
+    const auto load_networks = [&](WeightUse use) {
+        pipeline.load_networks(folder, device, dtype, needs.decoder, use);
     };
     if (!extras.lora.empty()) {
-        load_networks();
+        load_networks(WeightUse::any);
         add_loras(pipeline, extras.lora);
     }
     add_embeddings(pipeline, extras.embedding);
     pipeline.keep_texts(needs.prompts);
-    if (extras.lora.empty()) load_networks();
+    if (extras.lora.empty()) load_networks(WeightUse::running);
     change_networks(pipeline, extras, needs.decoder);
     pipeline.give_up_weights();
     return pipeline;

@@ -80,12 +80,12 @@ torch::Tensor UNet2DConditionImpl::forward(const torch::Tensor& sample,
 }
 
 UNet2DCondition load_unet(const std::filesystem::path& folder, torch::Device device,
-                          torch::Dtype dtype) {
+                          torch::Dtype dtype, WeightUse use) {
     const auto config = UNet2DConditionConfig::from_config(Config::read(folder / "config.json"));
     const Weights weights = Weights::open(folder, "diffusion_pytorch_model");
     check_plausible(weights, config.least_parameters());
     auto unet = without_initial_values([&] { return UNet2DCondition(config); });
-    load_parameters(*unet, weights, device, dtype);
+    load_parameters(*unet, weights, device, dtype, use);
     unet->eval();
     return unet;
 }

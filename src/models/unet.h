@@ -5,6 +5,7 @@
 #include "item3d/models/unet_blocks.h"
 #include "item3d/models/unet_config.h"
 #include "item3d/models/unet_encoder.h"
+#include "item3d/models/weights.h"
 
 #include <torch/types.h>
 
@@ -44,6 +45,6 @@ TORCH_MODULE(UNet2DCondition);
 
 /// Reads FOLDER/config.json and FOLDER/diffusion_pytorch_model.* . Throws InputError.
 UNet2DCondition load_unet(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
-                          torch::Dtype dtype = torch::kFloat32);
+                          torch::Dtype dtype = torch::kFloat32, WeightUse use = WeightUse::any);
 
 }  // namespace item3d

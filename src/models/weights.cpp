@@ -3,7 +3,13 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/models/config.h"
+#include "item3d/models/conv3x3.h"
+#include "item3d/models/weight_kernel.h"
+#include "item3d/models/weight_memory.h"
 
+#include <ATen/Parallel.h>
+
+#include <memory>
 #include <set>
 
 namespace item3d {
@@ -70,8 +76,10 @@ class Misfits {
     std::string problem_;
 };
 
+using Places = std::map<std::string, torch::Tensor*>;
+
 /// Throws unless the tensors of `weights` are those of `places`.
-void compare(const std::map<std::string, torch::Tensor*>& places, const Weights& weights) {
+void compare(const Places& places, const Weights& weights) {
     Misfits misfits;
     for (const auto& [name, target] : places) {
         if (!weights.contains(name)) {
@@ -93,6 +101,51 @@ void compare(const std::map<std::string, torch::Tensor*>& places, const Weights&
             misfits.add(weights.file_of(name),
                         fmt::format("tensor '{}' has no place in the network", name));
     misfits.throw_if_any();
+}
+
+/// Gives the convolutions that pack their weights those of the file, and takes them out of
+/// `places`.
+void leave_in_file(torch::nn::Module& module, const Weights& weights, Places& places) {
+    const auto shared = std::make_shared<const Weights>(weights);
+    for (const auto& layer : module.named_modules()) {
+        auto* convolution = layer.value()->as<Conv3x3>();
+        const std::string name = layer.key() + ".weight";
+        if (!convolution || places.erase(name) == 0) continue;
+        convolution->run_from(weights.tensor(name), [shared, name] { shared->forget(name); });
+    }
+}
+
+/// Whether a weight goes into memory of its own: not those of convolutions, which are put in
+/// another order after this and some of which are given up.
+bool is_converted(torch::Dtype stored, std::int64_t dimensions, torch::Device device,
+                  torch::Dtype dtype) {
+    return device.is_cpu() && stored != dtype && dimensions != 4;
+}
+
+std::size_t converted_bytes(const Places& places, const Weights& weights, torch::Device device,
+                            torch::Dtype dtype) {
+    std::size_t bytes = 0;
+    for (const auto& place : places) {
+        const TensorInfo info = weights.info(place.first);
+        if (is_converted(info.dtype, static_cast<std::int64_t>(info.shape.size()), device, dtype))
+            bytes += WeightMemory::room_for(info.shape, dtype);
+    }
+    return bytes;
+}
+
+/// from, contiguous, as numbers of another type.
+void convert(const torch::Tensor& from, const torch::Tensor& to) {
+    static const bool kernel_runs = matrix_kernel_runs<BrainFloat>();
+    if (!kernel_runs || from.scalar_type() != torch::kFloat16 ||
+        to.scalar_type() != torch::kBFloat16) {
+        to.copy_(from);
+        return;
+    }
+    constexpr std::int64_t fewest = 1 << 16;  // for a thread
+    at::parallel_for(0, from.numel(), fewest, [&](std::int64_t first, std::int64_t last) {
+        convert_numbers(static_cast<const HalfFloat*>(from.data_ptr()) + first, last - first,
+                        static_cast<BrainFloat*>(to.data_ptr()) + first);
+    });
 }
 
 }  // namespace
@@ -203,9 +256,9 @@ std::int64_t Weights::total_elements() const {
 }
 
 void load_parameters(torch::nn::Module& module, const Weights& weights, torch::Device device,
-                     torch::Dtype dtype) {
+                     torch::Dtype dtype, WeightUse use) {
     const torch::NoGradGuard no_grad;
-    std::map<std::string, torch::Tensor*> places;
+    Places places;
     auto parameters = module.named_parameters();
     auto buffers = module.named_buffers();
     for (auto& parameter : parameters) {
@@ -216,8 +269,14 @@ void load_parameters(torch::nn::Module& module, const Weights& weights, torch::D
         places[buffer.key()] = &buffer.value();
     compare(places, weights);
     if (device.is_meta()) return;
+    if (use == WeightUse::running && device.is_cpu()) leave_in_file(module, weights, places);
+    WeightMemory memory(converted_bytes(places, weights, device, dtype));
     for (const auto& [name, target] : places) {
-        const torch::Tensor stored = weights.tensor(name), value = stored.to(device, dtype);
+        const torch::Tensor stored = weights.tensor(name);
+        const bool converted = is_converted(stored.scalar_type(), stored.dim(), device, dtype);
+        const torch::Tensor value =
+            converted ? memory.empty(stored.sizes(), dtype) : stored.to(device, dtype);
+        if (converted) convert(stored, value);
         target->set_data(value);
         // Else a converted network would be in memory twice at the end of loading.
         if (!value.is_alias_of(stored)) weights.forget(name);

@@ -65,6 +65,14 @@ auto without_initial_values(const Make& make) {
     return make();
 }
 
+/// What becomes of a network's weights.
+enum class WeightUse {
+    any,
+    /// They stay as they are, and nobody but the network itself looks at them: on the CPU, those
+    /// that it packs anyway stay in the file until it runs (Conv3x3Impl::run_from()).
+    running,
+};
+
 /// Sets every parameter (and persistent buffer) of `module` from the tensor of its name, converted
 /// once to `device` and `dtype`; no gradient is asked of them. Floating-point tensors that need no
 /// conversion stay in the memory map. All names, shapes and types are compared before anything is
@@ -72,7 +80,8 @@ auto without_initial_values(const Make& make) {
 /// tensor for one that is missing, left over, of another shape, or not of floating point, and how
 /// many more there are.
 void load_parameters(torch::nn::Module& module, const Weights& weights,
-                     torch::Device device = torch::kCPU, torch::Dtype dtype = torch::kFloat32);
+                     torch::Device device = torch::kCPU, torch::Dtype dtype = torch::kFloat32,
+                     WeightUse use = WeightUse::any);
 
 /// Parameters and buffers of `module` by name, converted to `dtype`, for save_safetensors.
 /// `prefix` is put before each name.

@@ -24,24 +24,6 @@ Number* numbers(const torch::Tensor& tensor) {
     return static_cast<Number*>(tensor.data_ptr());
 }
 
-template <typename Number>
-torch::Tensor transform_weight(const torch::Tensor& weight) {
-    const int64_t out = weight.size(0), in = weight.size(1);
-    const torch::Tensor ordered = weight.contiguous(torch::MemoryFormat::ChannelsLast);
-    const torch::Tensor packed =
-        torch::empty({winograd_points<Number> * out * in}, weight.options());
-    at::parallel_for(0, out / packed_columns, 1, [&](int64_t first, int64_t last) {
-        pack_winograd_weights(numbers<const Number>(ordered), out, in, first * packed_columns,
-                              last * packed_columns, numbers<Number>(packed));
-    });
-    return packed;
-}
-
-torch::Tensor transform_any(const torch::Tensor& weight) {
-    return is_bfloat16(weight) ? transform_weight<BrainFloat>(weight)
-                               : transform_weight<float>(weight);
-}
-
 /// How the work is cut: every task has its tiles, and of those some output channels.
 struct Division {
     int64_t tiles;     ///< of a task
@@ -102,29 +84,36 @@ bool WinogradConvolution::gains(const torch::Tensor& x, const torch::Tensor& wei
     return fits(x, weight) && x.size(0) * x.size(2) * x.size(3) >= fewest_pixels;
 }
 
-WinogradConvolution::WinogradConvolution(const torch::Tensor& weight)
-    : FrozenConvolution(weight, transform_any(weight.detach())) {}
-
-torch::Tensor WinogradConvolution::pack(const torch::Tensor& weight) const {
-    return transform_any(weight);
+WinogradConvolution::WinogradConvolution(const torch::Tensor& weight, torch::Dtype dtype,
+                                         Forget forget)
+    : FrozenConvolution(weight, dtype, std::move(forget)) {
+    pack_forward();
 }
 
-bool WinogradConvolution::can_turn_round() const {
-    return dtype() == torch::kBFloat16;  // of tiles of 2 x 2
+int64_t WinogradConvolution::points() const {
+    return dtype() == torch::kBFloat16 ? winograd_points<BrainFloat> : winograd_points<float>;
 }
 
-torch::Tensor WinogradConvolution::turn_round(const torch::Tensor& packed) const {
-    const int64_t out = out_channels(), in = in_channels();
-    // Their points are 0, 1, -1 and infinity; turning a kernel round swaps the first and the last.
-    const torch::Tensor swapped = torch::tensor({3, 1, 2, 0}, torch::kInt64);
-    return packed.view({4, 4, out / packed_columns, in / 2, packed_columns, 2})
-        .index_select(0, swapped)
-        .index_select(1, swapped)
-        .permute({0, 1, 3, 5, 2, 4})  // [4, 4, in / 2, 2, out / columns, columns]
-        .reshape({16, in / packed_columns, packed_columns, out / 2, 2})
-        .permute({0, 1, 3, 2, 4})
-        .reshape({-1})
-        .contiguous();
+std::vector<int64_t> WinogradConvolution::turned_points() const {
+    if (dtype() != torch::kBFloat16) return {};
+    // The points of tiles of 2 x 2 are 0, 1, -1 and infinity; turning a kernel round swaps the
+    // first and the last.
+    constexpr int64_t swapped[] = {3, 1, 2, 0};
+    std::vector<int64_t> points;
+    for (const int64_t row : swapped)
+        for (const int64_t column : swapped)
+            points.push_back(4 * row + column);
+    return points;
+}
+
+void WinogradConvolution::pack_column(const void* weights, int64_t out_channels,
+                                      int64_t in_channels, int64_t column, void* packed) const {
+    if (dtype() == torch::kBFloat16)
+        pack_winograd_weights(static_cast<const BrainFloat*>(weights), out_channels, in_channels,
+                              column, static_cast<BrainFloat*>(packed));
+    else
+        pack_winograd_weights(static_cast<const float*>(weights), out_channels, in_channels, column,
+                              static_cast<float*>(packed));
 }
 
 torch::Tensor WinogradConvolution::convolve(const torch::Tensor& x, const torch::Tensor& packed,

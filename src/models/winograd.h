@@ -15,13 +15,14 @@ class WinogradConvolution : public FrozenConvolution {
     /// Whether these can be convolved so, and faster: enough pixels to be worth the memory.
     static bool gains(const torch::Tensor& x, const torch::Tensor& weight);
 
-    /// weight: [O, C, 3, 3].
-    explicit WinogradConvolution(const torch::Tensor& weight);
+    /// See FrozenConvolution::make().
+    WinogradConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget = {});
 
   private:
-    torch::Tensor pack(const torch::Tensor& weight) const override;
-    bool can_turn_round() const override;
-    torch::Tensor turn_round(const torch::Tensor& packed) const override;
+    std::int64_t points() const override;
+    std::vector<std::int64_t> turned_points() const override;
+    void pack_column(const void* weights, std::int64_t out_channels, std::int64_t in_channels,
+                     std::int64_t column, void* packed) const override;
     torch::Tensor convolve(const torch::Tensor& x, const torch::Tensor& packed,
                            std::int64_t out_channels, const torch::Tensor& bias) const override;
 };

@@ -181,28 +181,26 @@ void transform_sums(const ConvolutionShape& shape, const float* sums, const floa
 
 template <typename Number>
 void pack_winograd_weights(const Number* weights, int64_t out_channels, int64_t in_channels,
-                           int64_t first, int64_t last, Number* packed) {
+                           int64_t column, Number* packed) {
     using Maths = avx512::Arithmetic<Number>;
     constexpr int tile = winograd_tile<Number>, side = tile + 2, points = side * side;
-    for (int64_t column = first; column < last; column += packed_columns) {
-        for (int64_t c = 0; c < in_channels; c += lanes) {
-            for (int64_t o = 0; o < packed_columns; ++o) {
-                __m512 g[9], half[3 * side], u[points];
-                const Number* from = weights + (column + o) * 9 * in_channels + c;
+    for (int64_t c = 0; c < in_channels; c += lanes) {
+        for (int64_t o = 0; o < packed_columns; ++o) {
+            __m512 g[9], half[3 * side], u[points];
+            const Number* from = weights + o * 9 * in_channels + c;
 #pragma GCC unroll 9
-                for (int i = 0; i < 9; ++i)
-                    g[i] = load(from + i * in_channels);
+            for (int i = 0; i < 9; ++i)
+                g[i] = load(from + i * in_channels);
 #pragma GCC unroll 3
-                for (int j = 0; j < 3; ++j)
-                    Transform<tile>::weights(g + j, 3, half + j, 3);
+            for (int j = 0; j < 3; ++j)
+                Transform<tile>::weights(g + j, 3, half + j, 3);
 #pragma GCC unroll 6
-                for (int i = 0; i < side; ++i)
-                    Transform<tile>::weights(half + i * 3, 1, u + i * side, 1);
-                Number* to = packed + column * in_channels + c * packed_columns + o * Maths::group;
+            for (int i = 0; i < side; ++i)
+                Transform<tile>::weights(half + i * 3, 1, u + i * side, 1);
+            Number* to = packed + column * in_channels + c * packed_columns + o * Maths::group;
 #pragma GCC unroll 36
-                for (int i = 0; i < points; ++i)
-                    Maths::scatter(to + i * out_channels * in_channels, u[i]);
-            }
+            for (int i = 0; i < points; ++i)
+                Maths::scatter(to + i * out_channels * in_channels, u[i]);
         }
     }
 }
@@ -243,8 +241,7 @@ void convolve_winograd(const ConvolutionShape& shape, const Number* x, const Num
 #else
 
 template <typename Number>
-void pack_winograd_weights(const Number*, std::int64_t, std::int64_t, std::int64_t, std::int64_t,
-                           Number*) {}
+void pack_winograd_weights(const Number*, std::int64_t, std::int64_t, std::int64_t, Number*) {}
 
 template <typename Number>
 std::int64_t winograd_scratch(std::int64_t, std::int64_t) {
@@ -259,7 +256,7 @@ void convolve_winograd(const ConvolutionShape&, const Number*, const Number*, co
 
 #define ITEM3D_INSTANTIATE(Number)                                                               \
     template void pack_winograd_weights(const Number*, std::int64_t, std::int64_t, std::int64_t, \
-                                        std::int64_t, Number*);                                  \
+                                        Number*);                                                \
     template std::int64_t winograd_scratch<Number>(std::int64_t, std::int64_t);                  \
     template void convolve_winograd(const ConvolutionShape&, const Number*, const Number*,       \
                                     const float*, Number*, const WinogradPart&, void*);

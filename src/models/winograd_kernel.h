@@ -23,12 +23,11 @@ struct WinogradPart {
     std::int64_t first_tile, last_tile, first_channel, last_channel;
 };
 
-/// Transforms weights [out, 3, 3, in] into `packed`, winograd_points * out * in numbers in the
-/// order of the multiplication, for output channels [first, last) in whole columns.
+/// Transforms weights [64, 3, 3, in] of the output channels from `column` on into their places in
+/// `packed`, winograd_points * out * in numbers in the order of pack_taps().
 template <typename Number>
 void pack_winograd_weights(const Number* weights, std::int64_t out_channels,
-                           std::int64_t in_channels, std::int64_t first, std::int64_t last,
-                           Number* packed);
+                           std::int64_t in_channels, std::int64_t column, Number* packed);
 
 /// Bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
 template <typename Number>

@@ -1,0 +1,34 @@
+// Memory for a network's weights, apart from what comes and goes while it runs.
+#pragma once
+
+#include <torch/types.h>
+
+#include <cstddef>
+#include <memory>
+
+namespace item3d {
+
+/// Pages of their own for weights, large ones if the system has them. They go back to the system
+/// with the last tensor in them, whereas weights on the heap leave holes between activations.
+class WeightMemory {
+  public:
+    /// Room for so many bytes of weights of the CPU, 64-byte aligned each: see room_for(). Throws
+    /// ResourceError where the system has none.
+    explicit WeightMemory(std::size_t bytes);
+
+    /// What a tensor takes of it.
+    static std::size_t room_for(torch::IntArrayRef sizes, torch::Dtype dtype);
+
+    /// Numbers not yet written (zero), contiguous, in the next part of the memory.
+    torch::Tensor empty(torch::IntArrayRef sizes, torch::Dtype dtype);
+
+  private:
+    struct Pages;
+    std::shared_ptr<Pages> pages_;
+    std::size_t used_ = 0;
+};
+
+/// One tensor in such memory, or on the heap where it is small.
+torch::Tensor empty_weight(torch::IntArrayRef sizes, torch::Dtype dtype);
+
+}  // namespace item3d
