@@ -55,6 +55,11 @@ TEST_F(Program, CaptionAndScoreTakeTheEmbeddedNetworks) {
         return nlohmann::json::parse(result.out).at("global").get<double>();
     };
     EXPECT_GT(score("a red mug"), score("a blue chair"));
+    const Result cut = run("score " + mug + " " + mug + " --views 1 --from 'a mug' --to '" +
+                           std::string(18, 'a') + " a red mug a red mug a red mug a red mug'");
+    EXPECT_EQ(cut.code, 0);
+    EXPECT_NE(cut.error.find("warning: --to: is longer than the 20 tokens"), std::string::npos)
+        << cut.error;
 
     const std::string nothing = "ITEM3D_ASSETS=" + quoted(folder_) + " ";
     EXPECT_NE(run("caption " + mug, nothing).error.find("--captioner"), std::string::npos);
@@ -66,6 +71,11 @@ TEST_F(Program, CaptionAndScoreNameWhatTheyLack) {
     expect_error("caption " + quoted(cube_) + " --captioner /nowhere", 3, "/nowhere/config.json");
     expect_error("caption " + quoted(folder_ / "no.png") + captioner(), 3, "no.png");
     expect_error("caption " + quoted(cube_) + captioner() + " --precision fp8", 3, "--precision");
+    const std::string pixel = quoted(folder_ / "pixel.png");
+    ASSERT_EQ(run("render " + quoted(cube_) + " --size 1x1 -o " + pixel).code, 0);
+    expect_error("caption " + pixel + captioner(), 3, "1 x 1 pixels");
+    expect_error("caption " + quoted(cube_) + captioner() + " --max-tokens 1000", 3,
+                 "shorten the prefix");
     const std::string models = quoted(cube_) + " " + quoted(cube_) + " --from a --to b --clip ";
     expect_error("score " + models + "/nowhere", 3, "/nowhere/config.json");
     expect_error("score " + models + "'" ITEM3D_TEST_DATA "/models/blip'", 3, "CLIPModel");

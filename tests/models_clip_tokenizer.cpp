@@ -43,6 +43,24 @@ TEST(ClipTokenizer, SplitsWordsAsTheReferenceDoes) {
     EXPECT_EQ(ClipTokenizer::split_words("\xff\xfe"), (Words{"\ufffd\ufffd"}));
 }
 
+TEST(ClipTokenizer, NamesTheWordsThatAreLost) {
+    const ClipTokenizer tokenizer = small_tokenizer();
+    EXPECT_EQ(tokenizer.lost_words("red mug red"), "");
+    EXPECT_EQ(tokenizer.lost_words("red mug red", 5), "");
+    EXPECT_EQ(tokenizer.lost_words("red mug red", 4), "red");
+    EXPECT_EQ(tokenizer.lost_words("red mug Red", 3), "mug red");
+
+    ::testing::internal::CaptureStderr();
+    warn_of_lost_words(tokenizer, "--to", "red mug", 4);
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+    ::testing::internal::CaptureStderr();
+    warn_of_lost_words(tokenizer, "--to", "red mug red", 4);
+    const std::string said = ::testing::internal::GetCapturedStderr();
+    EXPECT_NE(said.find("--to: is longer than the 4 tokens"), std::string::npos) << said;
+    EXPECT_NE(said.find("left out: \"red\""), std::string::npos) << said;
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1);
+}
+
 TEST(ClipTokenizer, MergesByRank) {
     const ClipTokenizer tokenizer = small_tokenizer();
     const auto ids = [&](const Words& tokens) {

@@ -12,6 +12,7 @@
 #include "item3d/scene/light_layout.h"
 #include "picture_options.h"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <string>
@@ -31,6 +32,7 @@ struct CaptionCommand : CommonOptions {
 };
 
 constexpr int view_pixels = 512;
+constexpr int least_pixels = 8;  ///< of a side of a picture that can show something
 
 torch::Tensor to_bytes(const torch::Tensor& picture) {
     return (picture.nan_to_num(0).clamp(0, 1) * 255).round().to(torch::kUInt8);
@@ -41,6 +43,11 @@ std::vector<torch::Tensor> load_pictures(const CaptionCommand& options, torch::D
     const std::string extension = lower_extension(options.input);
     if (extension != ".glb" && extension != ".gltf" && extension != ".obj") {
         const Image image = load_image(options.input);
+        if (std::min(image.width, image.height) < least_pixels)
+            throw InputError(
+                options.input,
+                fmt::format("a picture of {} x {} pixels shows nothing", image.width, image.height),
+                fmt::format("give one of at least {0} x {0}", least_pixels));
         const bool linear = extension == ".exr" || extension == ".hdr";
         return {to_bytes(to_tensor(linear ? to_display(image) : image))};
     }

@@ -123,6 +123,7 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
     const std::string warning =
         PriorVocabulary::load(prior).warning(command.generate.prompt, !command.like.empty());
     if (!warning.empty()) warn(warning);
+    warn_of_lost_words(*pipeline.tokenizer, "PROMPT", command.generate.prompt);
 
     GenerateOptions options = command.generate;
     complete_options(command, prior, pipeline, options);

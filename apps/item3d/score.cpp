@@ -52,7 +52,10 @@ void run_score(const ScoreCommand& options, torch::Device device) {
     check_sentence("--from", options.from);
     check_sentence("--to", options.to);
     const Model before = load_model(options.before), after = load_model(options.after);
-    const Clip clip = Clip::load(options.clip, device, choose_precision(options.precision, device));
+    const Clip clip =
+        Clip::load_to_run(options.clip, device, choose_precision(options.precision, device));
+    clip.warn_of_lost_words("--from", options.from);
+    clip.warn_of_lost_words("--to", options.to);
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
     // One set of cameras: what moved or shrank shows.
     const std::vector<Camera> cameras = picture_cameras(before, options.views);

@@ -70,6 +70,9 @@ EditScene load_scene(const EditRequest& request) {
         settings.light, edits_light(settings) ? "off" : settings.light_augment,
         settings.resolution <= small_picture ? 64 : 256, device);
     scene.prior = std::make_shared<Pipeline>(load_prior(request, scene));
+    for (const auto& [option, text] :
+         {std::pair("--from", settings.from), std::pair("--to", settings.to)})
+        warn_of_lost_words(*scene.prior->tokenizer, option, text);
     if (low_memory) scene.prior->vae->recompute_in_backward(true);
     return scene;
 }

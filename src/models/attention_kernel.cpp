@@ -88,10 +88,6 @@ void pack_straight(const Number* from, int64_t stride, int64_t count, int64_t pl
     });
 }
 
-__mmask16 first_lanes(int64_t count) {
-    return static_cast<__mmask16>(count >= lanes ? 0xffff : (1 << count) - 1);
-}
-
 /// 2^x to float's precision: 2^n 2^r with |r| <= 1/2, 2^r by its Taylor series. 0 far below.
 __m512 power_of_two(__m512 x) {
     const __m512 n = _mm512_roundscale_ps(x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
@@ -107,7 +103,7 @@ __m512 power_of_two(__m512 x) {
 template <typename Number>
 float soften(const float* scores, int64_t count, int64_t places, float scale, Number* weights) {
     const int64_t whole = count / lanes * lanes;
-    const __mmask16 last = first_lanes(count - whole);
+    const __mmask16 last = avx512::first_lanes(count - whole);
     __m512 most = _mm512_set1_ps(std::numeric_limits<float>::lowest());
     for (int64_t i = 0; i < whole; i += lanes)
         most = _mm512_max_ps(most, avx512::load(scores + i));
@@ -132,14 +128,6 @@ float soften(const float* scores, int64_t count, int64_t places, float scale, Nu
     for (int64_t i = whole + (last != 0 ? lanes : 0); i < places; i += lanes)
         avx512::store(weights + i, _mm512_setzero_ps());
     return _mm512_reduce_add_ps(sum);
-}
-
-void store_some(float* to, __mmask16 which, __m512 value) {
-    _mm512_mask_storeu_ps(to, which, value);
-}
-
-void store_some(BrainFloat* to, __mmask16 which, __m512 value) {
-    _mm256_mask_storeu_epi16(to, which, avx512::narrow(value));
 }
 
 }  // namespace
@@ -181,9 +169,9 @@ void attend(const AttentionShape& shape, const Number* query, const Number* key,
             for (int64_t i = 0; i < count; ++i) {
                 const __m512 share = _mm512_set1_ps(1 / total[i]);
                 for (int64_t c = 0; c < registers * lanes && channel + c < width; c += lanes)
-                    store_some(result + begin + i * stride + channel + c,
-                               first_lanes(width - channel - c),
-                               share * avx512::load(scratch.sums + i * packed_columns + c));
+                    avx512::store_some(result + begin + i * stride + channel + c,
+                                       avx512::first_lanes(width - channel - c),
+                                       share * avx512::load(scratch.sums + i * packed_columns + c));
             }
         });
     }

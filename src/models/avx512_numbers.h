@@ -6,12 +6,18 @@
 
 #include <immintrin.h>
 
+#include <cstdint>
 #include <initializer_list>
 
 namespace item3d::avx512 {
 
 /// Numbers of a register.
 constexpr int lanes = 16;
+
+/// The first `count` lanes of a register, or all.
+inline __mmask16 first_lanes(std::int64_t count) {
+    return static_cast<__mmask16>(count >= lanes ? 0xffff : (1 << count) - 1);
+}
 
 inline __m512 load(const float* from) {
     return _mm512_loadu_ps(from);
@@ -36,6 +42,14 @@ inline __m512 load(const HalfFloat* from) {
 
 inline void store(BrainFloat* to, __m512 value) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), narrow(value));
+}
+
+inline void store_some(float* to, __mmask16 which, __m512 value) {
+    _mm512_mask_storeu_ps(to, which, value);
+}
+
+inline void store_some(BrainFloat* to, __mmask16 which, __m512 value) {
+    _mm256_mask_storeu_epi16(to, which, narrow(value));
 }
 
 /// e^x to float's precision: 2^n e^r with |r| <= ln(2) / 2, e^r by its Taylor series.

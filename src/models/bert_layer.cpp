@@ -16,12 +16,12 @@ nn::LayerNorm layer_norm(const BertLayerOptions& options) {
 BertAttentionImpl::BertAttentionImpl(const BertLayerOptions& options, int source_width)
     : heads_(options.heads) {
     auto projections = std::make_shared<nn::Module>("projections");
-    query_ = projections->register_module("query", torch::nn::Linear(options.width, options.width));
-    key_ = projections->register_module("key", torch::nn::Linear(source_width, options.width));
-    value_ = projections->register_module("value", torch::nn::Linear(source_width, options.width));
+    query_ = projections->register_module("query", PackableLinear(options.width, options.width));
+    key_ = projections->register_module("key", PackableLinear(source_width, options.width));
+    value_ = projections->register_module("value", PackableLinear(source_width, options.width));
     register_module(options.attention_name, projections);
     auto output = std::make_shared<nn::Module>("output");
-    output_ = output->register_module("dense", torch::nn::Linear(options.width, options.width));
+    output_ = output->register_module("dense", PackableLinear(options.width, options.width));
     norm_ = output->register_module("LayerNorm", layer_norm(options));
     register_module("output", output);
 }
@@ -35,7 +35,7 @@ torch::Tensor BertAttentionImpl::forward(const torch::Tensor& x, const KeyValues
     const auto rows = source.keys.size(0);
     const torch::Tensor query = query_(x).reshape({rows, -1, x.size(2)});
     const torch::Tensor read = attention(query, source.keys, source.values, heads_, mask);
-    return norm_(output_(read.reshape(x.sizes())) + x);
+    return norm_(output_->forward(read.reshape(x.sizes()), {.added = x}));
 }
 
 BertLayerImpl::BertLayerImpl(const BertLayerOptions& options) {
@@ -44,11 +44,11 @@ BertLayerImpl::BertLayerImpl(const BertLayerOptions& options) {
         cross_ = register_module("crossattention", BertAttention(options, options.memory_width));
     auto feed_in = std::make_shared<nn::Module>("intermediate");
     feed_in_ =
-        feed_in->register_module("dense", torch::nn::Linear(options.width, options.intermediate));
+        feed_in->register_module("dense", PackableLinear(options.width, options.intermediate));
     register_module("intermediate" + options.suffix, feed_in);
     auto feed_out = std::make_shared<nn::Module>("output");
     feed_out_ =
-        feed_out->register_module("dense", torch::nn::Linear(options.intermediate, options.width));
+        feed_out->register_module("dense", PackableLinear(options.intermediate, options.width));
     norm_ = feed_out->register_module("LayerNorm", layer_norm(options));
     register_module("output" + options.suffix, feed_out);
 }
@@ -70,7 +70,9 @@ torch::Tensor BertLayerImpl::forward(torch::Tensor x, const torch::Tensor& mask,
                      "each picture must have as many texts as the others");
         x = cross_->forward(x, memory);
     }
-    return norm_(feed_out_(torch::gelu(feed_in_(x))) + x);
+    const torch::Tensor hidden =
+        feed_in_->forward(x, {.activation = LinearActivation::gelu, .rounded = true});
+    return norm_(feed_out_->forward(hidden, {.added = x}));
 }
 
 }  // namespace item3d

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "item3d/models/key_value_cache.h"
+#include "item3d/models/packable_linear.h"
 
 #include <torch/nn/modules/embedding.h>
-#include <torch/nn/modules/linear.h>
 #include <torch/nn/modules/normalization.h>
 #include <torch/types.h>
 
@@ -36,7 +36,7 @@ class BertAttentionImpl : public torch::nn::Module {
 
   private:
     int heads_;
-    torch::nn::Linear query_{nullptr}, key_{nullptr}, value_{nullptr}, output_{nullptr};
+    PackableLinear query_{nullptr}, key_{nullptr}, value_{nullptr}, output_{nullptr};
     torch::nn::LayerNorm norm_{nullptr};
 };
 TORCH_MODULE(BertAttention);
@@ -55,7 +55,7 @@ class BertLayerImpl : public torch::nn::Module {
 
   private:
     BertAttention self_{nullptr}, cross_{nullptr};
-    torch::nn::Linear feed_in_{nullptr}, feed_out_{nullptr};
+    PackableLinear feed_in_{nullptr}, feed_out_{nullptr};
     torch::nn::LayerNorm norm_{nullptr};
 };
 TORCH_MODULE(BertLayer);

@@ -40,7 +40,7 @@ BlipModelImpl::BlipModelImpl(const BlipConfig& config) : config_(config) {
     bert->register_module("encoder", encoder);
 
     auto transform = std::make_shared<nn::Module>("transform");
-    head_ = transform->register_module("dense", torch::nn::Linear(width, width));
+    head_ = transform->register_module("dense", PackableLinear(width, width));
     head_norm_ = transform->register_module("LayerNorm", nn::LayerNorm(norm));
     auto predictions = std::make_shared<nn::Module>("predictions");
     head_bias_ = predictions->register_parameter("bias", torch::empty({config_.vocab_size}));
@@ -74,7 +74,15 @@ torch::Tensor BlipModelImpl::decode(const torch::Tensor& tokens, const torch::Te
 }
 
 torch::Tensor BlipModelImpl::logits(const torch::Tensor& states) {
-    return at::linear(head_norm_(torch::gelu(head_(states))), words_->weight, head_bias_);
+    const torch::Tensor x = head_norm_(torch::gelu(head_(states)));
+    return packed_words_ ? packed_words_->multiply(x, head_bias_)
+                         : at::linear(x, words_->weight, head_bias_);
+}
+
+void BlipModelImpl::pack(torch::Dtype dtype) {
+    pack_linear_layers(*this, dtype);
+    if (PackedMatrix::runs(words_->weight.device(), dtype) && PackedMatrix::fits(words_->weight))
+        packed_words_.emplace(words_->weight, dtype);
 }
 
 BlipConfig BlipConfig::from_config(const Config& config) {
@@ -195,7 +203,8 @@ Decoded write_captions(const BlipModel& model, const torch::Tensor& pixel_values
             "caption",
             fmt::format("{} tokens of prompt and {} of caption are more than the {} "
                         "that the network can count",
-                        prompt.size(1), options.max_new_tokens, config.max_position_embeddings));
+                        prompt.size(1), options.max_new_tokens, config.max_position_embeddings),
+            "shorten the prefix, or ask for fewer tokens");
     const torch::NoGradGuard no_grad;
     options.end_token = config.sep_token_id;
     options.pad_token = config.pad_token_id;

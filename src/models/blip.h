@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace item3d {
@@ -49,6 +50,10 @@ class BlipModelImpl : public torch::nn::Module {
     /// States -> logits of the next token [N, S, vocab_size].
     torch::Tensor logits(const torch::Tensor& states);
 
+    /// From now on the network, in float32, only runs: linear layers multiply at this precision
+    /// (packable_linear.h).
+    void pack(torch::Dtype dtype);
+
     const BlipConfig& config() const { return config_; }
 
   private:
@@ -57,8 +62,9 @@ class BlipModelImpl : public torch::nn::Module {
     torch::nn::Embedding words_{nullptr}, positions_{nullptr};
     torch::nn::LayerNorm embedding_norm_{nullptr}, head_norm_{nullptr};
     std::vector<BertLayer> layers_;
-    torch::nn::Linear head_{nullptr};
+    PackableLinear head_{nullptr};
     torch::Tensor head_bias_;
+    std::optional<PackedMatrix> packed_words_;  ///< for logits
 };
 TORCH_MODULE(BlipModel);
 

@@ -2,10 +2,10 @@
 
 #include "item3d/core/error.h"
 #include "item3d/models/attention.h"
+#include "item3d/models/packable_linear.h"
 
 #include <torch/nn/modules/container/modulelist.h>
 #include <torch/nn/modules/embedding.h>
-#include <torch/nn/modules/linear.h>
 
 namespace item3d {
 namespace nn = torch::nn;
@@ -17,25 +17,27 @@ class BlipVisionModelImpl::Layer : public nn::Module {
         const int width = config.hidden_size;
         const auto norm = nn::LayerNormOptions({width}).eps(config.layer_norm_eps);
         auto attention = std::make_shared<nn::Module>("attention");
-        qkv_ = attention->register_module("qkv", torch::nn::Linear(width, 3 * width));
-        output_ = attention->register_module("projection", torch::nn::Linear(width, width));
+        qkv_ = attention->register_module("qkv", PackableLinear(width, 3 * width));
+        output_ = attention->register_module("projection", PackableLinear(width, width));
         register_module("self_attn", attention);
         norm1_ = register_module("layer_norm1", nn::LayerNorm(norm));
         norm2_ = register_module("layer_norm2", nn::LayerNorm(norm));
         auto mlp = std::make_shared<nn::Module>("mlp");
-        feed_in_ = mlp->register_module("fc1", torch::nn::Linear(width, config.intermediate_size));
-        feed_out_ = mlp->register_module("fc2", torch::nn::Linear(config.intermediate_size, width));
+        feed_in_ = mlp->register_module("fc1", PackableLinear(width, config.intermediate_size));
+        feed_out_ = mlp->register_module("fc2", PackableLinear(config.intermediate_size, width));
         register_module("mlp", mlp);
     }
     torch::Tensor forward(torch::Tensor x) {
         const auto qkv = qkv_(norm1_(x)).chunk(3, -1);
-        x = x + output_(attention(qkv[0], qkv[1], qkv[2], heads_));
-        return x + feed_out_(torch::gelu(feed_in_(norm2_(x))));
+        x = output_->forward(attention(qkv[0], qkv[1], qkv[2], heads_), {.added = x});
+        const torch::Tensor hidden =
+            feed_in_->forward(norm2_(x), {.activation = LinearActivation::gelu, .rounded = true});
+        return feed_out_->forward(hidden, {.added = x});
     }
 
   private:
     int heads_;
-    torch::nn::Linear qkv_{nullptr}, output_{nullptr}, feed_in_{nullptr}, feed_out_{nullptr};
+    PackableLinear qkv_{nullptr}, output_{nullptr}, feed_in_{nullptr}, feed_out_{nullptr};
     nn::LayerNorm norm1_{nullptr}, norm2_{nullptr};
 };
 

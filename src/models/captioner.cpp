@@ -67,7 +67,9 @@ class BlipCaptioner : public Captioner {
           device_(device) {
         // Everything small is read and checked before gigabytes of weights are.
         check_tokenizer(folder / "vocab.txt", tokenizer_, config.vocab_size);
-        model_ = load_blip(folder, device, dtype);
+        const bool packs = PackedMatrix::runs(device, dtype);
+        model_ = load_blip(folder, device, packs ? torch::kFloat32 : dtype);
+        if (packs) model_->pack(dtype);
     }
     std::vector<Caption> captions(const std::vector<torch::Tensor>& pictures,
                                   const CaptionOptions& options) const override {

@@ -1,7 +1,8 @@
 // The transformer layer that both halves of CLIP are stacks of.
 #pragma once
 
-#include <torch/nn/modules/linear.h>
+#include "item3d/models/packable_linear.h"
+
 #include <torch/nn/modules/normalization.h>
 #include <torch/types.h>
 
@@ -23,14 +24,21 @@ class ClipLayerImpl : public torch::nn::Module {
   public:
     explicit ClipLayerImpl(const ClipLayerOptions& options);
     /// x [N, S, width]; mask: empty, or additive and broadcastable to [N, heads, S, S].
-    torch::Tensor forward(torch::Tensor x, const torch::Tensor& mask = {});
+    torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& mask = {});
+    /// What forward() gives for the first token, [N, 1, width], for the last layer of a network
+    /// whose other tokens nobody looks at.
+    torch::Tensor forward_first(const torch::Tensor& x);
 
   private:
+    /// `x`: those of the tokens `normed` that are wanted.
+    torch::Tensor attend(const torch::Tensor& x, const torch::Tensor& normed,
+                         const torch::Tensor& mask);
+
     int heads_;
-    bool quick_;
+    LinearActivation activation_;
     torch::nn::LayerNorm norm1_{nullptr}, norm2_{nullptr};
-    torch::nn::Linear query_{nullptr}, key_{nullptr}, value_{nullptr}, output_{nullptr};
-    torch::nn::Linear feed_in_{nullptr}, feed_out_{nullptr};
+    PackableLinear query_{nullptr}, key_{nullptr}, value_{nullptr}, output_{nullptr};
+    PackableLinear feed_in_{nullptr}, feed_out_{nullptr};
 };
 TORCH_MODULE(ClipLayer);
 

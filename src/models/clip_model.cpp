@@ -49,7 +49,7 @@ ClipModelImpl::ClipModelImpl(const ClipConfig& config) : config_(config) {
 }
 
 torch::Tensor ClipModelImpl::image_features(const torch::Tensor& pixel_values) {
-    return visual_projection_(vision_(pixel_values).pooled);
+    return visual_projection_(vision_->pooled(pixel_values));
 }
 
 torch::Tensor ClipModelImpl::text_features(const torch::Tensor& input_ids,
@@ -95,12 +95,26 @@ Clip Clip::load(const std::filesystem::path& folder, torch::Device device, torch
     return clip;
 }
 
+Clip Clip::load_to_run(const std::filesystem::path& folder, torch::Device device,
+                       torch::Dtype dtype) {
+    const bool packs = PackedMatrix::runs(device, dtype);
+    Clip clip = load(folder, device, packs ? torch::kFloat32 : dtype);
+    if (packs) pack_linear_layers(*clip.model, dtype);
+    return clip;
+}
+
+int Clip::text_length() const {
+    return std::min(tokenizer->model_max_length(), model->config().text.max_position_embeddings);
+}
+
+void Clip::warn_of_lost_words(const std::string& subject, const std::string& text) const {
+    item3d::warn_of_lost_words(*tokenizer, subject, text, text_length());
+}
+
 torch::Tensor Clip::embed_texts(const std::vector<std::string>& texts) const {
     const torch::NoGradGuard no_grad;
     ClipModel network = model;
-    const int length =
-        std::min(tokenizer->model_max_length(), network->config().text.max_position_embeddings);
-    const torch::Tensor ids = tokenizer->encode_batch(texts, length).to(device_);
+    const torch::Tensor ids = tokenizer->encode_batch(texts, text_length()).to(device_);
     return unit_length(network->text_features(ids).to(torch::kFloat32));
 }
 

@@ -65,6 +65,13 @@ class Clip {
     static Clip load(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
                      torch::Dtype dtype = torch::kFloat32);
 
+    /// The same for many pictures: linear layers are packed (packable_linear.h) where the processor
+    /// gains by it, and those alone compute in `dtype` then.
+    static Clip load_to_run(const std::filesystem::path& folder, torch::Device device,
+                            torch::Dtype dtype);
+
+    /// Warns where embed_texts() leaves out the end of a text because it is too long.
+    void warn_of_lost_words(const std::string& subject, const std::string& text) const;
     /// [N, D] float32, each of length 1.
     torch::Tensor embed_texts(const std::vector<std::string>& texts) const;
     /// images [N, 3, H, W] sRGB in [0, 1] -> [N, D] float32, each of length 1. Differentiable in
@@ -76,6 +83,8 @@ class Clip {
     std::shared_ptr<ImageProcessor> processor;
 
   private:
+    int text_length() const;  ///< tokens that the network reads
+
     torch::Device device_ = torch::kCPU;
 };
 

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/progress.h"
 #include "item3d/models/text_normalization.h"
 
 #include <algorithm>
@@ -120,6 +121,13 @@ std::vector<int> ClipTokenizer::encode_padded(const std::string& text, int lengt
     return ids;
 }
 
+std::string ClipTokenizer::lost_words(const std::string& text, int length) const {
+    const std::vector<int> ids = encode(text);
+    const std::size_t most = length > 0 ? length : options_.model_max_length;
+    if (ids.size() <= most) return {};
+    return decode({ids.begin() + static_cast<std::ptrdiff_t>(most) - 1, ids.end()});
+}
+
 torch::Tensor ClipTokenizer::encode_batch(const std::vector<std::string>& texts, int length) const {
     const std::int64_t columns = length > 0 ? length : options_.model_max_length;
     torch::Tensor result =
@@ -183,6 +191,16 @@ std::string ClipTokenizer::decode(const std::vector<int>& ids, bool skip_special
     for (std::size_t at = 0; (at = text.find(word_end, at)) != std::string::npos; ++at)
         text.replace(at, word_end.size(), " ");
     return strip_white_space(text);
+}
+
+void warn_of_lost_words(const ClipTokenizer& tokenizer, const std::string& subject,
+                        const std::string& text, int length) {
+    const std::string lost = tokenizer.lost_words(text, length);
+    if (!lost.empty())
+        warn(
+            fmt::format("{}: is longer than the {} tokens that are read, start and end included; "
+                        "left out: \"{}\"",
+                        subject, length > 0 ? length : tokenizer.model_max_length(), lost));
 }
 
 }  // namespace item3d

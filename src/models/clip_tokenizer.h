@@ -49,6 +49,8 @@ class ClipTokenizer {
     std::vector<int> encode_padded(const std::string& text, int length = 0) const;
     /// [N, length] int64, row by row encode_padded.
     torch::Tensor encode_batch(const std::vector<std::string>& texts, int length = 0) const;
+    /// What encode_padded leaves out at the end of a text that is too long; empty where it fits.
+    std::string lost_words(const std::string& text, int length = 0) const;
     /// Lower-cased text with one space between tokens' words.
     std::string decode(const std::vector<int>& ids, bool skip_special_tokens = true) const;
 
@@ -82,5 +84,9 @@ class ClipTokenizer {
     std::unordered_map<int, int>
         placeholder_lengths_;  ///< ids that stand for several, by the first
 };
+
+/// Says which words of a text are left out because it is too long, calling it `subject`.
+void warn_of_lost_words(const ClipTokenizer& tokenizer, const std::string& subject,
+                        const std::string& text, int length = 0);
 
 }  // namespace item3d

@@ -33,7 +33,7 @@ ClipVisionModelImpl::ClipVisionModelImpl(const ClipVisionConfig& config) : confi
     post_norm_ = register_module("post_layernorm", nn::LayerNorm(norm));
 }
 
-ClipVisionOutput ClipVisionModelImpl::forward(const torch::Tensor& pixel_values) {
+torch::Tensor ClipVisionModelImpl::embed(const torch::Tensor& pixel_values) {
     ITEM3D_CHECK(pixel_values.dim() == 4 && pixel_values.size(2) == config_.image_size &&
                      pixel_values.size(3) == config_.image_size,
                  "pixel_values must be [N, C, image_size, image_size]");
@@ -42,8 +42,11 @@ ClipVisionOutput ClipVisionModelImpl::forward(const torch::Tensor& pixel_values)
             .flatten(2)
             .transpose(1, 2);
     const torch::Tensor token = class_embedding_.expand({patches.size(0), 1, -1});
-    torch::Tensor x = pre_norm_(torch::cat({token, patches}, 1) + position_embedding_->weight);
+    return pre_norm_(torch::cat({token, patches}, 1) + position_embedding_->weight);
+}
 
+ClipVisionOutput ClipVisionModelImpl::forward(const torch::Tensor& pixel_values) {
+    torch::Tensor x = embed(pixel_values);
     ClipVisionOutput output;
     output.hidden_states.push_back(x);
     for (auto& layer : layers_) {
@@ -53,6 +56,13 @@ ClipVisionOutput ClipVisionModelImpl::forward(const torch::Tensor& pixel_values)
     output.last_hidden_state = x;
     output.pooled = post_norm_(x.select(1, 0));
     return output;
+}
+
+torch::Tensor ClipVisionModelImpl::pooled(const torch::Tensor& pixel_values) {
+    torch::Tensor x = embed(pixel_values);
+    for (std::size_t i = 0; i + 1 < layers_.size(); ++i)
+        x = layers_[i](x);
+    return post_norm_(layers_.back()->forward_first(x).select(1, 0));
 }
 
 ClipVisionWithProjectionImpl::ClipVisionWithProjectionImpl(const ClipVisionConfig& config) {

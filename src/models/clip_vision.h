@@ -47,9 +47,14 @@ class ClipVisionModelImpl : public torch::nn::Module {
     explicit ClipVisionModelImpl(const ClipVisionConfig& config);
     /// pixel_values [N, 3, image_size, image_size] as ImageProcessor makes them; differentiable.
     ClipVisionOutput forward(const torch::Tensor& pixel_values);
+    /// The `pooled` of forward() alone, which needs one token of the last layer.
+    torch::Tensor pooled(const torch::Tensor& pixel_values);
     const ClipVisionConfig& config() const { return config_; }
 
   private:
+    /// What the layers read, [N, S, D].
+    torch::Tensor embed(const torch::Tensor& pixel_values);
+
     ClipVisionConfig config_;
     torch::Tensor class_embedding_;
     torch::nn::Conv2d patch_embedding_{nullptr};

@@ -1,0 +1,138 @@
+#include "item3d/models/packable_linear.h"
+
+#include "item3d/core/error.h"
+#include "item3d/models/linear_kernel.h"
+
+#include <ATen/Functions.h>
+#include <ATen/Parallel.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+using std::int64_t;
+
+template <typename Number>
+void pack_all(const torch::Tensor& weight, const torch::Tensor& packed) {
+    const int64_t columns = weight.size(0), depth = weight.size(1);
+    const auto* from = static_cast<const Number*>(weight.data_ptr());
+    auto* to = static_cast<Number*>(packed.data_ptr());
+    const int64_t blocks = (columns + packed_columns - 1) / packed_columns;
+    at::parallel_for(0, blocks, 1, [&](int64_t first, int64_t last) {
+        pack_columns(from, depth, first * packed_columns, std::min(columns, last * packed_columns),
+                     to);
+    });
+}
+
+template <typename Number, typename Result>
+void multiply_all(const torch::Tensor& x, const torch::Tensor& packed, const ProductEnd& end,
+                  const torch::Tensor& y) {
+    // Rows of so many bytes stay in a core's cache beside the columns that they are multiplied by.
+    constexpr int64_t most_bytes = 512 << 10;
+    const int64_t rows = x.size(0), depth = x.size(1), columns = y.size(1);
+    const int64_t most_rows =
+        std::max<int64_t>(6, most_bytes / (depth * static_cast<int64_t>(sizeof(Number))) / 6 * 6);
+    const int64_t ranges = (rows + most_rows - 1) / most_rows;
+    const int64_t blocks = (columns + packed_columns - 1) / packed_columns;
+    at::parallel_for(0, ranges * blocks, 1, [&](int64_t first, int64_t last) {
+        for (int64_t task = first; task < last; ++task) {
+            const int64_t row = task / blocks * most_rows, column = task % blocks * packed_columns;
+            const MatrixPart part{row, std::min(rows, row + most_rows), column,
+                                  std::min(columns, column + packed_columns)};
+            multiply_part(static_cast<const Number*>(x.data_ptr()), depth,
+                          static_cast<const Number*>(packed.data_ptr()), end, columns, part,
+                          static_cast<Result*>(y.data_ptr()));
+        }
+    });
+}
+
+}  // namespace
+
+bool PackedMatrix::runs(torch::Device device, torch::Dtype dtype) {
+    static const bool float_runs = matrix_kernel_runs<float>();
+    static const bool bfloat_runs = matrix_kernel_runs<BrainFloat>();
+    return device.is_cpu() &&
+           ((dtype == torch::kFloat32 && float_runs) || (dtype == torch::kBFloat16 && bfloat_runs));
+}
+
+bool PackedMatrix::fits(const torch::Tensor& weight) {
+    constexpr int64_t lanes = 16;  // that packing reads at a time
+    return weight.dim() == 2 && weight.size(1) % lanes == 0 && weight.numel() > 0;
+}
+
+PackedMatrix::PackedMatrix(const torch::Tensor& weight, torch::Dtype dtype)
+    : columns_(weight.size(0)), depth_(weight.size(1)) {
+    ITEM3D_CHECK(runs(weight.device(), dtype) && fits(weight), "these weights cannot be packed");
+    const torch::Tensor rounded = weight.detach().to(dtype).contiguous();
+    packed_ = torch::empty({packed_size(columns_, depth_)}, rounded.options());
+    (dtype == torch::kBFloat16 ? pack_all<BrainFloat> : pack_all<float>)(rounded, packed_);
+}
+
+torch::Tensor PackedMatrix::multiply(const torch::Tensor& x, const torch::Tensor& bias,
+                                     const LinearEnd& end) const {
+    ITEM3D_CHECK(x.size(-1) == depth_, "x must be [..., I]");
+    const auto floats = [](const torch::Tensor& values) -> const float* {
+        ITEM3D_CHECK(!values.defined() ||
+                         (values.scalar_type() == torch::kFloat32 && values.is_contiguous()),
+                     "what is added must be float32");
+        return values.defined() ? values.const_data_ptr<float>() : nullptr;
+    };
+    std::vector<int64_t> sizes = x.sizes().vec();
+    sizes.back() = columns_;
+    const torch::Tensor rows = x.detach().reshape({-1, depth_}).to(dtype()).contiguous();
+    const torch::Tensor y =
+        torch::empty(sizes, x.options().dtype(end.rounded ? dtype() : torch::kFloat32));
+    const torch::Tensor added = end.added.defined() ? end.added.contiguous() : end.added;
+    ITEM3D_CHECK(!added.defined() || added.sizes() == y.sizes(), "added must be [..., O]");
+    const ProductEnd finish{floats(bias), end.activation, floats(added)};
+    const auto run = dtype() == torch::kFloat32 ? multiply_all<float, float>
+                     : end.rounded              ? multiply_all<BrainFloat, BrainFloat>
+                                                : multiply_all<BrainFloat, float>;
+    run(rows, packed_, finish, y.view({-1, columns_}));
+    return y;
+}
+
+torch::Tensor PackedMatrix::unpacked() const {
+    const int64_t group = packed_.scalar_type() == torch::kBFloat16 ? 2 : 1;
+    return packed_.view({-1, depth_ / group, packed_columns, group})
+        .permute({0, 2, 1, 3})
+        .reshape({-1, depth_})
+        .narrow(0, 0, columns_);
+}
+
+bool PackableLinearImpl::multiplies_packed(const torch::Tensor& x) const {
+    return packed_ && !(torch::GradMode::is_enabled() && x.requires_grad());
+}
+
+torch::Tensor PackableLinearImpl::as_read(const torch::Tensor& x) const {
+    return multiplies_packed(x) ? x.to(packed_->dtype()) : x;
+}
+
+torch::Tensor PackableLinearImpl::forward(const torch::Tensor& x, const LinearEnd& end) {
+    if (multiplies_packed(x)) return packed_->multiply(x, bias, end);
+    torch::Tensor y = packed_ ? at::linear(x, packed_->unpacked().to(x.scalar_type()), bias)
+                              : LinearImpl::forward(x);
+    if (end.activation == LinearActivation::gelu) y = torch::gelu(y);
+    if (end.activation == LinearActivation::quick_gelu) y = y * torch::sigmoid(1.702 * y);
+    return end.added.defined() ? end.added + y : y;
+}
+
+void PackableLinearImpl::pack(torch::Dtype dtype) {
+    if (packed_ || !PackedMatrix::runs(weight.device(), dtype) || !PackedMatrix::fits(weight))
+        return;
+    ITEM3D_CHECK(weight.scalar_type() == torch::kFloat32 && !weight.requires_grad(),
+                 "weights that are packed must be in float32 and stay as they are");
+    packed_.emplace(weight, dtype);
+    weight.set_data(torch::empty({0}, weight.options()));
+}
+
+void pack_linear_layers(const torch::nn::Module& module, torch::Dtype dtype) {
+    for (const auto& part : module.modules())
+        if (const auto layer = std::dynamic_pointer_cast<PackableLinearImpl>(part))
+            layer->pack(dtype);
+}
+
+}  // namespace item3d
