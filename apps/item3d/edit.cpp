@@ -6,6 +6,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/edit/reconstructed_light.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/models/precision.h"
 #include "item3d/prior/vocabulary.h"
@@ -154,6 +155,11 @@ void run_edit(EditCommandOptions& options) {
     options.overrides["to"] = options.to;
     if (options.overrides.value("keep", nlohmann::json()) == nlohmann::json::array({"nothing"})) {
         options.overrides["keep"] = nlohmann::json::array();
+    }
+    const auto light = reconstructed_light(request.model);
+    if (!light.empty() && !options.overrides.contains("light")) {
+        note("light: " + light.string() + ", found with the model (--light takes another)");
+        options.overrides["light"] = light.string();
     }
     request.settings = resolve_settings(request.prior, options.overrides);
     warn_of_words(request, request.settings);

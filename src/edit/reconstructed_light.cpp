@@ -1,0 +1,14 @@
+#include "item3d/edit/reconstructed_light.h"
+
+namespace item3d {
+
+std::filesystem::path reconstructed_light(const std::filesystem::path& model) {
+    const std::filesystem::path folder = model.parent_path(), light = folder / "light.hdr";
+    std::error_code ignored;
+    const bool is_there = model.filename() == "model.glb" &&
+                          std::filesystem::is_regular_file(folder / "reconstruct.json", ignored) &&
+                          std::filesystem::is_regular_file(light, ignored);
+    return is_there ? light : std::filesystem::path();
+}
+
+}  // namespace item3d

@@ -1,0 +1,32 @@
+#include "item3d/core/files.h"
+#include "item3d/edit/reconstructed_light.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+namespace item3d {
+namespace {
+
+TEST(ReconstructedLight, LiesBesideAReconstructedModelAlone) {
+    const auto folder = std::filesystem::temp_directory_path() /
+                        ("item3d-reconstructed-light-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    const auto write = [&](const char* name) {
+        write_atomically(folder / name, std::string_view("{}"));
+    };
+    write("model.glb");
+    write("light.hdr");  // as `item3d relight` leaves them too
+    EXPECT_TRUE(reconstructed_light(folder / "model.glb").empty());
+    write("reconstruct.json");
+    EXPECT_EQ(reconstructed_light(folder / "model.glb"), folder / "light.hdr");
+    EXPECT_TRUE(reconstructed_light(folder / "other.glb").empty());
+    std::filesystem::remove(folder / "light.hdr");
+    EXPECT_TRUE(reconstructed_light(folder / "model.glb").empty());
+    std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace item3d
