@@ -21,14 +21,6 @@ GuidanceOptions narrowed(GuidanceOptions options, double progress) {
 
 }  // namespace
 
-ClassifierScore::ClassifierScore(std::shared_ptr<const Pipeline> pipeline,
-                                 const std::string& target_prompt, const GuidanceOptions& options)
-    : pipeline_(std::move(pipeline)),
-      options_(options),
-      target_text_(pipeline_->encode_text({target_prompt})),
-      no_text_(pipeline_->encode_no_text()),
-      negative_text_(encode_negative(*pipeline_, options)) {}
-
 GuidanceOutput ClassifierScore::step(const GuidanceInput& input, std::int64_t iteration) {
     const double progress = progress_of(options_, iteration);
     const NoisedLatents start =

@@ -6,22 +6,14 @@
 // timesteps are clamped into 0.2 .. 0.8 in the first quarter of the edit and 0.02 .. 0.5 after it.
 #pragma once
 
-#include "item3d/guidance/guidance.h"
+#include "item3d/guidance/target_guidance.h"
 
 namespace item3d {
 
-class ClassifierScore : public Guidance {
+class ClassifierScore : public NegativeGuidance {
   public:
-    ClassifierScore(std::shared_ptr<const Pipeline> pipeline, const std::string& target_prompt,
-                    const GuidanceOptions& options);
+    using NegativeGuidance::NegativeGuidance;
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
-
-  private:
-    std::shared_ptr<const Pipeline> pipeline_;
-    GuidanceOptions options_;
-    TextEmbedding target_text_;  ///< one row each
-    TextEmbedding no_text_;
-    TextEmbedding negative_text_;
 };
 
 }  // namespace item3d

@@ -23,13 +23,6 @@ GuidanceOptions warmed_up(GuidanceOptions options, double warm_up) {
 
 }  // namespace
 
-IntervalScore::IntervalScore(std::shared_ptr<const Pipeline> pipeline,
-                             const std::string& target_prompt, const GuidanceOptions& options)
-    : pipeline_(std::move(pipeline)),
-      options_(options),
-      target_text_(pipeline_->encode_text({target_prompt})),
-      base_text_(encode_base(*pipeline_, options)) {}
-
 GuidanceOutput IntervalScore::step(const GuidanceInput& input, std::int64_t iteration) {
     const double warm_up = std::max(0.0, 1 - progress_of(options_, iteration) / warm_up_part);
     const NoisedLatents start =

@@ -7,21 +7,14 @@
 // used; a negative prompt takes the place of the empty one.
 #pragma once
 
-#include "item3d/guidance/guidance.h"
+#include "item3d/guidance/target_guidance.h"
 
 namespace item3d {
 
-class IntervalScore : public Guidance {
+class IntervalScore : public TargetGuidance {
   public:
-    IntervalScore(std::shared_ptr<const Pipeline> pipeline, const std::string& target_prompt,
-                  const GuidanceOptions& options);
+    using TargetGuidance::TargetGuidance;
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
-
-  private:
-    std::shared_ptr<const Pipeline> pipeline_;
-    GuidanceOptions options_;
-    TextEmbedding target_text_;  ///< one row each
-    TextEmbedding base_text_;    ///< none, or the negative prompt
 };
 
 }  // namespace item3d

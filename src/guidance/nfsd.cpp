@@ -10,15 +10,6 @@ constexpr std::int64_t little_noise = 200;  ///< of 1000: below it, eps(empty) i
 
 }  // namespace
 
-NoiseFreeDistillation::NoiseFreeDistillation(std::shared_ptr<const Pipeline> pipeline,
-                                             const std::string& target_prompt,
-                                             const GuidanceOptions& options)
-    : pipeline_(std::move(pipeline)),
-      options_(options),
-      target_text_(pipeline_->encode_text({target_prompt})),
-      no_text_(pipeline_->encode_no_text()),
-      negative_text_(encode_negative(*pipeline_, options)) {}
-
 GuidanceOutput NoiseFreeDistillation::step(const GuidanceInput& input, std::int64_t iteration) {
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
     const double before = seconds_now();

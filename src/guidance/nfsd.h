@@ -5,22 +5,14 @@
 // so that an ordinary w will do. The source prompt is not used.
 #pragma once
 
-#include "item3d/guidance/guidance.h"
+#include "item3d/guidance/target_guidance.h"
 
 namespace item3d {
 
-class NoiseFreeDistillation : public Guidance {
+class NoiseFreeDistillation : public NegativeGuidance {
   public:
-    NoiseFreeDistillation(std::shared_ptr<const Pipeline> pipeline,
-                          const std::string& target_prompt, const GuidanceOptions& options);
+    using NegativeGuidance::NegativeGuidance;
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
-
-  private:
-    std::shared_ptr<const Pipeline> pipeline_;
-    GuidanceOptions options_;
-    TextEmbedding target_text_;  ///< one row each
-    TextEmbedding no_text_;
-    TextEmbedding negative_text_;
 };
 
 }  // namespace item3d

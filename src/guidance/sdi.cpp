@@ -20,14 +20,6 @@ double alpha_of_level(const Pipeline& pipeline, std::int64_t level) {
 
 }  // namespace
 
-InversionDistillation::InversionDistillation(std::shared_ptr<const Pipeline> pipeline,
-                                             const std::string& target_prompt,
-                                             const GuidanceOptions& options)
-    : pipeline_(std::move(pipeline)),
-      options_(options),
-      target_text_(pipeline_->encode_text({target_prompt})),
-      base_text_(encode_base(*pipeline_, options)) {}
-
 std::vector<std::int64_t> InversionDistillation::inversion_levels(std::int64_t t,
                                                                   double draw) const {
     const std::int64_t training_steps = pipeline_->scheduler.alphas_cumprod().size(0);

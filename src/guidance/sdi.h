@@ -8,13 +8,13 @@
 #pragma once
 
 #include "item3d/guidance/noised_latents.h"
+#include "item3d/guidance/target_guidance.h"
 
 namespace item3d {
 
-class InversionDistillation : public Guidance {
+class InversionDistillation : public TargetGuidance {
   public:
-    InversionDistillation(std::shared_ptr<const Pipeline> pipeline,
-                          const std::string& target_prompt, const GuidanceOptions& options);
+    using TargetGuidance::TargetGuidance;
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
 
     /// The timesteps that the inversion to t walks along, rising: the strides below t, one before
@@ -24,11 +24,6 @@ class InversionDistillation : public Guidance {
 
   private:
     torch::Tensor invert(const NoisedLatents& start, std::int64_t t, std::int64_t iteration) const;
-
-    std::shared_ptr<const Pipeline> pipeline_;
-    GuidanceOptions options_;
-    TextEmbedding target_text_;  ///< one row each
-    TextEmbedding base_text_;    ///< none, or the negative prompt
 };
 
 }  // namespace item3d

@@ -4,14 +4,6 @@
 
 namespace item3d {
 
-ScoreDistillation::ScoreDistillation(std::shared_ptr<const Pipeline> pipeline,
-                                     const std::string& target_prompt,
-                                     const GuidanceOptions& options)
-    : pipeline_(std::move(pipeline)),
-      options_(options),
-      target_text_(pipeline_->encode_text({target_prompt})),
-      base_text_(encode_base(*pipeline_, options)) {}
-
 GuidanceOutput ScoreDistillation::step(const GuidanceInput& input, std::int64_t iteration) {
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
     const double before = seconds_now();

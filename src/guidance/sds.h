@@ -3,21 +3,14 @@
 // with the negative prompt n, empty by default. The source prompt is not used.
 #pragma once
 
-#include "item3d/guidance/guidance.h"
+#include "item3d/guidance/target_guidance.h"
 
 namespace item3d {
 
-class ScoreDistillation : public Guidance {
+class ScoreDistillation : public TargetGuidance {
   public:
-    ScoreDistillation(std::shared_ptr<const Pipeline> pipeline, const std::string& target_prompt,
-                      const GuidanceOptions& options);
+    using TargetGuidance::TargetGuidance;
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
-
-  private:
-    std::shared_ptr<const Pipeline> pipeline_;
-    GuidanceOptions options_;
-    TextEmbedding target_text_;  ///< one row each
-    TextEmbedding base_text_;    ///< none, or the negative prompt
 };
 
 }  // namespace item3d
