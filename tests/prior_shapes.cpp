@@ -79,9 +79,9 @@ TEST(PriorShapes, EveryClassFitsTheGridAndVaries) {
 }
 
 TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
-    const std::vector<View> views = make_views("ball", 3, 3, 9, 48);
+    const std::vector<ShapeView> views = make_views("ball", 3, 3, 9, 48);
     ASSERT_EQ(views.size(), 3u);
-    for (const View& view : views) {
+    for (const ShapeView& view : views) {
         int low = view_size, high = 0;
         for (std::size_t i = 0; i < view.count(); ++i) {
             low = std::min<int>(low, view.pixel[i] % view_size);

@@ -208,7 +208,7 @@ TEST(ShippedNetworks, TellHeldOutShapesApart) {
     LabeledPictures pictures;
     std::vector<torch::Tensor> images;
     for (const char* shape : {"mug", "vase", "chair", "snowman"}) {
-        const std::vector<View> views = make_views(shape, shape_variants - 1, 6, 3, 64);
+        const std::vector<ShapeView> views = make_views(shape, shape_variants - 1, 6, 3, 64);
         for (std::size_t i = 0; i < views.size(); ++i) {
             ExampleWish wish;
             wish.material = materials[i];

@@ -45,8 +45,8 @@ torch::Tensor inner(const torch::Tensor& coverage) {
 }
 
 /// What the prior would rather see from here, with the coarse part of the picture as it is.
-torch::Tensor wanted_picture(const EditScene& scene, const EditSettings& settings, const View& view,
-                             int index) {
+torch::Tensor wanted_picture(const EditScene& scene, const EditSettings& settings,
+                             const EditView& view, int index) {
     const Pipeline& prior = *scene.prior;
     const torch::Tensor latents = prior.encode_image(view.images * 2 - 1);
     GenerateOptions options;
@@ -70,7 +70,7 @@ torch::Tensor wanted_picture(const EditScene& scene, const EditSettings& setting
 
 /// How far the channels that the stage leaves alone have moved; the field's features are shared by
 /// all of them.
-torch::Tensor drift(const EditScene& scene, const View& view, NeuralTexture& before) {
+torch::Tensor drift(const EditScene& scene, const EditView& view, NeuralTexture& before) {
     const MaterialSample was = [&] {
         const torch::NoGradGuard no_grad;
         return scene.source->sample(view.surface, before);
@@ -82,7 +82,7 @@ torch::Tensor drift(const EditScene& scene, const View& view, NeuralTexture& bef
 
 void fit_step(const EditScene& scene, const EditSettings& settings, EditState& state,
               std::int64_t chosen, std::uint64_t draw) {
-    const View view =
+    const EditView view =
         render_view(scene, settings, state.field, {1, settings.iterations + chosen, spread, draw});
     const torch::Tensor weight = inner(view.coverage);
     const torch::Tensor target = state.detail.targets[static_cast<std::size_t>(chosen)];
@@ -97,7 +97,7 @@ void run_view(const EditScene& scene, const EditSettings& settings, EditState& s
     const auto index = static_cast<int>(state.detail.targets.size());
     {
         const torch::NoGradGuard no_grad;
-        const View view = render_view(scene, settings, state.field, {1, state.iteration});
+        const EditView view = render_view(scene, settings, state.field, {1, state.iteration});
         state.detail.targets.push_back(wanted_picture(scene, settings, view, index));
     }
     for (int i = 0; i < fits; ++i) {

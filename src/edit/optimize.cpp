@@ -64,7 +64,7 @@ GuidanceInput look(const EditScene& scene, const EditSettings& settings, EditSta
         light = prefilter(state.light->cube(optimized_light_size).to(scene.device));
         options.light = &light;
     }
-    const View view = render_view(scene, settings, state.field, options);
+    const EditView view = render_view(scene, settings, state.field, options);
     GuidanceInput input{view.images, view.depth};
     if (state.guidance->needs_reference()) {
         const torch::NoGradGuard no_grad;

@@ -26,8 +26,8 @@ torch::Tensor offsets(const torch::Tensor& positions, const EditScene& scene,
 
 }  // namespace
 
-View render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
-                 const ViewOptions& options) {
+EditView render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
+                     const ViewOptions& options) {
     const int scale = supersampling(settings.resolution);
     const int size = settings.resolution * scale;
     const auto cameras =
@@ -37,7 +37,7 @@ View render_view(const EditScene& scene, const EditSettings& settings, NeuralTex
 
     const Raster raster = rasterize(scene.geometry, cameras, size, size);
     const Surface surface = interpolate_surface(scene.geometry, raster, cameras);
-    View view;
+    EditView view;
     view.depth = raster.depth;
     view.surface = surface;
     if (options.spread > 0) {

@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-struct View {
+struct EditView {
     torch::Tensor images;     ///< [N, 3, R, R] sRGB, differentiable in the field
     torch::Tensor depth;      ///< [N, R', R'] z-depth, 0: background; R' is R or finer
     torch::Tensor coverage;   ///< [N, 1, R, R] 0 .. 1, how much of each pixel the model covers
@@ -27,7 +27,7 @@ struct ViewOptions {
     const EnvironmentLight* light = nullptr;  ///< null: what the scene's lights have for it
 };
 
-View render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
-                 const ViewOptions& options);
+EditView render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
+                     const ViewOptions& options);
 
 }  // namespace item3d

@@ -118,9 +118,9 @@ class Measurement {
     }
 
   private:
-    const View& pick_view(Random& random, const std::string& shape_class) const {
+    const ShapeView& pick_view(Random& random, const std::string& shape_class) const {
         for (;;) {
-            const View& view = views_[static_cast<std::size_t>(
+            const ShapeView& view = views_[static_cast<std::size_t>(
                 random.index(static_cast<std::int64_t>(views_.size())))];
             if (shape_class.empty() ||
                 shape_classes()[static_cast<std::size_t>(view.shape_class)].name == shape_class)
@@ -133,7 +133,7 @@ class Measurement {
         const VocabularyEntry& entry = entries[truth];
         Random random(options_.seed,
                       mix_bits(std::uint64_t{1} + truth) + static_cast<std::uint64_t>(job));
-        const View& view = pick_view(random, entry.shape_class);
+        const ShapeView& view = pick_view(random, entry.shape_class);
         ExampleWish wish;
         wish.plain_background = true;
         wish.light = &lights_.at(entry.light.empty() ? "plain" : entry.light);
@@ -182,7 +182,7 @@ class Measurement {
 
     const Pipeline& pipeline_;
     MeasureOptions options_;
-    std::vector<View> views_;
+    std::vector<ShapeView> views_;
     std::map<std::string, TrainingLight> lights_;
 };
 

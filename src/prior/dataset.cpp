@@ -34,8 +34,8 @@ Background random_background(Random& random, const std::string& light) {
     return {glm::clamp(color, 0.0f, 1.0f), glm::clamp(other, 0.0f, 1.0f)};
 }
 
-torch::Tensor to_image(const View& view, const torch::Tensor& encoded, const Background& background,
-                       bool mirrored, torch::Tensor& covered) {
+torch::Tensor to_image(const ShapeView& view, const torch::Tensor& encoded,
+                       const Background& background, bool mirrored, torch::Tensor& covered) {
     torch::Tensor image = torch::empty({picture_size, picture_size, 3});
     covered = torch::zeros({picture_size, picture_size});
     auto* out = image.data_ptr<float>();
@@ -65,7 +65,7 @@ torch::Tensor to_image(const View& view, const torch::Tensor& encoded, const Bac
 
 }  // namespace
 
-ExampleSource::ExampleSource(std::vector<View> views, std::vector<TrainingLight> lights,
+ExampleSource::ExampleSource(std::vector<ShapeView> views, std::vector<TrainingLight> lights,
                              std::uint64_t seed)
     : views_(std::move(views)), lights_(std::move(lights)), seed_(seed) {
     ITEM3D_CHECK(!views_.empty() && !lights_.empty(), "examples need views and lights");
@@ -78,8 +78,8 @@ Example ExampleSource::draw(std::int64_t index) const {
     return draw_example(random, views_[view], lights_);
 }
 
-Example draw_example(Random& random, const View& view, const std::vector<TrainingLight>& lights,
-                     const ExampleWish& wish) {
+Example draw_example(Random& random, const ShapeView& view,
+                     const std::vector<TrainingLight>& lights, const ExampleWish& wish) {
     ITEM3D_CHECK(wish.light || !lights.empty(), "an example needs a light");
     const torch::NoGradGuard no_grad;
     const ProceduralMaterial material = make_material(random, wish.material);

@@ -34,21 +34,22 @@ struct ExampleWish {
 };
 
 /// Draws an example of that view: its material and, unless the wish names one, its light.
-Example draw_example(Random& random, const View& view, const std::vector<TrainingLight>& lights,
-                     const ExampleWish& wish = {});
+Example draw_example(Random& random, const ShapeView& view,
+                     const std::vector<TrainingLight>& lights, const ExampleWish& wish = {});
 
 /// Draws examples from views and lights; safe to use from several threads.
 class ExampleSource {
   public:
-    ExampleSource(std::vector<View> views, std::vector<TrainingLight> lights, std::uint64_t seed);
+    ExampleSource(std::vector<ShapeView> views, std::vector<TrainingLight> lights,
+                  std::uint64_t seed);
 
     /// The example of that index depends on the seed and the index alone.
     Example draw(std::int64_t index) const;
 
-    const std::vector<View>& views() const { return views_; }
+    const std::vector<ShapeView>& views() const { return views_; }
 
   private:
-    std::vector<View> views_;
+    std::vector<ShapeView> views_;
     std::vector<TrainingLight> lights_;
     std::uint64_t seed_;
 };

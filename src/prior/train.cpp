@@ -9,6 +9,7 @@
 #include "item3d/prior/export.h"
 #include "item3d/prior/replicas.h"
 #include "item3d/prior/tokenizer_training.h"
+#include "item3d/prior/training_loop.h"
 #include "item3d/prior/workers.h"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ void stop_if_interrupted(const TrainSettings& settings) {
 
 ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLight> lights,
                           bool held_out) {
-    std::vector<View> views = make_view_pool(
+    std::vector<ShapeView> views = make_view_pool(
         held_out, settings.shape_variants, settings.views_each,
         seed_of(settings, held_out ? held_out_stream : view_stream), settings.replicas);
     stop_if_interrupted(settings);
@@ -192,6 +193,20 @@ Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) 
 }
 
 }  // namespace
+
+LoopOptions loop_options(const TrainSettings& settings, const std::string& label,
+                         const std::string& checkpoint) {
+    LoopOptions options;
+    options.label = label;
+    options.checkpoint = settings.work / checkpoint;
+    options.learning_rate = settings.learning_rate;
+    options.seed = settings.seed;
+    options.resume = settings.resume;
+    options.stop_after = settings.stop_after;
+    options.checkpoint_seconds = settings.checkpoint_seconds;
+    options.export_seconds = settings.export_seconds;
+    return options;
+}
 
 std::vector<WordCount> prior_words(const TrainSettings& settings) {
     return caption_vocabulary(seed_of(settings, vocabulary_stream));

@@ -17,6 +17,8 @@
 
 namespace item3d {
 
+struct LoopOptions;
+
 struct TrainSettings {
     std::filesystem::path output;        ///< the diffusers folder
     std::filesystem::path work;          ///< data, checkpoints; may be deleted afterwards
@@ -39,6 +41,11 @@ struct TrainSettings {
     double checkpoint_seconds = 120;
     double export_seconds = 600;
 };
+
+/// What all training loops take from the settings; samples and rows are the caller's to say.
+/// checkpoint: the file's name.
+LoopOptions loop_options(const TrainSettings& settings, const std::string& label,
+                         const std::string& checkpoint);
 
 /// The words that all tokenizers are made of.
 std::vector<WordCount> prior_words(const TrainSettings& settings);

@@ -115,18 +115,10 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
                                                       step, rank);
                             }});
     }
-    LoopOptions options;
-    options.label = "prior";
-    options.checkpoint = settings.work / "checkpoint.safetensors";
+    LoopOptions options = loop_options(settings, "prior", "checkpoint.safetensors");
     options.samples = settings.samples;
     options.rows = data.latents.size(0);
     options.batch = settings.batch;
-    options.learning_rate = settings.learning_rate;
-    options.seed = settings.seed;
-    options.resume = settings.resume;
-    options.stop_after = settings.stop_after;
-    options.checkpoint_seconds = settings.checkpoint_seconds;
-    options.export_seconds = settings.export_seconds;
     TrainingLoop loop(options, std::move(replicas));
 
     const Networks exported = make_networks(settings, config);

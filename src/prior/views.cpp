@@ -66,8 +66,8 @@ float ambient_occlusion(const SignedDistance& distance, const Polygonized& mesh,
 
 }  // namespace
 
-std::vector<View> make_views(const std::string& shape_class, int variant, int count,
-                             std::uint64_t seed, int resolution) {
+std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
+                                  std::uint64_t seed, int resolution) {
     const torch::NoGradGuard no_grad;
     const SignedDistance distance = make_shape(shape_class, variant);
     const Polygonized mesh = polygonize(distance, resolution);
@@ -87,7 +87,7 @@ std::vector<View> make_views(const std::string& shape_class, int variant, int co
     const torch::Tensor depth =
         depth_condition(raster.depth, view_size / latent_size);  // [N, 1, h, w]
 
-    std::vector<View> views(cameras.size());
+    std::vector<ShapeView> views(cameras.size());
     for (std::size_t i = 0; i < views.size(); ++i) {
         views[i].shape_class = index;
         views[i].variant = variant;
@@ -102,7 +102,7 @@ std::vector<View> make_views(const std::string& shape_class, int variant, int co
     const auto* normal = normals.data_ptr<float>();
     for (std::int64_t i = 0; i < surface.count(); ++i) {
         constexpr std::int64_t area = view_size * view_size;
-        View& view = views[static_cast<std::size_t>(pixel[i] / area)];
+        ShapeView& view = views[static_cast<std::size_t>(pixel[i] / area)];
         const Vec3 p(position[3 * i], position[3 * i + 1], position[3 * i + 2]);
         const Vec3 n(normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]);
         view.pixel.push_back(static_cast<std::uint16_t>(pixel[i] % area));
@@ -113,7 +113,7 @@ std::vector<View> make_views(const std::string& shape_class, int variant, int co
         view.occlusion.push_back(
             static_cast<std::uint8_t>(ambient_occlusion(distance, mesh, p, n) * 255.0f + .5f));
     }
-    for (View& view : views) {
+    for (ShapeView& view : views) {
         view.pixel.shrink_to_fit();
         view.position.shrink_to_fit();
         view.normal.shrink_to_fit();
@@ -122,8 +122,8 @@ std::vector<View> make_views(const std::string& shape_class, int variant, int co
     return views;
 }
 
-std::vector<View> make_view_pool(bool held_out, int variants, int views_each, std::uint64_t seed,
-                                 int threads) {
+std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_each,
+                                      std::uint64_t seed, int threads) {
     struct Job {
         std::string shape_class;
         int variant;
@@ -135,7 +135,7 @@ std::vector<View> make_view_pool(bool held_out, int variants, int views_each, st
         for (int i = first; i < std::min(end, first + variants); ++i)
             jobs.push_back({each.name, i});
     }
-    std::vector<std::vector<View>> made(jobs.size());
+    std::vector<std::vector<ShapeView>> made(jobs.size());
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
     Progress progress(held_out ? "held-out shapes" : "shapes",
@@ -147,9 +147,9 @@ std::vector<View> make_view_pool(bool held_out, int variants, int views_each, st
         const std::lock_guard lock(mutex);
         progress.update(++done);
     });
-    std::vector<View> pool;
-    for (std::vector<View>& views : made)
-        for (View& view : views)
+    std::vector<ShapeView> pool;
+    for (std::vector<ShapeView>& views : made)
+        for (ShapeView& view : views)
             pool.push_back(std::move(view));
     return pool;
 }

@@ -20,7 +20,7 @@ inline constexpr int latent_size = 16;
 
 /// One view of one shape, covered pixels alone (P of them), 15 bytes a pixel. Coordinates are the
 /// shape's own, scaled into the unit sphere.
-struct View {
+struct ShapeView {
     int shape_class = 0;  ///< index into shape_classes()
     int variant = 0;
     Vec3 camera{0.0f};                    ///< position
@@ -42,13 +42,13 @@ struct View {
 
 /// `count` views of one shape from random cameras all around: elevation -10..50 degrees,
 /// horizontal field of view 25..45 degrees, the shape filling 60 to 95 % of the picture.
-std::vector<View> make_views(const std::string& shape_class, int variant, int count,
-                             std::uint64_t seed, int resolution = 96);
+std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
+                                  std::uint64_t seed, int resolution = 96);
 
 /// Views of every shape that is for training, or of every one that is held out (variants from
 /// training_variants on, and whole classes), in a fixed order. variants: at most this many of each
 /// class. Returns what there is after an interrupt.
-std::vector<View> make_view_pool(bool held_out, int variants, int views_each, std::uint64_t seed,
-                                 int threads);
+std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_each,
+                                      std::uint64_t seed, int threads);
 
 }  // namespace item3d

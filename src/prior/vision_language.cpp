@@ -62,8 +62,9 @@ void prepare_labeled(const TrainSettings& settings) {
     std::vector<TrainingLight> lights =
         make_training_lights(mix_bits(seed + 11), settings.lights, settings.replicas);
     stop_here_if_interrupted(settings);
-    std::vector<View> views = make_view_pool(false, settings.shape_variants, settings.views_each,
-                                             mix_bits(seed + 12), settings.replicas);
+    std::vector<ShapeView> views =
+        make_view_pool(false, settings.shape_variants, settings.views_each, mix_bits(seed + 12),
+                       settings.replicas);
     stop_here_if_interrupted(settings);
     const ExampleSource source(std::move(views), std::move(lights), mix_bits(seed + 13));
     const LabeledPictures seen = draw_labeled(source, settings.labeled_samples, settings.replicas);
@@ -90,18 +91,10 @@ torch::Tensor augment(const torch::Tensor& pixel_values, Random& random) {
 
 LoopOptions vision_language_loop(const std::string& name, const TrainSettings& settings,
                                  std::int64_t samples, const LabeledPictures& data) {
-    LoopOptions options;
-    options.label = name;
-    options.checkpoint = settings.work / (name + "_checkpoint.safetensors");
+    LoopOptions options = loop_options(settings, name, name + "_checkpoint.safetensors");
     options.samples = samples;
     options.rows = data.count();
-    options.learning_rate = settings.learning_rate;
     options.rise = std::min(30000.0, static_cast<double>(samples) / 8);
-    options.seed = settings.seed;
-    options.resume = settings.resume;
-    options.stop_after = settings.stop_after;
-    options.checkpoint_seconds = settings.checkpoint_seconds;
-    options.export_seconds = settings.export_seconds;
     return options;
 }
 

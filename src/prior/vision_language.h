@@ -43,6 +43,7 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
 /// Pictures [N, 3, picture_size, picture_size] as the networks see them in training: [N, 3,
 /// read_size, read_size], each mirrored or not, all of them either shrunken or a random part.
 torch::Tensor augment(const torch::Tensor& pixel_values, Random& random);
+/// As loop_options(), with the rise that these networks want.
 LoopOptions vision_language_loop(const std::string& name, const TrainSettings& settings,
                                  std::int64_t samples, const LabeledPictures& data);
 nlohmann::json loop_summary(const LoopRecord& record, std::int64_t parameters,
