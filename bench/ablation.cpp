@@ -12,6 +12,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/find_prior.h"
+#include "suite_models.h"
 
 #include <ATen/Parallel.h>
 #include <CLI/CLI.hpp>
@@ -125,14 +126,8 @@ int main(int argc, char** argv) {
     try {
         omp_set_num_threads(threads);
         at::set_num_threads(threads);
-        const auto assets = item3d::assets_folder();
         options.prior = item3d::find_prior(options.prior.string());
-        options.meshes["mug"] = assets / "demo" / "mug.glb";
-        for (const std::string& mesh : meshes) {
-            const auto split = mesh.find('=');
-            if (split == std::string::npos) throw item3d::UsageError("--mesh takes NOUN=FILE");
-            options.meshes[mesh.substr(0, split)] = mesh.substr(split + 1);
-        }
+        options.meshes = item3d::suite_meshes(meshes);
         if (!options.report_only) item3d::run_jobs(options);
         item3d::write_ablation_report(options, item3d::finished(options));
     } catch (const item3d::Error& error) {

@@ -19,6 +19,7 @@
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 #include "suite_cases.h"
+#include "suite_models.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -175,14 +176,8 @@ int main(int argc, char** argv) {
     app.add_option("--seed", options.seed, "Seed of the edits");
     CLI11_PARSE(app, argc, argv);
     try {
-        const auto assets = item3d::assets_folder();
         options.prior = item3d::find_prior(options.prior.string());
-        options.meshes["mug"] = assets / "demo" / "mug.glb";
-        for (const std::string& mesh : meshes) {
-            const auto split = mesh.find('=');
-            if (split == std::string::npos) throw item3d::UsageError("--mesh takes NOUN=FILE");
-            options.meshes[mesh.substr(0, split)] = mesh.substr(split + 1);
-        }
+        options.meshes = item3d::suite_meshes(meshes);
         item3d::run_suite(options);
     } catch (const item3d::Error& error) {
         fmt::print(stderr, "edit_suite: error: {}\n", error.what());

@@ -1,12 +1,25 @@
 #include "suite_models.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 #include "item3d/field/fill.h"
 #include "item3d/field/uv_raster.h"
 
 #include <cmath>
 
 namespace item3d {
+
+std::map<std::string, std::filesystem::path> suite_meshes(const std::vector<std::string>& named) {
+    std::map<std::string, std::filesystem::path> meshes{
+        {"mug", assets_folder() / "demo" / "mug.glb"}};
+    for (const std::string& mesh : named) {
+        const auto split = mesh.find('=');
+        if (split == std::string::npos) throw UsageError("--mesh takes NOUN=FILE");
+        meshes[mesh.substr(0, split)] = mesh.substr(split + 1);
+    }
+    return meshes;
+}
+
 namespace {
 
 constexpr int texture_size = 1024;

@@ -5,8 +5,14 @@
 #include "item3d/scene/model.h"
 
 #include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace item3d {
+
+/// The demo mug, and those that were named as NOUN=FILE, by noun. Throws UsageError.
+std::map<std::string, std::filesystem::path> suite_meshes(const std::vector<std::string>& named);
 
 /// The mesh with one material of this base colour (linear), roughness 0.5, no metal, no textures.
 Model plain_model(const Model& mesh, Vec3 base_color);
