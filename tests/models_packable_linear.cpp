@@ -13,7 +13,7 @@ double error_of(const torch::Tensor& actual, const torch::Tensor& exact) {
     return (exactly(actual.detach()) - exactly(exact.detach())).abs().max().item<double>();
 }
 
-PackableLinear frozen_layer(int in, int out) {
+PackableLinear packed_layer(int in, int out) {
     torch::manual_seed(in + out);
     PackableLinear layer(in, out);
     for (torch::Tensor& parameter : layer->parameters())
@@ -39,7 +39,7 @@ TEST_P(Packed, MultipliesTheRoundedNumbersInFloat) {
     // Rows and columns that fill whole tiles, cut tiles, and one row alone.
     for (const auto& [rows, in, out] : {std::tuple(12, 64, 128), std::tuple(7, 48, 70),
                                         std::tuple(1, 16, 5), std::tuple(700, 1024, 65)}) {
-        PackableLinear layer = frozen_layer(in, out);
+        PackableLinear layer = packed_layer(in, out);
         const torch::Tensor weight = layer->weight.clone(), bias = layer->bias;
         layer->pack(GetParam());
         EXPECT_EQ(layer->weight.numel(), 0);
@@ -53,7 +53,7 @@ TEST_P(Packed, MultipliesTheRoundedNumbersInFloat) {
 
 TEST_P(Packed, EndsAsTheLibraryDoes) {
     const torch::NoGradGuard no_grad;
-    PackableLinear plain = frozen_layer(32, 80), layer = frozen_layer(32, 80);
+    PackableLinear plain = packed_layer(32, 80), layer = packed_layer(32, 80);
     layer->pack(GetParam());
     plain->weight.set_data(rounded(plain->weight));
     const torch::Tensor x = rounded(5 * torch::randn({2, 9, 32})), added = torch::randn({2, 9, 80});
@@ -75,7 +75,7 @@ TEST_P(Packed, EndsAsTheLibraryDoes) {
 }
 
 TEST_P(Packed, PassesGradientsToItsInput) {
-    PackableLinear layer = frozen_layer(48, 70);
+    PackableLinear layer = packed_layer(48, 70);
     const torch::Tensor weight = rounded(layer->weight.clone());
     layer->pack(GetParam());
     const torch::Tensor x = torch::randn({3, 48}).requires_grad_(true), dy = torch::randn({3, 70});
@@ -84,7 +84,7 @@ TEST_P(Packed, PassesGradientsToItsInput) {
 }
 
 TEST(PackableLinear, IsLeftAloneWhereItDoesNotFit) {
-    PackableLinear layer = frozen_layer(20, 8);
+    PackableLinear layer = packed_layer(20, 8);
     layer->pack(torch::kFloat32);
     EXPECT_EQ(layer->weight.numel(), 160);
     PackableLinear learning(16, 8);
