@@ -255,6 +255,28 @@ ITEM3D_HOST_DEVICE inline void turn_planes(const TurnParameters& p, std::int64_t
         out[x] = in[x * from.column_step];
 }
 
+/// What of a face is within reach of an output texel's direction n.
+struct FaceReach {
+    float along_s, along_t, normal;  ///< n in the face's frame
+    TexelRange rows, columns;
+};
+/// AbsoluteCosine: all of the face. Rows are empty where nothing is in reach.
+template <bool AbsoluteCosine>
+ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline FaceReach face_reach(const FarParameters& p,
+                                                                    int face, Vec3 n) {
+    const CubeFrame frame = cube_frame(face);
+    const TexelRange all{0, p.source_size}, none{0, 0};
+    FaceReach reach{glm::dot(frame.s, n), glm::dot(frame.t, n), glm::dot(frame.normal, n), all,
+                    all};
+    if (AbsoluteCosine) return reach;
+    reach.rows = reach.normal < p.face_cut
+                     ? none
+                     : cone_range(reach.along_t, reach.normal, p.sine, p.source_size);
+    if (reach.rows.begin < reach.rows.end)
+        reach.columns = cone_range(reach.along_s, reach.normal, p.sine, p.source_size);
+    return reach;
+}
+
 /// One texel of all faces of the output; index: row * R + column. AbsoluteCosine: k = |n.l| over
 /// the faces 0, 2 and 4 alone.
 template <bool AbsoluteCosine>
@@ -266,19 +288,13 @@ ITEM3D_HOST_DEVICE inline void far_sums_of_texel(const FarParameters& p, std::in
     const std::int64_t step = far_plane(size);
     float sums[most_planes] = {};
     for (int face = 0; face < 6; face += AbsoluteCosine ? 2 : 1) {
-        const CubeFrame frame = cube_frame(face);
-        const float normal = glm::dot(frame.normal, n);
-        if (!AbsoluteCosine && normal < p.face_cut) continue;
-        const float along_s = glm::dot(frame.s, n), along_t = glm::dot(frame.t, n);
-        const TexelRange all{0, size};
-        const TexelRange rows = AbsoluteCosine ? all : cone_range(along_t, normal, p.sine, size);
-        const TexelRange columns = AbsoluteCosine ? all : cone_range(along_s, normal, p.sine, size);
-        for (int row = rows.begin; row < rows.end; ++row) {
-            const float rest = along_t * p.centres[row] + normal;
+        const FaceReach reach = face_reach<AbsoluteCosine>(p, face, n);
+        for (int row = reach.rows.begin; row < reach.rows.end; ++row) {
+            const float rest = reach.along_t * p.centres[row] + reach.normal;
             const float* values = p.source + (face * size + row) * far_row(size);
-            for (int column = columns.begin; column < columns.end; ++column) {
-                const float c =
-                    (along_s * p.centres[column] + rest) * p.inverse_lengths[row * size + column];
+            for (int column = reach.columns.begin; column < reach.columns.end; ++column) {
+                const float c = (reach.along_s * p.centres[column] + rest) *
+                                p.inverse_lengths[row * size + column];
                 const float weight = AbsoluteCosine ? std::fabs(c) : p.kernel.value(2 - 2 * c);
                 for (int plane = 0; plane < most_planes; ++plane)
                     if (plane < p.planes) sums[plane] += weight * values[plane * step + column];

@@ -199,26 +199,19 @@ ITEM3D_ALWAYS_INLINE inline void far_sums(const FarParameters& p, std::int64_t i
     const ZonalKernel kernel = p.kernel;
     FarBatch<N> batch;
     for (int face = 0; face < 6; face += AbsoluteCosine ? 2 : 1) {
-        const CubeFrame frame = cube_frame(face);
-        const float normal = glm::dot(frame.normal, n);
-        if (!AbsoluteCosine && normal < p.face_cut) continue;
-        const float along_s = glm::dot(frame.s, n), along_t = glm::dot(frame.t, n);
-        const TexelRange all{0, size};
-        const TexelRange rows = AbsoluteCosine ? all : cone_range(along_t, normal, p.sine, size);
-        if (rows.begin >= rows.end) continue;
-        const TexelRange columns = AbsoluteCosine ? all : cone_range(along_s, normal, p.sine, size);
-        if (columns.begin >= columns.end) continue;
-        const int first = columns.begin / N * N;
-        const int groups = (columns.end - first + N - 1) / N;
-        for (int row = rows.begin; row < rows.end; ++row) {
+        const FaceReach reach = face_reach<AbsoluteCosine>(p, face, n);
+        if (reach.columns.begin >= reach.columns.end) continue;
+        const int first = reach.columns.begin / N * N;
+        const int groups = (reach.columns.end - first + N - 1) / N;
+        for (int row = reach.rows.begin; row < reach.rows.end; ++row) {
             if (batch.rows == FarBatch<N>::most_rows ||
                 N * (batch.used + groups) > FarBatch<N>::most_weights)
                 batch.add(p);
-            const float rest = along_t * p.centres[row] + normal;
+            const float rest = reach.along_t * p.centres[row] + reach.normal;
             const float* lengths = p.inverse_lengths + row * size + first;
             const float* centres = p.centres + first;
             for (int i = 0; i < groups; ++i) {
-                const Lanes<N> c = (along_s * load_lanes<N>(centres + i * N) + rest) *
+                const Lanes<N> c = (reach.along_s * load_lanes<N>(centres + i * N) + rest) *
                                    load_lanes<N>(lengths + i * N);
                 if constexpr (AbsoluteCosine)
                     batch.weights[batch.used++] = c < 0 ? -c : c;
