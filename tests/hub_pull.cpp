@@ -2,6 +2,10 @@
 #include "item3d/core/error.h"
 #include "item3d/hub/cache.h"
 
+#include <sys/resource.h>
+
+#include <csignal>
+
 namespace item3d::testing {
 namespace {
 
@@ -304,6 +308,39 @@ TEST_F(HubPull, AFullDiskIsForeseen) {
     EXPECT_EQ(hub.downloads_of(unet), 0);
     hub.announce(unet, "-1");
     expect_failure<InputError>("tells no size");
+}
+
+/// No file of this process may grow beyond so many bytes while this lives.
+class FullDisk {
+  public:
+    explicit FullDisk(rlim_t bytes) : old_signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &old_limit_);
+        const rlimit limit{bytes, old_limit_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FullDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &old_limit_);
+        std::signal(SIGXFSZ, old_signal_);
+    }
+    FullDisk(const FullDisk&) = delete;
+    FullDisk& operator=(const FullDisk&) = delete;
+
+  private:
+    void (*old_signal_)(int);
+    rlimit old_limit_;
+};
+
+TEST_F(HubPull, WhatFittedOnADiskThatFilledUpIsUsed) {
+    {
+        const FullDisk disk(500'000);
+        expect_failure<ResourceError>("free some space");
+    }
+    EXPECT_FALSE(fs::exists(cached().blob(hub.etag(unet))));
+    EXPECT_EQ(fs::file_size(cached().blob(hub.etag(unet) + ".incomplete")), 500'000u);
+    expect_no_snapshot();
+    const PullResult result = pull(request);
+    expect_whole(unet);
+    EXPECT_LE(result.downloaded_bytes, result.bytes - 500'000);
 }
 
 TEST_F(HubPull, AServerThatIsNoHubIsSaid) {

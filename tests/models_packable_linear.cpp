@@ -30,9 +30,13 @@ class Packed : public ::testing::TestWithParam<torch::Dtype> {
     torch::Tensor rounded(const torch::Tensor& x) const {
         return x.to(GetParam()).to(torch::kFloat32);
     }
-    double step() const { return GetParam() == torch::kFloat32 ? 6e-8 : 4e-3; }
+    /// What weights in float16 are multiplied by is not rounded.
+    torch::Dtype multiplied() const {
+        return GetParam() == torch::kBFloat16 ? torch::kBFloat16 : torch::kFloat32;
+    }
+    double step() const { return multiplied() == torch::kFloat32 ? 6e-8 : 4e-3; }
 };
-INSTANTIATE_TEST_SUITE_P(Precisions, Packed, ::testing::Values(torch::kFloat32, torch::kBFloat16));
+INSTANTIATE_TEST_SUITE_P(Precisions, Packed, ::testing::Values(torch::kFloat32, torch::kBFloat16, torch::kFloat16));
 
 TEST_P(Packed, MultipliesTheRoundedNumbersInFloat) {
     const torch::NoGradGuard no_grad;
@@ -45,7 +49,7 @@ TEST_P(Packed, MultipliesTheRoundedNumbersInFloat) {
         EXPECT_EQ(layer->weight.numel(), 0);
         const torch::Tensor x = torch::randn({rows, in});
         const torch::Tensor exact =
-            torch::addmm(exactly(bias), exactly(rounded(x)), exactly(rounded(weight)).t());
+            torch::addmm(exactly(bias), exactly(x.to(multiplied())), exactly(rounded(weight)).t());
         EXPECT_LE(error_of(layer(x), exact), 2e-6 * in) << rows << " x " << in;
         EXPECT_TRUE(layer(x).equal(layer(layer->as_read(x))));
     }
@@ -62,7 +66,7 @@ TEST_P(Packed, EndsAsTheLibraryDoes) {
         const torch::Tensor wanted = plain->forward(x, {.activation = f, .added = added});
         EXPECT_LE(error_of(layer->forward(x, {.activation = f, .added = added}), wanted), 5e-6);
         const torch::Tensor stored = layer->forward(x, {.activation = f, .rounded = true});
-        EXPECT_EQ(stored.scalar_type(), GetParam());
+        EXPECT_EQ(stored.scalar_type(), multiplied());
         EXPECT_LE(error_of(stored, wanted - added),
                   step() * wanted.abs().max().item<double>() + 5e-6);
     }
@@ -81,6 +85,21 @@ TEST_P(Packed, PassesGradientsToItsInput) {
     const torch::Tensor x = torch::randn({3, 48}).requires_grad_(true), dy = torch::randn({3, 70});
     const torch::Tensor dx = torch::autograd::grad({layer(x)}, {x}, {dy})[0];
     EXPECT_LE(error_of(dx, dy.mm(weight)), 1e-5);
+}
+
+TEST(PackableLinear, KeepsTheHalvesOfAFile) {
+    if (!PackedMatrix::runs(torch::kCPU, torch::kFloat16)) GTEST_SKIP() << "no AVX-512";
+    PackableLinear layer = packed_layer(1024, 512), small = packed_layer(64, 64);
+    const torch::Tensor stored = torch::randn({512, 1024}).to(torch::kFloat16);
+    ASSERT_TRUE(layer->pack_stored(stored));
+    EXPECT_EQ(layer->weight.numel(), 0);
+    const torch::Tensor x = torch::randn({3, 1024});
+    const torch::Tensor exact =
+        torch::addmm(exactly(layer->bias), exactly(x), exactly(stored).t());
+    EXPECT_LE(error_of(layer(x), exact), 1e-3);
+    EXPECT_FALSE(small->pack_stored(torch::randn({64, 64}).to(torch::kFloat16)));
+    EXPECT_FALSE(small->pack_stored(torch::randn({512, 1024})));
+    EXPECT_EQ(small->weight.numel(), 4096);
 }
 
 TEST(PackableLinear, IsLeftAloneWhereItDoesNotFit) {

@@ -77,6 +77,27 @@ TEST(DirectConvolution, ErrsNoMoreThanTheLibrarys) {
     }
 }
 
+TEST(DirectConvolution, KeepsHalvesAndLosesNothing) {
+    if (!runs_here(torch::kFloat32)) GTEST_SKIP() << "no AVX-512";
+    torch::manual_seed(1);
+    const torch::Tensor halves = torch::randn({128, 320, 3, 3}).to(torch::kFloat16);
+    DirectConvolution kept(halves, torch::kFloat32),
+        widened(halves.to(torch::kFloat32), torch::kFloat32);
+    const torch::Tensor x = torch::randn({2, 320, 5, 6}), bias = torch::randn({128}),
+                        gradient = torch::randn({2, 128, 5, 6});
+    EXPECT_TRUE(torch::equal(kept.forward(x, bias), widened.forward(x, bias)));
+    EXPECT_TRUE(torch::equal(kept.backward(gradient), widened.backward(gradient)));
+}
+
+TEST(Winograd, LeavesHeavyWeightsAndFewPixelsToOthersInFloat) {
+    if (!runs_here(torch::kFloat32)) GTEST_SKIP() << "no AVX-512";
+    const torch::Tensor light = torch::empty({320, 320, 3, 3}),
+                        heavy = torch::empty({640, 640, 3, 3});
+    EXPECT_TRUE(WinogradConvolution::gains(torch::empty({4, 320, 16, 16}), light));
+    EXPECT_FALSE(WinogradConvolution::gains(torch::empty({4, 640, 16, 16}), heavy));
+    EXPECT_TRUE(WinogradConvolution::gains(torch::empty({4, 640, 32, 32}), heavy));
+}
+
 TEST(DirectConvolution, IsTakenForSmallMaps) {
     if (!runs_here(torch::kBFloat16)) GTEST_SKIP() << "no AVX-512 for bfloat16";
     const torch::Tensor weight = torch::randn({64, 64, 3, 3}).to(torch::kBFloat16);

@@ -39,7 +39,7 @@ DirectionAdjustment::DirectionAdjustment(const EditRequest& request, const EditS
     : settings_(request.settings), scene_(scene), cameras_(field_cameras(scene, caption_views)) {
     if (!scene.captioner) return;
     source_.emplace(
-        scene.prior, settings_.from, settings_.to,
+        scene.prior(), settings_.from, settings_.to,
         CaptionSourceOptions{settings_.adjust_strength, settings_.adjust == "caption-paper"});
 }
 

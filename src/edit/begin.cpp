@@ -43,6 +43,19 @@ std::unique_ptr<LightModel> begin_light(const EditScene& scene, const EditSettin
     return make_light_model(load_light(settings.light), options);
 }
 
+/// Makes the field look like the input, with metallic where an edit towards or from metal starts.
+void fit_field(const EditScene& scene, const EditSettings& settings, EditState& state) {
+    FitOptions options;
+    options.steps = settings.fit_steps;
+    options.seed = settings.seed;
+    fit_to_materials(state.field, scene.geometry, *scene.space, *scene.textured, options);
+    state.fitted = snapshot(state.field);
+    if (scene.channels.metallic && settings.iterations > 0 &&
+        crosses_metallic(settings.from, settings.to)) {
+        shift_metallic(state.field, scene.geometry, *scene.space, settings.metallic_start);
+    }
+}
+
 }  // namespace
 
 EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
@@ -51,8 +64,6 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     state.field = NeuralTexture(suggest_field_options(
         scene.geometry, *scene.space, finest_texture(scene, settings.texture_size), settings.seed));
     state.field->to(scene.device);
-    state.guidance =
-        make_guidance(scene.prior, settings.from, settings.to, guidance_options(settings));
     if (edits_texture(settings)) {
         state.optimizer.add_group({state.field->table()}, adam_options(settings));
         state.optimizer.add_group(state.field->network_parameters(), adam_options(settings));
@@ -64,8 +75,13 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         state.optimizer.add_group(state.light->parameters(), adam_options(settings));
     }
     state.fitted = snapshot(state.field);
+    const auto begin_guidance = [&] {
+        state.guidance =
+            make_guidance(scene.prior(), settings.from, settings.to, guidance_options(settings));
+    };
 
     if (request.resume) {
+        begin_guidance();
         if (load_state(request, state)) {
             note(fmt::format("resuming after iteration {} of {}", state.iteration,
                              total_iterations(settings)));
@@ -73,17 +89,9 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         }
         note("nothing to resume in " + request.output.string() + ": beginning anew");
     }
-    if (!edits_texture(settings)) return state;
-    FitOptions options;
-    options.steps = settings.fit_steps;
-    options.seed = settings.seed;
-    fit_to_materials(state.field, scene.geometry, *scene.space, *scene.textured, options);
-    state.fitted = snapshot(state.field);
-    if (scene.channels.metallic && settings.iterations > 0 &&
-        crosses_metallic(settings.from, settings.to)) {
-        shift_metallic(state.field, scene.geometry, *scene.space, settings.metallic_start);
-    }
-    save_state(request, state);
+    if (edits_texture(settings)) fit_field(scene, settings, state);
+    if (!state.guidance) begin_guidance();  // the prior was loaded meanwhile
+    if (edits_texture(settings)) save_state(request, state);
     return state;
 }
 

@@ -47,7 +47,7 @@ torch::Tensor inner(const torch::Tensor& coverage) {
 /// What the prior would rather see from here, with the coarse part of the picture as it is.
 torch::Tensor wanted_picture(const EditScene& scene, const EditSettings& settings,
                              const EditView& view, int index) {
-    const Pipeline& prior = *scene.prior;
+    const Pipeline& prior = *scene.prior();
     const torch::Tensor latents = prior.encode_image(view.images * 2 - 1);
     GenerateOptions options;
     options.prompt = settings.to;

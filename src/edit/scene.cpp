@@ -23,10 +23,18 @@ std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& reques
     return load_captioner(request.captioner, request.device, precision);
 }
 
-Pipeline load_prior(const EditRequest& request, const EditScene& scene) {
+/// What of a scene the prior is loaded by.
+struct PriorNeeds {
+    torch::Device device = torch::kCPU;
+    torch::Dtype precision = torch::kFloat32;
+    bool any_sentence = false;  ///< some are not known yet: a captioner will say them
+    bool low_memory = false;
+};
+
+Pipeline load_networks(const EditRequest& request, const PriorNeeds& prior_needs) {
     const EditSettings& settings = request.settings;
-    if (scene.captioner) {  // whose sentences are not known yet
-        Pipeline prior = Pipeline::load(request.prior, scene.device, scene.precision);
+    if (prior_needs.any_sentence) {
+        Pipeline prior = Pipeline::load(request.prior, prior_needs.device, prior_needs.precision);
         apply_extras(prior, settings);
         return prior;
     }
@@ -34,7 +42,17 @@ Pipeline load_prior(const EditRequest& request, const EditScene& scene) {
     needs.prompts = {settings.from, settings.to, settings.negative_prompt,
                      default_negative_prompt()};
     needs.decoder = wants_detail(settings);
-    return load_to_run(request.prior, scene.device, scene.precision, settings, needs);
+    return load_to_run(request.prior, prior_needs.device, prior_needs.precision, settings, needs);
+}
+
+std::shared_ptr<Pipeline> load_prior(const EditRequest& request, const PriorNeeds& needs) {
+    const auto prior = std::make_shared<Pipeline>(load_networks(request, needs));
+    const EditSettings& settings = request.settings;
+    for (const auto& [option, text] :
+         {std::pair("--from", settings.from), std::pair("--to", settings.to)})
+        warn_of_lost_words(*prior->tokenizer, option, text);
+    if (needs.low_memory) prior->vae->recompute_in_backward(true);
+    return prior;
 }
 
 }  // namespace
@@ -48,6 +66,10 @@ EditScene load_scene(const EditRequest& request) {
     scene.precision = choose_precision(request.precision, device);
     const bool low_memory = wants_low_memory(request, scene.precision, device);
     scene.captioner = load_wanted_captioner(request, scene.precision);
+    scene.loading_prior =
+        std::async(std::launch::async, load_prior, request,
+                   PriorNeeds{device, scene.precision, scene.captioner != nullptr, low_memory})
+            .share();
     scene.model = load_model(request.model);
     scene.materials = select_materials(scene.model, settings.material);
     for (const int index : scene.materials) {
@@ -69,11 +91,6 @@ EditScene load_scene(const EditRequest& request) {
     scene.lights = std::make_unique<LightRig>(
         settings.light, edits_light(settings) ? "off" : settings.light_augment,
         settings.resolution <= small_picture ? 64 : 256, device);
-    scene.prior = std::make_shared<Pipeline>(load_prior(request, scene));
-    for (const auto& [option, text] :
-         {std::pair("--from", settings.from), std::pair("--to", settings.to)})
-        warn_of_lost_words(*scene.prior->tokenizer, option, text);
-    if (low_memory) scene.prior->vae->recompute_in_backward(true);
     return scene;
 }
 

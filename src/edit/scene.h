@@ -11,6 +11,7 @@
 #include "item3d/render/textured.h"
 #include "item3d/scene/model.h"
 
+#include <future>
 #include <memory>
 
 namespace item3d {
@@ -26,12 +27,16 @@ struct EditScene {
     std::unique_ptr<TexturedMaterials> textured;
     std::unique_ptr<MaterialSource> source;
     std::unique_ptr<LightRig> lights;
-    std::shared_ptr<Pipeline> prior;
+    /// Ready some time after the rest: who asks earlier waits, or hears why it cannot be loaded.
+    std::shared_future<std::shared_ptr<Pipeline>> loading_prior;
+    const std::shared_ptr<Pipeline>& prior() const { return loading_prior.get(); }
     std::shared_ptr<const Captioner> captioner;  ///< none unless wants_captions()
     torch::Dtype precision = torch::kFloat32;
     torch::Device device = torch::kCPU;  ///< where all tensors of the edit are
 };
 
+/// Returns while the prior is still being loaded, if verify_prior() has nothing against it. Throws
+/// InputError for what cannot be read, ResourceError where memory will not do.
 EditScene load_scene(const EditRequest& request);
 
 }  // namespace item3d

@@ -44,6 +44,12 @@ inline void store(BrainFloat* to, __m512 value) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), narrow(value));
 }
 
+/// To the nearest; exact for numbers that were HalfFloat.
+inline void store(HalfFloat* to, __m512 value) {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                        _mm512_cvtps_ph(value, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC));
+}
+
 inline void store_some(float* to, __mmask16 which, __m512 value) {
     _mm512_mask_storeu_ps(to, which, value);
 }

@@ -11,9 +11,10 @@ namespace {
 
 using std::int64_t;
 
-template <typename Number>
+template <typename Weight>
 void convolve_any(const ConvolutionShape& shape, const torch::Tensor& x,
                   const torch::Tensor& packed, const float* bias, const torch::Tensor& y) {
+    using Number = Multiplied<Weight>;
     // As many as keep a column's sums and their inputs in a core's cache, beside its weights.
     constexpr int64_t most_pixels = 384;
     const int64_t pixels = shape.pictures * shape.height * shape.width;
@@ -30,10 +31,23 @@ void convolve_any(const ConvolutionShape& shape, const torch::Tensor& x,
             part.first_channel = task / ranges * packed_columns;
             part.last_channel = part.first_channel + packed_columns;
             convolve_taps(shape, static_cast<const Number*>(x.data_ptr()),
-                          static_cast<const Number*>(packed.data_ptr()), bias,
+                          static_cast<const Weight*>(packed.data_ptr()), bias,
                           static_cast<Number*>(y.data_ptr()), part, scratch.data_ptr());
         }
     });
+}
+
+/// Weights that were rounded to float16 stay so: half the memory, and not a bit less.
+torch::Dtype type_of_packed(const torch::Tensor& weight, torch::Dtype maps) {
+    const bool rounded = weight.scalar_type() == torch::kFloat16 && maps == torch::kFloat32;
+    return rounded ? torch::kFloat16 : maps;
+}
+
+template <typename Weight>
+void pack_any(const void* weights, int64_t out_channels, int64_t in_channels, int64_t column,
+              void* packed) {
+    pack_taps(static_cast<const Weight*>(weights), out_channels, in_channels, column,
+              static_cast<Weight*>(packed));
 }
 
 }  // namespace
@@ -43,7 +57,7 @@ bool DirectConvolution::gains(const torch::Tensor& x, const torch::Tensor& weigh
 }
 
 DirectConvolution::DirectConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget)
-    : FrozenConvolution(weight, dtype, std::move(forget)) {
+    : FrozenConvolution(weight, dtype, type_of_packed(weight, dtype), std::move(forget)) {
     pack_forward();
 }
 
@@ -53,12 +67,10 @@ std::vector<int64_t> DirectConvolution::turned_points() const {
 
 void DirectConvolution::pack_column(const void* weights, int64_t out_channels, int64_t in_channels,
                                     int64_t column, void* packed) const {
-    if (dtype() == torch::kBFloat16)
-        pack_taps(static_cast<const BrainFloat*>(weights), out_channels, in_channels, column,
-                  static_cast<BrainFloat*>(packed));
-    else
-        pack_taps(static_cast<const float*>(weights), out_channels, in_channels, column,
-                  static_cast<float*>(packed));
+    const auto pack = packed_dtype() == torch::kBFloat16  ? pack_any<BrainFloat>
+                      : packed_dtype() == torch::kFloat16 ? pack_any<HalfFloat>
+                                                          : pack_any<float>;
+    pack(weights, out_channels, in_channels, column, packed);
 }
 
 torch::Tensor DirectConvolution::convolve(const torch::Tensor& x, const torch::Tensor& packed,
@@ -68,7 +80,9 @@ torch::Tensor DirectConvolution::convolve(const torch::Tensor& x, const torch::T
         torch::empty({shape.pictures, out_channels, shape.height, shape.width},
                      x.options().memory_format(torch::MemoryFormat::ChannelsLast));
     const float* added = bias.defined() ? bias.data_ptr<float>() : nullptr;
-    const auto run = dtype() == torch::kBFloat16 ? convolve_any<BrainFloat> : convolve_any<float>;
+    const auto run = packed_dtype() == torch::kBFloat16  ? convolve_any<BrainFloat>
+                     : packed_dtype() == torch::kFloat16 ? convolve_any<HalfFloat>
+                                                         : convolve_any<float>;
     run(shape, x, packed, added, y);
     return y;
 }

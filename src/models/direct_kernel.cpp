@@ -42,14 +42,14 @@ bool find_pixels(const ConvolutionShape& shape, const Number* x, const Number* o
 
 }  // namespace
 
-template <typename Number>
-void pack_taps(const Number* weights, int64_t out_channels, int64_t in_channels, int64_t column,
-               Number* packed) {
-    using Maths = avx512::Arithmetic<Number>;
+template <typename Weight>
+void pack_taps(const Weight* weights, int64_t out_channels, int64_t in_channels, int64_t column,
+               Weight* packed) {
+    using Maths = avx512::Arithmetic<Weight>;
     for (int tap = 0; tap < taps; ++tap) {
-        Number* to = packed + (tap * out_channels + column) * in_channels;
+        Weight* to = packed + (tap * out_channels + column) * in_channels;
         for (int64_t o = 0; o < packed_columns; ++o) {
-            const Number* from = weights + (o * taps + tap) * in_channels;
+            const Weight* from = weights + (o * taps + tap) * in_channels;
             for (int64_t c = 0; c < in_channels; c += lanes)
                 Maths::scatter(to + c * packed_columns + o * Maths::group, avx512::load(from + c));
         }
@@ -62,9 +62,10 @@ int64_t taps_scratch(int64_t pixels, int64_t in_channels) {
            in_channels * static_cast<int64_t>(sizeof(Number));
 }
 
-template <typename Number>
-void convolve_taps(const ConvolutionShape& shape, const Number* x, const Number* packed,
-                   const float* bias, Number* y, const PixelPart& part, void* scratch) {
+template <typename Weight>
+void convolve_taps(const ConvolutionShape& shape, const Multiplied<Weight>* x, const Weight* packed,
+                   const float* bias, Multiplied<Weight>* y, const PixelPart& part, void* scratch) {
+    using Number = Multiplied<Weight>;
     const int64_t in = shape.in_channels, out = shape.out_channels;
     const int64_t pixels = part.last_pixel - part.first_pixel;
     auto* sums = static_cast<float*>(scratch);
@@ -76,11 +77,11 @@ void convolve_taps(const ConvolutionShape& shape, const Number* x, const Number*
             sums, 0,
             static_cast<std::size_t>(avx512::whole_rows(pixels) * packed_columns) * sizeof(float));
         for (int tap = 0; tap < taps; ++tap) {
-            const Number* b = packed + (tap * out + channel) * in;
+            const Weight* b = packed + (tap * out + channel) * in;
             for (int64_t r = 0; r < pixels; r += rows) {
                 const Number* a[rows];
                 if (find_pixels(shape, x, outside, tap, part.first_pixel + r, part.last_pixel, a))
-                    avx512::multiply<Number, 4>(a, in, b, sums + r * packed_columns, packed_columns,
+                    avx512::multiply<Weight, 4>(a, in, b, sums + r * packed_columns, packed_columns,
                                                 true);
             }
         }
@@ -96,27 +97,29 @@ void convolve_taps(const ConvolutionShape& shape, const Number* x, const Number*
 
 #else
 
-template <typename Number>
-void pack_taps(const Number*, int64_t, int64_t, int64_t, Number*) {}
+template <typename Weight>
+void pack_taps(const Weight*, int64_t, int64_t, int64_t, Weight*) {}
 
 template <typename Number>
 int64_t taps_scratch(int64_t, int64_t) {
     return 0;
 }
 
-template <typename Number>
-void convolve_taps(const ConvolutionShape&, const Number*, const Number*, const float*, Number*,
-                   const PixelPart&, void*) {}
+template <typename Weight>
+void convolve_taps(const ConvolutionShape&, const Multiplied<Weight>*, const Weight*, const float*,
+                   Multiplied<Weight>*, const PixelPart&, void*) {}
 
 #endif
 
-#define ITEM3D_INSTANTIATE(Number)                                                     \
-    template void pack_taps(const Number*, int64_t, int64_t, int64_t, Number*);        \
-    template int64_t taps_scratch<Number>(int64_t, int64_t);                           \
-    template void convolve_taps(const ConvolutionShape&, const Number*, const Number*, \
-                                const float*, Number*, const PixelPart&, void*);
+template int64_t taps_scratch<float>(int64_t, int64_t);
+template int64_t taps_scratch<BrainFloat>(int64_t, int64_t);
+#define ITEM3D_INSTANTIATE(Weight)                                                                 \
+    template void pack_taps(const Weight*, int64_t, int64_t, int64_t, Weight*);                    \
+    template void convolve_taps(const ConvolutionShape&, const Multiplied<Weight>*, const Weight*, \
+                                const float*, Multiplied<Weight>*, const PixelPart&, void*);
 ITEM3D_INSTANTIATE(float)
 ITEM3D_INSTANTIATE(BrainFloat)
+ITEM3D_INSTANTIATE(HalfFloat)
 #undef ITEM3D_INSTANTIATE
 
 }  // namespace item3d

@@ -9,10 +9,10 @@ namespace item3d {
 
 /// Weights [64, 3, 3, in] of the output channels from `column` on, to their places in `packed`, [9,
 /// out / 64, in / group, 64, group]. A group is the input channels that one instruction multiplies
-/// (2 of BrainFloat, 1 of float).
-template <typename Number>
-void pack_taps(const Number* weights, std::int64_t out_channels, std::int64_t in_channels,
-               std::int64_t column, Number* packed);
+/// (2 of BrainFloat, 1 of the others).
+template <typename Weight>
+void pack_taps(const Weight* weights, std::int64_t out_channels, std::int64_t in_channels,
+               std::int64_t column, Weight* packed);
 
 /// Pixels of all pictures together, and output channels in whole columns.
 struct PixelPart {
@@ -24,8 +24,8 @@ template <typename Number>
 std::int64_t taps_scratch(std::int64_t pixels, std::int64_t in_channels);
 
 /// y = conv(x, weights) + bias, for one part. bias: [out] or null.
-template <typename Number>
-void convolve_taps(const ConvolutionShape& shape, const Number* x, const Number* packed,
-                   const float* bias, Number* y, const PixelPart& part, void* scratch);
+template <typename Weight>
+void convolve_taps(const ConvolutionShape& shape, const Multiplied<Weight>* x, const Weight* packed,
+                   const float* bias, Multiplied<Weight>* y, const PixelPart& part, void* scratch);
 
 }  // namespace item3d

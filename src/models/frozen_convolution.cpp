@@ -29,14 +29,18 @@ template <typename Stored>
 void order_column(const torch::Tensor& weight, std::int64_t column, const torch::Tensor& ordered) {
     const std::int64_t in = weight.size(1);
     const auto* from = static_cast<const Stored*>(weight.data_ptr()) + column * in * taps;
+    void* to = ordered.data_ptr();
     if (ordered.scalar_type() == torch::kBFloat16)
-        order_taps(from, packed_columns, in, static_cast<BrainFloat*>(ordered.data_ptr()));
+        order_taps(from, packed_columns, in, static_cast<BrainFloat*>(to));
+    else if (ordered.scalar_type() == torch::kFloat16)
+        order_taps(from, packed_columns, in, static_cast<HalfFloat*>(to));
     else
-        order_taps(from, packed_columns, in, static_cast<float*>(ordered.data_ptr()));
+        order_taps(from, packed_columns, in, static_cast<float*>(to));
 }
 
 /// 64 input and 64 output channels of one point: [in, out] -> [out, in].
-void swap_channels(const float* from, float* to) {
+template <typename Number>
+void swap_channels(const Number* from, Number* to) {
     for (std::int64_t out = 0; out < packed_columns; ++out)
         for (std::int64_t in = 0; in < packed_columns; ++in)
             to[out * packed_columns + in] = from[in * packed_columns + out];
@@ -44,6 +48,7 @@ void swap_channels(const float* from, float* to) {
 
 /// The same of bfloat16, [in / 2, out, 2] -> [out / 2, in, 2], four at a time: two input by two
 /// output channels.
+template <>
 void swap_channels(const std::uint64_t* from, std::uint64_t* to) {
     constexpr std::int64_t pairs = packed_columns / 2;
     constexpr std::uint64_t outer = 0xffff00000000ffff, inner = 0xffff0000;
@@ -71,10 +76,12 @@ bool FrozenConvolution::fits(const torch::Tensor& x, const torch::Tensor& weight
            weight.size(0) % packed_columns == 0 && weight.size(1) % packed_columns == 0;
 }
 
-FrozenConvolution::FrozenConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget)
+FrozenConvolution::FrozenConvolution(const torch::Tensor& weight, torch::Dtype dtype,
+                                     torch::Dtype packed, Forget forget)
     : out_channels_(weight.size(0)),
       in_channels_(weight.size(1)),
       dtype_(dtype),
+      packed_dtype_(packed),
       weight_(weight.detach()),
       version_(static_cast<std::uint32_t>(weight._version())),
       forget_(std::move(forget)) {}
@@ -98,15 +105,15 @@ bool FrozenConvolution::forget_weight() {
 torch::Tensor FrozenConvolution::pack(const torch::Tensor& weight) const {
     const std::int64_t out = weight.size(0), in = weight.size(1);
     const bool ordered =
-        weight.scalar_type() == dtype_ && weight.is_contiguous(torch::MemoryFormat::ChannelsLast);
+        weight.scalar_type() == packed_dtype_ && weight.is_contiguous(torch::MemoryFormat::ChannelsLast);
     const torch::Tensor source = ordered ? weight : weight.contiguous();
     const auto order = source.scalar_type() == torch::kFloat16    ? order_column<HalfFloat>
                        : source.scalar_type() == torch::kBFloat16 ? order_column<BrainFloat>
                                                                   : order_column<float>;
-    const torch::Tensor packed = empty_weight({points() * out * in}, dtype_);
+    const torch::Tensor packed = empty_weight({points() * out * in}, packed_dtype_);
     at::parallel_for(0, out / packed_columns, 1, [&](std::int64_t first, std::int64_t last) {
         torch::Tensor scratch;
-        if (!ordered) scratch = torch::empty({packed_columns * taps * in}, dtype_);
+        if (!ordered) scratch = torch::empty({packed_columns * taps * in}, packed_dtype_);
         for (std::int64_t column = first * packed_columns; column < last * packed_columns;
              column += packed_columns) {
             const char* rows = nullptr;
@@ -127,21 +134,27 @@ torch::Tensor FrozenConvolution::pack(const torch::Tensor& weight) const {
 torch::Tensor FrozenConvolution::turn_round(const std::vector<std::int64_t>& points) const {
     const auto count = static_cast<std::int64_t>(points.size());
     const torch::Tensor turned =
-        torch::empty({count * in_channels_ * out_channels_}, torch::dtype(dtype_));
+        torch::empty({count * in_channels_ * out_channels_}, torch::dtype(packed_dtype_));
     const std::int64_t outs = out_channels_ / packed_columns, ins = in_channels_ / packed_columns;
     constexpr std::int64_t square = packed_columns * packed_columns;
-    const bool pairs = dtype_ == torch::kBFloat16;
+    // Places of a square of channels, in numbers that are moved together.
+    const auto swap = [&]<typename Number>(std::int64_t numbers, std::int64_t from,
+                                           std::int64_t to) {
+        swap_channels(static_cast<const Number*>(packed_.data_ptr()) + from / numbers,
+                      static_cast<Number*>(turned.data_ptr()) + to / numbers);
+    };
     at::parallel_for(0, count * ins, 1, [&](std::int64_t first, std::int64_t last) {
         for (std::int64_t i = first; i < last; ++i) {
             const std::int64_t point = points[static_cast<std::size_t>(i / ins)], in = i % ins;
             for (std::int64_t out = 0; out < outs; ++out) {
                 const std::int64_t from = ((point * outs + out) * ins + in) * square;
                 const std::int64_t to = (i * outs + out) * square;
-                if (pairs)
-                    swap_channels(static_cast<const std::uint64_t*>(packed_.data_ptr()) + from / 4,
-                                  static_cast<std::uint64_t*>(turned.data_ptr()) + to / 4);
+                if (packed_dtype_ == torch::kBFloat16)
+                    swap.operator()<std::uint64_t>(4, from, to);
+                else if (packed_dtype_ == torch::kFloat16)
+                    swap.operator()<std::uint16_t>(1, from, to);
                 else
-                    swap_channels(packed_.data_ptr<float>() + from, turned.data_ptr<float>() + to);
+                    swap.operator()<float>(1, from, to);
             }
         }
     });

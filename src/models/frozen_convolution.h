@@ -42,14 +42,17 @@ class FrozenConvolution {
     torch::Tensor backward(const torch::Tensor& gradient);
 
   protected:
-    /// Who derives from this calls pack_forward() in its constructor. dtype: float32 or bfloat16.
-    FrozenConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget);
+    /// Who derives from this calls pack_forward() in its constructor. dtype: of the maps, float32 or
+    /// bfloat16; packed: of the packed weights, the same, or float16 for maps of float32.
+    FrozenConvolution(const torch::Tensor& weight, torch::Dtype dtype, torch::Dtype packed,
+                      Forget forget);
     void pack_forward();
 
     /// Whether a kernel of ours can convolve this and is told to: see make().
     static bool fits(const torch::Tensor& x, const torch::Tensor& weight);
 
     torch::Dtype dtype() const { return dtype_; }
+    torch::Dtype packed_dtype() const { return packed_dtype_; }
 
   private:
     /// Channels of a convolution: those of the way there, or swapped.
@@ -62,9 +65,9 @@ class FrozenConvolution {
     /// By point of the packed weights of the way back, the one of the way there that it equals;
     /// empty where they differ.
     virtual std::vector<std::int64_t> turned_points() const = 0;
-    /// Weights [64, 3, 3, in] of dtype() and of the output channels from `column` on, to their
-    /// places in `packed`: [points, out / 64, in / group, 64, group], group of a bfloat16 being 2,
-    /// of a float32 1.
+    /// Weights [64, 3, 3, in] of packed_dtype() and of the output channels from `column` on, to
+    /// their places in `packed`: [points, out / 64, in / group, 64, group], group of a bfloat16
+    /// being 2, of the others 1.
     virtual void pack_column(const void* weights, std::int64_t out_channels,
                              std::int64_t in_channels, std::int64_t column, void* packed) const = 0;
     /// x and the result are channels-last; bias is float32 or undefined.
@@ -78,7 +81,7 @@ class FrozenConvolution {
                       std::int64_t out_channels, const torch::Tensor& bias) const;
 
     std::int64_t out_channels_, in_channels_;
-    torch::Dtype dtype_;
+    torch::Dtype dtype_, packed_dtype_;
     torch::Tensor weight_;  ///< empty once forgotten
     std::uint32_t version_;
     Forget forget_;

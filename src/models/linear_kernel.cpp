@@ -15,15 +15,15 @@ using std::int64_t;
 
 #ifdef ITEM3D_LINEAR
 
-template <typename Number>
-void pack_columns(const Number* weights, int64_t depth, int64_t first, int64_t last,
-                  Number* packed) {
-    using Maths = avx512::Arithmetic<Number>;
+template <typename Weight>
+void pack_columns(const Weight* weights, int64_t depth, int64_t first, int64_t last,
+                  Weight* packed) {
+    using Maths = avx512::Arithmetic<Weight>;
     for (int64_t column = first; column < last; column += packed_columns) {
-        Number* to = packed + column * depth;
+        Weight* to = packed + column * depth;
         const int64_t there = std::min(packed_columns, last - column);
         if (there < packed_columns)
-            std::memset(to, 0, static_cast<std::size_t>(depth * packed_columns) * sizeof(Number));
+            std::memset(to, 0, static_cast<std::size_t>(depth * packed_columns) * sizeof(Weight));
         for (int64_t c = 0; c < depth; c += avx512::lanes)
             for (int64_t o = 0; o < there; ++o)
                 Maths::scatter(to + c * packed_columns + o * Maths::group,
@@ -67,18 +67,18 @@ __m512 activate(__m512 x, LinearActivation activation) {
 
 }  // namespace
 
-template <typename Number, typename Result>
-void multiply_part(const Number* x, int64_t depth, const Number* packed, const ProductEnd& end,
-                   int64_t columns, const MatrixPart& part, Result* y) {
+template <typename Weight, typename Result>
+void multiply_part(const Multiplied<Weight>* x, int64_t depth, const Weight* packed,
+                   const ProductEnd& end, int64_t columns, const MatrixPart& part, Result* y) {
     alignas(64) float sums[avx512::rows * packed_columns];
     for (int64_t column = part.first_column; column < part.last_column; column += packed_columns) {
-        const Number* b = packed + column * depth;
+        const Weight* b = packed + column * depth;
         const int64_t there = std::min(packed_columns, part.last_column - column);
         for (int64_t row = part.first_row; row < part.last_row; row += avx512::rows) {
-            const Number* a[avx512::rows];
+            const Multiplied<Weight>* a[avx512::rows];
             for (int i = 0; i < avx512::rows; ++i)  // the last row again for those that are missing
                 a[i] = x + std::min(row + i, part.last_row - 1) * depth;
-            avx512::multiply<Number, 4>(a, depth, b, sums, packed_columns, false);
+            avx512::multiply<Weight, 4>(a, depth, b, sums, packed_columns, false);
             const int64_t rows = std::min<int64_t>(avx512::rows, part.last_row - row);
             for (int64_t c = 0; c < there; c += avx512::lanes) {
                 const __mmask16 mask = avx512::first_lanes(there - c);
@@ -98,23 +98,25 @@ void multiply_part(const Number* x, int64_t depth, const Number* packed, const P
 
 #else
 
-template <typename Number>
-void pack_columns(const Number*, int64_t, int64_t, int64_t, Number*) {}
+template <typename Weight>
+void pack_columns(const Weight*, int64_t, int64_t, int64_t, Weight*) {}
 
-template <typename Number, typename Result>
-void multiply_part(const Number*, int64_t, const Number*, const ProductEnd&, int64_t,
+template <typename Weight, typename Result>
+void multiply_part(const Multiplied<Weight>*, int64_t, const Weight*, const ProductEnd&, int64_t,
                    const MatrixPart&, Result*) {}
 
 #endif
 
 template void pack_columns(const float*, int64_t, int64_t, int64_t, float*);
 template void pack_columns(const BrainFloat*, int64_t, int64_t, int64_t, BrainFloat*);
-#define ITEM3D_INSTANTIATE(Number, Result)                                                         \
-    template void multiply_part(const Number*, int64_t, const Number*, const ProductEnd&, int64_t, \
-                                const MatrixPart&, Result*);
+template void pack_columns(const HalfFloat*, int64_t, int64_t, int64_t, HalfFloat*);
+#define ITEM3D_INSTANTIATE(Weight, Result)                                              \
+    template void multiply_part<Weight>(const Multiplied<Weight>*, int64_t, const Weight*, \
+                                        const ProductEnd&, int64_t, const MatrixPart&, Result*);
 ITEM3D_INSTANTIATE(float, float)
 ITEM3D_INSTANTIATE(BrainFloat, float)
 ITEM3D_INSTANTIATE(BrainFloat, BrainFloat)
+ITEM3D_INSTANTIATE(HalfFloat, float)
 #undef ITEM3D_INSTANTIATE
 
 }  // namespace item3d

@@ -13,11 +13,11 @@ inline std::int64_t packed_size(std::int64_t columns, std::int64_t depth) {
 }
 
 /// weights [columns, depth] -> [columns / 64, depth / group, 64, group], a group being the numbers
-/// of depth that one instruction multiplies (2 of BrainFloat, 1 of float); for columns [first,
+/// of depth that one instruction multiplies (2 of BrainFloat, 1 of the others); for columns [first,
 /// last), first being a multiple of 64. depth: a multiple of 16.
-template <typename Number>
-void pack_columns(const Number* weights, std::int64_t depth, std::int64_t first, std::int64_t last,
-                  Number* packed);
+template <typename Weight>
+void pack_columns(const Weight* weights, std::int64_t depth, std::int64_t first, std::int64_t last,
+                  Weight* packed);
 
 /// Rows, and columns beginning at a multiple of 64.
 struct MatrixPart {
@@ -32,9 +32,9 @@ struct ProductEnd {
 };
 
 /// y [rows, columns] of the product x [rows, depth] weights^T, for one part; sums in float. Result:
-/// float or Number.
-template <typename Number, typename Result>
-void multiply_part(const Number* x, std::int64_t depth, const Number* packed, const ProductEnd& end,
-                   std::int64_t columns, const MatrixPart& part, Result* y);
+/// float or Weight.
+template <typename Weight, typename Result>
+void multiply_part(const Multiplied<Weight>* x, std::int64_t depth, const Weight* packed,
+                   const ProductEnd& end, std::int64_t columns, const MatrixPart& part, Result* y);
 
 }  // namespace item3d

@@ -12,6 +12,19 @@ namespace item3d {
 template <typename Number>
 bool matrix_kernel_runs();
 
+/// What weights of a type are multiplied by: numbers of the same type, but float where they are kept
+/// as files have them.
+template <typename Weight>
+struct MultipliedBy {
+    using Number = Weight;
+};
+template <>
+struct MultipliedBy<HalfFloat> {
+    using Number = float;
+};
+template <typename Weight>
+using Multiplied = typename MultipliedBy<Weight>::Number;
+
 /// Output channels of a convolution are packed in columns of this many; input channels must be a
 /// multiple of it too.
 constexpr std::int64_t packed_columns = 64;

@@ -20,8 +20,9 @@ inline std::int64_t whole_rows(std::int64_t count) {
     return (count + rows - 1) / rows * rows;
 }
 
-// What differs between the numbers. A `group` of input channels is multiplied by one instruction.
-template <typename Number>
+// What differs between the weights' types. A `group` of input channels is multiplied by one
+// instruction.
+template <typename Weight>
 struct Arithmetic;
 
 template <>
@@ -61,12 +62,25 @@ struct Arithmetic<float> {
     }
 };
 
+/// Weights as files have them, multiplied as floats: no bit is lost, and half the memory read.
+template <>
+struct Arithmetic<HalfFloat> : Arithmetic<float> {
+    static __m512 operand(const HalfFloat* from) { return load(from); }
+    static void scatter(HalfFloat* to, __m512 value) {
+        HalfFloat numbers[lanes];
+        store(numbers, value);
+        for (int i = 0; i < lanes; ++i)
+            to[i * packed_columns] = numbers[i];
+    }
+};
+
 /// sums [rows, 16 registers], each row `stride` numbers after the one before, = (or +=, with `add`)
 /// a [rows, depth], given by its rows, times b [depth / group, 16 registers, group].
-template <typename Number, int registers>
-void multiply(const Number* const* a, std::int64_t depth, const Number* b, float* sums,
+template <typename Weight, int registers>
+void multiply(const Multiplied<Weight>* const* a, std::int64_t depth, const Weight* b, float* sums,
               std::int64_t stride, bool add) {
-    using Maths = Arithmetic<Number>;
+    using Maths = Arithmetic<Weight>;
+    using Number = Multiplied<Weight>;
     static_assert(rows == 6);
     const Number *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4], *a5 = a[5];
     __m512 sum[rows][registers];
@@ -97,18 +111,18 @@ void multiply(const Number* const* a, std::int64_t depth, const Number* b, float
 }
 
 /// The same for 1 to 4 registers, told at run time.
-template <typename Number>
-void multiply(std::int64_t registers, const Number* const* a, std::int64_t depth, const Number* b,
-              float* sums, std::int64_t stride, bool add) {
+template <typename Weight>
+void multiply(std::int64_t registers, const Multiplied<Weight>* const* a, std::int64_t depth,
+              const Weight* b, float* sums, std::int64_t stride, bool add) {
     switch (registers) {
         case 1:
-            return multiply<Number, 1>(a, depth, b, sums, stride, add);
+            return multiply<Weight, 1>(a, depth, b, sums, stride, add);
         case 2:
-            return multiply<Number, 2>(a, depth, b, sums, stride, add);
+            return multiply<Weight, 2>(a, depth, b, sums, stride, add);
         case 3:
-            return multiply<Number, 3>(a, depth, b, sums, stride, add);
+            return multiply<Weight, 3>(a, depth, b, sums, stride, add);
         default:
-            return multiply<Number, 4>(a, depth, b, sums, stride, add);
+            return multiply<Weight, 4>(a, depth, b, sums, stride, add);
     }
 }
 

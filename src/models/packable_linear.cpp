@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/models/linear_kernel.h"
+#include "item3d/models/weight_memory.h"
 
 #include <ATen/Functions.h>
 #include <ATen/Parallel.h>
@@ -27,9 +28,10 @@ void pack_all(const torch::Tensor& weight, const torch::Tensor& packed) {
     });
 }
 
-template <typename Number, typename Result>
+template <typename Weight, typename Result>
 void multiply_all(const torch::Tensor& x, const torch::Tensor& packed, const ProductEnd& end,
                   const torch::Tensor& y) {
+    using Number = Multiplied<Weight>;
     // Rows of so many bytes stay in a core's cache beside the columns that they are multiplied by.
     constexpr int64_t most_bytes = 512 << 10;
     const int64_t rows = x.size(0), depth = x.size(1), columns = y.size(1);
@@ -42,9 +44,9 @@ void multiply_all(const torch::Tensor& x, const torch::Tensor& packed, const Pro
             const int64_t row = task / blocks * most_rows, column = task % blocks * packed_columns;
             const MatrixPart part{row, std::min(rows, row + most_rows), column,
                                   std::min(columns, column + packed_columns)};
-            multiply_part(static_cast<const Number*>(x.data_ptr()), depth,
-                          static_cast<const Number*>(packed.data_ptr()), end, columns, part,
-                          static_cast<Result*>(y.data_ptr()));
+            multiply_part<Weight>(static_cast<const Number*>(x.data_ptr()), depth,
+                                  static_cast<const Weight*>(packed.data_ptr()), end, columns, part,
+                                  static_cast<Result*>(y.data_ptr()));
         }
     });
 }
@@ -54,8 +56,9 @@ void multiply_all(const torch::Tensor& x, const torch::Tensor& packed, const Pro
 bool PackedMatrix::runs(torch::Device device, torch::Dtype dtype) {
     static const bool float_runs = matrix_kernel_runs<float>();
     static const bool bfloat_runs = matrix_kernel_runs<BrainFloat>();
+    const bool as_float = dtype == torch::kFloat32 || dtype == torch::kFloat16;
     return device.is_cpu() &&
-           ((dtype == torch::kFloat32 && float_runs) || (dtype == torch::kBFloat16 && bfloat_runs));
+           ((as_float && float_runs) || (dtype == torch::kBFloat16 && bfloat_runs));
 }
 
 bool PackedMatrix::fits(const torch::Tensor& weight) {
@@ -67,8 +70,15 @@ PackedMatrix::PackedMatrix(const torch::Tensor& weight, torch::Dtype dtype)
     : columns_(weight.size(0)), depth_(weight.size(1)) {
     ITEM3D_CHECK(runs(weight.device(), dtype) && fits(weight), "these weights cannot be packed");
     const torch::Tensor rounded = weight.detach().to(dtype).contiguous();
-    packed_ = torch::empty({packed_size(columns_, depth_)}, rounded.options());
-    (dtype == torch::kBFloat16 ? pack_all<BrainFloat> : pack_all<float>)(rounded, packed_);
+    packed_ = empty_weight({packed_size(columns_, depth_)}, dtype);
+    const auto pack = dtype == torch::kBFloat16  ? pack_all<BrainFloat>
+                      : dtype == torch::kFloat16 ? pack_all<HalfFloat>
+                                                 : pack_all<float>;
+    pack(rounded, packed_);
+}
+
+torch::Dtype PackedMatrix::multiplied_dtype() const {
+    return packed_.scalar_type() == torch::kBFloat16 ? torch::kBFloat16 : torch::kFloat32;
 }
 
 torch::Tensor PackedMatrix::multiply(const torch::Tensor& x, const torch::Tensor& bias,
@@ -82,15 +92,16 @@ torch::Tensor PackedMatrix::multiply(const torch::Tensor& x, const torch::Tensor
     };
     std::vector<int64_t> sizes = x.sizes().vec();
     sizes.back() = columns_;
-    const torch::Tensor rows = x.detach().reshape({-1, depth_}).to(dtype()).contiguous();
+    const torch::Tensor rows = x.detach().reshape({-1, depth_}).to(multiplied_dtype()).contiguous();
     const torch::Tensor y =
-        torch::empty(sizes, x.options().dtype(end.rounded ? dtype() : torch::kFloat32));
+        torch::empty(sizes, x.options().dtype(end.rounded ? multiplied_dtype() : torch::kFloat32));
     const torch::Tensor added = end.added.defined() ? end.added.contiguous() : end.added;
     ITEM3D_CHECK(!added.defined() || added.sizes() == y.sizes(), "added must be [..., O]");
     const ProductEnd finish{floats(bias), end.activation, floats(added)};
-    const auto run = dtype() == torch::kFloat32 ? multiply_all<float, float>
-                     : end.rounded              ? multiply_all<BrainFloat, BrainFloat>
-                                                : multiply_all<BrainFloat, float>;
+    const auto run = packed_.scalar_type() == torch::kFloat32   ? multiply_all<float, float>
+                     : packed_.scalar_type() == torch::kFloat16 ? multiply_all<HalfFloat, float>
+                     : end.rounded ? multiply_all<BrainFloat, BrainFloat>
+                                   : multiply_all<BrainFloat, float>;
     run(rows, packed_, finish, y.view({-1, columns_}));
     return y;
 }
@@ -108,7 +119,7 @@ bool PackableLinearImpl::multiplies_packed(const torch::Tensor& x) const {
 }
 
 torch::Tensor PackableLinearImpl::as_read(const torch::Tensor& x) const {
-    return multiplies_packed(x) ? x.to(packed_->dtype()) : x;
+    return multiplies_packed(x) ? x.to(packed_->multiplied_dtype()) : x;
 }
 
 torch::Tensor PackableLinearImpl::forward(const torch::Tensor& x, const LinearEnd& end) {
@@ -127,6 +138,16 @@ void PackableLinearImpl::pack(torch::Dtype dtype) {
                  "weights that are packed must be in float32 and stay as they are");
     packed_.emplace(weight, dtype);
     weight.set_data(torch::empty({0}, weight.options()));
+}
+
+bool PackableLinearImpl::pack_stored(const torch::Tensor& stored) {
+    constexpr int64_t fewest = 1 << 19;  // those of small networks are in a cache anyway
+    if (stored.scalar_type() != torch::kFloat16 || stored.numel() < fewest ||
+        !PackedMatrix::runs(stored.device(), torch::kFloat16) || !PackedMatrix::fits(stored))
+        return false;
+    packed_.emplace(stored, torch::kFloat16);
+    weight.set_data(torch::empty({0}, torch::kFloat32));
+    return true;
 }
 
 void pack_linear_layers(const torch::nn::Module& module, torch::Dtype dtype) {

@@ -16,26 +16,28 @@ namespace item3d {
 struct LinearEnd {
     LinearActivation activation = LinearActivation::none;
     torch::Tensor added{};  ///< [..., O] or undefined
-    bool rounded = false;   ///< where weights are packed: the result in their type
+    bool rounded = false;   ///< where weights are packed: the result in the type they multiply
 };
 
-/// The weights [O, I] of a linear layer, packed for products in float32 or bfloat16.
+/// The weights [O, I] of a linear layer, packed for products in float32 or bfloat16: packed in
+/// float16 they are multiplied in float32, exactly.
 class PackedMatrix {
   public:
-    /// Whether this processor has what the products need: AVX-512, and for bfloat16 its
-    /// instructions for that. Never on another device.
+    /// Whether this processor has what products with weights packed in `dtype` need: AVX-512, and
+    /// for bfloat16 its instructions for that. Never on another device.
     static bool runs(torch::Device device, torch::Dtype dtype);
     /// Whether weights of this shape can be packed: I a multiple of 16.
     static bool fits(const torch::Tensor& weight);
 
-    /// Rounds the weights to `dtype` (torch::kFloat32 or torch::kBFloat16).
+    /// Rounds the weights to `dtype` (torch::kFloat32, torch::kBFloat16 or torch::kFloat16).
     PackedMatrix(const torch::Tensor& weight, torch::Dtype dtype);
 
-    /// x [..., I] float32, rounded to the weights' type, or of that type -> [..., O], summed in
+    /// x [..., I] float32, rounded to multiplied_dtype(), or of that type -> [..., O], summed in
     /// float32; bias [O] and end.added float32. Not differentiable.
     torch::Tensor multiply(const torch::Tensor& x, const torch::Tensor& bias,
                            const LinearEnd& end = {}) const;
-    torch::Dtype dtype() const { return packed_.scalar_type(); }
+    /// What the weights are multiplied by: torch::kFloat32 or torch::kBFloat16.
+    torch::Dtype multiplied_dtype() const;
     /// The rounded weights [O, I].
     torch::Tensor unpacked() const;
 
@@ -55,6 +57,10 @@ class PackableLinearImpl : public torch::nn::LinearImpl {
     /// Packs the weights, which must be in float32, where they fit and the processor can use them;
     /// `weight` is empty then. What follows is differentiable in x alone.
     void pack(torch::Dtype dtype);
+
+    /// Packs weights as a file has them, in float16, for a layer that runs in float32; `weight` is
+    /// empty then. False, and nothing done, where that cannot be or gains nothing.
+    bool pack_stored(const torch::Tensor& stored);
 
   private:
     bool multiplies_packed(const torch::Tensor& x) const;

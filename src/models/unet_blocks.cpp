@@ -51,7 +51,7 @@ ResnetBlockImpl::ResnetBlockImpl(const Options& options) : options_(options) {
     norm1_ = register_module("norm1", make_norm(options.groups, in, options.epsilon));
     conv1_ = register_module("conv1", Conv3x3(in, out));
     if (options.time_channels > 0)
-        time_emb_proj_ = register_module("time_emb_proj", nn::Linear(options.time_channels, out));
+        time_emb_proj_ = register_module("time_emb_proj", PackableLinear(options.time_channels, out));
     norm2_ = register_module("norm2", make_norm(options.groups, out, options.epsilon));
     conv2_ = register_module("conv2", Conv3x3(out, out));
     if (in != out)
@@ -69,18 +69,18 @@ torch::Tensor ResnetBlockImpl::forward(const torch::Tensor& x, const torch::Tens
 
 AttentionLayerImpl::AttentionLayerImpl(int channels, int context_channels, int heads, bool bias)
     : heads_(heads) {
-    to_q_ = register_module("to_q", nn::Linear(nn::LinearOptions(channels, channels).bias(bias)));
+    to_q_ = register_module("to_q", PackableLinear(nn::LinearOptions(channels, channels).bias(bias)));
     to_k_ = register_module("to_k",
-                            nn::Linear(nn::LinearOptions(context_channels, channels).bias(bias)));
+                            PackableLinear(nn::LinearOptions(context_channels, channels).bias(bias)));
     to_v_ = register_module("to_v",
-                            nn::Linear(nn::LinearOptions(context_channels, channels).bias(bias)));
-    to_out_ = register_module("to_out", nn::ModuleList(nn::Linear(channels, channels)));
+                            PackableLinear(nn::LinearOptions(context_channels, channels).bias(bias)));
+    to_out_ = register_module("to_out", nn::ModuleList(PackableLinear(channels, channels)));
 }
 
 torch::Tensor AttentionLayerImpl::forward(const torch::Tensor& x, const torch::Tensor& context) {
     const torch::Tensor& source = context.defined() ? context : x;
     const torch::Tensor result = attention(to_q_(x), to_k_(source), to_v_(source), heads_);
-    return to_out_[0]->as<nn::Linear>()->forward(result);
+    return to_out_[0]->as<PackableLinear>()->forward(result);
 }
 
 TransformerBlockImpl::TransformerBlockImpl(int channels, int context_channels, int heads) {
@@ -93,8 +93,8 @@ TransformerBlockImpl::TransformerBlockImpl(int channels, int context_channels, i
 
     // diffusers: ff.net = [GEGLU{proj}, Dropout, Linear]; the dropout is never active here.
     constexpr int expansion = 4;
-    feed_in_ = nn::Linear(channels, 2 * expansion * channels);
-    feed_out_ = nn::Linear(expansion * channels, channels);
+    feed_in_ = PackableLinear(channels, 2 * expansion * channels);
+    feed_out_ = PackableLinear(expansion * channels, channels);
     auto gate = std::make_shared<nn::Module>("GEGLU");
     gate->register_module("proj", feed_in_.ptr());
     nn::ModuleList net;
@@ -117,8 +117,8 @@ SpatialTransformerImpl::SpatialTransformerImpl(const Options& options) : options
     const int channels = options.channels;
     norm_ = register_module("norm", make_norm(options.groups, channels, 1e-6));
     if (options.linear_projection) {
-        linear_in_ = register_module("proj_in", nn::Linear(channels, channels));
-        linear_out_ = register_module("proj_out", nn::Linear(channels, channels));
+        linear_in_ = register_module("proj_in", PackableLinear(channels, channels));
+        linear_out_ = register_module("proj_out", PackableLinear(channels, channels));
     } else {
         const nn::Conv2dOptions pointwise(channels, channels, 1);
         conv_in_ = register_module("proj_in", nn::Conv2d(pointwise));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "item3d/models/conv3x3.h"
+#include "item3d/models/packable_linear.h"
 
 #include <torch/nn/modules/container/modulelist.h>
 #include <torch/nn/modules/conv.h>
@@ -39,7 +40,7 @@ class ResnetBlockImpl : public torch::nn::Module {
     torch::nn::GroupNorm norm1_{nullptr}, norm2_{nullptr};
     Conv3x3 conv1_{nullptr}, conv2_{nullptr};
     torch::nn::Conv2d conv_shortcut_{nullptr};
-    torch::nn::Linear time_emb_proj_{nullptr};
+    PackableLinear time_emb_proj_{nullptr};
 };
 TORCH_MODULE(ResnetBlock);
 
@@ -52,7 +53,7 @@ class AttentionLayerImpl : public torch::nn::Module {
 
   private:
     int heads_;
-    torch::nn::Linear to_q_{nullptr}, to_k_{nullptr}, to_v_{nullptr};
+    PackableLinear to_q_{nullptr}, to_k_{nullptr}, to_v_{nullptr};
     torch::nn::ModuleList to_out_;
 };
 TORCH_MODULE(AttentionLayer);
@@ -66,7 +67,7 @@ class TransformerBlockImpl : public torch::nn::Module {
   private:
     torch::nn::LayerNorm norm1_{nullptr}, norm2_{nullptr}, norm3_{nullptr};
     AttentionLayer attn1_{nullptr}, attn2_{nullptr};
-    torch::nn::Linear feed_in_{nullptr}, feed_out_{nullptr};
+    PackableLinear feed_in_{nullptr}, feed_out_{nullptr};
 };
 TORCH_MODULE(TransformerBlock);
 
@@ -88,7 +89,7 @@ class SpatialTransformerImpl : public torch::nn::Module {
     Options options_;
     torch::nn::GroupNorm norm_{nullptr};
     torch::nn::Conv2d conv_in_{nullptr}, conv_out_{nullptr};
-    torch::nn::Linear linear_in_{nullptr}, linear_out_{nullptr};
+    PackableLinear linear_in_{nullptr}, linear_out_{nullptr};
     std::vector<TransformerBlock> blocks_;
 };
 TORCH_MODULE(SpatialTransformer);

@@ -63,6 +63,7 @@ void convert_numbers(const HalfFloat*, int64_t, BrainFloat*) {}
     template void order_taps(const float*, int64_t, int64_t, Number*);
 ITEM3D_INSTANTIATE(float)
 ITEM3D_INSTANTIATE(BrainFloat)
+ITEM3D_INSTANTIATE(HalfFloat)
 #undef ITEM3D_INSTANTIATE
 
 }  // namespace item3d

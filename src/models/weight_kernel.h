@@ -6,8 +6,8 @@
 
 namespace item3d {
 
-/// [rows, in, 3, 3] as stored -> [rows, 3, 3, in]; in is a multiple of packed_columns. Stored is
-/// HalfFloat, BrainFloat or float, Number is BrainFloat or float.
+/// [rows, in, 3, 3] as stored -> [rows, 3, 3, in]; in is a multiple of packed_columns. Stored
+/// and Number are HalfFloat, BrainFloat or float.
 template <typename Stored, typename Number>
 void order_taps(const Stored* weights, std::int64_t rows, std::int64_t in_channels,
                 Number* ordered);

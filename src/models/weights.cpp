@@ -4,6 +4,7 @@
 #include "item3d/core/format.h"
 #include "item3d/models/config.h"
 #include "item3d/models/conv3x3.h"
+#include "item3d/models/packable_linear.h"
 #include "item3d/models/weight_kernel.h"
 #include "item3d/models/weight_memory.h"
 
@@ -112,6 +113,19 @@ void leave_in_file(torch::nn::Module& module, const Weights& weights, Places& pl
         const std::string name = layer.key() + ".weight";
         if (!convolution || places.erase(name) == 0) continue;
         convolution->run_from(weights.tensor(name), [shared, name] { shared->forget(name); });
+    }
+}
+
+/// Linear layers that will run in float32 keep the numbers that the file has, and are taken out of
+/// `places`.
+void keep_halves(torch::nn::Module& module, const Weights& weights, Places& places) {
+    for (const auto& layer : module.named_modules()) {
+        auto* linear = dynamic_cast<PackableLinearImpl*>(layer.value().get());
+        const std::string name = layer.key() + ".weight";
+        if (!linear || places.count(name) == 0 || !linear->pack_stored(weights.tensor(name)))
+            continue;
+        places.erase(name);
+        weights.forget(name);
     }
 }
 
@@ -269,7 +283,10 @@ void load_parameters(torch::nn::Module& module, const Weights& weights, torch::D
         places[buffer.key()] = &buffer.value();
     compare(places, weights);
     if (device.is_meta()) return;
-    if (use == WeightUse::running && device.is_cpu()) leave_in_file(module, weights, places);
+    if (use == WeightUse::running && device.is_cpu()) {
+        leave_in_file(module, weights, places);
+        if (dtype == torch::kFloat32) keep_halves(module, weights, places);
+    }
     WeightMemory memory(converted_bytes(places, weights, device, dtype));
     for (const auto& [name, target] : places) {
         const torch::Tensor stored = weights.tensor(name);

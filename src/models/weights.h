@@ -69,7 +69,8 @@ auto without_initial_values(const Make& make) {
 enum class WeightUse {
     any,
     /// They stay as they are, and nobody but the network itself looks at them: on the CPU, those
-    /// that it packs anyway stay in the file until it runs (Conv3x3Impl::run_from()).
+    /// that it packs anyway stay in the file until it runs (Conv3x3Impl::run_from()), or stay of
+    /// the file's type (PackableLinearImpl::pack_stored()).
     running,
 };
 

@@ -80,13 +80,16 @@ void convolve_tiles(const ConvolutionShape& shape, const Number* x, const Number
 }  // namespace
 
 bool WinogradConvolution::gains(const torch::Tensor& x, const torch::Tensor& weight) {
-    constexpr int64_t fewest_pixels = 512;
-    return fits(x, weight) && x.size(0) * x.size(2) * x.size(3) >= fewest_pixels;
+    const int64_t pixels = x.size(0) * x.size(2) * x.size(3);
+    // In float32 they take four times the memory, or eight times that of float16.
+    constexpr int64_t few_weights = 1 << 20;
+    const bool heavy = !is_bfloat16(x) && weight.numel() > few_weights;
+    return fits(x, weight) && pixels >= (heavy ? 4096 : 512);
 }
 
 WinogradConvolution::WinogradConvolution(const torch::Tensor& weight, torch::Dtype dtype,
                                          Forget forget)
-    : FrozenConvolution(weight, dtype, std::move(forget)) {
+    : FrozenConvolution(weight, dtype, dtype, std::move(forget)) {
     pack_forward();
 }
 
