@@ -36,7 +36,8 @@ class Packed : public ::testing::TestWithParam<torch::Dtype> {
     }
     double step() const { return multiplied() == torch::kFloat32 ? 6e-8 : 4e-3; }
 };
-INSTANTIATE_TEST_SUITE_P(Precisions, Packed, ::testing::Values(torch::kFloat32, torch::kBFloat16, torch::kFloat16));
+INSTANTIATE_TEST_SUITE_P(Precisions, Packed,
+                         ::testing::Values(torch::kFloat32, torch::kBFloat16, torch::kFloat16));
 
 TEST_P(Packed, MultipliesTheRoundedNumbersInFloat) {
     const torch::NoGradGuard no_grad;
@@ -94,8 +95,7 @@ TEST(PackableLinear, KeepsTheHalvesOfAFile) {
     ASSERT_TRUE(layer->pack_stored(stored));
     EXPECT_EQ(layer->weight.numel(), 0);
     const torch::Tensor x = torch::randn({3, 1024});
-    const torch::Tensor exact =
-        torch::addmm(exactly(layer->bias), exactly(x), exactly(stored).t());
+    const torch::Tensor exact = torch::addmm(exactly(layer->bias), exactly(x), exactly(stored).t());
     EXPECT_LE(error_of(layer(x), exact), 1e-3);
     EXPECT_FALSE(small->pack_stored(torch::randn({64, 64}).to(torch::kFloat16)));
     EXPECT_FALSE(small->pack_stored(torch::randn({512, 1024})));

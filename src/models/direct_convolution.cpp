@@ -53,7 +53,9 @@ void pack_any(const void* weights, int64_t out_channels, int64_t in_channels, in
 }  // namespace
 
 bool DirectConvolution::gains(const torch::Tensor& x, const torch::Tensor& weight) {
-    return fits(x, weight);
+    // The library's take their bfloat16 to matrix units, where there are any.
+    return fits(x, weight) &&
+           (x.scalar_type() != torch::kBFloat16 || matrix_kernel_runs<BrainFloat>());
 }
 
 DirectConvolution::DirectConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget)

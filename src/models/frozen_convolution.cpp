@@ -16,7 +16,7 @@ constexpr std::int64_t taps = 9;
 
 bool kernel_runs(torch::Dtype dtype) {
     static const bool float_runs = matrix_kernel_runs<float>();
-    static const bool bfloat_runs = matrix_kernel_runs<BrainFloat>();
+    static const bool bfloat_runs = matrix_kernel_runs<BrainFloat>() || matrix_units_run();
     return (dtype == torch::kFloat32 && float_runs) || (dtype == torch::kBFloat16 && bfloat_runs);
 }
 
@@ -104,8 +104,8 @@ bool FrozenConvolution::forget_weight() {
 
 torch::Tensor FrozenConvolution::pack(const torch::Tensor& weight) const {
     const std::int64_t out = weight.size(0), in = weight.size(1);
-    const bool ordered =
-        weight.scalar_type() == packed_dtype_ && weight.is_contiguous(torch::MemoryFormat::ChannelsLast);
+    const bool ordered = weight.scalar_type() == packed_dtype_ &&
+                         weight.is_contiguous(torch::MemoryFormat::ChannelsLast);
     const torch::Tensor source = ordered ? weight : weight.contiguous();
     const auto order = source.scalar_type() == torch::kFloat16    ? order_column<HalfFloat>
                        : source.scalar_type() == torch::kBFloat16 ? order_column<BrainFloat>

@@ -42,8 +42,8 @@ class FrozenConvolution {
     torch::Tensor backward(const torch::Tensor& gradient);
 
   protected:
-    /// Who derives from this calls pack_forward() in its constructor. dtype: of the maps, float32 or
-    /// bfloat16; packed: of the packed weights, the same, or float16 for maps of float32.
+    /// Who derives from this calls pack_forward() in its constructor. dtype: of the maps, float32
+    /// or bfloat16; packed: of the packed weights, the same, or float16 for maps of float32.
     FrozenConvolution(const torch::Tensor& weight, torch::Dtype dtype, torch::Dtype packed,
                       Forget forget);
     void pack_forward();

@@ -110,7 +110,7 @@ void multiply_part(const Multiplied<Weight>*, int64_t, const Weight*, const Prod
 template void pack_columns(const float*, int64_t, int64_t, int64_t, float*);
 template void pack_columns(const BrainFloat*, int64_t, int64_t, int64_t, BrainFloat*);
 template void pack_columns(const HalfFloat*, int64_t, int64_t, int64_t, HalfFloat*);
-#define ITEM3D_INSTANTIATE(Weight, Result)                                              \
+#define ITEM3D_INSTANTIATE(Weight, Result)                                                 \
     template void multiply_part<Weight>(const Multiplied<Weight>*, int64_t, const Weight*, \
                                         const ProductEnd&, int64_t, const MatrixPart&, Result*);
 ITEM3D_INSTANTIATE(float, float)

@@ -8,12 +8,15 @@
 namespace item3d {
 
 /// Whether this processor has what the kernels for float or BrainFloat need, and gains by them: one
-/// with matrix units (AMX) multiplies bfloat16 faster by the library's ways.
+/// with matrix units multiplies bfloat16 faster on those.
 template <typename Number>
 bool matrix_kernel_runs();
 
-/// What weights of a type are multiplied by: numbers of the same type, but float where they are kept
-/// as files have them.
+/// Whether it has matrix units for bfloat16 (AMX) and the system lets programs use them.
+bool matrix_units_run();
+
+/// What weights of a type are multiplied by: numbers of the same type, but float where they are
+/// kept as files have them.
 template <typename Weight>
 struct MultipliedBy {
     using Number = Weight;

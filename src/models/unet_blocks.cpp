@@ -51,7 +51,8 @@ ResnetBlockImpl::ResnetBlockImpl(const Options& options) : options_(options) {
     norm1_ = register_module("norm1", make_norm(options.groups, in, options.epsilon));
     conv1_ = register_module("conv1", Conv3x3(in, out));
     if (options.time_channels > 0)
-        time_emb_proj_ = register_module("time_emb_proj", PackableLinear(options.time_channels, out));
+        time_emb_proj_ =
+            register_module("time_emb_proj", PackableLinear(options.time_channels, out));
     norm2_ = register_module("norm2", make_norm(options.groups, out, options.epsilon));
     conv2_ = register_module("conv2", Conv3x3(out, out));
     if (in != out)
@@ -69,11 +70,12 @@ torch::Tensor ResnetBlockImpl::forward(const torch::Tensor& x, const torch::Tens
 
 AttentionLayerImpl::AttentionLayerImpl(int channels, int context_channels, int heads, bool bias)
     : heads_(heads) {
-    to_q_ = register_module("to_q", PackableLinear(nn::LinearOptions(channels, channels).bias(bias)));
-    to_k_ = register_module("to_k",
-                            PackableLinear(nn::LinearOptions(context_channels, channels).bias(bias)));
-    to_v_ = register_module("to_v",
-                            PackableLinear(nn::LinearOptions(context_channels, channels).bias(bias)));
+    to_q_ =
+        register_module("to_q", PackableLinear(nn::LinearOptions(channels, channels).bias(bias)));
+    to_k_ = register_module(
+        "to_k", PackableLinear(nn::LinearOptions(context_channels, channels).bias(bias)));
+    to_v_ = register_module(
+        "to_v", PackableLinear(nn::LinearOptions(context_channels, channels).bias(bias)));
     to_out_ = register_module("to_out", nn::ModuleList(PackableLinear(channels, channels)));
 }
 

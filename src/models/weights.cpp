@@ -149,7 +149,7 @@ std::size_t converted_bytes(const Places& places, const Weights& weights, torch:
 
 /// from, contiguous, as numbers of another type.
 void convert(const torch::Tensor& from, const torch::Tensor& to) {
-    static const bool kernel_runs = matrix_kernel_runs<BrainFloat>();
+    static const bool kernel_runs = matrix_kernel_runs<BrainFloat>() || matrix_units_run();
     if (!kernel_runs || from.scalar_type() != torch::kFloat16 ||
         to.scalar_type() != torch::kBFloat16) {
         to.copy_(from);

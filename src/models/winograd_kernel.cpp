@@ -4,7 +4,10 @@
     defined(__AVX512BF16__)
 #define ITEM3D_WINOGRAD 1
 #include "item3d/models/matrix_tile.h"
+#include "item3d/models/matrix_units.h"
 #endif
+
+#include <type_traits>
 
 namespace item3d {
 
@@ -205,9 +208,38 @@ void pack_winograd_weights(const Number* weights, int64_t out_channels, int64_t 
     }
 }
 
+namespace {
+
+/// Rows that `tiles` tiles are filled up to, and multiplied so many at a time.
+template <typename Number>
+int64_t rows_for(int64_t tiles) {
+    if (std::is_same_v<Number, BrainFloat> && matrix_units_run()) return units::whole_rows(tiles);
+    return avx512::whole_rows(tiles);
+}
+
+/// sums [count, 64] = a [count, depth] times b, for a count of rows_for().
+template <typename Number>
+void multiply_rows(const Number* a, int64_t count, int64_t depth, const Number* b, float* sums) {
+    if constexpr (std::is_same_v<Number, BrainFloat>)
+        if (matrix_units_run()) {
+            const units::Tiles tiles;
+            for (int64_t r = 0; r < count; r += units::rows)
+                units::multiply(a + r * depth, depth, b, sums + r * packed_columns);
+            return;
+        }
+    for (int64_t r = 0; r < count; r += rows) {
+        const Number* at[rows];
+        for (int j = 0; j < rows; ++j)
+            at[j] = a + (r + j) * depth;
+        avx512::multiply<Number, 4>(at, depth, b, sums + r * packed_columns, packed_columns, false);
+    }
+}
+
+}  // namespace
+
 template <typename Number>
 int64_t winograd_scratch(int64_t tiles, int64_t in_channels) {
-    return winograd_points<Number> * avx512::whole_rows(tiles) *
+    return winograd_points<Number> * rows_for<Number>(tiles) *
            (in_channels * static_cast<int64_t>(sizeof(Number)) +
             packed_columns * static_cast<int64_t>(sizeof(float)));
 }
@@ -218,7 +250,7 @@ void convolve_winograd(const ConvolutionShape& shape, const Number* x, const Num
     constexpr int points = winograd_points<Number>;
     const int64_t channels = shape.in_channels, first = part.first_tile, last = part.last_tile;
     // The last rows may stay as they were: what comes of them is not looked at.
-    const int64_t stride = avx512::whole_rows(last - first);
+    const int64_t stride = rows_for<Number>(last - first);
     auto* transformed = static_cast<Number*>(scratch);
     auto* sums = reinterpret_cast<float*>(transformed + points * stride * channels);
     transform_input(shape, x, first, last, stride, transformed);
@@ -226,13 +258,8 @@ void convolve_winograd(const ConvolutionShape& shape, const Number* x, const Num
          channel += packed_columns) {
         for (int64_t i = 0; i < points; ++i) {
             const Number* b = packed + (i * shape.out_channels + channel) * channels;
-            for (int64_t r = i * stride; r < (i + 1) * stride; r += rows) {
-                const Number* a[rows];
-                for (int j = 0; j < rows; ++j)
-                    a[j] = transformed + (r + j) * channels;
-                avx512::multiply<Number, 4>(a, channels, b, sums + r * packed_columns,
-                                            packed_columns, false);
-            }
+            multiply_rows(transformed + i * stride * channels, stride, channels, b,
+                          sums + i * stride * packed_columns);
         }
         transform_sums(shape, sums, bias, first, last, stride, channel, y);
     }

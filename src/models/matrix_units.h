@@ -1,0 +1,69 @@
+// Products of bfloat16 on a processor's matrix units (AMX: tiles of 16 rows of 64 bytes). For the
+// files that are compiled for them alone; nothing here may be called where matrix_units_run() says
+// no.
+#pragma once
+
+#include "item3d/models/brain_float.h"
+#include "item3d/models/matrix_kernel.h"
+
+#include <immintrin.h>
+
+#include <cstdint>
+
+namespace item3d::units {
+
+/// Rows multiplied at a time: two tiles.
+constexpr int rows = 32;
+
+inline std::int64_t whole_rows(std::int64_t count) {
+    return (count + rows - 1) / rows * rows;
+}
+
+/// While it lives, this thread's tiles are all of full size.
+class Tiles {
+  public:
+    Tiles() {
+        struct alignas(64) Layout {
+            std::uint8_t palette = 1, start_row = 0, reserved[14] = {};
+            std::uint16_t row_bytes[16] = {64, 64, 64, 64, 64, 64, 64, 64};
+            std::uint8_t rows[16] = {16, 16, 16, 16, 16, 16, 16, 16};
+        };
+        static_assert(sizeof(Layout) == 64);
+        const Layout layout;
+        _tile_loadconfig(&layout);
+    }
+    ~Tiles() { _tile_release(); }
+    Tiles(const Tiles&) = delete;
+    Tiles& operator=(const Tiles&) = delete;
+};
+
+/// sums [32, 64] = a [32, depth] times b [depth / 2, 64, 2]; depth is a multiple of 32.
+inline void multiply(const BrainFloat* a, std::int64_t depth, const BrainFloat* b, float* sums) {
+    constexpr int tile = 16, half = 2 * tile, group = 2;
+    constexpr int b_stride = packed_columns * group * static_cast<int>(sizeof(BrainFloat));
+    constexpr int sums_stride = packed_columns * static_cast<int>(sizeof(float));
+    const auto a_stride = depth * static_cast<std::int64_t>(sizeof(BrainFloat));
+    for (int column = 0; column < packed_columns; column += half) {
+        _tile_zero(0);
+        _tile_zero(1);
+        _tile_zero(2);
+        _tile_zero(3);
+        for (std::int64_t k = 0; k < depth; k += tile * group) {
+            const BrainFloat* at = b + k * packed_columns + column * group;
+            _tile_loadd(4, a + k, a_stride);
+            _tile_loadd(6, at, b_stride);
+            _tile_dpbf16ps(0, 4, 6);
+            _tile_loadd(7, at + tile * group, b_stride);
+            _tile_dpbf16ps(1, 4, 7);
+            _tile_loadd(5, a + tile * depth + k, a_stride);
+            _tile_dpbf16ps(2, 5, 6);
+            _tile_dpbf16ps(3, 5, 7);
+        }
+        _tile_stored(0, sums + column, sums_stride);
+        _tile_stored(1, sums + column + tile, sums_stride);
+        _tile_stored(2, sums + tile * packed_columns + column, sums_stride);
+        _tile_stored(3, sums + tile * packed_columns + column + tile, sums_stride);
+    }
+}
+
+}  // namespace item3d::units
