@@ -78,13 +78,15 @@ torch::Tensor sample_backgrounds(const std::string& background, int count, std::
 }
 
 LightRig::LightRig(const std::string& light, const std::string& augment, int cube_size,
-                   torch::Device device) {
-    const auto add = [&](const Image& image, int rotations, float first) {
-        for (int i = 0; i < rotations; ++i) {
-            const float turn =
-                first + 360.0f * static_cast<float>(i) / static_cast<float>(rotations);
-            lights_.push_back(prefilter(adjust_light(image, turn, 0.0f), cube_size, device));
-        }
+                   torch::Device device)
+    : cube_size_(cube_size), device_(device) {
+    const auto add = [&](Image image, int rotations, float first) {
+        for (int i = 0; i < rotations; ++i)
+            lights_.push_back(
+                {images_.size(),
+                 first + 360.0f * static_cast<float>(i) / static_cast<float>(rotations),
+                 {}});
+        images_.push_back(std::move(image));
     };
     add(load_light(light), augment == "off" ? 1 : light_rotations, 0);
     if (augment != "all") return;
@@ -94,10 +96,18 @@ LightRig::LightRig(const std::string& light, const std::string& augment, int cub
         if (preset != light) add(make_light_preset(preset), light_rotations / 2, 30);
 }
 
-EnvironmentLight LightRig::pick(std::uint64_t seed, std::int64_t iteration) const {
+const EnvironmentLight& LightRig::at(std::size_t index) {
+    Light& light = lights_[index];
+    if (!light.prefiltered)
+        light.prefiltered =
+            prefilter(adjust_light(images_[light.image], light.turn, 0.0f), cube_size_, device_);
+    return *light.prefiltered;
+}
+
+EnvironmentLight LightRig::pick(std::uint64_t seed, std::int64_t iteration) {
     Random random = iteration_random(seed, light_stream, iteration);
     EnvironmentLight light =
-        lights_[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(lights_.size())))];
+        at(static_cast<std::size_t>(random.index(static_cast<std::int64_t>(lights_.size()))));
     if (exposure_range_ == 0) return light;
     const double factor = std::exp2(random.uniform(-exposure_range_, exposure_range_));
     light.diffuse = light.diffuse * factor;

@@ -4,11 +4,13 @@
 #include "item3d/edit/settings.h"
 #include "item3d/render/environment_light.h"
 #include "item3d/scene/camera.h"
+#include "item3d/scene/image.h"
 #include "item3d/scene/model.h"
 
 #include <torch/types.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace item3d {
@@ -31,8 +33,8 @@ std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std:
 torch::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
                                  std::int64_t iteration);
 
-/// The lights of an edit, prefiltered once. Shading that stays the same in every picture could be
-/// painted into the base colour; a light that moves cannot. augment:
+/// The lights of an edit, each prefiltered when it is first wanted. Shading that stays the same in
+/// every picture could be painted into the base colour; a light that moves cannot. augment:
 ///   off     the light as it is, always;
 ///   rotate  turned to six azimuths;
 ///   all     also exchanged for presets of daylight and the studio, and brighter or darker by up to
@@ -42,12 +44,22 @@ class LightRig {
     /// light: preset or file. Throws InputError.
     LightRig(const std::string& light, const std::string& augment, int cube_size,
              torch::Device device);
-    EnvironmentLight pick(std::uint64_t seed, std::int64_t iteration) const;
+    EnvironmentLight pick(std::uint64_t seed, std::int64_t iteration);
     /// The light as it was given, for pictures.
-    const EnvironmentLight& front() const { return lights_.front(); }
+    const EnvironmentLight& front() { return at(0); }
 
   private:
-    std::vector<EnvironmentLight> lights_;
+    struct Light {
+        std::size_t image;  ///< its place in images_
+        float turn;         ///< degrees
+        std::optional<EnvironmentLight> prefiltered;
+    };
+    const EnvironmentLight& at(std::size_t index);
+
+    std::vector<Image> images_;
+    std::vector<Light> lights_;
+    int cube_size_;
+    torch::Device device_;
     float exposure_range_ = 0;  ///< stops
 };
 
