@@ -37,33 +37,48 @@ class Tiles {
     Tiles& operator=(const Tiles&) = delete;
 };
 
-/// sums [32, 64] = a [32, depth] times b [depth / 2, 64, 2]; depth is a multiple of 32.
-inline void multiply(const BrainFloat* a, std::int64_t depth, const BrainFloat* b, float* sums) {
-    constexpr int tile = 16, half = 2 * tile, group = 2;
+/// sums [count, 64] = a [count, depth] times b [depth / 2, 64, 2]; count is a multiple of `rows`,
+/// depth of 32. `next` is the b of the call after this one: it is fetched meanwhile, for processors
+/// do not foresee what tiles will read, and to wait for it takes as long again as multiplying.
+inline void multiply(const BrainFloat* a, std::int64_t count, std::int64_t depth,
+                     const BrainFloat* b, const BrainFloat* next, float* sums) {
+    constexpr int tile = 16, half = 2 * tile, group = 2, line = 64;
     constexpr int b_stride = packed_columns * group * static_cast<int>(sizeof(BrainFloat));
     constexpr int sums_stride = packed_columns * static_cast<int>(sizeof(float));
     const auto a_stride = depth * static_cast<std::int64_t>(sizeof(BrainFloat));
-    for (int column = 0; column < packed_columns; column += half) {
-        _tile_zero(0);
-        _tile_zero(1);
-        _tile_zero(2);
-        _tile_zero(3);
-        for (std::int64_t k = 0; k < depth; k += tile * group) {
-            const BrainFloat* at = b + k * packed_columns + column * group;
-            _tile_loadd(4, a + k, a_stride);
-            _tile_loadd(6, at, b_stride);
-            _tile_dpbf16ps(0, 4, 6);
-            _tile_loadd(7, at + tile * group, b_stride);
-            _tile_dpbf16ps(1, 4, 7);
-            _tile_loadd(5, a + tile * depth + k, a_stride);
-            _tile_dpbf16ps(2, 5, 6);
-            _tile_dpbf16ps(3, 5, 7);
+    const std::int64_t steps = count / rows * (packed_columns / half) * (depth / half);
+    const std::int64_t bytes = depth * packed_columns * static_cast<std::int64_t>(sizeof(*b));
+    const std::int64_t lines_a_step = (bytes / line + steps - 1) / steps;
+    const char* fetched = reinterpret_cast<const char*>(next);
+    const char* const fetched_end = fetched + bytes;
+    for (std::int64_t row = 0; row < count; row += rows)
+        for (int column = 0; column < packed_columns; column += half) {
+            _tile_zero(0);
+            _tile_zero(1);
+            _tile_zero(2);
+            _tile_zero(3);
+            for (std::int64_t k = 0; k < depth; k += half) {
+                for (std::int64_t i = 0; i < lines_a_step && fetched < fetched_end; ++i) {
+                    _mm_prefetch(fetched, _MM_HINT_T1);
+                    fetched += line;
+                }
+                const BrainFloat* upper = a + row * depth + k;
+                const BrainFloat* left = b + k * packed_columns + column * group;
+                _tile_loadd(4, upper, a_stride);
+                _tile_loadd(6, left, b_stride);
+                _tile_dpbf16ps(0, 4, 6);
+                _tile_loadd(7, left + tile * group, b_stride);
+                _tile_dpbf16ps(1, 4, 7);
+                _tile_loadd(5, upper + tile * depth, a_stride);
+                _tile_dpbf16ps(2, 5, 6);
+                _tile_dpbf16ps(3, 5, 7);
+            }
+            float* corner = sums + row * packed_columns + column;
+            _tile_stored(0, corner, sums_stride);
+            _tile_stored(1, corner + tile, sums_stride);
+            _tile_stored(2, corner + tile * packed_columns, sums_stride);
+            _tile_stored(3, corner + tile * packed_columns + tile, sums_stride);
         }
-        _tile_stored(0, sums + column, sums_stride);
-        _tile_stored(1, sums + column + tile, sums_stride);
-        _tile_stored(2, sums + tile * packed_columns + column, sums_stride);
-        _tile_stored(3, sums + tile * packed_columns + column + tile, sums_stride);
-    }
 }
 
 }  // namespace item3d::units

@@ -217,15 +217,14 @@ int64_t rows_for(int64_t tiles) {
     return avx512::whole_rows(tiles);
 }
 
-/// sums [count, 64] = a [count, depth] times b, for a count of rows_for().
+/// sums [count, 64] = a [count, depth] times b, for a count of rows_for(); next: units::multiply().
 template <typename Number>
-void multiply_rows(const Number* a, int64_t count, int64_t depth, const Number* b, float* sums) {
+void multiply_rows(const Number* a, int64_t count, int64_t depth, const Number* b,
+                   [[maybe_unused]] const Number* next, float* sums) {
     if constexpr (std::is_same_v<Number, BrainFloat>)
         if (matrix_units_run()) {
             const units::Tiles tiles;
-            for (int64_t r = 0; r < count; r += units::rows)
-                units::multiply(a + r * depth, depth, b, sums + r * packed_columns);
-            return;
+            return units::multiply(a, count, depth, b, next, sums);
         }
     for (int64_t r = 0; r < count; r += rows) {
         const Number* at[rows];
@@ -254,12 +253,19 @@ void convolve_winograd(const ConvolutionShape& shape, const Number* x, const Num
     auto* transformed = static_cast<Number*>(scratch);
     auto* sums = reinterpret_cast<float*>(transformed + points * stride * channels);
     transform_input(shape, x, first, last, stride, transformed);
+    const auto panel = [&](int64_t channel, int64_t point) {
+        return packed + (point * shape.out_channels + channel) * channels;
+    };
     for (int64_t channel = part.first_channel; channel < part.last_channel;
          channel += packed_columns) {
         for (int64_t i = 0; i < points; ++i) {
-            const Number* b = packed + (i * shape.out_channels + channel) * channels;
-            multiply_rows(transformed + i * stride * channels, stride, channels, b,
-                          sums + i * stride * packed_columns);
+            const bool ends = i + 1 == points,
+                       ends_all = channel + packed_columns == part.last_channel;
+            const Number* next = !ends      ? panel(channel, i + 1)
+                                 : ends_all ? panel(part.first_channel, 0)
+                                            : panel(channel + packed_columns, 0);
+            multiply_rows(transformed + i * stride * channels, stride, channels, panel(channel, i),
+                          next, sums + i * stride * packed_columns);
         }
         transform_sums(shape, sums, bias, first, last, stride, channel, y);
     }
