@@ -35,9 +35,9 @@ struct Division {
 /// threads.
 template <typename Number>
 Division divide(const ConvolutionShape& shape) {
-    constexpr int64_t cache = 1200 << 10;  // measured best with 1 MB of second-level cache
+    constexpr int64_t cache = 2000 << 10;  // measured best with 1 MB of second-level cache
     // Fewer would read the weights from the memory too often.
-    constexpr int64_t fewest = 48;
+    constexpr int64_t fewest = 96;
     const int64_t threads = at::get_num_threads(), tiles = shape.tiles(winograd_tile<Number>);
     const int64_t bytes_a_tile = winograd_scratch<Number>(fewest, shape.in_channels) / fewest;
     const int64_t fitting = std::max(fewest, cache / bytes_a_tile);
@@ -84,7 +84,7 @@ bool WinogradConvolution::gains(const torch::Tensor& x, const torch::Tensor& wei
     // In float32 they take four times the memory, or eight times that of float16.
     constexpr int64_t few_weights = 1 << 20;
     const bool heavy = !is_bfloat16(x) && weight.numel() > few_weights;
-    return fits(x, weight) && pixels >= (heavy ? 4096 : 512);
+    return fits(x, weight) && pixels >= (heavy ? 2048 : 512);
 }
 
 WinogradConvolution::WinogradConvolution(const torch::Tensor& weight, torch::Dtype dtype,
