@@ -80,27 +80,29 @@ torch::Tensor sample_backgrounds(const std::string& background, int count, std::
 LightRig::LightRig(const std::string& light, const std::string& augment, int cube_size,
                    torch::Device device)
     : cube_size_(cube_size), device_(device) {
-    const auto add = [&](Image image, int rotations, float first) {
+    const auto add = [&](Source source, int rotations, float first) {
         for (int i = 0; i < rotations; ++i)
             lights_.push_back(
-                {images_.size(),
+                {sources_.size(),
                  first + 360.0f * static_cast<float>(i) / static_cast<float>(rotations),
                  {}});
-        images_.push_back(std::move(image));
+        sources_.push_back(std::move(source));
     };
-    add(load_light(light), augment == "off" ? 1 : light_rotations, 0);
+    add({light, load_light(light)}, augment == "off" ? 1 : light_rotations, 0);
     if (augment != "all") return;
     exposure_range_ = 0.5f;
     // White lights alone: under a sunset, what is white looks orange to the prior.
     for (const char* preset : {"studio", "overcast", "noon"})
-        if (preset != light) add(make_light_preset(preset), light_rotations / 2, 30);
+        if (preset != light) add({preset, {}}, light_rotations / 2, 30);
 }
 
 const EnvironmentLight& LightRig::at(std::size_t index) {
     Light& light = lights_[index];
-    if (!light.prefiltered)
-        light.prefiltered =
-            prefilter(adjust_light(images_[light.image], light.turn, 0.0f), cube_size_, device_);
+    if (light.prefiltered) return *light.prefiltered;
+    Source& source = sources_[light.source];
+    if (!source.image) source.image = make_light_preset(source.preset);
+    light.prefiltered =
+        prefilter(adjust_light(*source.image, light.turn, 0.0f), cube_size_, device_);
     return *light.prefiltered;
 }
 

@@ -49,14 +49,18 @@ class LightRig {
     const EnvironmentLight& front() { return at(0); }
 
   private:
+    struct Source {
+        std::string preset;
+        std::optional<Image> image;  ///< once it was wanted
+    };
     struct Light {
-        std::size_t image;  ///< its place in images_
-        float turn;         ///< degrees
+        std::size_t source;  ///< its place in sources_
+        float turn;          ///< degrees
         std::optional<EnvironmentLight> prefiltered;
     };
     const EnvironmentLight& at(std::size_t index);
 
-    std::vector<Image> images_;
+    std::vector<Source> sources_;
     std::vector<Light> lights_;
     int cube_size_;
     torch::Device device_;

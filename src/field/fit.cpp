@@ -12,27 +12,36 @@
 namespace item3d {
 namespace {
 
-constexpr float orm_weight = 0.5f;
-constexpr float normal_weight = 0.1f;
+/// [8] what the squared error of each encoded value counts.
+torch::Tensor column_weights() {
+    constexpr float base_color = 1.0f / 3, orm = 0.5f / 3, slope = 0.1f / 3;
+    return torch::tensor({base_color, base_color, base_color, orm, orm, orm, slope, slope});
+}
 
-/// What the field should return, in the space of the loss. Constants.
-struct Target {
-    torch::Tensor base_color;  ///< [P, 3] sRGB-encoded
-    torch::Tensor orm;         ///< [P, 3]
-    torch::Tensor normal;      ///< [P, 3]
+/// Points of the surface, and what the field should return there as NeuralTexture::encoded() has
+/// it, for some steps. Constants.
+struct Examples {
+    torch::Tensor positions;  ///< [steps, P, 3]
+    torch::Tensor values;     ///< [steps, P, 8]
 };
 
-Target make_target(const Surface& surface, const TexturedMaterials& materials) {
+Examples draw_examples(const SurfaceSampler& sampler, const FieldSpace& space,
+                       const TexturedMaterials& materials, float steepest, std::int64_t steps,
+                       std::int64_t points, Random& random) {
     const torch::NoGradGuard no_grad;
+    const Surface surface = sampler.sample(steps * points, random);
     const MaterialSample own = materials.sample(surface);
-    Target target;
-    target.base_color = linear_to_srgb(own.base_color.clamp(0.0f, 1.0f));
-    target.orm = own.orm.clamp(0.0f, 1.0f);
-    target.normal =
-        own.normal.defined()
-            ? own.normal
-            : torch::tensor({0.0f, 0.0f, 1.0f}, own.base_color.options()).expand_as(own.base_color);
-    return target;
+    torch::Tensor slopes = torch::zeros({steps * points, 2}, own.orm.options());
+    if (own.normal.defined())
+        slopes = (own.normal.narrow(1, 0, 2) / own.normal.narrow(1, 2, 1).clamp_min(1e-3f))
+                     .clamp(-steepest, steepest);
+    const torch::Tensor values = torch::cat(
+        {linear_to_srgb(own.base_color.clamp(0.0f, 1.0f)), own.orm.clamp(0.0f, 1.0f), slopes}, 1);
+    // The sampler goes over the surface in order: each step takes one of `steps` neighbours.
+    const auto deal = [&](const torch::Tensor& rows) {
+        return rows.view({points, steps, -1}).transpose(0, 1).contiguous();
+    };
+    return {deal(space.positions(surface)), deal(values)};
 }
 
 double psnr(const torch::Tensor& difference) {
@@ -73,16 +82,21 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
         {.learning_rate = options.network_learning_rate, .beta1 = 0.9, .beta2 = 0.99});
     std::optional<Progress> progress;
     if (options.show_progress) progress.emplace("fit", options.steps);
+    const float steepest = field->options().ranges.normal_slope;
+    const torch::Tensor weights = column_weights().to(field->table().device());
+    Examples drawn;
     for (int step = 0; step < options.steps; ++step) {
-        const Surface surface = sampler.sample(options.batch, random);
-        const Target target = make_target(surface, materials);
-        const MaterialSample sample = field->forward(space.positions(surface));
-        const torch::Tensor loss =
-            (linear_to_srgb(sample.base_color) - target.base_color).square().mean() +
-            orm_weight * (sample.orm - target.orm).square().mean() +
-            normal_weight * (sample.normal - target.normal).square().mean();
+        // Many at once: to draw few takes as long.
+        constexpr int steps_drawn = 16;
+        const int place = step % steps_drawn;
+        if (place == 0)
+            drawn =
+                draw_examples(sampler, space, materials, steepest,
+                              std::min(steps_drawn, options.steps - step), options.batch, random);
+        const torch::Tensor difference =
+            field->encoded(drawn.positions[place]) - drawn.values[place];
         adam.zero_grad();
-        loss.backward();
+        (difference.square() * weights).sum().div(double(options.batch)).backward();
         // A cosine from the full rate to a hundredth: the last steps average out the batches'
         // noise.
         const double decay =
@@ -97,12 +111,11 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
     progress.reset();
 
     const torch::NoGradGuard no_grad;
-    const Surface surface = sampler.sample(32768, random);
-    const Target target = make_target(surface, materials);
-    const MaterialSample sample = field->forward(space.positions(surface));
+    const Examples fresh = draw_examples(sampler, space, materials, steepest, 1, 32768, random);
+    const torch::Tensor difference = field->encoded(fresh.positions[0]) - fresh.values[0];
     FitResult result;
-    result.base_color_psnr = psnr(linear_to_srgb(sample.base_color) - target.base_color);
-    result.orm_psnr = psnr(sample.orm - target.orm);
+    result.base_color_psnr = psnr(difference.narrow(1, 0, 3));
+    result.orm_psnr = psnr(difference.narrow(1, 3, 3));
     result.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;

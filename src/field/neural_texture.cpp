@@ -69,7 +69,7 @@ NeuralTextureImpl::NeuralTextureImpl(const NeuralTextureOptions& options)
     ITEM3D_CHECK(torch::all(high_ >= low_).item<bool>(), "a material range is empty");
 }
 
-MaterialSample NeuralTextureImpl::forward(const torch::Tensor& positions) {
+torch::Tensor NeuralTextureImpl::encoded(const torch::Tensor& positions) {
     const Vec3 size = options_.bounds[1] - options_.bounds[0];
     // One scale for all axes: cells are cubes.
     const float extent = std::max({size.x, size.y, size.z, 1e-20f});
@@ -82,8 +82,11 @@ MaterialSample NeuralTextureImpl::forward(const torch::Tensor& positions) {
     const torch::Tensor span = high_ - low_;
     const torch::Tensor wide = torch::addcmul(low_ - overshoot * span, torch::sigmoid(x),
                                               (1.0f + 2.0f * overshoot) * span);
-    const torch::Tensor values = ClampValue::apply(wide, low_, high_);
+    return ClampValue::apply(wide, low_, high_);
+}
 
+MaterialSample NeuralTextureImpl::forward(const torch::Tensor& positions) {
+    const torch::Tensor values = encoded(positions);
     MaterialSample sample;
     sample.base_color = srgb_to_linear(values.narrow(1, 0, 3));
     sample.orm = values.narrow(1, 3, 3);

@@ -52,6 +52,10 @@ class NeuralTextureImpl : public torch::nn::Module {
     /// and, inside the bounds, in the positions.
     MaterialSample forward(const torch::Tensor& positions);
 
+    /// The same as the network has it, [P, 8]: base colour sRGB-encoded, orm, the normal's x / z
+    /// and y / z.
+    torch::Tensor encoded(const torch::Tensor& positions);
+
     const NeuralTextureOptions& options() const { return options_; }
     const torch::Tensor& table() const { return table_; }
     /// Weights and biases of the network.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace item3d {
@@ -142,7 +143,8 @@ float box_profile(float x, float y) {
     return 1.12f - 0.36f * (x * x + y * y);
 }
 
-Vec3 radiance(Vec3 direction, Vec3 indirect) {
+/// Of the nearest box in this direction, if there is one.
+std::optional<Vec3> box_radiance(Vec3 direction) {
     float nearest = std::numeric_limits<float>::max();
     Vec3 seen(0);
     for (const SoftBox& box : soft_boxes()) {
@@ -156,6 +158,10 @@ Vec3 radiance(Vec3 direction, Vec3 indirect) {
         seen = box.radiance * box_profile(x, y);
     }
     if (nearest < std::numeric_limits<float>::max()) return seen;
+    return std::nullopt;
+}
+
+Vec3 room_radiance(Vec3 direction, Vec3 indirect) {
     const RoomPoint point = room_point(direction);
     return point.albedo * (direct_irradiance(point.position, point.normal) + indirect) / pi;
 }
@@ -170,12 +176,24 @@ Image make_studio(int height) {
         "studio", height,
         [&](std::int64_t y) {
             for (int x = 0; x < image.width; ++x) {
+                // Boxes have sharp edges; what lies behind them changes slowly, and costs more.
                 Vec3 sum(0);
+                int behind = 0;
+                const auto direction = [&](float column, float row) {
+                    return equirectangular_direction((x + column) / image.width,
+                                                     (y + row) / height);
+                };
                 for (int i = 0; i < points * points; ++i) {
-                    const float u = (x + (i % points + 0.5f) / points) / image.width;
-                    const float v = (y + (i / points + 0.5f) / points) / height;
-                    sum += radiance(equirectangular_direction(u, v), indirect);
+                    const auto box = box_radiance(
+                        direction((i % points + 0.5f) / points, (i / points + 0.5f) / points));
+                    if (box)
+                        sum += *box;
+                    else
+                        ++behind;
                 }
+                if (behind > 0)
+                    sum +=
+                        static_cast<float>(behind) * room_radiance(direction(0.5f, 0.5f), indirect);
                 for (int c = 0; c < 3; ++c) {
                     image.at(x, static_cast<int>(y), c) = sum[c] / (points * points);
                 }
