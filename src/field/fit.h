@@ -9,9 +9,9 @@ namespace item3d {
 
 struct FitOptions {
     int steps = 200;
-    std::int64_t batch = 8192;  ///< surface points a step
-    double table_learning_rate = 0.02;
-    double network_learning_rate = 0.005;
+    std::int64_t batch = 4096;  ///< surface points a step
+    double table_learning_rate = 0.03;
+    double network_learning_rate = 0.01;
     std::uint64_t seed = 0;
     bool show_progress = true;
 };
