@@ -8,6 +8,7 @@
 #include "item3d/models/clip_text.h"
 #include "item3d/models/clip_tokenizer.h"
 #include "item3d/models/noise_schedule.h"
+#include "item3d/models/packable_linear.h"
 #include "item3d/models/safetensors.h"
 #include "item3d/models/unet.h"
 #include "item3d/models/weights.h"
@@ -264,9 +265,14 @@ class Verification {
     void add_memory() {
         // LibTorch takes 0.2 GB; the rest is for the model, its textures and the renderer.
         constexpr double program_bytes = 0.5e9;
-        // What packed convolutions take beyond the weights as they are stored, as a part of the
-        // networks' weights; the same steps in fp32 and bf16.
-        constexpr double packed_float = 0.5, packed_half = 0.1;
+        // What packed convolutions take beyond the weights, as a part of them; the same steps in
+        // fp32 and bf16. In fp32, most weights that a file has as fp16 stay so.
+        constexpr double packed_float = 0.12, packed_half = 0.1, bytes_of_halves = 2.8;
+        const bool halves =
+            PackedMatrix::runs(torch::kCPU, torch::kFloat16) &&
+            std::any_of(report_.parts.begin(), report_.parts.end(), [](const PartReport& part) {
+                return part.name == "unet" && part.stored_as == "fp16";
+            });
         const KeptNumbers kept =
             count_kept(*unet_, vae_->config_json(), report_.resolution, vae_->downscale());
         for (const auto& [name, size] : {std::pair("fp32", 4), {"bf16", 2}, {"fp16", 2}}) {
@@ -275,12 +281,13 @@ class Verification {
             for (const PartReport& part : report_.parts) {
                 if (part.name == "clip" || part.name == "captioner") continue;  // loaded on demand
                 const bool text = part.name.starts_with("text");
-                const std::uint64_t bytes = static_cast<std::uint64_t>(part.parameters) *
-                                            static_cast<std::uint64_t>(text ? 4 : size);
+                const double each = text ? 4 : size == 4 && halves ? bytes_of_halves : size;
+                const auto bytes =
+                    static_cast<std::uint64_t>(each * static_cast<double>(part.parameters));
                 memory.weights += bytes;
                 if (text) memory.text_encoders += bytes;
             }
-            const double packed = size == 4 ? packed_float : packed_half;
+            const double packed = size != 4 ? packed_half : halves ? 0 : packed_float;
             memory.program = static_cast<std::uint64_t>(
                 program_bytes +
                 packed * static_cast<double>(memory.weights - memory.text_encoders));
