@@ -3,7 +3,6 @@
 #include "edit_support.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/edit/checkpoint.h"
 #include "item3d/edit/material_source.h"
 #include "item3d/edit/metals.h"
 #include "item3d/render/cuda/module.h"

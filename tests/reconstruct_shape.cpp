@@ -2,41 +2,22 @@
 #include "item3d/reconstruct/shape/find_shape.h"
 #include "item3d/reconstruct/shape/marching_tetrahedra.h"
 #include "item3d/reconstruct/shape/visual_hull.h"
+#include "item3d/reconstruct/surface/movable_mesh.h"
 #include "reconstruct_support.h"
 
 #include <cmath>
-#include <map>
 
 namespace item3d {
 namespace {
 
-Lattice cube_lattice(int cells) {
-    return {Vec3(-1.0f), 2.0f / static_cast<float>(cells), {cells, cells, cells}};
-}
-
-/// Radius 0.7 around a point that is no vertex.
-torch::Tensor sphere_values(const torch::Tensor& points) {
-    const torch::Tensor centre = torch::tensor({0.03f, -0.02f, 0.05f});
-    return (points - centre).norm(2, 1) - 0.7f;
-}
+using testing::cube_lattice;
+using testing::expect_closed;
+using testing::sphere_values;
 
 TriangleMesh march(const Lattice& lattice, const torch::Tensor& values) {
     MarchingTetrahedra marching(lattice);
     const MarchedTopology topology = marching.topology(values);
     return {surface_points(topology, values, lattice.vertices()), topology.triangles};
-}
-
-/// Every edge is used once in each direction.
-void expect_closed(const torch::Tensor& triangles) {
-    std::map<std::pair<std::int64_t, std::int64_t>, int> edges;
-    const auto* t = triangles.const_data_ptr<std::int64_t>();
-    for (std::int64_t i = 0; i < triangles.size(0); ++i)
-        for (int c = 0; c < 3; ++c)
-            ++edges[{t[3 * i + c], t[3 * i + (c + 1) % 3]}];
-    for (const auto& [edge, count] : edges) {
-        ASSERT_EQ(count, 1);
-        ASSERT_EQ(edges.count({edge.second, edge.first}), 1u);
-    }
 }
 
 TEST(MarchingTetrahedra, SphereIsClosedAndHasItsVolume) {
@@ -50,19 +31,14 @@ TEST(MarchingTetrahedra, SphereIsClosedAndHasItsVolume) {
 }
 
 TEST(MarchingTetrahedra, AnySignsGiveAClosedSurface) {
-    torch::manual_seed(5);
-    Lattice lattice = cube_lattice(6);
-    lattice.cells = {6, 5, 7};
-    torch::Tensor values = torch::randn({8, 6, 7});
-    // Nothing inside touches the border.
-    values = torch::where(torch::constant_pad_nd(torch::ones({6, 4, 5}), {1, 1, 1, 1, 1, 1}, 0) > 0,
-                          values, torch::ones_like(values));
+    Lattice lattice;
+    const torch::Tensor values = testing::random_values(lattice, 5);
     MarchingTetrahedra marching(lattice);
-    const MarchedTopology first = marching.topology(values.reshape({-1}));
+    const MarchedTopology first = marching.topology(values);
     expect_closed(first.triangles);
     EXPECT_GT(first.triangles.size(0), 100);
     // The memory that is kept does not change the next result.
-    EXPECT_TRUE(torch::equal(first.triangles, marching.topology(values.reshape({-1})).triangles));
+    EXPECT_TRUE(torch::equal(first.triangles, marching.topology(values).triangles));
     EXPECT_EQ(marching.topology(torch::ones({lattice.vertex_count()})).triangles.size(0), 0);
 }
 
@@ -78,7 +54,8 @@ TEST(MarchingTetrahedra, GradientsAreThoseOfFiniteDifferences) {
     const MarchedTopology topology = marching.topology(values);
     const torch::Tensor weights = torch::randn({topology.edges.size(0), 3});
     const auto loss = [&](const torch::Tensor& v, const torch::Tensor& p) {
-        return (surface_points(topology, v, p) * weights).sum() + sign_change_loss(topology, v);
+        return (surface_points(topology, v, p) * weights).sum() +
+               sign_change_loss(topology.edges, v);
     };
     loss(values, vertices).backward();
     const torch::NoGradGuard no_gradient;

@@ -1,15 +1,18 @@
-// Small datasets, made by our own renderer.
+// Small datasets and lattices.
 #pragma once
 
 #include "item3d/core/files.h"
 #include "item3d/reconstruct/dataset/dataset.h"
+#include "item3d/reconstruct/shape/lattice.h"
 #include "item3d/scene/io/save.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace item3d::testing {
@@ -61,6 +64,40 @@ inline nlohmann::json rows_of(const Mat4& pose) {
 /// (x, y, z) of a world with +Y up in one with +Z up.
 inline Mat4 y_up_to_z_up() {
     return Mat4(Mat3(1, 0, 0, 0, 0, 1, 0, -1, 0));
+}
+
+inline Lattice cube_lattice(int cells) {
+    return {Vec3(-1.0f), 2.0f / static_cast<float>(cells), {cells, cells, cells}};
+}
+
+/// Radius 0.7 around a point that is no vertex.
+inline torch::Tensor sphere_values(const torch::Tensor& points) {
+    const torch::Tensor centre = torch::tensor({0.03f, -0.02f, 0.05f});
+    return (points - centre).norm(2, 1) - 0.7f;
+}
+
+/// A small lattice with any values; nothing inside touches the border.
+inline torch::Tensor random_values(Lattice& lattice, std::uint64_t seed) {
+    torch::manual_seed(seed);
+    lattice = cube_lattice(6);
+    lattice.cells = {6, 5, 7};
+    const torch::Tensor inner =
+        torch::constant_pad_nd(torch::ones({6, 4, 5}), {1, 1, 1, 1, 1, 1}, 0) > 0;
+    const torch::Tensor values = torch::randn({8, 6, 7});
+    return torch::where(inner, values, torch::ones_like(values)).reshape({-1});
+}
+
+/// Every edge is used once in each direction.
+inline void expect_closed(const torch::Tensor& triangles) {
+    std::map<std::pair<std::int64_t, std::int64_t>, int> edges;
+    const auto* t = triangles.const_data_ptr<std::int64_t>();
+    for (std::int64_t i = 0; i < triangles.size(0); ++i)
+        for (int c = 0; c < 3; ++c)
+            ++edges[{t[3 * i + c], t[3 * i + (c + 1) % 3]}];
+    for (const auto& [edge, count] : edges) {
+        ASSERT_EQ(count, 1);
+        ASSERT_EQ(edges.count({edge.second, edge.first}), 1u);
+    }
 }
 
 }  // namespace item3d::testing

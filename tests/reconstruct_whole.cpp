@@ -2,6 +2,7 @@
 #include "item3d/core/error.h"
 #include "item3d/reconstruct/reconstruct.h"
 #include "item3d/reconstruct/scores.h"
+#include "item3d/reconstruct/stage_preview.h"
 #include "item3d/reconstruct/surface/plain_model.h"
 #include "item3d/render/textured.h"
 #include "item3d/scene/environment.h"
@@ -117,6 +118,109 @@ TEST(Reconstruct, ShapeFromPicturesAlone) {
     // A cell of the finest grid is 0.04; so few, and so few steps, leave the shape about as rough.
     EXPECT_LT(summary["scores"]["chamfer"].get<double>(), 0.06);
     EXPECT_TRUE(summary["warnings"].empty());
+}
+
+/// A few steps of both stages.
+ReconstructRequest short_request(const fs::path& dataset, const std::string& output) {
+    ReconstructRequest request;
+    request.dataset = dataset;
+    request.output = testing::fresh_folder(output);
+    request.shape.cells = {8, 16};
+    request.shape.iterations = 9;  // three on the coarse lattice
+    request.shape.triangles = 600;
+    request.refine.iterations = 6;  // shadows are traced at every second
+    request.texture_size = 64;
+    request.command = "item3d reconstruct";
+    return request;
+}
+
+TEST(Reconstruct, ResumesToTheSameBytesInEitherStageAndBetween) {
+    const fs::path dataset = sphere_dataset("resume", 6, 2, 32);
+    const ReconstructRequest whole = short_request(dataset, "resume_whole");
+    const nlohmann::json summary = reconstruct(whole);
+
+    ReconstructRequest parts = short_request(dataset, "resume_parts");
+    // Where a lattice ends, in the next, where the shape ends, and after shadows were traced.
+    for (const int stop : {3, 5, 9, 12}) {
+        parts.stop_after = stop;
+        try {
+            reconstruct(parts);
+            FAIL() << "not interrupted at " << stop;
+        } catch (const Interrupted& error) {
+            EXPECT_STREQ(error.what(), ("iteration " + std::to_string(stop) +
+                                        " of 15 is kept; go on with: item3d reconstruct --resume")
+                                           .c_str());
+        }
+        EXPECT_FALSE(fs::exists(parts.output / "model.glb"));
+        parts.resume = true;
+    }
+    parts.stop_after = 0;
+    const nlohmann::json resumed = reconstruct(parts);
+    for (const char* file : {"model.glb", "light.hdr"})
+        EXPECT_EQ(read_bytes(whole.output / file), read_bytes(parts.output / file)) << file;
+    EXPECT_EQ(summary["scores"], resumed["scores"]);
+
+    ReconstructRequest other = parts;
+    other.shape.cells = {10, 20};
+    EXPECT_THROW(reconstruct(other), InputError);
+    other = parts;
+    other.dataset_options.longest_side = 24;
+    EXPECT_THROW(reconstruct(other), InputError);
+    other = parts;
+    other.mesh = dataset / "sphere.glb";
+    EXPECT_THROW(reconstruct(other), InputError);
+    Bytes broken = read_bytes(parts.output / "checkpoint.safetensors");
+    broken.resize(broken.size() / 2);
+    write_atomically(parts.output / "checkpoint.safetensors",
+                     std::span<const std::uint8_t>(broken));
+    EXPECT_THROW(reconstruct(parts), InputError);
+    EXPECT_EQ(read_bytes(whole.output / "model.glb"), read_bytes(parts.output / "model.glb"));
+}
+
+TEST(Reconstruct, ResumesWithAGivenMesh) {
+    const fs::path dataset = sphere_dataset("resume_mesh", 6, 2, 32);
+    ReconstructRequest whole = short_request(dataset, "resume_mesh_whole");
+    whole.mesh = dataset / "sphere.glb";
+    whole.move_vertices = false;
+    reconstruct(whole);
+    ReconstructRequest parts = whole;
+    parts.output = testing::fresh_folder("resume_mesh_parts");
+    parts.stop_after = 3;
+    EXPECT_THROW(reconstruct(parts), Interrupted);
+    parts.stop_after = 0;
+    parts.resume = true;
+    reconstruct(parts);
+    EXPECT_EQ(read_bytes(whole.output / "model.glb"), read_bytes(parts.output / "model.glb"));
+}
+
+TEST(Reconstruct, ThePreviewShowsPhotographsAndWhatThereIs) {
+    const fs::path dataset_folder = sphere_dataset("preview", 6, 2, 32);
+    const Dataset dataset = load_dataset(dataset_folder);
+    const fs::path picture = testing::fresh_folder("preview_out") / "preview.png";
+    StagePreview preview(picture, dataset);
+    const Model model = load_plain_model(dataset_folder / "sphere.glb");
+    const auto views = make_targets(dataset.train, model.bounds());
+    Appearance appearance = make_appearance(model.bounds(), views, 0);
+    MovableMesh mesh(model, false);
+    RefineOptions options;
+    options.shadows = false;
+    Refinement stage(appearance, mesh, model, views, options);
+    stage.step();
+    preview.update(stage);
+    const Image image = load_image(picture);
+    EXPECT_EQ(image.width, 3 * 32);
+    EXPECT_EQ(image.height, 3 * 32);
+    // The photograph and the drawing below it begin and end at the same places.
+    for (const int x : {0, 16, 31}) {
+        const float paper = image.at(0, 0, 0);
+        const bool in_photograph = std::abs(image.at(x, 16, 2) - paper) > 0.02f;
+        const bool in_drawing = std::abs(image.at(x, 48, 2) - paper) > 0.02f;
+        EXPECT_EQ(in_photograph, x == 16);
+        EXPECT_EQ(in_drawing, x == 16);
+    }
+    // A preview that cannot be written does not stop anything.
+    fs::remove_all(picture.parent_path());
+    StagePreview(picture / "below" / "nothing.png", dataset).update(stage);
 }
 
 TEST(Reconstruct, AConstantFieldIsTheMaterialOfThePlainModel) {

@@ -83,6 +83,7 @@ void add_reconstruct_command(CLI::App& app) {
                      "NeRF-synthetic, nerfstudio (transforms.json), COLMAP or LLFF")
         ->required();
     command->add_option("-o,--output", request.output, "A folder")->required();
+    command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
     add_dataset_options(*command, *options);
     CLI::Option* mesh = command->add_option(
         "--mesh", request.mesh, "The shape, known already: find its materials and the light");

@@ -1,23 +1,12 @@
 #include "item3d/edit/checkpoint_state.h"
 
-#include "item3d/core/error.h"
-#include "item3d/core/files.h"
-#include "item3d/core/format.h"
-#include "item3d/core/random.h"
-#include "item3d/edit/checkpoint.h"
+#include "item3d/models/checkpoint.h"
 
 namespace item3d {
 namespace {
 
 std::filesystem::path checkpoint_path(const EditRequest& request) {
     return request.output / "checkpoint.safetensors";
-}
-
-std::string hash_of_file(const std::filesystem::path& path) {
-    std::uint64_t hash = 0;
-    for (const std::uint8_t byte : read_bytes(path))
-        hash = mix_bits(hash ^ byte);
-    return fmt::format("{:016x}", hash);
 }
 
 nlohmann::json identity_of(const EditRequest& request) {
@@ -27,67 +16,6 @@ nlohmann::json identity_of(const EditRequest& request) {
     if (wants_captions(request.settings)) identity["captioner"] = request.captioner.string();
     return identity;
 }
-
-void require_same_identity(const EditRequest& request, const std::string& saved_text) {
-    const auto saved = nlohmann::json::parse(saved_text, nullptr, false);
-    const nlohmann::json now = identity_of(request);
-    for (const auto& [key, value] : now.items()) {
-        const nlohmann::json before =
-            saved.is_object() ? saved.value(key, nlohmann::json()) : nullptr;
-        if (before == value) continue;
-        throw InputError(checkpoint_path(request).string(),
-                         key == "model" ? "belongs to another model file"
-                                        : fmt::format("was made with {} = {}, this command has {}",
-                                                      key, before.dump(), value.dump()),
-                         "use the same command, or leave out --resume to begin anew");
-    }
-}
-
-void append_parameters(NamedTensors& tensors, const std::string& prefix,
-                       const NeuralTexture& field) {
-    for (const auto& item : field->named_parameters()) {
-        tensors.emplace_back(prefix + item.key(), item.value().detach());
-    }
-}
-
-class StateReader {
-  public:
-    StateReader(std::string subject, const NamedTensors& tensors) : subject_(std::move(subject)) {
-        for (const auto& [name, tensor] : tensors)
-            tensors_[name] = tensor;
-    }
-    torch::Tensor get(const std::string& name) const {
-        const auto found = tensors_.find(name);
-        if (found == tensors_.end()) {
-            throw InputError(subject_, "has no tensor " + name, "leave out --resume to begin anew");
-        }
-        return found->second;
-    }
-    bool has(const std::string& name) const { return tensors_.count(name) != 0; }
-    void parameters(const std::string& prefix, NeuralTexture& field) const {
-        const torch::NoGradGuard no_grad;
-        for (const auto& item : field->named_parameters()) {
-            torch::Tensor parameter = item.value();
-            const torch::Tensor saved = get(prefix + item.key());
-            if (saved.sizes() != parameter.sizes()) {
-                throw InputError(subject_, "tensor " + prefix + item.key() + " has another shape",
-                                 "leave out --resume to begin anew");
-            }
-            parameter.copy_(saved);
-        }
-    }
-    std::map<std::string, torch::Tensor> with_prefix(const std::string& prefix) const {
-        std::map<std::string, torch::Tensor> found;
-        for (const auto& [name, tensor] : tensors_) {
-            if (name.starts_with(prefix)) found[name.substr(prefix.size())] = tensor;
-        }
-        return found;
-    }
-
-  private:
-    std::string subject_;
-    std::map<std::string, torch::Tensor> tensors_;
-};
 
 /// Its text as bytes of a tensor, its pictures as one.
 void append_adjustment(NamedTensors& tensors, const AdjustmentState& adjustment) {
@@ -105,7 +33,7 @@ void append_adjustment(NamedTensors& tensors, const AdjustmentState& adjustment)
     if (!pictures.empty()) tensors.emplace_back("adjustment.pictures", torch::stack(pictures));
 }
 
-void read_adjustment(const StateReader& reader, AdjustmentState& adjustment) {
+void read_adjustment(const CheckpointReader& reader, AdjustmentState& adjustment) {
     const torch::Tensor bytes = reader.get("adjustment.json").contiguous();
     const auto* text = bytes.const_data_ptr<std::uint8_t>();
     const auto json = nlohmann::json::parse(text, text + bytes.numel());
@@ -128,10 +56,10 @@ std::vector<float> to_floats(const torch::Tensor& tensor) {
 
 void save_state(const EditRequest& request, const EditState& state) {
     Checkpoint checkpoint;
-    checkpoint.identity = identity_of(request).dump();
+    checkpoint.identity = identity_of(request);
     checkpoint.iteration = state.iteration;
-    append_parameters(checkpoint.tensors, "fitted.", state.fitted);
-    append_parameters(checkpoint.tensors, "field.", state.field);
+    append_parameters(checkpoint.tensors, "fitted.", *state.fitted);
+    append_parameters(checkpoint.tensors, "field.", *state.field);
     if (state.light) {
         for (const torch::Tensor& parameter : state.light->parameters())
             checkpoint.tensors.emplace_back("light", parameter.detach());
@@ -143,7 +71,7 @@ void save_state(const EditRequest& request, const EditState& state) {
         checkpoint.tensors.emplace_back("guidance." + name, tensor);
     }
     if (!state.detail.before.is_empty()) {
-        append_parameters(checkpoint.tensors, "detail.before.", state.detail.before);
+        append_parameters(checkpoint.tensors, "detail.before.", *state.detail.before);
         for (const auto& [name, tensor] : state.detail.optimizer.state()) {
             checkpoint.tensors.emplace_back("detail.optimizer." + name, tensor);
         }
@@ -160,15 +88,15 @@ void save_state(const EditRequest& request, const EditState& state) {
 bool load_state(const EditRequest& request, EditState& state) {
     const auto checkpoint = load_checkpoint(checkpoint_path(request));
     if (!checkpoint) return false;
-    require_same_identity(request, checkpoint->identity);
+    require_same_identity(checkpoint_path(request), checkpoint->identity, identity_of(request),
+                          {{"model", "belongs to another model file"}});
 
-    const StateReader reader(checkpoint_path(request).string(), checkpoint->tensors);
-    reader.parameters("fitted.", state.fitted);
-    reader.parameters("field.", state.field);
+    const CheckpointReader reader(checkpoint_path(request).string(), checkpoint->tensors);
+    reader.parameters("fitted.", *state.fitted);
+    reader.parameters("field.", *state.field);
     if (state.light) {
-        const torch::NoGradGuard no_grad;
-        for (torch::Tensor parameter : state.light->parameters())
-            parameter.copy_(reader.get("light"));
+        for (const torch::Tensor& parameter : state.light->parameters())
+            reader.copy("light", parameter);
     }
     state.optimizer.load_state(reader.with_prefix("optimizer."));
     NamedTensors guidance;
@@ -178,7 +106,7 @@ bool load_state(const EditRequest& request, EditState& state) {
     state.guidance->load_state(guidance);
     if (reader.has("detail.before.table")) {
         begin_detail(state);
-        reader.parameters("detail.before.", state.detail.before);
+        reader.parameters("detail.before.", *state.detail.before);
         state.detail.optimizer.load_state(reader.with_prefix("detail.optimizer."));
         if (reader.has("detail.targets"))
             state.detail.targets =

@@ -6,6 +6,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/reconstruct/dataset/photograph.h"
 #include "item3d/reconstruct/outputs.h"
+#include "item3d/reconstruct/stage_runner.h"
 #include "item3d/reconstruct/surface/plain_model.h"
 #include "item3d/scene/environment.h"
 #include "item3d/scene/io/load.h"
@@ -28,13 +29,6 @@ std::string describe(const Dataset& dataset) {
     return fmt::format("{}: {} views to learn from, {} held out, {} x {}, masks from {}",
                        dataset_kind_name(dataset.kind), dataset.train.size(), dataset.test.size(),
                        first.width, first.height, dataset.masks);
-}
-
-std::vector<Photograph> some(const std::vector<Photograph>& views, std::size_t count) {
-    std::vector<Photograph> chosen;
-    for (std::size_t i = 0; i < std::min(count, views.size()); ++i)
-        chosen.push_back(views[i * views.size() / std::min(count, views.size())]);
-    return chosen;
 }
 
 /// The test views for which the folder has a picture, with that picture.
@@ -76,7 +70,7 @@ void score(Reconstruction& result) {
     const auto test = make_targets(result.dataset.test, bounds);
     result.test = renderer.score(test);
     result.train =
-        renderer.score(make_targets(some(result.dataset.train, train_views_scored), bounds));
+        renderer.score(make_targets(some_views(result.dataset.train, train_views_scored), bounds));
     result.test_without_shadows = ModelRenderer(result.model, result.light, false).score(test);
     if (!request.relit.folder.empty()) {
         const auto targets = make_targets(relit_views(result.dataset, request), bounds);
@@ -106,13 +100,20 @@ Start start_from_mesh(const ReconstructRequest& request, const Dataset& dataset)
     return {std::move(model), make_appearance(bounds, views, request.refine.seed)};
 }
 
-Start start_from_photographs(const ReconstructRequest& request, Reconstruction& result) {
+Start start_from_photographs(const ReconstructRequest& request, Reconstruction& result,
+                             StageRunner& runner) {
     const Dataset& dataset = result.dataset;
     const VisualHull hull(dataset.train);
     const auto bounds = hull.bounds(dataset.centre, dataset.radius, request.dataset.string());
     Appearance appearance =
         make_appearance(bounds, make_targets({dataset.train.front()}, bounds), request.refine.seed);
-    result.shape = find_shape(dataset, hull, bounds, appearance, request.shape);
+    result.shape = runner.found_shape();
+    if (!result.shape) {
+        ShapeSearch search(dataset, hull, bounds, appearance, request.shape);
+        runner.run(search);
+        result.shape = search.shape();
+    }
+    runner.keep(*result.shape);
     if (result.shape->hull_overlap < least_hull_overlap) {
         result.warnings.push_back(fmt::format(
             "the outlines of the pictures agree with each other only to {:.1f} %: poses "
@@ -136,13 +137,16 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     Reconstruction result(request, dataset, times);
     result.times.end_stage("load");
 
-    Start start = request.mesh.empty() ? start_from_photographs(request, result)
+    StageRunner runner(request, dataset);
+    Start start = request.mesh.empty() ? start_from_photographs(request, result, runner)
                                        : start_from_mesh(request, dataset);
     result.times.end_stage("unwrap");
 
     MovableMesh mesh(start.model, request.move_vertices);
-    result.refine = refine(start.appearance, mesh, start.model,
-                           make_targets(dataset.train, start.model.bounds()), request.refine);
+    Refinement refinement(start.appearance, mesh, start.model,
+                          make_targets(dataset.train, start.model.bounds()), request.refine);
+    runner.run(refinement);
+    result.refine = refinement.curves();
     result.times.end_stage("refine");
 
     result.model = bake_and_save(request.output / "model.glb", mesh.apply(start.model),

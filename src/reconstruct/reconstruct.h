@@ -32,11 +32,16 @@ struct ReconstructRequest {
     bool move_vertices = true;  ///< of a shape that was looked for; of a given mesh only if asked
     int texture_size = 1024;
     RelitViews relit;
-    std::string command;  ///< as typed
+    bool resume = false;
+    /// Stop as an interrupt would when this many iterations of both stages are done; 0: run to the
+    /// end.
+    int stop_after = 0;
+    std::string command;  ///< as typed, for reconstruct.json and the resume hint
 };
 
 /// Writes model.glb, light.hdr, report.html and reconstruct.json into the output folder and returns
-/// the latter's content. Throws InputError, ResourceError and Interrupted as core/error.h says.
+/// the latter's content; preview.png and checkpoint.safetensors while it runs. Throws InputError,
+/// ResourceError, and Interrupted (with the checkpoint written) as core/error.h says.
 nlohmann::json reconstruct(const ReconstructRequest& request);
 
 }  // namespace item3d

@@ -113,10 +113,10 @@ std::string charts(const Reconstruction& result) {
     };
     if (result.shape) {
         add("Shape", result.shape->curves);
-        std::vector<double> triangles(result.shape->triangles.begin(),
-                                      result.shape->triangles.end());
-        html +=
-            html_chart({"Shape: triangles", "iteration", {{"triangles", triangles, 1, 1}}, false});
+        html += html_chart({"Shape: triangles",
+                            "iteration",
+                            {{"triangles", result.shape->triangles, 1, 1}},
+                            false});
     }
     add("Materials and light", result.refine);
     return "<div class=\"charts\">\n" + html + "</div>\n";

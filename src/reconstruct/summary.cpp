@@ -47,6 +47,7 @@ nlohmann::json summary_json(const Reconstruction& result) {
                              {"world_from_dataset", rotation}}},
                            {"settings",
                             {{"mesh", request.mesh.string()},
+                             {"extraction", request.shape.extraction},
                              {"cells", request.shape.cells},
                              {"shape_iterations", request.shape.iterations},
                              {"refine_iterations", request.refine.iterations},

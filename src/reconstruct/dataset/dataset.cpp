@@ -222,4 +222,11 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
     return dataset;
 }
 
+std::vector<Photograph> some_views(const std::vector<Photograph>& views, std::size_t count) {
+    std::vector<Photograph> chosen;
+    for (std::size_t i = 0; i < std::min(count, views.size()); ++i)
+        chosen.push_back(views[i * views.size() / std::min(count, views.size())]);
+    return chosen;
+}
+
 }  // namespace item3d

@@ -51,4 +51,7 @@ struct DatasetOptions {
 /// "masks", alpha, or `options.background`, in this order. Throws InputError in one line.
 Dataset load_dataset(const std::filesystem::path& path, const DatasetOptions& options = {});
 
+/// Up to `count` of them, evenly chosen.
+std::vector<Photograph> some_views(const std::vector<Photograph>& views, std::size_t count);
+
 }  // namespace item3d

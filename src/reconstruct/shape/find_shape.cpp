@@ -2,9 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
-#include "item3d/core/progress.h"
-#include "item3d/field/adam.h"
-#include "item3d/reconstruct/view_order.h"
+#include "item3d/reconstruct/surface/movable_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,107 +18,35 @@ constexpr float largest_value = 3.0f;
 /// Fine enough that the hull's own outlines show, whatever lattice the shape is looked for on.
 constexpr int hull_check_cells = 64;
 constexpr std::int64_t smoothness_points_of_shape = 2048;
+constexpr std::uint64_t shape_stream = 0x7368617065;
+/// Of the optimiser, in the order in which begin_level() adds them.
+constexpr std::size_t values_group = 3, offsets_group = 4, weights_group = 5;
 
-/// The signed field on one lattice: what is optimised.
-struct ShapeField {
-    explicit ShapeField(const Lattice& lattice, const torch::Tensor& start)
-        : marching(lattice), places(lattice.vertices()) {
-        values = start.clamp(-largest_value, largest_value).clone().set_requires_grad(true);
-        offsets = torch::zeros_like(places).set_requires_grad(true);
-    }
-    torch::Tensor vertices() const {
-        return places + marching.lattice().cell * largest_offset * torch::tanh(offsets);
-    }
-
-    MarchingTetrahedra marching;
-    torch::Tensor places;   ///< [V, 3]
-    torch::Tensor values;   ///< [V] in cells
-    torch::Tensor offsets;  ///< [V, 3], before the hyperbolic tangent
-};
+[[noreturn]] void refuse_vanished_shape() {
+    throw InputError("reconstruct", "the shape vanished while it was optimised",
+                     "masks and poses do not belong together, or the object is tiny");
+}
 
 double blend(double first, double last, int iteration, int iterations) {
     return first + (last - first) * static_cast<double>(iteration) / std::max(1, iterations);
 }
 
-void optimize_on_lattice(ShapeField& field, Appearance& appearance,
-                         const std::vector<TargetView>& views, const ShapeOptions& options,
-                         int first, int count, Shape& shape, Progress& progress) {
-    Adam adam;
-    adam.add_group({appearance.field->table()}, {.learning_rate = 0.01});
-    adam.add_group(appearance.field->network_parameters(), {.learning_rate = 0.005});
-    adam.add_group(appearance.light.parameters(), {.learning_rate = 0.05, .beta2 = 0.999});
-    const std::size_t values = adam.add_group(
-        {field.values}, {.learning_rate = options.value_learning_rate, .beta2 = 0.999});
-    const std::size_t offsets = adam.add_group(
-        {field.offsets}, {.learning_rate = options.offset_learning_rate, .beta2 = 0.999});
-    ViewOrder order(views.size(), options.seed);
-    Random random(options.seed, 0x7368617065, static_cast<std::uint64_t>(first) << 32);
-    EnvironmentLight light;
-    for (int i = 0; i < count; ++i) {
-        const bool light_learns = i % options.light_every == 0;
-        if (light_learns) {
-            light = appearance.light.prefiltered();
-        } else if (i % options.light_every == 1) {
-            const torch::NoGradGuard no_gradient;
-            light = appearance.light.prefiltered();
-        }
-        const MarchedTopology topology = field.marching.topology(field.values);
-        if (topology.triangles.size(0) == 0) {
-            throw InputError("reconstruct", "the shape vanished while it was optimised",
-                             "masks and poses do not belong together, or the object is tiny");
-        }
-        // One material would carve what is printed on it, so the hull stands still meanwhile.
-        const bool light_alone = first + i < options.light_alone * options.iterations;
-        torch::Tensor positions = surface_points(topology, field.values, field.vertices());
-        if (light_alone) positions = positions.detach();
-        const Geometry geometry = untextured_geometry(positions, topology.triangles);
-        const TargetView& view = views[order.at(first + i)];
-        const RenderedView rendered =
-            render_view(geometry, appearance.field, light, view, {.one_material = light_alone});
-        const torch::Tensor background = torch::full({3}, static_cast<float>(random.uniform()));
-        const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
-        const torch::Tensor mask = mask_loss(rendered.image, view.image);
-        const double sign_change_weight =
-            light_alone ? 0.0
-                        : blend(options.sign_change_weight_first, options.sign_change_weight_last,
-                                first + i, options.iterations);
-        torch::Tensor loss = picture + options.mask_weight * mask +
-                             sign_change_weight * sign_change_loss(topology, field.values);
-        const float nearest = 0.25f * field.marching.lattice().cell;
-        loss = loss + options.smoothness_weight *
-                          smoothness_loss(appearance.field, rendered, nearest, 40 * nearest,
-                                          smoothness_points_of_shape, random);
-        loss = loss + options.brightness_weight * brightness_loss(rendered);
-        if (light_learns)
-            loss = loss + options.whiteness_weight * appearance.light.whiteness_loss();
-        loss.backward();
-        const double rate = blend(1.0, 0.2, i, count);
-        adam.options(values).learning_rate = rate * options.value_learning_rate;
-        adam.options(offsets).learning_rate = rate * options.offset_learning_rate;
-        adam.step();
-        adam.zero_grad();
-        {
-            const torch::NoGradGuard no_gradient;
-            field.values.clamp_(-largest_value, largest_value);
-        }
-        shape.curves.picture.push_back(picture.item<double>());
-        shape.curves.mask.push_back(mask.item<double>());
-        shape.triangles.push_back(topology.triangles.size(0));
-        progress.update(first + i + 1,
-                        fmt::format("difference {:.4f}, {} triangles", shape.curves.picture.back(),
-                                    shape.triangles.back()));
-        if (interrupted()) throw Interrupted("interrupted while the shape was looked for");
-    }
-}
-
-TriangleMesh marched(ShapeField& field) {
-    const torch::NoGradGuard no_gradient;
-    const MarchedTopology topology = field.marching.topology(field.values);
-    if (topology.triangles.size(0) == 0) return {torch::zeros({0, 3}), topology.triangles};
-    return {surface_points(topology, field.values, field.vertices()), topology.triangles};
-}
-
 }  // namespace
+
+ShapeField::ShapeField(const Lattice& lattice, const std::string& name, const torch::Tensor& start)
+    : cell(lattice.cell), extraction(make_extraction(name, lattice)), places(lattice.vertices()) {
+    values = start.clamp(-largest_value, largest_value).clone().set_requires_grad(true);
+    offsets = torch::zeros_like(places).set_requires_grad(true);
+}
+
+torch::Tensor ShapeField::vertices() const {
+    return places + cell * largest_offset * torch::tanh(offsets);
+}
+
+TriangleMesh ShapeField::mesh() {
+    const torch::NoGradGuard no_gradient;
+    return extraction->mesh(values, vertices());
+}
 
 Geometry untextured_geometry(const torch::Tensor& positions, const torch::Tensor& triangles) {
     const std::int64_t vertices = positions.size(0), count = triangles.size(0);
@@ -151,38 +77,153 @@ double mask_overlap(const TriangleMesh& mesh, const std::vector<TargetView>& vie
     return either > 0 ? both / either : 0.0;
 }
 
-Shape find_shape(const Dataset& dataset, const VisualHull& hull, std::array<Vec3, 2> bounds,
-                 Appearance& appearance, const ShapeOptions& options) {
+ShapeSearch::ShapeSearch(const Dataset& dataset, const VisualHull& hull, std::array<Vec3, 2> bounds,
+                         Appearance& appearance, const ShapeOptions& options)
+    : Stage(appearance), options_(options), order_(dataset.train.size(), options.seed) {
     ITEM3D_CHECK(!options.cells.empty(), "at least one lattice");
-    Shape shape;
-    Lattice lattice = make_lattice(bounds, options.cells.front());
-    const std::array<Vec3, 2> box{
-        lattice.origin,
-        lattice.origin + lattice.cell * Vec3(lattice.cells[0], lattice.cells[1], lattice.cells[2])};
-    const std::vector<TargetView> views = make_targets(dataset.train, box);
-    auto field =
-        std::make_unique<ShapeField>(lattice, hull.distance(lattice.vertices()) / lattice.cell);
+    lattice_ = make_lattice(bounds, options.cells.front());
+    const Vec3 size(lattice_.cells[0], lattice_.cells[1], lattice_.cells[2]);
+    views_ = make_targets(dataset.train, {lattice_.origin, lattice_.origin + lattice_.cell * size});
     const Lattice fine = make_lattice(bounds, hull_check_cells);
-    ShapeField hull_field(fine, hull.distance(fine.vertices()) / fine.cell);
-    shape.hull_overlap = mask_overlap(marched(hull_field), views);
+    ShapeField hull_field(fine, options.extraction, hull.distance(fine.vertices()) / fine.cell);
+    hull_overlap_ = mask_overlap(hull_field.mesh(), views_);
+    begin_level(0, hull.distance(lattice_.vertices()) / lattice_.cell);
+}
 
-    Progress progress("shape", options.iterations);
-    const auto levels = static_cast<int>(options.cells.size());
-    const int coarse = options.iterations / (levels + 1);
-    int done = 0;
-    for (int level = 0; level < levels; ++level) {
-        if (level > 0) {
-            const torch::NoGradGuard no_gradient;
-            const torch::Tensor start = 2 * refined_values(field->values, lattice);
-            lattice = lattice.refined();
-            field = std::make_unique<ShapeField>(lattice, start);
-        }
-        const int count = level + 1 < levels ? coarse : options.iterations - done;
-        optimize_on_lattice(*field, appearance, views, options, done, count, shape, progress);
-        done += count;
+int ShapeSearch::end_of_level(int level) const {
+    const auto levels = static_cast<int>(options_.cells.size());
+    const int coarse = options_.iterations / (levels + 1);
+    return level + 1 < levels ? (level + 1) * coarse : options_.iterations;
+}
+
+void ShapeSearch::begin_level(int level, const torch::Tensor& start) {
+    level_ = level;
+    field_ = std::make_unique<ShapeField>(lattice_, options_.extraction, start);
+    const int first = level > 0 ? end_of_level(level - 1) : 0;
+    learning_.random = Random(options_.seed, shape_stream, static_cast<std::uint64_t>(first) << 32);
+    learning_.optimizer = {};
+    Adam& adam = learning_.optimizer;
+    adam.add_group({appearance_.field->table()}, {.learning_rate = 0.01});
+    adam.add_group(appearance_.field->network_parameters(), {.learning_rate = 0.005});
+    adam.add_group(appearance_.light.parameters(), {.learning_rate = 0.05, .beta2 = 0.999});
+    adam.add_group({field_->values},
+                   {.learning_rate = options_.value_learning_rate, .beta2 = 0.999});
+    adam.add_group({field_->offsets},
+                   {.learning_rate = options_.offset_learning_rate, .beta2 = 0.999});
+    adam.add_group(field_->extraction->weights(),
+                   {.learning_rate = options_.weight_learning_rate, .beta2 = 0.999});
+}
+
+void ShapeSearch::start_next_level() {
+    const torch::NoGradGuard no_gradient;
+    const torch::Tensor start = 2 * refined_values(field_->values, lattice_);
+    lattice_ = lattice_.refined();
+    begin_level(level_ + 1, start);
+}
+
+torch::Tensor ShapeSearch::loss_besides_picture(const RenderedView& rendered,
+                                                const ExtractedSurface& surface, bool light_alone) {
+    const double sign_change_weight =
+        light_alone ? 0.0
+                    : blend(options_.sign_change_weight_first, options_.sign_change_weight_last,
+                            iteration(), options_.iterations);
+    const float nearest = 0.25f * lattice_.cell;
+    torch::Tensor loss = sign_change_weight * sign_change_loss(surface.edges, field_->values) +
+                         options_.smoothness_weight *
+                             smoothness_loss(appearance_.field, rendered, nearest, 40 * nearest,
+                                             smoothness_points_of_shape, learning_.random) +
+                         options_.brightness_weight * brightness_loss(rendered);
+    if (surface.regularizer.defined() && !light_alone)
+        loss = loss + options_.regularizer_weight * surface.regularizer;
+    return loss;
+}
+
+void ShapeSearch::step() {
+    while (iteration() == end_of_level(level_))
+        start_next_level();
+    const int first = level_ > 0 ? end_of_level(level_ - 1) : 0;
+    const int i = iteration() - first, count = end_of_level(level_) - first;
+    const bool light_learns = learning_.update_light(appearance_, i, options_.light_every);
+    const ExtractedSurface surface =
+        field_->extraction->extract(field_->values, field_->vertices());
+    if (surface.triangles.size(0) == 0) refuse_vanished_shape();
+    // One material would carve what is printed on it, so the hull stands still meanwhile.
+    const bool light_alone = iteration() < options_.light_alone * options_.iterations;
+    const Geometry geometry = untextured_geometry(
+        light_alone ? surface.positions.detach() : surface.positions, surface.triangles);
+    const TargetView& view = views_[order_.at(iteration())];
+    const RenderedView rendered = render_view(geometry, appearance_.field, learning_.light, view,
+                                              {.one_material = light_alone});
+    const torch::Tensor background =
+        torch::full({3}, static_cast<float>(learning_.random.uniform()));
+    const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
+    const torch::Tensor mask = mask_loss(rendered.image, view.image);
+    torch::Tensor loss = picture + options_.mask_weight * mask +
+                         loss_besides_picture(rendered, surface, light_alone);
+    if (light_learns) loss = loss + options_.whiteness_weight * appearance_.light.whiteness_loss();
+    loss.backward();
+    const double rate = blend(1.0, 0.2, i, count);
+    Adam& adam = learning_.optimizer;
+    adam.options(values_group).learning_rate = rate * options_.value_learning_rate;
+    adam.options(offsets_group).learning_rate = rate * options_.offset_learning_rate;
+    adam.options(weights_group).learning_rate = rate * options_.weight_learning_rate;
+    adam.step();
+    adam.zero_grad();
+    {
+        const torch::NoGradGuard no_gradient;
+        field_->values.clamp_(-largest_value, largest_value);
     }
-    shape.mesh = simplified(without_specks(marched(*field)), options.triangles);
-    return shape;
+    learning_.note_losses(picture, mask);
+    triangles_.push_back(static_cast<double>(surface.triangles.size(0)));
+    ++learning_.iteration;
+}
+
+std::string ShapeSearch::detail() const {
+    return fmt::format("difference {:.4f}, {:.0f} triangles", learning_.curves.picture.back(),
+                       triangles_.back());
+}
+
+RenderedView ShapeSearch::draw(const TargetView& view) {
+    const torch::NoGradGuard no_gradient;
+    const TriangleMesh mesh = field_->mesh();
+    if (mesh.triangles.size(0) == 0) refuse_vanished_shape();
+    return render_view(untextured_geometry(mesh.positions, mesh.triangles), appearance_.field,
+                       learning_.light, view);
+}
+
+NamedTensors ShapeSearch::state() const {
+    NamedTensors tensors = Stage::state();
+    tensors.emplace_back("level", torch::tensor({std::int64_t{level_}}));
+    tensors.emplace_back("values", field_->values.detach());
+    tensors.emplace_back("offsets", field_->offsets.detach());
+    const auto weights = field_->extraction->weights();
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        tensors.emplace_back("weights." + std::to_string(i), weights[i].detach());
+    tensors.emplace_back("curve.triangles", curve_tensor(triangles_));
+    return tensors;
+}
+
+void ShapeSearch::load_state(const CheckpointReader& reader) {
+    const auto level = reader.get("level").item<std::int64_t>();
+    while (level_ < level)
+        start_next_level();
+    Stage::load_state(reader);
+    learning_.random =
+        Random(options_.seed, shape_stream,
+               static_cast<std::uint64_t>(reader.get("random").item<std::int64_t>()));
+    reader.copy("values", field_->values);
+    reader.copy("offsets", field_->offsets);
+    const auto weights = field_->extraction->weights();
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        reader.copy("weights." + std::to_string(i), weights[i]);
+    triangles_ = curve_values(reader.get("curve.triangles"));
+}
+
+Shape ShapeSearch::shape() {
+    const TriangleMesh mesh = field_->mesh();
+    if (mesh.triangles.size(0) == 0) refuse_vanished_shape();
+    return {simplified(without_specks(mesh), options_.triangles), learning_.curves, triangles_,
+            hull_overlap_};
 }
 
 }  // namespace item3d

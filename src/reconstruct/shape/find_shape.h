@@ -3,21 +3,27 @@
 // Images").
 #pragma once
 
-#include "item3d/reconstruct/shape/clean_mesh.h"
+#include "item3d/reconstruct/shape/surface_extraction.h"
 #include "item3d/reconstruct/shape/visual_hull.h"
-#include "item3d/reconstruct/surface/refine.h"
+#include "item3d/reconstruct/stage.h"
+#include "item3d/reconstruct/view_order.h"
 
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace item3d {
 
 struct ShapeOptions {
+    std::string extraction = "tetrahedra";  ///< see extraction_names()
     std::vector<int> cells{48, 96};     ///< along the box's longest edge, each twice the one before
     int iterations = 1000;              ///< in all; half as many on every lattice but the last
     double value_learning_rate = 0.02;  ///< in cells
     double offset_learning_rate = 0.01;  ///< in cells
+    double weight_learning_rate = 0.02;  ///< of what the extraction learns besides
     double mask_weight = 2.0;
+    double regularizer_weight = 0.1;  ///< of the extraction's own
     double sign_change_weight_first = 0.05, sign_change_weight_last = 0.005;
     double smoothness_weight = 0.03;
     double whiteness_weight = 0.003;
@@ -31,13 +37,59 @@ struct ShapeOptions {
 struct Shape {
     TriangleMesh mesh;
     RefineCurves curves;
-    std::vector<std::int64_t> triangles;  ///< of the marched surface, by iteration
+    std::vector<double> triangles;  ///< of the surface that was drawn, by iteration
     double hull_overlap = 0;  ///< of the hull's outlines with the masks: intersection over union
 };
 
-/// appearance: learns with the shape, so that shading tells of hollows that no outline shows.
-Shape find_shape(const Dataset& dataset, const VisualHull& hull, std::array<Vec3, 2> bounds,
-                 Appearance& appearance, const ShapeOptions& options);
+/// The signed field on one lattice: what is optimised.
+struct ShapeField {
+    /// start [V] in cells.
+    ShapeField(const Lattice& lattice, const std::string& extraction, const torch::Tensor& start);
+    /// [V, 3], moved.
+    torch::Tensor vertices() const;
+    /// The surface of now, without gradients; may be empty.
+    TriangleMesh mesh();
+
+    float cell;
+    std::unique_ptr<SurfaceExtraction> extraction;
+    torch::Tensor places;   ///< [V, 3]
+    torch::Tensor values;   ///< [V] in cells
+    torch::Tensor offsets;  ///< [V, 3], before the hyperbolic tangent
+};
+
+class ShapeSearch : public Stage {
+  public:
+    /// appearance: learns with the shape, so that shading tells of hollows that no outline shows.
+    ShapeSearch(const Dataset& dataset, const VisualHull& hull, std::array<Vec3, 2> bounds,
+                Appearance& appearance, const ShapeOptions& options);
+
+    std::string name() const override { return "shape"; }
+    int iterations() const override { return options_.iterations; }
+    void step() override;
+    std::string detail() const override;
+    RenderedView draw(const TargetView& view) override;
+    NamedTensors state() const override;
+    void load_state(const CheckpointReader& reader) override;
+
+    /// Cleaned and simplified, when all is done.
+    Shape shape();
+
+  private:
+    int end_of_level(int level) const;
+    void begin_level(int level, const torch::Tensor& start);
+    void start_next_level();
+    torch::Tensor loss_besides_picture(const RenderedView& rendered,
+                                       const ExtractedSurface& surface, bool light_alone);
+
+    ShapeOptions options_;
+    Lattice lattice_;
+    std::vector<TargetView> views_;
+    ViewOrder order_;
+    std::unique_ptr<ShapeField> field_;
+    int level_ = 0;  ///< index into the options' cells
+    std::vector<double> triangles_;
+    double hull_overlap_ = 0;
+};
 
 /// Sum over views of the pixels that both outlines cover, over those that either does.
 double mask_overlap(const TriangleMesh& mesh, const std::vector<TargetView>& views);

@@ -83,26 +83,6 @@ constexpr int directions = 7;
 
 }  // namespace
 
-torch::Tensor Lattice::vertices() const {
-    const auto axis = [&](int a) {
-        return torch::arange(cells[a] + 1, torch::kFloat32) * cell + origin[a];
-    };
-    const auto grid = torch::meshgrid({axis(2), axis(1), axis(0)}, "ij");
-    return torch::stack({grid[2], grid[1], grid[0]}, 3).reshape({-1, 3}).contiguous();
-}
-
-Lattice Lattice::refined() const {
-    return {origin, 0.5f * cell, {2 * cells[0], 2 * cells[1], 2 * cells[2]}};
-}
-
-torch::Tensor refined_values(const torch::Tensor& values, const Lattice& lattice) {
-    const auto& n = lattice.cells;
-    return torch::upsample_trilinear3d(values.view({1, 1, n[2] + 1, n[1] + 1, n[0] + 1}),
-                                       {2 * n[2] + 1, 2 * n[1] + 1, 2 * n[0] + 1},
-                                       /*align_corners=*/true)
-        .reshape({-1});
-}
-
 MarchingTetrahedra::MarchingTetrahedra(const Lattice& lattice)
     : lattice_(lattice),
       edge_rows_(static_cast<std::size_t>(lattice.vertex_count()) * directions, -1) {}
@@ -171,10 +151,16 @@ torch::Tensor surface_points(const MarchedTopology& topology, const torch::Tenso
     return vertices.index_select(0, in) * weight + vertices.index_select(0, out) * (1 - weight);
 }
 
-torch::Tensor sign_change_loss(const MarchedTopology& topology, const torch::Tensor& values) {
-    const torch::Tensor inner = values.index_select(0, topology.edges.select(1, 0));
-    const torch::Tensor outer = values.index_select(0, topology.edges.select(1, 1));
-    return torch::softplus(outer).mean() + torch::softplus(-inner).mean();
+ExtractedSurface MarchingTetrahedra::extract(const torch::Tensor& values,
+                                             const torch::Tensor& vertices) {
+    const MarchedTopology found = topology(values);
+    return {surface_points(found, values, vertices), found.triangles, found.edges, {}};
+}
+
+TriangleMesh MarchingTetrahedra::mesh(const torch::Tensor& values, const torch::Tensor& vertices) {
+    const torch::NoGradGuard no_gradient;
+    const MarchedTopology found = topology(values);
+    return {surface_points(found, values, vertices), found.triangles};
 }
 
 }  // namespace item3d

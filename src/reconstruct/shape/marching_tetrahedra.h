@@ -3,34 +3,12 @@
 // Synthesis").
 #pragma once
 
-#include "item3d/core/math.h"
+#include "item3d/reconstruct/shape/surface_extraction.h"
 
-#include <torch/types.h>
-
-#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace item3d {
-
-/// A box of cubes, each cut into six tetrahedra around its diagonal (Kuhn 1960), so that neighbours
-/// agree on every face. Vertex (x, y, z) has the index (z * (cells.y + 1) + y) * (cells.x + 1) + x.
-struct Lattice {
-    Vec3 origin{0.0f};
-    float cell = 1.0f;  ///< edge of a cube, world units
-    std::array<int, 3> cells{1, 1, 1};
-
-    std::int64_t vertex_count() const {
-        return static_cast<std::int64_t>(cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1);
-    }
-    /// [V, 3].
-    torch::Tensor vertices() const;
-    /// Twice as many cells of half the edge over the same box.
-    Lattice refined() const;
-};
-
-/// Values [V] of a lattice at the vertices of lattice.refined(), trilinear. Differentiable.
-torch::Tensor refined_values(const torch::Tensor& values, const Lattice& lattice);
 
 /// What follows from the signs alone.
 struct MarchedTopology {
@@ -41,11 +19,14 @@ struct MarchedTopology {
     torch::Tensor triangles;
 };
 
-/// Finds topologies of one lattice again and again; keeps memory for it.
-class MarchingTetrahedra {
+/// Each cube is cut into six tetrahedra around its diagonal (Kuhn 1960), so that neighbours agree
+/// on every face. Keeps memory to find the topologies of one lattice again and again.
+class MarchingTetrahedra : public SurfaceExtraction {
   public:
     explicit MarchingTetrahedra(const Lattice& lattice);
-    const Lattice& lattice() const { return lattice_; }
+
+    ExtractedSurface extract(const torch::Tensor& values, const torch::Tensor& vertices) override;
+    TriangleMesh mesh(const torch::Tensor& values, const torch::Tensor& vertices) override;
 
     /// values [V] float32: below 0 is inside. The surface is closed unless it meets the box's
     /// border.
@@ -60,10 +41,5 @@ class MarchingTetrahedra {
 /// Differentiable in values and vertices.
 torch::Tensor surface_points(const MarchedTopology& topology, const torch::Tensor& values,
                              const torch::Tensor& vertices);
-
-/// nvdiffrec's regulariser (Munkberg et al. 2022, equation 2): cross entropy between the values at
-/// both ends of each crossed edge and the other end's sign. It takes away sign changes that no
-/// picture asks for. values in lattice cells.
-torch::Tensor sign_change_loss(const MarchedTopology& topology, const torch::Tensor& values);
 
 }  // namespace item3d

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"
-#include "item3d/reconstruct/shape/marching_tetrahedra.h"
+#include "item3d/reconstruct/shape/lattice.h"
 
 #include <torch/types.h>
 

@@ -1,14 +1,9 @@
 #include "item3d/reconstruct/surface/refine.h"
 
-#include "item3d/core/error.h"
 #include "item3d/core/format.h"
-#include "item3d/core/progress.h"
-#include "item3d/field/adam.h"
-#include "item3d/reconstruct/view_order.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace item3d {
 
@@ -17,60 +12,36 @@ namespace {
 constexpr double final_rate = 0.1;
 constexpr std::int64_t smoothness_points = 4096;
 constexpr float farthest_smoothness = 0.15f;  ///< of the object's diagonal
-
-/// World units of a pixel of the first view at the middle of the bounds.
-float pixel_size(std::array<Vec3, 2> bounds, const TargetView& view) {
-    const float distance = glm::distance(view.camera.position(), 0.5f * (bounds[0] + bounds[1]));
-    return 2 * std::tan(0.5f * view.camera.field_of_view_x) * distance /
-           static_cast<float>(view.width());
-}
+constexpr int traces = 4;                     ///< of shadows, in all
+constexpr std::uint64_t refine_stream = 0x726566696e65;
 
 double falling(double rate, int iteration, int iterations) {
     const double progress = static_cast<double>(iteration) / iterations;
     return rate * (final_rate + (1 - final_rate) * 0.5 * (1 + std::cos(pi * progress)));
 }
 
-/// light: none: from everywhere.
-Occlusion trace_occlusion(const MovableMesh& mesh, const TrainableLight* light) {
+/// radiance: undefined: from everywhere.
+Occlusion trace_occlusion(const MovableMesh& mesh, const torch::Tensor& radiance) {
     const torch::NoGradGuard no_gradient;
     OcclusionOptions options;
     options.rays = 128;
-    if (light != nullptr) options.light = light->to_image();
+    if (radiance.defined()) options.light = to_image(radiance);
     return Occlusion(mesh.geometry(), nullptr, options);
 }
 
 }  // namespace
 
-MaterialRanges reconstruction_ranges() {
-    MaterialRanges ranges;
-    ranges.base_color = {0.03f, 1.0f};
-    ranges.roughness = {0.08f, 1.0f};
-    ranges.normal_slope = 1.0f;
-    return ranges;
-}
-
-Appearance make_appearance(std::array<Vec3, 2> bounds, const std::vector<TargetView>& views,
-                           std::uint64_t seed) {
-    NeuralTextureOptions options;
-    options.seed = seed;
-    options.ranges = reconstruction_ranges();
-    const Vec3 size = bounds[1] - bounds[0];
-    const float extent = std::max({size.x, size.y, size.z});
-    options.bounds = {bounds[0] - 0.02f * extent, bounds[1] + 0.02f * extent};
-    options.finest_resolution =
-        std::clamp(static_cast<int>(extent / pixel_size(bounds, views.front())), 64, 1024);
-    NeuralTexture field(options);
-    {
-        // Most things are no metal, and a grey metal explains a picture nearly as well as paint.
-        const torch::NoGradGuard no_gradient;
-        field->metallic_bias().fill_(-3.0f);
-    }
-    return {std::move(field), TrainableLight()};
-}
-
-RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& model,
-                    const std::vector<TargetView>& views, const RefineOptions& options) {
-    Adam adam;
+Refinement::Refinement(Appearance& appearance, MovableMesh& mesh, const Model& model,
+                       std::vector<TargetView> views, const RefineOptions& options)
+    : Stage(appearance),
+      mesh_(mesh),
+      views_(std::move(views)),
+      options_(options),
+      pixel_(pixel_size(model.bounds(), views_.front())),
+      farthest_(farthest_smoothness * glm::length(model.bounds()[1] - model.bounds()[0])),
+      order_(views_.size(), options.seed) {
+    learning_.random = Random(options.seed, refine_stream);
+    Adam& adam = learning_.optimizer;
     adam.add_group({appearance.field->table()}, {.learning_rate = options.field_learning_rate});
     adam.add_group(appearance.field->network_parameters(),
                    {.learning_rate = 0.5 * options.field_learning_rate});
@@ -81,72 +52,100 @@ RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& mode
             {mesh.offsets()},
             {.learning_rate = options.vertex_learning_rate * mesh.mean_edge(), .beta2 = 0.999});
     }
-    std::vector<double> rates;
     for (std::size_t group = 0; group < adam.group_count(); ++group)
-        rates.push_back(adam.options(group).learning_rate);
+        rates_.push_back(adam.options(group).learning_rate);
+}
 
-    std::optional<Occlusion> occlusion;
-    const int trace_every = std::max(1, (options.iterations + 3) / 4);
-    const auto bounds = model.bounds();
-    const float pixel = pixel_size(bounds, views.front());
-    const float farthest = farthest_smoothness * glm::length(bounds[1] - bounds[0]);
-    const RegularizerWeights& weights = options.weights;
-    ViewOrder order(views.size(), options.seed);
-    Random random(options.seed, 0x726566696e65);
-    RefineCurves curves;
-    Progress progress("materials and light", options.iterations);
-    EnvironmentLight light;
-    for (int i = 0; i < options.iterations; ++i) {
-        if (options.shadows && i % trace_every == 0)
-            occlusion = trace_occlusion(mesh, i > 0 ? &appearance.light : nullptr);
-        // A prefiltered light costs as much as a view: its gradients are used once in a while.
-        const bool light_learns = i % options.light_every == 0;
-        if (light_learns) {
-            light = appearance.light.prefiltered();
-        } else if (i % options.light_every == 1) {
-            const torch::NoGradGuard no_gradient;
-            light = appearance.light.prefiltered();
-        }
-        const TargetView& view = views[order.at(i)];
-        Geometry geometry = mesh.geometry();
-        // One material would dent what is printed on it, so the shape stands still meanwhile.
-        const bool light_alone = i < options.light_alone * options.iterations;
-        if (light_alone) {
-            geometry.positions = geometry.positions.detach();
-            geometry.normals = geometry.normals.detach();
-        }
-        const RenderedView rendered = render_view(geometry, appearance.field, light, view,
-                                                  {.occlusion = occlusion ? &*occlusion : nullptr,
-                                                   .normal_map = options.normal_map && !light_alone,
-                                                   .one_material = light_alone});
-        const torch::Tensor background = torch::full({3}, static_cast<float>(random.uniform()));
-        const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
-        const torch::Tensor mask = mask_loss(rendered.image, view.image);
-        torch::Tensor loss = picture;
-        if (rendered.surface.count() > 0) {
-            loss = loss +
-                   weights.smoothness * smoothness_loss(appearance.field, rendered, pixel, farthest,
-                                                        smoothness_points, random) +
-                   weights.brightness * brightness_loss(rendered);
-            if (options.normal_map)
-                loss = loss +
-                       weights.flat_normals * (1 - rendered.material.normal.select(1, 2)).mean();
-        }
-        if (light_learns) loss = loss + weights.whiteness * appearance.light.whiteness_loss();
-        if (mesh.moves()) loss = loss + weights.mask * mask + weights.crumpling * mesh.crumpling();
-        loss.backward();
-        for (std::size_t group = 0; group < rates.size(); ++group)
-            adam.options(group).learning_rate = falling(rates[group], i, options.iterations);
-        adam.step();
-        adam.zero_grad();
+void Refinement::trace() {
+    traced_ = {};
+    const torch::NoGradGuard no_gradient;
+    if (mesh_.moves()) traced_.offsets = mesh_.offsets().detach().clone();
+    if (iteration() > 0) traced_.radiance = appearance_.light.radiance();
+    occlusion_ = trace_occlusion(mesh_, traced_.radiance);
+}
 
-        curves.picture.push_back(picture.item<double>());
-        curves.mask.push_back(mask.item<double>());
-        progress.update(i + 1, fmt::format("difference {:.4f}", curves.picture.back()));
-        if (interrupted())
-            throw Interrupted("interrupted while materials and light were looked for");
+RenderedView Refinement::render(const TargetView& view, bool light_alone) {
+    Geometry geometry = mesh_.geometry();
+    // One material would dent what is printed on it, so the shape stands still meanwhile.
+    if (light_alone) {
+        geometry.positions = geometry.positions.detach();
+        geometry.normals = geometry.normals.detach();
     }
-    return curves;
+    return render_view(geometry, appearance_.field, learning_.light, view,
+                       {.occlusion = occlusion_ ? &*occlusion_ : nullptr,
+                        .normal_map = options_.normal_map && !light_alone,
+                        .one_material = light_alone});
+}
+
+torch::Tensor Refinement::regularization(const RenderedView& rendered, const torch::Tensor& mask) {
+    const RegularizerWeights& weights = options_.weights;
+    torch::Tensor loss = torch::zeros({});
+    if (rendered.surface.count() > 0) {
+        loss = loss +
+               weights.smoothness * smoothness_loss(appearance_.field, rendered, pixel_, farthest_,
+                                                    smoothness_points, learning_.random) +
+               weights.brightness * brightness_loss(rendered);
+        if (options_.normal_map)
+            loss = loss + weights.flat_normals * (1 - rendered.material.normal.select(1, 2)).mean();
+    }
+    if (mesh_.moves()) loss = loss + weights.mask * mask + weights.crumpling * mesh_.crumpling();
+    return loss;
+}
+
+void Refinement::step() {
+    const int i = iteration();
+    const int trace_every = std::max(1, (options_.iterations + traces - 1) / traces);
+    if (options_.shadows && i % trace_every == 0) trace();
+    const bool light_learns = learning_.update_light(appearance_, i, options_.light_every);
+    const TargetView& view = views_[order_.at(i)];
+    const RenderedView rendered = render(view, i < options_.light_alone * options_.iterations);
+    const torch::Tensor background =
+        torch::full({3}, static_cast<float>(learning_.random.uniform()));
+    const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
+    const torch::Tensor mask = mask_loss(rendered.image, view.image);
+    torch::Tensor loss = picture + regularization(rendered, mask);
+    if (light_learns) loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss();
+    loss.backward();
+    Adam& adam = learning_.optimizer;
+    for (std::size_t group = 0; group < rates_.size(); ++group)
+        adam.options(group).learning_rate = falling(rates_[group], i, options_.iterations);
+    adam.step();
+    adam.zero_grad();
+    learning_.note_losses(picture, mask);
+    ++learning_.iteration;
+}
+
+std::string Refinement::detail() const {
+    return fmt::format("difference {:.4f}", learning_.curves.picture.back());
+}
+
+RenderedView Refinement::draw(const TargetView& view) {
+    const torch::NoGradGuard no_gradient;
+    return render(view, false);
+}
+
+NamedTensors Refinement::state() const {
+    NamedTensors tensors = Stage::state();
+    if (mesh_.moves()) tensors.emplace_back("offsets", mesh_.offsets().detach());
+    if (traced_.offsets.defined()) tensors.emplace_back("traced.offsets", traced_.offsets);
+    if (traced_.radiance.defined()) tensors.emplace_back("traced.radiance", traced_.radiance);
+    return tensors;
+}
+
+void Refinement::load_state(const CheckpointReader& reader) {
+    Stage::load_state(reader);
+    learning_.random =
+        Random(options_.seed, refine_stream,
+               static_cast<std::uint64_t>(reader.get("random").item<std::int64_t>()));
+    if (reader.has("traced.radiance")) traced_.radiance = reader.get("traced.radiance");
+    if (options_.shadows && iteration() > 0 && !is_done()) {
+        if (mesh_.moves()) {
+            traced_.offsets = reader.get("traced.offsets");
+            reader.copy("traced.offsets", mesh_.offsets());
+        }
+        occlusion_ = trace_occlusion(mesh_, traced_.radiance);
+    }
+    if (mesh_.moves()) reader.copy("offsets", mesh_.offsets());
 }
 
 }  // namespace item3d

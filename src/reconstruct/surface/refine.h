@@ -1,12 +1,13 @@
 // Materials, light, and where asked vertices, of a mesh of fixed connections.
 #pragma once
 
-#include "item3d/field/neural_texture.h"
+#include "item3d/reconstruct/stage.h"
 #include "item3d/reconstruct/surface/movable_mesh.h"
-#include "item3d/reconstruct/surface/trainable_light.h"
-#include "item3d/reconstruct/surface/view_render.h"
+#include "item3d/reconstruct/view_order.h"
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace item3d {
@@ -38,25 +39,41 @@ struct RefineOptions {
     std::uint64_t seed = 0;
 };
 
-struct Appearance {
-    NeuralTexture field = nullptr;
-    TrainableLight light;
+/// One view a step in shuffled order, Adam with rates that fall to a tenth.
+class Refinement : public Stage {
+  public:
+    /// Optimises the appearance and the mesh's offsets; all of it must outlive this.
+    Refinement(Appearance& appearance, MovableMesh& mesh, const Model& model,
+               std::vector<TargetView> views, const RefineOptions& options);
+
+    std::string name() const override { return "materials and light"; }
+    int iterations() const override { return options_.iterations; }
+    void step() override;
+    std::string detail() const override;
+    RenderedView draw(const TargetView& view) override;
+    NamedTensors state() const override;
+    void load_state(const CheckpointReader& reader) override;
+    const RefineCurves& curves() const { return learning_.curves; }
+
+  private:
+    /// What shadows were traced of: a resumed run traces them again.
+    struct Traced {
+        torch::Tensor offsets;   ///< of the mesh; undefined: it does not move
+        torch::Tensor radiance;  ///< [H, 2H, 3]; undefined: light from everywhere
+    };
+    void trace();
+    RenderedView render(const TargetView& view, bool light_alone);
+    torch::Tensor regularization(const RenderedView& rendered, const torch::Tensor& mask);
+
+    MovableMesh& mesh_;
+    std::vector<TargetView> views_;
+    RefineOptions options_;
+    std::vector<double> rates_;  ///< by group of the optimiser
+    float pixel_;                ///< world units
+    float farthest_;             ///< of smoothness, world units
+    ViewOrder order_;
+    Traced traced_;
+    std::optional<Occlusion> occlusion_;
 };
-
-struct RefineCurves {
-    std::vector<double> picture, mask;
-};
-
-/// Ranges of the materials that are looked for.
-MaterialRanges reconstruction_ranges();
-
-/// A field around `bounds` whose finest cells are about the size of a pixel of the photographs.
-Appearance make_appearance(std::array<Vec3, 2> bounds, const std::vector<TargetView>& views,
-                           std::uint64_t seed);
-
-/// Optimises the appearance and the mesh's offsets, one view an iteration in shuffled order, Adam
-/// with rates that fall to a tenth. Throws Interrupted.
-RefineCurves refine(Appearance& appearance, MovableMesh& mesh, const Model& model,
-                    const std::vector<TargetView>& views, const RefineOptions& options);
 
 }  // namespace item3d

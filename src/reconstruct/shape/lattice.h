@@ -1,0 +1,31 @@
+// Where signed values lie whose surface is looked for.
+#pragma once
+
+#include "item3d/core/math.h"
+
+#include <torch/types.h>
+
+#include <array>
+#include <cstdint>
+
+namespace item3d {
+
+/// A box of cubes. Vertex (x, y, z) has the index (z * (cells.y + 1) + y) * (cells.x + 1) + x.
+struct Lattice {
+    Vec3 origin{0.0f};
+    float cell = 1.0f;  ///< edge of a cube, world units
+    std::array<int, 3> cells{1, 1, 1};
+
+    std::int64_t vertex_count() const {
+        return static_cast<std::int64_t>(cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1);
+    }
+    /// [V, 3].
+    torch::Tensor vertices() const;
+    /// Twice as many cells of half the edge over the same box.
+    Lattice refined() const;
+};
+
+/// Values [V] of a lattice at the vertices of lattice.refined(), trilinear. Differentiable.
+torch::Tensor refined_values(const torch::Tensor& values, const Lattice& lattice);
+
+}  // namespace item3d

@@ -1,0 +1,24 @@
+#include "item3d/reconstruct/shape/surface_extraction.h"
+
+#include "item3d/core/error.h"
+#include "item3d/reconstruct/shape/marching_tetrahedra.h"
+
+namespace item3d {
+
+std::unique_ptr<SurfaceExtraction> make_extraction(const std::string& name,
+                                                   const Lattice& lattice) {
+    ITEM3D_CHECK(name == "tetrahedra", "a name of extraction_names()");
+    return std::make_unique<MarchingTetrahedra>(lattice);
+}
+
+std::vector<std::string> extraction_names() {
+    return {"tetrahedra"};
+}
+
+torch::Tensor sign_change_loss(const torch::Tensor& edges, const torch::Tensor& values) {
+    const torch::Tensor inner = values.index_select(0, edges.select(1, 0));
+    const torch::Tensor outer = values.index_select(0, edges.select(1, 1));
+    return torch::softplus(outer).mean() + torch::softplus(-inner).mean();
+}
+
+}  // namespace item3d

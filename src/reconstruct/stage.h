@@ -1,0 +1,69 @@
+// One of the two optimisations of a reconstruction, a step at a time, so that it can be looked at,
+// kept and gone on with.
+#pragma once
+
+#include "item3d/core/random.h"
+#include "item3d/field/adam.h"
+#include "item3d/models/checkpoint.h"
+#include "item3d/reconstruct/surface/appearance.h"
+#include "item3d/reconstruct/surface/view_render.h"
+
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+struct RefineCurves {
+    std::vector<double> picture, mask;
+};
+
+/// What every stage changes with a step.
+struct Learning {
+    Adam optimizer;
+    Random random{0};
+    RefineCurves curves;
+    int iteration = 0;  ///< done
+    /// The light as it was prefiltered last. A light's gradients are used once in a while, because
+    /// prefiltering costs as much as a view.
+    EnvironmentLight light;
+
+    /// Prefilters where an iteration asks for it, every `every` ones of `index`; says whether the
+    /// light learns in this one. A function of the light and `index` alone.
+    bool update_light(const Appearance& appearance, int index, int every);
+    void note_losses(const torch::Tensor& picture, const torch::Tensor& mask);
+};
+
+class Stage {
+  public:
+    explicit Stage(Appearance& appearance) : appearance_(appearance) {}
+    virtual ~Stage() = default;
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+
+    virtual std::string name() const = 0;
+    virtual int iterations() const = 0;
+    int iteration() const { return learning_.iteration; }
+    bool is_done() const { return iteration() >= iterations(); }
+
+    /// One picture. Throws Interrupted before anything has changed.
+    virtual void step() = 0;
+    /// For the progress line.
+    virtual std::string detail() const = 0;
+    /// The surface as it is now, in the light as it is now; without gradients.
+    virtual RenderedView draw(const TargetView& view) = 0;
+
+    /// All that a resumed run needs to end with the same bytes, the appearance included.
+    virtual NamedTensors state() const;
+    /// Of state() of a stage of the same settings. Throws InputError for what is missing.
+    virtual void load_state(const CheckpointReader& reader);
+
+  protected:
+    Appearance& appearance_;
+    Learning learning_;
+};
+
+/// A curve as a tensor, and back.
+torch::Tensor curve_tensor(const std::vector<double>& values);
+std::vector<double> curve_values(const torch::Tensor& tensor);
+
+}  // namespace item3d
