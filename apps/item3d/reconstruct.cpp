@@ -90,6 +90,11 @@ void add_reconstruct_command(CLI::App& app) {
     command->add_flag("--move-vertices", options->move_vertices, "Let that mesh's vertices move")
         ->needs(mesh);
     command
+        ->add_option("--extraction", request.shape.extraction,
+                     "How triangles come from values on a lattice")
+        ->check(CLI::IsMember(extraction_names()))
+        ->capture_default_str();
+    command
         ->add_option("--cells", options->cells, "Of the lattice, along the object's longest side")
         ->check(CLI::Range(16, 256))
         ->capture_default_str();

@@ -1,18 +1,20 @@
 #include "item3d/reconstruct/shape/surface_extraction.h"
 
 #include "item3d/core/error.h"
+#include "item3d/reconstruct/shape/flexicubes.h"
 #include "item3d/reconstruct/shape/marching_tetrahedra.h"
 
 namespace item3d {
 
 std::unique_ptr<SurfaceExtraction> make_extraction(const std::string& name,
                                                    const Lattice& lattice) {
+    if (name == "flexicubes") return std::make_unique<FlexiCubes>(lattice);
     ITEM3D_CHECK(name == "tetrahedra", "a name of extraction_names()");
     return std::make_unique<MarchingTetrahedra>(lattice);
 }
 
 std::vector<std::string> extraction_names() {
-    return {"tetrahedra"};
+    return {"flexicubes", "tetrahedra"};
 }
 
 torch::Tensor sign_change_loss(const torch::Tensor& edges, const torch::Tensor& values) {

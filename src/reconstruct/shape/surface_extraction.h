@@ -1,4 +1,4 @@
-// From signed values on a lattice to triangles, differentiable.
+// From signed values on a lattice to triangles, differentiable: what the two ways share.
 #pragma once
 
 #include "item3d/reconstruct/shape/clean_mesh.h"
@@ -19,7 +19,7 @@ struct ExtractedSurface {
     /// [E, 2] int64: lattice vertices of edges that the surface crosses, each once; the first is
     /// inside.
     torch::Tensor edges;
-    /// Scalar, what the way itself asks for; undefined: nothing.
+    /// Scalar, what the way itself asks for (see FlexiCubes); undefined: nothing.
     torch::Tensor regularizer;
 };
 
@@ -38,7 +38,7 @@ class SurfaceExtraction {
     virtual std::vector<torch::Tensor> weights() const { return {}; }
 };
 
-/// name: one of extraction_names().
+/// "flexicubes" or "tetrahedra".
 std::unique_ptr<SurfaceExtraction> make_extraction(const std::string& name, const Lattice& lattice);
 std::vector<std::string> extraction_names();
 
