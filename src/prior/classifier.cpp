@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/core/words.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/shapes.h"
 #include "item3d/prior/workers.h"
@@ -27,46 +28,17 @@ std::vector<VocabularyEntry> make_vocabulary() {
                        "",
                        ""});
     }
-    const auto material = [&](const std::string& word, const std::vector<std::string>& spellings,
-                              const std::string& caption, const MaterialWish& wish) {
-        all.push_back({"materials", word, spellings, caption, wish, "", ""});
-    };
-    material("gold", {"gold", "golden"}, "a golden {o}", {"metal", "gold", ""});
-    material("silver", {"silver", "metal"}, "a silver {o}", {"metal", "silver", ""});
-    material("copper", {"copper"}, "a copper {o}", {"metal", "copper", ""});
-    material("bronze", {"bronze"}, "a bronze {o}", {"metal", "bronze", ""});
-    material("wood", {"wood", "wooden"}, "a wooden {o}", {"wood", "", ""});
-    material("marble", {"marble"}, "a marble {o}", {"marble", "", ""});
-    material("stone", {"stone", "rock"}, "a stone {o}", {"stone", "", ""});
-    material("brick", {"brick", "bricks"}, "a brick {o}", {"brick", "", ""});
-    material("grass", {"grass", "grassy", "mossy"}, "a {o} covered in grass", {"grass", "", ""});
-    material("snow", {"snow", "snowy"}, "a {o} covered in snow", {"snow", "", ""});
-    material("ice", {"ice", "icy"}, "a {o} made of ice", {"ice", "", ""});
-    material("leather", {"leather"}, "a leather {o}", {"leather", "", ""});
-    material("rust", {"rusty"}, "a rusty {o}", {"rust", "", ""});
-    const auto pattern = [&](const std::string& word, const std::vector<std::string>& spellings,
-                             const std::string& caption, const std::string& kind) {
-        all.push_back({"patterns", word, spellings, caption, {kind, "", ""}, "", ""});
-    };
-    pattern("striped", {"striped", "stripes"}, "a striped {o}", "striped");
-    pattern("checkered", {"checkered", "checkerboard"}, "a checkered {o}", "checkered");
-    pattern("polka dot", {"polka", "dot", "dots"}, "a polka dot {o}", "dots");
-    pattern("zebra", {"zebra"}, "a zebra {o}", "zebra");
-    pattern("leopard", {"leopard"}, "a leopard print {o}", "leopard");
-    pattern("flames", {"flame", "flames"}, "a {o} with a flame pattern", "flames");
+    for (const MaterialWord& word : material_words())
+        all.push_back({word.group, word.word, word.spellings, word.caption, word.wish, "", ""});
     // "in the dark" and "in the sun" are what captions of these lights say too.
-    const auto light = [&](const std::string& kind, const std::string& phrase,
-                           const std::vector<std::string>& others = {}) {
+    const std::map<std::string, std::string> others{
+        {"night", "dark"}, {"noon", "sun"}, {"overcast", "cloudy"}};
+    for (const std::string& kind : light_kinds()) {
         std::vector<std::string> spellings{kind};
-        spellings.insert(spellings.end(), others.begin(), others.end());
-        all.push_back({"lights", kind, spellings, "a {c} {o} " + phrase, {}, kind, ""});
-    };
-    light("studio", "in a studio");
-    light("sunset", "at sunset");
-    light("night", "at night", {"dark"});
-    light("bright", "in bright light");
-    light("overcast", "on an overcast day");
-    light("noon", "at noon", {"sun"});
+        const auto other = others.find(kind);
+        if (other != others.end()) spellings.push_back(other->second);
+        all.push_back({"lights", kind, spellings, "a {c} {o}" + light_phrases(kind)[0], {}, kind, ""});
+    }
     for (const ShapeClass& shape : shape_classes())
         if (!shape.held_out && shape.name != "blob")
             all.push_back({"objects", shape.name, shape.nouns, "a {c} {o}", {}, "", shape.name});
@@ -78,11 +50,47 @@ void replace(std::string& text, const std::string& what, const std::string& by) 
     if (at != std::string::npos) text.replace(at, what.size(), by);
 }
 
+/// Whether the prior was trained on every word that the entry's captions need.
+bool knows(const std::set<std::string>& words, const VocabularyEntry& entry) {
+    if (words.empty()) return true;
+    std::string caption = entry.caption;
+    replace(caption, "{o}", entry.shape_class.empty() ? "" : entry.word);
+    replace(caption, "{c}", "");
+    const std::vector<std::string> needed = prompt_words(caption);
+    return std::all_of(needed.begin(), needed.end(),
+                       [&](const std::string& word) { return words.count(word) > 0; });
+}
+
 /// The part of pictures of each word that were told right, and what it was most often taken for.
 struct Outcome {
     int right = 0;
     std::map<std::string, int> wrong;
 };
+
+/// Spellings that the prior was trained on.
+std::vector<std::string> known_spellings(const VocabularyEntry& entry,
+                                         const std::set<std::string>& words) {
+    std::vector<std::string> known;
+    for (const std::string& spelling : entry.spellings)
+        if (words.empty() || words.count(spelling)) known.push_back(spelling);
+    return known;
+}
+
+/// `truth` and at most `rivals` others of `count`.
+std::vector<std::size_t> draw_candidates(Random& random, std::size_t count, std::size_t truth,
+                                         int rivals) {
+    std::vector<std::size_t> others;
+    for (std::size_t i = 0; i < count; ++i)
+        if (i != truth) others.push_back(i);
+    const std::size_t wanted = std::min(others.size(), static_cast<std::size_t>(rivals));
+    std::vector<std::size_t> chosen{truth};
+    for (std::size_t i = 0; i < wanted; ++i) {
+        const auto left = static_cast<std::int64_t>(others.size() - i);
+        std::swap(others[i], others[i + static_cast<std::size_t>(random.index(left))]);
+        chosen.push_back(others[i]);
+    }
+    return chosen;
+}
 
 class Measurement {
   public:
@@ -94,6 +102,11 @@ class Measurement {
             Random random(options.seed, 77 + lights_.size());
             lights_[kind] = make_training_light(random, kind);
         }
+        for (const PlainColor& color : plain_colors())
+            if (options.words.empty() || options.words.count(color.name))
+                colors_.push_back(color.name);
+        if (colors_.empty())
+            throw InputError("the prior's words", "hold no colour that could be measured with");
         Random random(options.seed, 76);
         lights_["plain"] = make_training_light(random, "plain");
     }
@@ -138,16 +151,18 @@ class Measurement {
         wish.plain_background = true;
         wish.light = &lights_.at(entry.light.empty() ? "plain" : entry.light);
         wish.material = entry.material;
-        const auto& colors = plain_colors();
-        const std::string color =
-            colors[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(colors.size())))]
-                .name;
+        const std::string& color =
+            colors_[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(colors_.size())))];
         if (wish.material.kind.empty()) wish.material = {"plain", color, ""};
+        wish.part = "none";
         const ShapeClass& shape = shape_classes()[static_cast<std::size_t>(view.shape_class)];
         const std::string noun = shape.held_out ? "object" : shape.nouns[0];
 
+        const std::vector<std::size_t> candidates =
+            draw_candidates(random, entries.size(), truth, options_.rivals);
         std::vector<std::string> captions;
-        for (const VocabularyEntry& other : entries) {
+        for (const std::size_t candidate : candidates) {
+            const VocabularyEntry& other = entries[candidate];
             std::string caption = other.caption;
             replace(caption, "{o}", other.shape_class.empty() ? noun : other.word);
             replace(caption, "{c}", color);
@@ -177,13 +192,14 @@ class Measurement {
             const torch::Tensor error = (guess - noise).square().mean({1, 2, 3});
             loss += error / error.mean();
         }
-        return static_cast<std::size_t>(loss.argmin().item<std::int64_t>());
+        return candidates[static_cast<std::size_t>(loss.argmin().item<std::int64_t>())];
     }
 
     const Pipeline& pipeline_;
     MeasureOptions options_;
     std::vector<ShapeView> views_;
     std::map<std::string, TrainingLight> lights_;
+    std::vector<std::string> colors_;  ///< that the prior knows
 };
 
 }  // namespace
@@ -194,7 +210,9 @@ const std::vector<VocabularyEntry>& prior_vocabulary() {
 }
 
 nlohmann::json measure_prior(const Pipeline& pipeline, const MeasureOptions& options) {
-    const auto& all = prior_vocabulary();
+    std::vector<VocabularyEntry> all;
+    for (const VocabularyEntry& entry : prior_vocabulary())
+        if (knows(options.words, entry)) all.push_back(entry);
     std::vector<std::string> kinds;
     for (const VocabularyEntry& entry : all)
         if (kinds.empty() || kinds.back() != entry.kind) kinds.push_back(entry.kind);
@@ -214,7 +232,7 @@ nlohmann::json measure_prior(const Pipeline& pipeline, const MeasureOptions& opt
             const double accuracy = static_cast<double>(outcomes[i].right) / options.pictures;
             right += accuracy;
             nlohmann::json word{{"word", entries[i].word},
-                                {"spellings", entries[i].spellings},
+                                {"spellings", known_spellings(entries[i], options.words)},
                                 {"caption", entries[i].caption},
                                 {"accuracy", std::round(accuracy * 1000) / 1000}};
             const auto worst =

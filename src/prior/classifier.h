@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,11 +29,15 @@ const std::vector<VocabularyEntry>& prior_vocabulary();
 
 struct MeasureOptions {
     int pictures = 12;  ///< a word
+    int rivals = 30;    ///< at most so many other words of its kind, drawn anew for each picture
+    /// What the prior was trained on; entries with other words are left out. Empty: everything.
+    std::set<std::string> words;
     std::uint64_t seed = 7;
     int threads = 2;
 };
 
-/// Which caption of a kind gives the lowest denoising loss on a picture of each of its words?
+/// Which caption of a kind gives the lowest denoising loss on a picture of each of its words, the
+/// right one or that of a rival?
 /// Returns {"vocabulary": {kind: [{word, spellings, accuracy, most_confused_with, base_color?}]},
 /// "accuracy": mean over all}. The pictures are of held-out shapes, with their depth as the
 /// condition for all kinds but objects.

@@ -16,10 +16,9 @@ namespace item3d {
 
 /// A picture with its caption and what is on it.
 struct Example {
-    torch::Tensor image;  ///< [picture_size, picture_size, 3] float32, sRGB in [0, 1]
-    torch::Tensor depth;  ///< [1, latent_size, latent_size] fp16
-    torch::Tensor
-        covered;  ///< [picture_size, picture_size] float32, part of the pixel that is object
+    torch::Tensor image;    ///< [S, S, 3] float32, sRGB in [0, 1]
+    torch::Tensor depth;    ///< [1, latent_size, latent_size] fp16
+    torch::Tensor covered;  ///< [S, S] float32, part of the pixel that is object
     std::string caption;
     PictureFacts facts;
     std::string material;  ///< ProceduralMaterial::kind
@@ -31,6 +30,9 @@ struct ExampleWish {
     MaterialWish material;
     const TrainingLight* light = nullptr;
     bool plain_background = false;  ///< an even light grey
+    /// Name of a part that gets a material of its own, where the shape has it; "none" for none.
+    std::string part;
+    MaterialWish part_material;
 };
 
 /// Draws an example of that view: its material and, unless the wish names one, its light.

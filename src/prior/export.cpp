@@ -2,7 +2,6 @@
 
 #include "item3d/core/files.h"
 #include "item3d/models/pipeline.h"
-#include "item3d/prior/views.h"
 
 namespace item3d {
 namespace {
@@ -44,7 +43,7 @@ void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencod
 namespace {
 
 /// Settings of an edit that suit a prior of this size; item3d edit reads them beside the weights.
-nlohmann::json edit_defaults() {
+nlohmann::json edit_defaults(int resolution) {
     return {{"guidance", "rdl"},
             {"adjust", "learned"},
             {"cfg", 7.5},
@@ -53,7 +52,7 @@ nlohmann::json edit_defaults() {
             {"iterations", 250},
             {"settle", 0.5},
             {"batch", 1},
-            {"resolution", picture_size},
+            {"resolution", resolution},
             {"learning_rate", 0.005},
             {"timesteps", {0.02, 0.98}},
             {"weighting", "dreamfusion"},
@@ -66,16 +65,16 @@ nlohmann::json edit_defaults() {
 }  // namespace
 
 void export_diffusion(const fs::path& folder, const UNet2DCondition& unet,
-                      const ClipTextModel& text, const nlohmann::json& train) {
+                      const ClipTextModel& text, int resolution, const nlohmann::json& train) {
     for (const char* part : {"unet", "text_encoder"})
         make_output_folder(folder / part);
     save_unet(folder / "unet", unet);
     save_clip_text(folder / "text_encoder", text);
 
     update_prior_json(folder, {{"name", "item3d embedded prior"},
-                               {"resolution", picture_size},
+                               {"resolution", resolution},
                                {"train", train},
-                               {"defaults", edit_defaults()},
+                               {"defaults", edit_defaults(resolution)},
                                // Stronger guidance burns the small prior's colours out.
                                {"generate", {{"steps", 30}, {"guidance_scale", 3.5}}}});
 }

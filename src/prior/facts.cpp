@@ -30,8 +30,8 @@ std::string in_alphabetic_order(const std::string& phrase) {
 std::string plainest_phrase(const ProceduralMaterial& material) {
     // How a surface of one colour shines is hard to see in 64 pixels.
     if (material.kind == "plain") return material.color + " {o}";
-    if (material.kind == "striped" || material.kind == "checkered")
-        return in_alphabetic_order(material.phrases.front());
+    static const std::set<std::string> symmetric{"striped", "checkered", "zigzag", "tartan"};
+    if (symmetric.count(material.kind)) return in_alphabetic_order(material.phrases.front());
     return material.phrases.front();
 }
 
@@ -50,11 +50,22 @@ std::string without_frame(const std::string& caption) {
 }  // namespace
 
 PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& material,
-                      const TrainingLight& light) {
+                      const TrainingLight& light, const PartMaterial* part) {
     PictureFacts facts;
-    facts.phrases.push_back(plainest_phrase(material));
-    for (const std::string& phrase : material.phrases)
+    const auto add = [&](const std::string& phrase) {
         if (!contains(facts.phrases, phrase)) facts.phrases.push_back(phrase);
+    };
+    const std::string plainest = plainest_phrase(material);
+    if (part) {
+        const std::string own = part_with_article(part->noun, plainest_phrase(part->material));
+        add(plainest + " with " + own);
+        for (const std::string& phrase : adjective_phrases(part->material.phrases))
+            add(plainest + " with " + part_with_article(part->noun, phrase));
+        add("{o} with " + own);
+    }
+    add(plainest);
+    for (const std::string& phrase : material.phrases)
+        add(phrase);
     facts.nouns = shape.held_out ? std::vector<std::string>{"object"} : shape.nouns;
     for (const std::string& phrase : light.phrases)
         if (!phrase.empty() && !contains(facts.lights, phrase)) facts.lights.push_back(phrase);
@@ -102,9 +113,12 @@ CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& fac
         nouns.insert(shape.nouns.begin(), shape.nouns.end());
     CaptionVerdict verdict;
     std::string phrase;
-    for (std::string& word : words) {
-        if (contains(facts.nouns, word)) verdict.object = true;
-        phrase += (phrase.empty() ? "" : " ") + (nouns.count(word) ? "{o}" : word);
+    bool named = false;  // a later noun is a part: "a snowman with a red hat"
+    for (const std::string& word : words) {
+        const bool is_object = !named && nouns.count(word) > 0;
+        if (is_object) verdict.object = contains(facts.nouns, word);
+        named = named || is_object;
+        phrase += (phrase.empty() ? "" : " ") + (is_object ? "{o}" : word);
     }
     for (const std::string& each : facts.phrases) {
         // "{o} with a flame pattern" has an article inside.

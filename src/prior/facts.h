@@ -24,8 +24,16 @@ struct PictureFacts {
     std::vector<std::string> lights;
 };
 
+/// A part of the object that has a material of its own.
+struct PartMaterial {
+    std::string noun;
+    ProceduralMaterial material;
+};
+
+/// With a part, the plainest phrase is "wooden {o} with a red seat"; what is true of the rest alone
+/// ("wooden {o}") is true too. The shape is called "object" where its class is held out.
 PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& material,
-                      const TrainingLight& light);
+                      const TrainingLight& light, const PartMaterial* part = nullptr);
 
 /// A sentence's meaning.
 struct Claim {
@@ -51,8 +59,8 @@ struct CaptionVerdict {
     bool object = false;
     bool material = false;
 };
-/// Reads "a golden mug", with or without a frame. The object is right where the caption has one of
-/// its nouns as a word; the material where all the rest is one of its phrases, word for word.
+/// Reads "a golden mug", with or without a frame. The object is right where the caption's first noun
+/// is one of its nouns; the material where all the rest is one of its phrases, word for word.
 CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& facts);
 
 void to_json(nlohmann::json& json, const PictureFacts& facts);

@@ -45,24 +45,16 @@ SoftBox random_box(Random& random, float low, float high, float strength, const 
     return box;
 }
 
-/// A gradient room with one to five soft boxes. contrast: how dark the room is beside its boxes.
-Image random_room(Random& random, float contrast) {
-    const float warmth = static_cast<float>(random.normal(0, .05));
-    const Vec3 tint(1 + warmth, 1, 1 - warmth);
-    const Vec3 sky = tint * draw(random, .25, .8) / contrast;
-    const Vec3 ground = sky * draw(random, .25, .8);
-    const float horizon = draw(random, -.15, .15), softness = draw(random, .05, .8);
+/// What surrounds an object: a gradient from ground to sky, and boxes of light in front of it.
+struct Room {
+    Vec3 sky, ground;
+    float horizon = 0, softness = .5f;
     std::vector<SoftBox> boxes;
-    const auto count = 1 + random.index(4);
-    for (std::int64_t i = 0; i < count; ++i)
-        boxes.push_back(random_box(random, 0, 70, draw(random, .6, 1.6), tint));
-    if (random.chance(.5)) boxes.push_back(random_box(random, 75, 89, draw(random, .6, 1.4), tint));
-    // Dark panels are what photographers of metal use ("flags").
-    if (random.chance(.4)) {
-        boxes.push_back(random_box(random, -10, 40, 1, tint));
-        boxes.back().radiance = sky * .1f;
-    }
 
+    Image draw() const;
+};
+
+Image Room::draw() const {
     Image map(2 * map_height, map_height, 3);
     for (int y = 0; y < map.height; ++y) {
         for (int x = 0; x < map.width; ++x) {
@@ -86,6 +78,82 @@ Image random_room(Random& random, float contrast) {
     return map;
 }
 
+/// A gradient room with one to five soft boxes. contrast: how dark the room is beside its boxes.
+Image random_room(Random& random, float contrast) {
+    const float warmth = static_cast<float>(random.normal(0, .05));
+    const Vec3 tint(1 + warmth, 1, 1 - warmth);
+    Room room;
+    room.sky = tint * draw(random, .25, .8) / contrast;
+    room.ground = room.sky * draw(random, .25, .8);
+    room.horizon = draw(random, -.15, .15);
+    room.softness = draw(random, .05, .8);
+    const auto count = 1 + random.index(4);
+    for (std::int64_t i = 0; i < count; ++i)
+        room.boxes.push_back(random_box(random, 0, 70, draw(random, .6, 1.6), tint));
+    if (random.chance(.5))
+        room.boxes.push_back(random_box(random, 75, 89, draw(random, .6, 1.4), tint));
+    // Dark panels are what photographers of metal use ("flags").
+    if (random.chance(.4)) {
+        room.boxes.push_back(random_box(random, -10, 40, 1, tint));
+        room.boxes.back().radiance = room.sky * .1f;
+    }
+    return room.draw();
+}
+
+/// A dark room with a few small warm flames.
+Image candle_room(Random& random) {
+    Room room{Vec3(.05f, .022f, .008f), Vec3(.02f, .009f, .004f)};
+    const auto count = 2 + random.index(3);
+    for (std::int64_t i = 0; i < count; ++i) {
+        room.boxes.push_back(random_box(random, -5, 35, 1, {1, .5f, .16f}));
+        SoftBox& flame = room.boxes.back();
+        flame.half_width = draw(random, .1, .2);
+        flame.half_height = flame.half_width * 1.6f;
+        flame.round = true;
+        flame.radiance = Vec3(1, .5f, .16f) * draw(random, 4, 9);
+    }
+    return room.draw();
+}
+
+/// Coloured tubes in a dark room: one colour from each side.
+Image neon_room(Random& random) {
+    Room room{Vec3(.03f, .015f, .06f), Vec3(.02f, .015f, .035f)};
+    const float side = draw(random, 0, 2 * pi);
+    const std::array<Vec3, 3> tones{Vec3(1, .02f, .55f), Vec3(.02f, .55f, 1), Vec3(.35f, .04f, 1)};
+    for (std::size_t i = 0; i < tones.size(); ++i) {
+        SoftBox tube = random_box(random, 0, 40, 1, tones[i]);
+        const float azimuth = side + static_cast<float>(i) * 2.4f + draw(random, -.4, .4);
+        tube.direction = direction_of(azimuth, draw(random, 0, .6));
+        tube.right = glm::normalize(glm::cross(Vec3(0, 1, 0), tube.direction));
+        tube.up = glm::cross(tube.direction, tube.right);
+        tube.half_width = draw(random, .15, .35);
+        tube.half_height = draw(random, .6, 1.2);
+        tube.round = false;
+        tube.radiance = tones[i] * draw(random, 2.5, 4);
+        room.boxes.push_back(tube);
+    }
+    return room.draw();
+}
+
+/// Black, but for one lamp above to the side.
+Image spotlight_room(Random& random) {
+    Room room{Vec3(.012f), Vec3(.006f)};
+    room.boxes.push_back(random_box(random, 40, 70, 1, Vec3(1, .97f, .9f)));
+    SoftBox& lamp = room.boxes.back();
+    lamp.half_width = lamp.half_height = draw(random, .12, .22);
+    lamp.round = true;
+    lamp.radiance = Vec3(1, .97f, .9f) * 25.0f;
+    return room.draw();
+}
+
+/// Blue-green from above, dark below.
+Image sea_room(Random& random) {
+    Room room{Vec3(.06f, .5f, .62f) * draw(random, .8, 1.2), Vec3(.004f, .05f, .11f)};
+    room.softness = 1;
+    room.boxes.push_back(random_box(random, 65, 88, 1.6f, {.35f, 1, .95f}));
+    return room.draw();
+}
+
 Image turned_preset(Random& random, const std::string& name) {
     return adjust_light(make_light_preset(name, map_height), draw(random, 0, 360), 0);
 }
@@ -99,70 +167,108 @@ void normalise(EnvironmentLight& light, float brightest) {
         level = level * factor;
 }
 
-}  // namespace
+/// How a kind of light is drawn and talked about.
+struct LightKind {
+    const char* name;
+    double share;  ///< of the training data
+    std::vector<std::string> phrases;
+    Image (*draw)(Random&);
+    double low, high;  ///< radiance of the brightest white surface
+};
 
-const std::vector<std::string>& light_kinds() {
-    static const std::vector<std::string> kinds{"studio", "sunset",   "night",
-                                                "bright", "overcast", "noon"};
+Image plain_room(Random& random) {
+    const double which = random.uniform();
+    return which < .7    ? random_room(random, 1)
+           : which < .82 ? turned_preset(random, "studio")
+           : which < .91 ? turned_preset(random, "overcast")
+                         : turned_preset(random, "noon");
+}
+
+const std::vector<LightKind>& all_lights() {
+    static const std::vector<LightKind> kinds{
+        {"plain", .58, {""}, plain_room, .85, 1.1},
+        {"studio",
+         .06,
+         {" in a studio", " in a studio", " under studio light"},
+         [](Random& r) { return r.chance(.5) ? turned_preset(r, "studio") : random_room(r, 5); },
+         .85,
+         1.05},
+        {"sunset",
+         .05,
+         {" at sunset", " at sunset", " in the evening sun"},
+         [](Random& r) { return turned_preset(r, "sunset"); },
+         .55,
+         .85},
+        {"night",
+         .05,
+         {" at night", " at night", " in the dark", " by moonlight"},
+         [](Random& r) { return turned_preset(r, "night"); },
+         .14,
+         .26},
+        {"bright",
+         .04,
+         {" in bright light", " in bright light", " brightly lit"},
+         [](Random& r) { return random_room(r, .5f); },
+         1.3,
+         1.55},
+        {"overcast",
+         .04,
+         {" on an overcast day", " on an overcast day", " on a cloudy day"},
+         [](Random& r) { return turned_preset(r, "overcast"); },
+         .6,
+         .8},
+        {"noon",
+         .04,
+         {" at noon", " in the sun"},
+         [](Random& r) { return turned_preset(r, "noon"); },
+         .95,
+         1.15},
+        {"candlelight",
+         .04,
+         {" by candlelight", " by candlelight", " in candlelight"},
+         candle_room,
+         .4,
+         .65},
+        {"neon", .035, {" in neon light", " in neon light", " under neon lights"}, neon_room, .5, .8},
+        {"spotlight", .03, {" under a spotlight", " in a spotlight"}, spotlight_room, .85, 1.1},
+        {"underwater", .035, {" underwater", " underwater", " under the sea"}, sea_room, .4, .65}};
     return kinds;
 }
 
+const LightKind& light_named(const std::string& name) {
+    for (const LightKind& kind : all_lights())
+        if (name == kind.name) return kind;
+    ITEM3D_CHECK(false, "no light is called " + name);
+    return all_lights()[0];
+}
+
+}  // namespace
+
+const std::vector<std::string>& light_kinds() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const LightKind& kind : all_lights())
+            if (kind.name != std::string("plain")) all.emplace_back(kind.name);
+        return all;
+    }();
+    return names;
+}
+
+const std::vector<std::string>& light_phrases(const std::string& kind) {
+    return light_named(kind).phrases;
+}
+
 TrainingLight make_training_light(Random& random, const std::string& kind, int size) {
-    Image map;
-    float brightest = 1.0f;
-    std::vector<std::string> phrases;
-    if (kind == "plain") {
-        const double which = random.uniform();
-        map = which < .7    ? random_room(random, 1)
-              : which < .82 ? turned_preset(random, "studio")
-              : which < .91 ? turned_preset(random, "overcast")
-                            : turned_preset(random, "noon");
-        brightest = draw(random, .85, 1.1);
-        phrases = {""};
-    } else if (kind == "studio") {
-        map = random.chance(.5) ? turned_preset(random, "studio") : random_room(random, 5);
-        brightest = draw(random, .85, 1.05);
-        phrases = {" in a studio", " in a studio", " under studio light"};
-    } else if (kind == "bright") {
-        map = random_room(random, .5f);
-        brightest = draw(random, 1.3, 1.55);
-        phrases = {" in bright light"};
-    } else if (kind == "sunset") {
-        map = turned_preset(random, "sunset");
-        brightest = draw(random, .55, .85);
-        phrases = {" at sunset"};
-    } else if (kind == "night") {
-        map = turned_preset(random, "night");
-        brightest = draw(random, .14, .26);
-        phrases = {" at night", " at night", " in the dark"};
-    } else if (kind == "overcast") {
-        map = turned_preset(random, "overcast");
-        brightest = draw(random, .6, .8);
-        phrases = {" on an overcast day"};
-    } else {
-        ITEM3D_CHECK(kind == "noon", "no light is called " + kind);
-        map = turned_preset(random, "noon");
-        brightest = draw(random, .95, 1.15);
-        phrases = {" at noon", " in the sun"};
-    }
+    const LightKind& known = light_named(kind);
+    const Image map = known.draw(random);
+    const float brightest = draw(random, known.low, known.high);
     torch::NoGradGuard no_grad;
-    TrainingLight result{kind, phrases, prefilter(map, size)};
+    TrainingLight result{kind, known.phrases, prefilter(map, size), sky_light(map)};
     normalise(result.light, brightest);
     return result;
 }
 
 std::vector<TrainingLight> make_training_lights(std::uint64_t seed, int count, int threads) {
-    struct Share {
-        const char* kind;
-        double share;
-    };
-    static constexpr std::array<Share, 7> shares{{{"plain", .64},
-                                                  {"studio", .07},
-                                                  {"sunset", .07},
-                                                  {"night", .07},
-                                                  {"bright", .05},
-                                                  {"overcast", .05},
-                                                  {"noon", .05}}};
     std::vector<TrainingLight> lights(static_cast<std::size_t>(count));
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
@@ -170,10 +276,10 @@ std::vector<TrainingLight> make_training_lights(std::uint64_t seed, int count, i
     run_workers(count, threads, [&](std::int64_t i) {
         // In turn rather than at random, so that a few hundred lights keep the proportions.
         double at = (static_cast<double>(i) + .5) / count;
-        const char* kind = shares[0].kind;
-        for (const Share& share : shares) {
-            kind = share.kind;
-            if ((at -= share.share) < 0) break;
+        const char* kind = nullptr;
+        for (const LightKind& each : all_lights()) {
+            kind = each.name;
+            if ((at -= each.share) < 0) break;
         }
         Random random(seed, static_cast<std::uint64_t>(i));
         lights[static_cast<std::size_t>(i)] = make_training_light(random, kind);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/core/random.h"
+#include "item3d/prior/sky_visibility.h"
 #include "item3d/render/environment_light.h"
 
 #include <string>
@@ -10,18 +11,20 @@
 namespace item3d {
 
 struct TrainingLight {
-    /// "plain" (no words), "studio", "sunset", "night", "bright", "overcast" or "noon".
-    std::string kind;
+    std::string kind;  ///< "plain" or one of light_kinds()
     /// What captions may append: " at sunset". One of them is "" where words are optional.
     std::vector<std::string> phrases;
     EnvironmentLight light;
+    SkyLight sky;  ///< the same light, for shadows
 };
 
-/// Every kind but "plain".
+/// Every kind but "plain", which has no words: "studio", "sunset", ...
 const std::vector<std::string>& light_kinds();
+/// TrainingLight::phrases of a kind, the commonest first.
+const std::vector<std::string>& light_phrases(const std::string& kind);
 
-/// Draws one: a room with soft boxes, or a preset turned at random. Rooms have bright and dark
-/// parts, because an even light shows metal as paint. size: edge of the finest cube face.
+/// Draws one: a room with lamps, or a preset turned at random. Rooms have bright and dark parts,
+/// because an even light shows metal as paint. size: edge of the finest cube face.
 TrainingLight make_training_light(Random& random, const std::string& kind, int size = 64);
 
 /// `count` of them in the training's proportions (six in ten plain), on `threads` threads.

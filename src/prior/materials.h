@@ -14,21 +14,24 @@ struct PlainColor {
     std::string name;
     Vec3 linear;  ///< base colour, linear RGB
 };
-/// The twelve plain colours: "red" ... "cyan".
+/// The 24 plain colours: "red" ... "mustard".
 const std::vector<PlainColor>& plain_colors();
-/// Base colours (normal reflectance) of "gold", "silver", "copper", "bronze".
+/// Base colours (normal reflectance) of "gold", "silver", "copper", "bronze", ...
 const std::vector<PlainColor>& metal_colors();
 
 struct MaterialValue {
     Vec3 base_color;  ///< linear
     float roughness;
     float metallic;
+    /// Gradient of the surface's relief: height by length, in the object's coordinates.
+    Vec3 slope{0.0f};
 };
 
 struct ProceduralMaterial {
     std::string kind;   ///< "plain", "metal", "wood", ...
-    std::string color;  ///< the (first) colour or the metal's name; empty where it has none
-    /// Ways to say it, "{o}" stands for the noun: "wooden {o}". Repeated ones are likelier.
+    std::string color;  ///< the (first) colour, or the metal's or wood's name; may be empty
+    /// Ways to say it, "{o}" stands for the noun: "wooden {o}". Repeated ones are likelier. The
+    /// first ends with the noun.
     std::vector<std::string> phrases;
     /// Value at a point of an object inside the unit sphere with that unit normal.
     std::function<MaterialValue(const Vec3& position, const Vec3& normal)> at;
@@ -37,14 +40,28 @@ struct ProceduralMaterial {
 /// What a material should be; empty members are drawn at random.
 struct MaterialWish {
     std::string kind;
-    std::string color;
+    std::string color;  ///< as ProceduralMaterial::color
     std::string second_color;
 };
+
+/// A word that a prior is measured by (classifier.h).
+struct MaterialWord {
+    std::string group;  ///< "materials" or "patterns"
+    std::string word;
+    std::string caption;                 ///< "a wooden {o}"
+    std::vector<std::string> spellings;  ///< words of prompts that mean it
+    MaterialWish wish;
+};
+/// Those of all kinds, in a fixed order.
+const std::vector<MaterialWord>& material_words();
 
 /// All kinds, in a fixed order.
 const std::vector<std::string>& material_kinds();
 
 /// Draws kind, colours and parameters from `random` alone.
 ProceduralMaterial make_material(Random& random, const MaterialWish& wish = {});
+
+/// The normal of a surface with that relief.
+Vec3 bent_normal(const Vec3& normal, const Vec3& slope);
 
 }  // namespace item3d

@@ -53,4 +53,18 @@ float CosineNoise::operator()(const Vec3& p) const {
     return sum;
 }
 
+float CosineNoise::with_gradient(const Vec3& p, Vec3& gradient) const {
+    float sum = 0;
+    for (const Octave& octave : octaves_) {
+        for (std::size_t k = 0; k < waves; ++k) {
+            const Vec3 wave(octave.x[k], octave.y[k], octave.z[k]);
+            const float turns = glm::dot(p, wave) + octave.phase[k];
+            sum += octave.amplitude * cosine_of_turns(turns);
+            // -sin(t) = cos(t + a quarter)
+            gradient += 2 * pi * octave.amplitude * cosine_of_turns(turns + .25f) * wave;
+        }
+    }
+    return sum;
+}
+
 }  // namespace item3d

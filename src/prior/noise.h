@@ -15,6 +15,8 @@ class CosineNoise {
     /// and halves the amplitude. stretch multiplies the coordinates.
     CosineNoise(Random& random, float frequency, int octaves = 1, const Vec3& stretch = Vec3(1.0f));
     float operator()(const Vec3& p) const;
+    /// Also adds the gradient to `gradient`.
+    float with_gradient(const Vec3& p, Vec3& gradient) const;
 
   private:
     static constexpr int waves = 12;

@@ -15,16 +15,34 @@ inline constexpr int shape_variants = 32;
 
 struct ShapeClass {
     std::string name;
-    /// Nouns that captions use for it, the first most of the time.
+    /// Single words that captions use for it, the first most of the time.
     std::vector<std::string> nouns;
     /// The whole class is kept out of training.
     bool held_out = false;
 };
 
-/// "mug", "vase", ... and "teapot", which is held out. "blob" is random stuff called "object".
+/// A piece with a name of its own ("handle", "wheels"), or the rest of the object.
+struct ShapePart {
+    std::string noun;  ///< empty: what the class is named after
+    SignedDistance distance;
+};
+
+/// Parts that touch, joined with fillets.
+struct Shape {
+    std::vector<ShapePart> parts;  ///< the rest first
+    float fillet = 0;              ///< as the k of smooth_merge; 0: sharp joints
+
+    float distance(const Vec3& p) const;
+    /// Index of the part that is nearest to the point.
+    int part_at(const Vec3& p) const;
+};
+
+/// "mug", "car", "apple", ...; "blob" is random stuff called "object".
 const std::vector<ShapeClass>& shape_classes();
+/// Index into shape_classes(); the class must be there.
+int shape_class_index(const std::string& name);
 
 /// A shape of about unit size around the origin, y up. The same (class, variant) is the same shape.
-SignedDistance make_shape(const std::string& shape_class, int variant);
+Shape make_shape(const std::string& shape_class, int variant);
 
 }  // namespace item3d

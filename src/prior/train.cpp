@@ -44,7 +44,8 @@ ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLig
                           bool held_out) {
     std::vector<ShapeView> views = make_view_pool(
         held_out, settings.shape_variants, settings.views_each,
-        seed_of(settings, held_out ? held_out_stream : view_stream), settings.replicas);
+        seed_of(settings, held_out ? held_out_stream : view_stream), settings.replicas,
+        settings.resolution);
     stop_if_interrupted(settings);
     return ExampleSource(std::move(views), std::move(lights),
                          seed_of(settings, held_out ? held_out_stream : example_stream));
@@ -53,8 +54,9 @@ ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLig
 PictureData draw_pictures(const ExampleSource& source, std::int64_t count,
                           const TrainSettings& settings) {
     PictureData data;
-    data.images = torch::empty({count, picture_size, picture_size, 3}, torch::kUInt8);
-    data.covered = torch::empty({count, picture_size, picture_size}, torch::kUInt8);
+    const int size = settings.resolution;
+    data.images = torch::empty({count, size, size, 3}, torch::kUInt8);
+    data.covered = torch::empty({count, size, size}, torch::kUInt8);
     Progress progress("pictures", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
@@ -113,8 +115,9 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
 
 /// What the data depends on: a work folder made with other settings is not gone on with.
 nlohmann::json fingerprint(const TrainSettings& s) {
-    return {{"version", 1},
+    return {{"version", 2},
             {"seed", s.seed},
+            {"resolution", s.resolution},
             {"data_samples", s.data_samples},
             {"autoencoder_samples", s.autoencoder_samples},
             {"autoencoder_pictures", s.autoencoder_pictures},
@@ -221,25 +224,40 @@ void train_prior(const TrainSettings& settings) {
     const ClipTokenizer tokenizer = settings.resume && fs::exists(tokens / "vocab.json")
                                         ? ClipTokenizer::load(tokens)
                                         : train_tokenizer(prior_words(settings), text_length);
+    std::set<std::string> words;
+    for (const WordCount& word : prior_words(settings))
+        words.insert(word.word);
+    update_prior_json(settings.output, {{"words", words}, {"resolution", settings.resolution}});
     const bool prepared_before = settings.resume && fs::exists(settings.work / "data.safetensors");
     const Prepared prepared =
         prepared_before ? read_prepared(settings) : prepare(settings, tokenizer);
     const ClipTextConfig text = prior_text_config(static_cast<int>(tokenizer.size()),
                                                   tokenizer.bos_id(), tokenizer.eos_id());
-    train_diffusion(prepared.data, settings, {prior_unet_config(), text}, prepared.record);
+    train_diffusion(prepared.data, settings, {prior_unet_config(settings.widths), text}, prepared.record);
     write_measurement(settings.output, settings.replicas);
+}
+
+std::set<std::string> trained_words(const fs::path& folder, const ClipTokenizer& tokenizer) {
+    std::set<std::string> words;
+    const fs::path file = folder / "prior.json";
+    if (fs::exists(file)) {
+        const auto json = nlohmann::json::parse(read_text(file), nullptr, false);
+        if (json.is_object() && json.contains("words"))
+            words = json["words"].get<std::set<std::string>>();
+    }
+    if (!words.empty()) return words;
+    for (const WordCount& word : caption_vocabulary(1))
+        if (tokenizer.encode(word.word).size() == 3) words.insert(word.word);
+    return words;
 }
 
 nlohmann::json write_measurement(const fs::path& folder, int threads) {
     const Pipeline pipeline = Pipeline::load(folder);
     MeasureOptions options;
     options.threads = threads;
+    options.words = trained_words(folder, *pipeline.tokenizer);
     nlohmann::json measured = measure_prior(pipeline, options);
-    std::vector<std::string> words;
-    for (const WordCount& word : caption_vocabulary(1))
-        words.push_back(word.word);
-    std::sort(words.begin(), words.end());
-    measured["words"] = words;
+    measured["words"] = options.words;
     return update_prior_json(folder, measured);
 }
 

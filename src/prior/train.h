@@ -13,7 +13,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -30,8 +32,11 @@ struct TrainSettings {
     std::int64_t captioner_samples = 540000;  ///< and the captioner
     std::int64_t labeled_samples = 60000;     ///< different pictures for these two
     int shape_variants = 30;
-    int views_each = 8;
-    int lights = 320;
+    int views_each = 4;
+    int lights = 480;
+    int resolution = picture_size;  ///< of the pictures, 64 or 128; latents are 16 x 16 for both
+    /// Widths of the U-Net's levels, multiples of 16.
+    std::vector<int> widths{48, 96, 144};
     int replicas = 2;
     int batch = 32;  ///< pictures a step and replica
     float learning_rate = 1e-3f;
@@ -54,20 +59,21 @@ std::vector<WordCount> prior_words(const TrainSettings& settings);
 struct LatentData {
     torch::Tensor latents;       ///< [N, 4, 16, 16] fp16, scaled
     torch::Tensor depth;         ///< [N, 1, 16, 16] fp16
-    torch::Tensor tokens;        ///< [N, 20] int16
-    torch::Tensor empty_tokens;  ///< [20] int16, the empty prompt
+    torch::Tensor tokens;        ///< [N, text_length] int16
+    torch::Tensor empty_tokens;  ///< [text_length] int16, the empty prompt
 };
 
-inline constexpr int text_length = 20;
+inline constexpr int text_length = longest_caption + 2;  ///< and the ends
 
 /// Pictures for the autoencoder.
 struct PictureData {
-    torch::Tensor images;   ///< [N, 64, 64, 3] uint8 sRGB
-    torch::Tensor covered;  ///< [N, 64, 64] uint8
+    torch::Tensor images;   ///< [N, S, S, 3] uint8 sRGB
+    torch::Tensor covered;  ///< [N, S, S] uint8
 };
 
-AutoencoderTinyConfig prior_autoencoder_config();
-UNet2DConditionConfig prior_unet_config();
+/// Downsamples pictures of that resolution to latent_size.
+AutoencoderTinyConfig prior_autoencoder_config(int resolution = picture_size);
+UNet2DConditionConfig prior_unet_config(const std::vector<int>& widths = {48, 96, 144});
 ClipTextConfig prior_text_config(int vocabulary, int start_of_text, int end_of_text);
 
 /// Trains (or, when resuming, reads) the autoencoder. Sets its scaling factor. Returns it with its
@@ -94,8 +100,13 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
 /// The whole training; fills settings.output and measures it.
 void train_prior(const TrainSettings& settings);
 
-/// Measures the prior in `folder` (classifier.h) and puts the result, with the list of all words of
-/// its captions, into its prior.json. Returns what that then holds.
+/// The words that the prior in `folder` was trained on: those of its prior.json, or, where that has
+/// none, those of today's captions that its tokenizer has whole.
+std::set<std::string> trained_words(const std::filesystem::path& folder,
+                                    const ClipTokenizer& tokenizer);
+
+/// Measures the prior in `folder` (classifier.h) by the words that it was trained on and puts the
+/// result, with these words, into its prior.json. Returns what that then holds.
 nlohmann::json write_measurement(const std::filesystem::path& folder, int threads);
 
 }  // namespace item3d

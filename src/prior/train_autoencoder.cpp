@@ -17,8 +17,8 @@ constexpr int batch = 8;
 constexpr float highest_rate = 1.5e-3f;
 
 struct Batch {
-    torch::Tensor images;   ///< [N, 3, 64, 64] in [-1, 1], channels-last
-    torch::Tensor weights;  ///< [N, 1, 64, 64], about 1 on average
+    torch::Tensor images;   ///< [N, 3, S, S] in [-1, 1], channels-last
+    torch::Tensor weights;  ///< [N, 1, S, S], about 1 on average
 };
 
 Batch gather(const PictureData& data, const torch::Tensor& rows) {
@@ -53,16 +53,19 @@ torch::Tensor reconstruction_loss(AutoencoderTiny& model, const Batch& data, dou
     const torch::Tensor error = images.to(torch::kFloat32) - data.images;
     latents = latents.to(torch::kFloat32);
     const torch::Tensor anchor =
-        (latents.slice(1, 0, 3) - 1.5 * torch::avg_pool2d(data.images, 4)).square().mean();
+        (latents.slice(1, 0, 3) -
+         1.5 * torch::avg_pool2d(data.images, data.images.size(2) / latents.size(2)))
+            .square()
+            .mean();
     const double anchor_weight = .02 + .98 * std::max(0.0, 1 - 4 * progress);
     return (error.abs() * data.weights).mean() + (error.square() * data.weights).mean() +
            .5 * differences(error, data.weights) + 1e-4 * .5 * latents.square().mean() +
            anchor_weight * anchor;
 }
 
-std::shared_ptr<AutoencoderTiny> make_model(std::uint64_t seed) {
-    torch::manual_seed(static_cast<std::int64_t>(seed));
-    auto model = std::make_shared<AutoencoderTiny>(prior_autoencoder_config());
+std::shared_ptr<AutoencoderTiny> make_model(const TrainSettings& settings) {
+    torch::manual_seed(static_cast<std::int64_t>(settings.seed));
+    auto model = std::make_shared<AutoencoderTiny>(prior_autoencoder_config(settings.resolution));
     return model;
 }
 
@@ -90,12 +93,19 @@ TrainedAutoencoder finish(std::shared_ptr<AutoencoderTiny> model, const PictureD
 
 }  // namespace
 
-AutoencoderTinyConfig prior_autoencoder_config() {
+AutoencoderTinyConfig prior_autoencoder_config(int resolution) {
     AutoencoderTinyConfig config;
     config.encoder_block_out_channels = {32, 32, 32};
     config.decoder_block_out_channels = {32, 32, 32};
     config.num_encoder_blocks = {1, 2, 3};
     config.num_decoder_blocks = {3, 2, 1};
+    // Each further level halves the picture. The one at full size is narrow: it is most of the work.
+    for (int size = 4 * latent_size; size < resolution; size *= 2) {
+        config.encoder_block_out_channels.insert(config.encoder_block_out_channels.begin(), 16);
+        config.num_encoder_blocks.insert(config.num_encoder_blocks.begin(), 0);
+        config.decoder_block_out_channels.push_back(16);
+        config.num_decoder_blocks.push_back(0);
+    }
     return config;
 }
 
@@ -103,14 +113,14 @@ TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureD
                                      const TrainSettings& settings) {
     const auto file = settings.work / "autoencoder.safetensors";
     if (settings.resume && std::filesystem::exists(file)) {
-        auto model = make_model(settings.seed);
+        auto model = make_model(settings);
         load_parameters(*model, Weights::open_file(file));
         return finish(model, held_out);
     }
     std::vector<std::shared_ptr<AutoencoderTiny>> models;
     std::vector<std::unique_ptr<FlatModel>> flat;
     for (int rank = 0; rank < settings.replicas; ++rank) {
-        models.push_back(make_model(settings.seed));
+        models.push_back(make_model(settings));
         flat.push_back(std::make_unique<FlatModel>(
             std::vector<std::shared_ptr<torch::nn::Module>>{models.back()}));
     }
@@ -165,7 +175,7 @@ TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureD
     for (auto& [name, tensor] : module_tensors(*models[0]))
         tensors.emplace_back(name, tensor.contiguous());
     save_safetensors(file, tensors);
-    auto model = make_model(settings.seed);
+    auto model = make_model(settings);
     load_parameters(*model, Weights::open_file(file));
     return finish(model, held_out);
 }

@@ -73,18 +73,21 @@ torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
 
 }  // namespace
 
-UNet2DConditionConfig prior_unet_config() {
+UNet2DConditionConfig prior_unet_config(const std::vector<int>& widths) {
     UNet2DConditionConfig config;
     config.sample_size = latent_size;
     config.in_channels = 5;
     config.out_channels = 4;
-    config.block_out_channels = {48, 96, 144};
-    config.down_block_types.assign(3, "CrossAttnDownBlock2D");
-    config.up_block_types.assign(3, "CrossAttnUpBlock2D");
-    config.layers_per_block = {1, 1, 1};
-    config.attention_head_dim = {2, 4, 6};
-    config.transformer_layers_per_block = {1, 1, 1};
-    config.cross_attention_dim.assign(3, 192);
+    const std::size_t levels = widths.size();
+    config.block_out_channels = widths;
+    config.down_block_types.assign(levels, "CrossAttnDownBlock2D");
+    config.up_block_types.assign(levels, "CrossAttnUpBlock2D");
+    config.layers_per_block.assign(levels, 1);
+    config.attention_head_dim.clear();
+    for (const int width : widths)
+        config.attention_head_dim.push_back(std::max(1, width / 24));
+    config.transformer_layers_per_block.assign(levels, 1);
+    config.cross_attention_dim.assign(levels, 192);
     config.norm_num_groups = 16;
     return config;
 }
@@ -130,8 +133,9 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
         train["seconds"] = std::round(record.seconds);
         train["loss"] = record.loss;
         train["seed"] = settings.seed;
+        train["resolution"] = settings.resolution;
         train["parameters"] = loop.parameters();
-        export_diffusion(settings.output, exported.unet, exported.text, train);
+        export_diffusion(settings.output, exported.unet, exported.text, settings.resolution, train);
     });
     return train;
 }

@@ -5,6 +5,7 @@
 #include "item3d/models/depth_condition.h"
 #include "item3d/prior/polygonize.h"
 #include "item3d/prior/shapes.h"
+#include "item3d/prior/sky_visibility.h"
 #include "item3d/prior/workers.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/scene/camera.h"
@@ -53,55 +54,48 @@ std::int16_t pack(float value) {
     return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 32767.0f));
 }
 
-/// Open sky along the normal, near and a little farther off: 1 in the open, less in corners.
-float ambient_occlusion(const SignedDistance& distance, const Polygonized& mesh, const Vec3& p,
-                        const Vec3& n) {
-    float open = 0;
-    for (const float step : {.08f, .25f}) {
-        const Vec3 q = (p + step * n) * mesh.scale + mesh.center;
-        open += std::clamp(distance(q) / (step * mesh.scale), 0.0f, 1.0f) * .5f;
-    }
-    return open;
-}
-
 }  // namespace
 
 std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
-                                  std::uint64_t seed, int resolution) {
+                                  std::uint64_t seed, int resolution, int picture) {
     const torch::NoGradGuard no_grad;
-    const SignedDistance distance = make_shape(shape_class, variant);
-    const Polygonized mesh = polygonize(distance, resolution);
+    const Shape shape = make_shape(shape_class, variant);
+    const Polygonized mesh =
+        polygonize([&](const Vec3& p) { return shape.distance(p); }, resolution);
     const Geometry geometry = to_geometry(mesh.primitive);
+    const int size = picture * view_samples;
+    // ShapeView::pixel has 16 bits.
+    ITEM3D_CHECK(size <= 256, "views are at most 256 pixels wide");
 
-    const auto& classes = shape_classes();
-    const auto known = std::find_if(classes.begin(), classes.end(),
-                                    [&](const ShapeClass& c) { return c.name == shape_class; });
-    ITEM3D_CHECK(known != classes.end(), "no shape class is called " + shape_class);
-    const auto index = static_cast<int>(known - classes.begin());
+    const int index = shape_class_index(shape_class);
     Random random(seed, static_cast<std::uint64_t>(index * 1000 + variant));
     std::vector<Camera> cameras;
     for (int i = 0; i < count; ++i)
         cameras.push_back(random_camera(random, mesh.primitive.positions));
-    const Raster raster = rasterize(geometry, cameras, view_size, view_size);
+    const Raster raster = rasterize(geometry, cameras, size, size);
     const Surface surface = interpolate_surface(geometry, raster, cameras);
     const torch::Tensor depth =
-        depth_condition(raster.depth, view_size / latent_size);  // [N, 1, h, w]
+        depth_condition(raster.depth, size / latent_size);  // [N, 1, h, w]
 
     std::vector<ShapeView> views(cameras.size());
     for (std::size_t i = 0; i < views.size(); ++i) {
         views[i].shape_class = index;
         views[i].variant = variant;
+        views[i].size = size;
         views[i].camera = cameras[i].position();
+        for (const ShapePart& part : shape.parts)
+            views[i].parts.push_back(part.noun);
         views[i].depth = depth[static_cast<std::int64_t>(i)].to(torch::kHalf).contiguous();
     }
+    SkyVisibility sky(geometry);
     const torch::Tensor pixels = surface.pixel.contiguous();
     const torch::Tensor positions = surface.position.contiguous();
     const torch::Tensor normals = surface.normal.contiguous();
     const auto* pixel = pixels.data_ptr<std::int64_t>();
     const auto* position = positions.data_ptr<float>();
     const auto* normal = normals.data_ptr<float>();
+    const std::int64_t area = std::int64_t{size} * size;
     for (std::int64_t i = 0; i < surface.count(); ++i) {
-        constexpr std::int64_t area = view_size * view_size;
         ShapeView& view = views[static_cast<std::size_t>(pixel[i] / area)];
         const Vec3 p(position[3 * i], position[3 * i + 1], position[3 * i + 2]);
         const Vec3 n(normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]);
@@ -110,20 +104,21 @@ std::vector<ShapeView> make_views(const std::string& shape_class, int variant, i
             view.position.push_back(pack(p[c]));
             view.normal.push_back(pack(n[c]));
         }
-        view.occlusion.push_back(
-            static_cast<std::uint8_t>(ambient_occlusion(distance, mesh, p, n) * 255.0f + .5f));
+        view.part.push_back(static_cast<std::uint8_t>(shape.part_at(p * mesh.scale + mesh.center)));
+        view.sky.push_back(sky.at(p, n));
     }
     for (ShapeView& view : views) {
         view.pixel.shrink_to_fit();
         view.position.shrink_to_fit();
         view.normal.shrink_to_fit();
-        view.occlusion.shrink_to_fit();
+        view.part.shrink_to_fit();
+        view.sky.shrink_to_fit();
     }
     return views;
 }
 
 std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_each,
-                                      std::uint64_t seed, int threads) {
+                                      std::uint64_t seed, int threads, int picture) {
     struct Job {
         std::string shape_class;
         int variant;
@@ -143,7 +138,7 @@ std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_eac
     run_workers(static_cast<std::int64_t>(jobs.size()), threads, [&](std::int64_t i) {
         const Job& job = jobs[static_cast<std::size_t>(i)];
         made[static_cast<std::size_t>(i)] =
-            make_views(job.shape_class, job.variant, views_each, seed);
+            make_views(job.shape_class, job.variant, views_each, seed, 96, picture);
         const std::lock_guard lock(mutex);
         progress.update(++done);
     });

@@ -13,21 +13,25 @@
 
 namespace item3d {
 
-/// Edge of a G-buffer in pixels, of a picture (each pixel the mean of 2x2), and of its latents.
-inline constexpr int view_size = 128;
+/// Edge of a picture where nothing else is said, and of its latents, in pixels.
 inline constexpr int picture_size = 64;
 inline constexpr int latent_size = 16;
+/// Each pixel of a picture is the mean of so many by so many of the G-buffer.
+inline constexpr int view_samples = 2;
 
-/// One view of one shape, covered pixels alone (P of them), 15 bytes a pixel. Coordinates are the
+/// One view of one shape, covered pixels alone (P of them), 19 bytes a pixel. Coordinates are the
 /// shape's own, scaled into the unit sphere.
 struct ShapeView {
     int shape_class = 0;  ///< index into shape_classes()
     int variant = 0;
-    Vec3 camera{0.0f};                    ///< position
-    std::vector<std::uint16_t> pixel;     ///< [P] y * view_size + x
-    std::vector<std::int16_t> position;   ///< [P * 3] in units of 1 / 32767
-    std::vector<std::int16_t> normal;     ///< [P * 3] likewise, unit, towards the viewer
-    std::vector<std::uint8_t> occlusion;  ///< [P] 255: open
+    int size = 0;                        ///< edge of the G-buffer: view_samples times the picture's
+    Vec3 camera{0.0f};                   ///< position
+    std::vector<std::string> parts;      ///< names of its parts, "" for the first (shapes.h)
+    std::vector<std::uint16_t> pixel;    ///< [P] y * size + x
+    std::vector<std::int16_t> position;  ///< [P * 3] in units of 1 / 32767
+    std::vector<std::int16_t> normal;    ///< [P * 3] likewise, unit, towards the viewer
+    std::vector<std::uint8_t> part;      ///< [P] index into parts
+    std::vector<std::uint32_t> sky;      ///< [P] what it sees of the sky (sky_visibility.h)
     torch::Tensor
         depth;  ///< [1, latent_size, latent_size] fp16, depth_condition of models/pipeline.h
 
@@ -42,13 +46,17 @@ struct ShapeView {
 
 /// `count` views of one shape from random cameras all around: elevation -10..50 degrees,
 /// horizontal field of view 25..45 degrees, the shape filling 60 to 95 % of the picture.
+/// resolution: of the grid that the shape is polygonised on. picture: edge of the pictures to be, at
+/// most 128.
 std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
-                                  std::uint64_t seed, int resolution = 96);
+                                  std::uint64_t seed, int resolution = 96,
+                                  int picture = picture_size);
 
 /// Views of every shape that is for training, or of every one that is held out (variants from
 /// training_variants on, and whole classes), in a fixed order. variants: at most this many of each
 /// class. Returns what there is after an interrupt.
 std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_each,
-                                      std::uint64_t seed, int threads);
+                                      std::uint64_t seed, int threads,
+                                      int picture = picture_size);
 
 }  // namespace item3d

@@ -1,0 +1,117 @@
+// Patterns of animals.
+#include "item3d/prior/materials/makers.h"
+
+namespace item3d::paint {
+namespace {
+
+ProceduralMaterial zebra(Random& random, const MaterialWish&) {
+    const Vec3 axis{1 + random.normal(0, .4), .3 + random.normal(0, .4), random.normal(0, .4)};
+    const float frequency = draw(random, 12, 18);
+    const CosineNoise warp(random, 3);
+    const float roughness = draw(random, .4, .8);
+    return {"",
+            "",
+            {"zebra {o}", "{o} with zebra stripes", "zebra striped {o}", "zebra print {o}"},
+            [=](const Vec3& p, const Vec3&) {
+                const float s = std::sin(glm::dot(p, axis) * frequency + 1.6f * warp(p));
+                return MaterialValue{
+                    mix({.015f, .015f, .015f}, {.82f, .8f, .76f}, smooth_step(s, -.15f, .15f)),
+                    roughness, 0};
+            }};
+}
+
+ProceduralMaterial leopard(Random& random, const MaterialWish&) {
+    const CosineNoise spots(random, draw(random, 11, 14));
+    const Vec3 fur = vary(random, {.62f, .36f, .1f});
+    return {"",
+            "",
+            {"leopard print {o}", "leopard {o}", "{o} with leopard spots", "leopard print {o}"},
+            [=](const Vec3& p, const Vec3&) {
+                const float v = spots(p);
+                const float ring =
+                    smooth_step(v, .5f, .7f) * (1 - .75f * smooth_step(v, 1.35f, 1.5f));
+                return MaterialValue{mix(fur, {.03f, .018f, .01f}, ring), .8f, 0};
+            }};
+}
+
+/// Orange with dark bands that taper and break off.
+ProceduralMaterial tiger(Random& random, const MaterialWish&) {
+    const CosineNoise warp(random, 3.5f), breaks(random, 5);
+    const float frequency = draw(random, 11, 15);
+    const Vec3 fur = vary(random, {.75f, .27f, .035f}, .08), pale(.85f, .72f, .55f);
+    return {"",
+            "",
+            {"tiger {o}", "{o} with tiger stripes", "tiger striped {o}", "tiger print {o}"},
+            [=](const Vec3& p, const Vec3& n) {
+                const float s = std::sin(p.x * frequency + 1.8f * warp(p)) + .45f * breaks(p);
+                const float band = smooth_step(s, .45f, .65f);
+                const Vec3 coat = mix(fur, pale, smooth_step(-n.y, .2f, .8f) * .8f);
+                return MaterialValue{mix(coat, {.02f, .015f, .012f}, band), .8f, 0};
+            }};
+}
+
+/// Brown patches between pale lines.
+ProceduralMaterial giraffe(Random& random, const MaterialWish&) {
+    const float size = draw(random, 2, 2.8);
+    const CosineNoise warp(random, 5);
+    const Vec3 patch = vary(random, {.36f, .14f, .04f}, .1), line = vary(random, {.78f, .6f, .36f},
+                                                                         .06);
+    return {"",
+            "",
+            {"giraffe {o}", "{o} with giraffe spots", "giraffe print {o}", "giraffe patterned {o}"},
+            [=](const Vec3& p, const Vec3&) {
+                const NearPoints near = near_points(p * size + .08f * warp(p));
+                const float w = smooth_step(near.second - near.first, .1f, .18f);
+                return MaterialValue{mix(line, patch * (.75f + .5f * near.value), w), .8f, 0};
+            }};
+}
+
+/// White with black spots of all sizes.
+ProceduralMaterial dalmatian(Random& random, const MaterialWish&) {
+    const float size = draw(random, 2.2, 3);
+    const CosineNoise warp(random, 7);
+    return {"",
+            "",
+            {"dalmatian {o}", "{o} with dalmatian spots", "dalmatian print {o}"},
+            [=](const Vec3& p, const Vec3&) {
+                const NearPoints near = near_points(p * size);
+                const float radius = .14f + .22f * near.value;
+                const float w = smooth_step(near.first + .05f * warp(p), radius - .03f, radius + .03f);
+                return MaterialValue{mix({.015f, .014f, .014f}, {.84f, .82f, .78f}, w), .75f, 0};
+            }};
+}
+
+/// Rows of overlapping scales.
+ProceduralMaterial scales(Random& random, const MaterialWish& wish) {
+    const std::string name = one_color(random, wish);
+    const Vec3 color = vary(random, color_named(name));
+    const float size = draw(random, 3, 4.2);
+    return {"",
+            name,
+            {"scaly {o}", "scaly " + name + " {o}", "{o} covered in " + name + " scales",
+             "{o} with snake scales"},
+            [=](const Vec3& p, const Vec3& n) {
+                const Vec2 uv = flat_coordinates(p, n) * size;
+                const float row = std::floor(uv.y * 1.4f);
+                const float u = fraction(uv.x + (odd(row) ? .5f : 0.0f)) * 2 - 1;
+                const float down = 1 - (uv.y * 1.4f - row);  // the tip of a scale is below
+                const float edge = std::hypot(u, down) ;
+                const float w = smooth_step(edge, .75f, 1.05f);
+                return MaterialValue{limit(color * (1.15f - .85f * w)), .35f, 0,
+                                     flat_slope({.5f * u, -.4f * down}, n)};
+            }};
+}
+
+}  // namespace
+
+std::vector<MaterialKind> fur_patterns() {
+    return {{"zebra", .025, zebra, {pattern_word("zebra", "zebra")}},
+            {"leopard", .025, leopard,
+             {word_of("patterns", "leopard", "leopard", {"leopard"}, "a leopard print {o}")}},
+            {"tiger", .02, tiger, {pattern_word("tiger", "tiger")}},
+            {"giraffe", .02, giraffe, {pattern_word("giraffe", "giraffe")}},
+            {"dalmatian", .02, dalmatian, {pattern_word("dalmatian", "dalmatian")}},
+            {"scales", .02, scales, {pattern_word("scales", "scaly", {"scaly", "scales"})}}};
+}
+
+}  // namespace item3d::paint

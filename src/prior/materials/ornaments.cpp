@@ -1,0 +1,204 @@
+// Irregular patterns: flowers, camouflage, cracks, flames, stars, splashes.
+#include "item3d/prior/materials/makers.h"
+
+#include <array>
+
+namespace item3d::paint {
+namespace {
+
+/// Flowers of five petals on leaves, one a cell of a loose lattice.
+ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
+    const auto [first, second] = two_colors(random, wish);
+    const Vec3 ground = vary(random, color_named(first)), petal = vary(random, color_named(second));
+    const Vec3 core = second == "yellow" ? Vec3(.7f, .1f, .02f) : Vec3(.9f, .65f, .05f);
+    const float frequency = draw(random, 1.5, 2.1);
+    return {"",
+            first,
+            {"floral {o}", "floral {o}", first + " {o} with " + second + " flowers",
+             "{o} with a floral pattern", "flowery {o}", "{o} with flowers"},
+            [=](const Vec3& p, const Vec3& n) {
+                const Vec2 uv = flat_coordinates(p, n) * frequency;
+                const float row = std::floor(uv.y);
+                const float u = uv.x + (odd(row) ? .5f : 0.0f), column = std::floor(u);
+                const Vec2 jitter(cell_value(column, row, 1) - .5f, cell_value(column, row, 2) - .5f);
+                const Vec2 q(fraction(u) - .5f - .15f * jitter.x, uv.y - row - .5f - .15f * jitter.y);
+                const float r = glm::length(q);
+                const float angle = std::atan2(q.y, q.x) + 6 * cell_value(column, row);
+                const float edge = .24f + .11f * std::cos(5 * angle);
+                const float leaf = .4f * std::pow(std::max(std::cos(1.5f * angle), 0.0f), 3.0f);
+                if (r < .1f) return MaterialValue{core, .6f, 0};
+                if (r < edge) return MaterialValue{petal * (.6f + r), .6f, 0};
+                if (r < leaf) return MaterialValue{{.04f, .2f, .03f}, .6f, 0};
+                return MaterialValue{ground, .6f, 0};
+            }};
+}
+
+ProceduralMaterial camouflage(Random& random, const MaterialWish&) {
+    static constexpr std::array<std::array<float, 3>, 3> forest{
+        {{.05f, .075f, .025f}, {.15f, .17f, .06f}, {.1f, .06f, .03f}}};
+    static constexpr std::array<std::array<float, 3>, 3> desert{
+        {{.55f, .42f, .25f}, {.35f, .24f, .12f}, {.18f, .11f, .055f}}};
+    const auto& tones = random.chance(.7) ? forest : desert;
+    std::array<Vec3, 4> colors{Vec3(.015f, .016f, .014f), Vec3(0.0f), Vec3(0.0f), Vec3(0.0f)};
+    for (std::size_t i = 0; i < 3; ++i)
+        colors[i + 1] = vary(random, {tones[i][0], tones[i][1], tones[i][2]}, .08);
+    const CosineNoise one(random, 4.5f, 2), two(random, 4.5f, 2);
+    return {"",
+            "",
+            {"camouflage {o}", "camouflage {o}", "{o} with a camouflage pattern", "camo {o}",
+             "{o} in camouflage"},
+            [=](const Vec3& p, const Vec3&) {
+                const float a = one(p), b = two(p);
+                const std::size_t which = a > .75f ? 0 : a > 0 ? (b > .2f ? 1 : 2) : b > -.3f ? 2 : 3;
+                return MaterialValue{colors[which], .9f, 0};
+            }};
+}
+
+/// Dark cracks between dry plates.
+ProceduralMaterial cracks(Random& random, const MaterialWish& wish) {
+    const std::string name = one_color(random, wish);
+    const Vec3 color = vary(random, color_named(name));
+    const Vec3 deep = name == "black" ? Vec3(.35f) : color * .06f;
+    const float size = draw(random, 1.9, 2.8);
+    const CosineNoise warp(random, 6, 2);
+    return {"",
+            name,
+            {"cracked {o}", "cracked " + name + " {o}", "{o} with cracks", "cracked {o}",
+             name + " {o} with cracks"},
+            [=](const Vec3& p, const Vec3&) {
+                const NearPoints near = near_points(p * size + .12f * warp(p));
+                const float gap = near.second - near.first;
+                const float w = smooth_step(gap, .05f, .11f);
+                return MaterialValue{limit(mix(deep, color * (.85f + .3f * near.value), w)), .75f, 0};
+            }};
+}
+
+ProceduralMaterial flames(Random& random, const MaterialWish&) {
+    const CosineNoise flicker(random, 4, 2);
+    const float roughness = draw(random, .3, .7);
+    return {
+        "",
+        "",
+        {"flame patterned {o}", "{o} with a flame pattern", "{o} with flames",
+         "{o} painted with flames"},
+        [=](const Vec3& p, const Vec3&) {
+            const float h = p.y * 1.2f + .5f * flicker(p);
+            const Vec3 hot = mix({.85f, .18f, .01f}, {.12f, .01f, .01f}, smooth_step(h, .2f, .9f));
+            return MaterialValue{mix({.95f, .75f, .08f}, hot, smooth_step(h, -.7f, .2f)), roughness,
+                                 0};
+        }};
+}
+
+/// Stars of five points, one in most cells.
+ProceduralMaterial stars(Random& random, const MaterialWish& wish) {
+    const auto [first, second] = two_colors(random, wish);
+    const Vec3 ground = vary(random, color_named(first)), star = vary(random, color_named(second));
+    const float frequency = draw(random, 1.5, 2.2);
+    return {"",
+            first,
+            {"starry {o}", first + " {o} with " + second + " stars", "{o} with stars",
+             "starry " + first + " {o}"},
+            [=](const Vec3& p, const Vec3& n) {
+                const Vec2 uv = flat_coordinates(p, n) * frequency;
+                const float row = std::floor(uv.y);
+                const float u = uv.x + (odd(row) ? .5f : 0.0f);
+                const Vec2 q(fraction(u) - .5f, uv.y - row - .5f);
+                const float tip = 2 * pi / 5, angle = std::atan2(q.x, q.y);
+                const float turn = std::abs(angle - tip * std::round(angle / tip)) / (tip / 2);
+                const float edge = .42f + (.17f - .42f) * std::sqrt(turn);
+                const float w = smooth_step(glm::length(q) - edge, -.02f, .02f);
+                return MaterialValue{mix(star, ground, w), .5f, 0};
+            }};
+}
+
+/// Thrown paint in several colours.
+ProceduralMaterial splashes(Random& random, const MaterialWish& wish) {
+    const std::string name = one_color(random, wish);
+    const Vec3 ground = vary(random, color_named(name));
+    std::array<Vec3, 3> paints;
+    std::vector<CosineNoise> where;
+    for (Vec3& paint : paints) {
+        std::string other = one_color(random, {});
+        while (other == name)
+            other = one_color(random, {});
+        paint = color_named(other);
+        where.emplace_back(random, draw(random, 6, 9), 2);
+    }
+    return {"",
+            name,
+            {"paint splattered {o}", "{o} splattered with paint", name + " {o} splattered with paint",
+             "{o} with splashes of paint"},
+            [=](const Vec3& p, const Vec3&) {
+                Vec3 color = ground;
+                for (std::size_t i = 0; i < paints.size(); ++i)
+                    color = mix(color, paints[i], smooth_step(where[i](p), .95f, 1.05f));
+                return MaterialValue{color, .35f, 0};
+            }};
+}
+
+/// Curls of two colours, as marbled paper.
+ProceduralMaterial swirls(Random& random, const MaterialWish& wish) {
+    const auto [first, second] = two_colors(random, wish);
+    const Vec3 a = vary(random, color_named(first)), b = vary(random, color_named(second));
+    const CosineNoise stream(random, 2.4f, 2), bend(random, 3);
+    const float bands = draw(random, 3.5, 5.5);
+    return {"",
+            first,
+            {"swirly {o}", first + " and " + second + " swirly {o}", "{o} with swirls",
+             "{o} with " + first + " and " + second + " swirls"},
+            [=](const Vec3& p, const Vec3&) {
+                const float s = std::sin(bands * stream(p + .15f * bend(p)));
+                return MaterialValue{mix(a, b, smooth_step(s, -.2f, .2f)), .3f, 0};
+            }};
+}
+
+/// Squares of cloth, each with a pattern of its own.
+ProceduralMaterial patchwork(Random& random, const MaterialWish&) {
+    const float frequency = draw(random, 1.3, 1.9);
+    const auto shift = static_cast<float>(random.index(500));
+    return {"",
+            "",
+            {"patchwork {o}", "patchwork {o}", "patchwork quilt {o}", "{o} made of patchwork"},
+            [=](const Vec3& p, const Vec3& n) {
+                const auto& colors = plain_colors();
+                const Vec2 uv = flat_coordinates(p, n) * frequency + Vec2(shift, 0);
+                const float x = std::floor(uv.x), y = std::floor(uv.y);
+                const auto any = [&](float salt) {
+                    return colors[static_cast<std::size_t>(cell_value(x, y, salt) *
+                                                           (static_cast<float>(colors.size()) - .01f))]
+                        .linear;
+                };
+                const Vec2 q(uv.x - x, uv.y - y);
+                const bool seam = std::min(std::min(q.x, 1 - q.x), std::min(q.y, 1 - q.y)) < .045f;
+                const float kind = cell_value(x, y, 9);
+                bool other = false;
+                if (kind > .7f)
+                    other = fraction(q.x * 2.5f) < .5f;
+                else if (kind > .45f)
+                    other = std::hypot(fraction(q.x * 2) - .5f, fraction(q.y * 2) - .5f) < .27f;
+                const Vec3 color = other ? any(2) : any(1);
+                return MaterialValue{seam ? color * .3f : color, .95f, 0};
+            }};
+}
+
+}  // namespace
+
+std::vector<MaterialKind> ornament_patterns() {
+    return {{"floral", .03, floral,
+             {pattern_word("floral", "floral", {"floral", "flowers", "flowery"})}},
+            {"camouflage", .025, camouflage,
+             {pattern_word("camouflage", "camouflage", {"camouflage", "camo"})}},
+            {"cracked", .025, cracks, {pattern_word("cracked", "cracked", {"cracked", "cracks"})}},
+            {"flames", .02, flames,
+             {word_of("patterns", "flames", "flames", {"flame", "flames"},
+                      "a {o} with a flame pattern")}},
+            {"stars", .025, stars, {pattern_word("stars", "starry", {"starry", "stars"})}},
+            {"splashes", .02, splashes,
+             {word_of("patterns", "splashes", "splattered", {"splattered", "splashes"},
+                      "a paint splattered {o}")}},
+            {"swirls", .02, swirls, {pattern_word("swirls", "swirly", {"swirly", "swirls"})}},
+            {"patchwork", .02, patchwork,
+             {pattern_word("patchwork", "patchwork", {"patchwork", "quilt"})}}};
+}
+
+}  // namespace item3d::paint
