@@ -1,6 +1,7 @@
 // Words, captions and tokens.
 #include "item3d/prior/captions.h"
 #include "item3d/prior/lights.h"
+#include "item3d/prior/shapes.h"
 #include "item3d/prior/tokenizer_training.h"
 #include "item3d/prior/vocabulary.h"
 
@@ -24,7 +25,8 @@ TEST(PriorCaptions, PhrasesHoldTheNounAndTheLight) {
     int with_light = 0, objects = 0;
     for (std::uint64_t i = 0; i < 400; ++i) {
         Random random(3, i);
-        const std::string caption = make_caption(random, {"mug"}, {"wooden {o}"}, {" at night"});
+        const std::string caption =
+            make_caption(random, {{"mug"}, {"wooden {o}"}, {" at night"}, {}});
         EXPECT_EQ(caption.find('{'), std::string::npos);
         const bool object = caption.find("object") != std::string::npos;
         EXPECT_TRUE(object || caption.find("mug") != std::string::npos) << caption;
@@ -35,12 +37,61 @@ TEST(PriorCaptions, PhrasesHoldTheNounAndTheLight) {
     EXPECT_NEAR(with_light, 340, 30);
 }
 
+TEST(PriorCaptions, PartsHaveWordsOfTheirOwn) {
+    EXPECT_EQ(part_with_article("handle", "orange {o}"), "an orange handle");
+    EXPECT_EQ(part_with_article("wheels", "black {o}"), "black wheels");
+    EXPECT_EQ(part_with_article("icing", "pink {o}"), "pink icing");
+    const PictureWords car{
+        {"car"}, {"{o} made of wood", "wooden {o}"}, {""}, PartWords{"wheels", {"red {o}"}}};
+    std::set<std::string> captions;
+    for (std::uint64_t i = 0; i < 300; ++i) {
+        Random random(6, i);
+        captions.insert(make_caption(random, car));
+    }
+    EXPECT_TRUE(captions.count("a wooden car with red wheels"));
+    EXPECT_TRUE(captions.count("a wooden car that has red wheels"));
+    EXPECT_TRUE(captions.count("red wheels on a wooden car"));
+    EXPECT_TRUE(captions.count("a photo of a wooden object with red wheels"));
+}
+
+TEST(PriorCaptions, NounsOfObjectsAreSingleWordsAndMeanOneThing) {
+    std::set<std::string> nouns;
+    for (const ShapeClass& shape : shape_classes())
+        for (const std::string& noun : shape.nouns) {
+            EXPECT_TRUE(nouns.insert(noun).second) << noun;
+            EXPECT_EQ(noun.find(' '), std::string::npos) << noun;
+        }
+    // A material that is also a thing could not be told from it in a sentence.
+    for (const MaterialWord& word : material_words())
+        EXPECT_FALSE(nouns.count(word.word)) << word.word;
+    for (const PlainColor& color : plain_colors())
+        EXPECT_FALSE(nouns.count(color.name)) << color.name;
+}
+
+TEST(PriorCaptions, TheVocabularyIsWide) {
+    int held_out = 0;
+    for (const ShapeClass& shape : shape_classes())
+        held_out += shape.held_out;
+    EXPECT_GE(shape_classes().size(), 44u);
+    EXPECT_GE(held_out, 3);
+    EXPECT_GE(material_words().size(), 60u);
+    EXPECT_EQ(plain_colors().size(), 24u);
+    EXPECT_EQ(light_kinds().size(), 10u);
+    for (const MaterialWord& word : material_words()) {
+        Random random(2);
+        EXPECT_EQ(make_material(random, word.wish).kind, word.wish.kind);
+        EXPECT_NE(word.caption.find("{o}"), std::string::npos);
+        EXPECT_FALSE(word.spellings.empty());
+    }
+}
+
 TEST(PriorCaptions, EveryMaterialSaysWhatItIs) {
     for (const std::string& kind : material_kinds()) {
         Random random(4, 2);
         const ProceduralMaterial material = make_material(random, {kind, "", ""});
         EXPECT_EQ(material.kind, kind);
-        EXPECT_FALSE(material.phrases.empty());
+        ASSERT_FALSE(material.phrases.empty());
+        EXPECT_TRUE(material.phrases[0].ends_with("{o}")) << kind;
         for (const std::string& phrase : material.phrases)
             EXPECT_NE(phrase.find("{o}"), std::string::npos) << phrase;
         for (int i = 0; i < 200; ++i) {
@@ -55,14 +106,16 @@ TEST(PriorCaptions, EveryMaterialSaysWhatItIs) {
             EXPECT_LE(value.roughness, 1) << kind;
             EXPECT_GE(value.metallic, 0) << kind;
             EXPECT_LE(value.metallic, 1) << kind;
+            EXPECT_LT(glm::length(value.slope), 6) << kind;
+            EXPECT_NEAR(glm::length(bent_normal(n, value.slope)), 1, 1e-4) << kind;
         }
     }
 }
 
 TEST(PriorTokenizer, EveryWordIsOneTokenAndCaptionsFit) {
     const std::vector<WordCount> words = caption_vocabulary(2, 20000);
-    EXPECT_GT(words.size(), 90u);
-    const ClipTokenizer tokenizer = train_tokenizer(words, 20);
+    EXPECT_GT(words.size(), 300u);
+    const ClipTokenizer tokenizer = train_tokenizer(words, longest_caption + 2);
     std::set<int> ids;
     for (const WordCount& word : words) {
         const std::vector<int> encoded = tokenizer.encode(word.word);
@@ -74,10 +127,11 @@ TEST(PriorTokenizer, EveryWordIsOneTokenAndCaptionsFit) {
     EXPECT_GT(tokenizer.encode("xylophone").size(), 3u);
     for (std::uint64_t i = 0; i < 3000; ++i) {
         Random random(8, i);
-        const ProceduralMaterial material = make_material(random);
-        const std::string caption =
-            make_caption(random, {"snowman"}, material.phrases, {" on an overcast day"});
-        EXPECT_LE(tokenizer.encode(caption).size(), 20u) << caption;
+        PictureWords words_of_it{
+            {"snowman"}, make_material(random).phrases, {" on an overcast day"}, {}};
+        if (i % 2 == 0) words_of_it.part = PartWords{"hat", make_material(random).phrases};
+        const std::string caption = make_caption(random, words_of_it);
+        EXPECT_LE(tokenizer.encode(caption).size(), longest_caption + 2) << caption;
     }
 }
 

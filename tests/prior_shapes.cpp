@@ -2,11 +2,14 @@
 #include "item3d/prior/lathe.h"
 #include "item3d/prior/polygonize.h"
 #include "item3d/prior/shapes.h"
+#include "item3d/prior/sky_visibility.h"
 #include "item3d/prior/views.h"
+#include "item3d/scene/environment.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 namespace item3d {
 namespace {
@@ -54,8 +57,13 @@ TEST(PriorShapes, SphereBecomesAClosedSurfaceFacingOutwards) {
 
 TEST(PriorShapes, EveryClassFitsTheGridAndVaries) {
     for (const ShapeClass& shape : shape_classes()) {
-        const SignedDistance first = make_shape(shape.name, 0), second = make_shape(shape.name, 31);
-        const SignedDistance again = make_shape(shape.name, 0);
+        const auto distance_of = [&](int variant) -> SignedDistance {
+            return [made = make_shape(shape.name, variant)](const Vec3& p) {
+                return made.distance(p);
+            };
+        };
+        const SignedDistance first = distance_of(0), second = distance_of(31);
+        const SignedDistance again = distance_of(0);
         Random random(5);
         double difference = 0;
         for (int i = 0; i < 200; ++i) {
@@ -78,7 +86,42 @@ TEST(PriorShapes, EveryClassFitsTheGridAndVaries) {
     }
 }
 
+TEST(PriorShapes, PartsAreFoundWhereTheyAre) {
+    const Shape mug = make_shape("mug", 0);
+    ASSERT_EQ(mug.parts.size(), 2u);
+    EXPECT_EQ(mug.parts[1].noun, "handle");
+    EXPECT_EQ(mug.part_at({.9f, 0, 0}), 1);
+    EXPECT_EQ(mug.part_at({-.5f, 0, 0}), 0);
+    int both = 0;
+    for (const ShapeView& view : make_views("mug", 0, 6, 4, 64))
+        both += std::set<int>(view.part.begin(), view.part.end()).size() == 2;
+    EXPECT_GE(both, 2);  // from behind the handle is hidden
+}
+
+TEST(PriorShapes, SkyIsDarkBelowATable) {
+    Shape table{{{"", [](const Vec3& p) { return sdf::box(p, {0, .2f, 0}, {.9f, .05f, .9f}); }}}};
+    Polygonized mesh = polygonize(table.parts[0].distance, 64);
+    Model model;
+    model.primitives.push_back(mesh.primitive);
+    model.materials.emplace_back();
+    SkyVisibility sky(Geometry::from_model(model));
+    SkyLight above{};
+    for (std::size_t i = 0; i < sky_parts; ++i)
+        above[i] = std::max(sky_directions()[i].y, 0.0f);
+    const Vec3 up(0, 1, 0);
+    EXPECT_GT(arriving_share(sky.at({0, .3f, 0}, up), up, above), .95f);
+    EXPECT_LT(arriving_share(sky.at({0, -.2f, 0}, up), up, above), .2f);
+    // A light from one side alone is blocked or not as a whole.
+    Image map(64, 32, 3);
+    map.at(5, 4, 0) = map.at(5, 4, 1) = map.at(5, 4, 2) = 1;
+    float total = 0;
+    for (const float part : sky_light(map))
+        total += part;
+    EXPECT_NEAR(total, texel_solid_angle(4, 32), 1e-5);
+}
+
 TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
+    const int view_size = 2 * picture_size;
     const std::vector<ShapeView> views = make_views("ball", 3, 3, 9, 48);
     ASSERT_EQ(views.size(), 3u);
     for (const ShapeView& view : views) {

@@ -186,6 +186,24 @@ TEST_F(PriorTraining, CheckpointOfAnotherNetworkIsRefused) {
     EXPECT_THROW(train_diffusion(data_, first, networks_, {}), InputError);
 }
 
+TEST(PriorTraining128, TheAutoencoderShrinksLargerPicturesMore) {
+    for (const int resolution : {64, 128}) {
+        const AutoencoderTiny model(prior_autoencoder_config(resolution));
+        EXPECT_EQ(model.downscale() * latent_size, resolution);
+    }
+}
+
+TEST(PriorWords, AShippedPriorKnowsItsOwnWordsAlone) {
+    const fs::path prior = fs::path(ITEM3D_TEST_DATA) / "../../assets/prior";
+    const auto words = trained_words(prior, ClipTokenizer::load(prior / "tokenizer"));
+    EXPECT_TRUE(words.count("wooden"));
+    EXPECT_EQ(words.count("tartan"), 0u);
+    // Without a list the tokenizer tells: new words are several tokens of an older one.
+    const auto guessed = trained_words(prior / "vae", ClipTokenizer::load(prior / "tokenizer"));
+    EXPECT_TRUE(guessed.count("wooden"));
+    EXPECT_EQ(guessed.count("tartan"), 0u);
+}
+
 TEST(PriorLearningRate, RisesStaysAndFalls) {
     EXPECT_LT(learning_rate_part(0, 600000), .05);
     EXPECT_DOUBLE_EQ(learning_rate_part(10000, 600000), 1);

@@ -23,12 +23,12 @@ PictureFacts facts(const std::vector<std::string>& phrases, const std::string& n
 
 TEST(PictureFacts, SayWhatIsTrueOfAPicture) {
     Random random(4);
-    TrainingLight light{"night", {" at night", " at night", " in the dark"}, {}};
+    TrainingLight night_light{"night", {" at night", " at night", " in the dark"}, {}, {}};
     const ShapeClass mug{"mug", {"mug", "cup"}}, teapot{"teapot", {"teapot"}, true};
     const ProceduralMaterial red = make_material(random, {"plain", "red", ""});
-    const PictureFacts night = facts_of(mug, red, light);
+    const PictureFacts night = facts_of(mug, red, night_light);
     EXPECT_EQ(plain_claim(night).text(), "a red mug");
-    EXPECT_EQ(plain_claim(facts_of(teapot, red, light)).text(), "a red object");
+    EXPECT_EQ(plain_claim(facts_of(teapot, red, night_light)).text(), "a red object");
     EXPECT_EQ(night.lights, (std::vector<std::string>{" at night", " in the dark"}));
 
     EXPECT_TRUE(holds({"red {o}", "cup", " in the dark"}, night));
@@ -40,9 +40,17 @@ TEST(PictureFacts, SayWhatIsTrueOfAPicture) {
     for (int i = 0; i < 50; ++i)
         EXPECT_TRUE(holds(draw_claim(random, night), night));
 
+    // A part of its own: what is said of the rest alone is true too.
+    const PartMaterial handle{"handle", make_material(random, {"metal", "gold", ""})};
+    const PictureFacts two = facts_of(mug, red, night_light, &handle);
+    EXPECT_EQ(plain_claim(two).text(), "a red mug with a golden handle");
+    EXPECT_TRUE(holds({"red {o}", "mug", ""}, two));
+    EXPECT_TRUE(judge_caption("a red cup with a golden handle", two).material);
+    EXPECT_FALSE(judge_caption("a golden mug", two).material);
+
     // Which colour is named first is chance.
     const ProceduralMaterial stripes = make_material(random, {"striped", "white", "blue"});
-    EXPECT_EQ(facts_of(mug, stripes, light).phrases.front(), "blue and white striped {o}");
+    EXPECT_EQ(facts_of(mug, stripes, night_light).phrases.front(), "blue and white striped {o}");
     EXPECT_EQ((Claim{"orange {o}", "lamp", " at noon"}.text("a photo of ")),
               "a photo of an orange lamp at noon");
     const PictureFacts copy = nlohmann::json(night).get<PictureFacts>();
@@ -62,6 +70,10 @@ TEST(PictureFacts, CaptionsAreJudgedWordForWord) {
     EXPECT_EQ(verdict(""), std::pair(false, false));
     // "red" is in it, but it is not what was said.
     EXPECT_FALSE(judge_caption("a red and white striped mug", facts({"red {o}"}, "mug")).material);
+    // A part may have the name of another object.
+    const auto hatted = judge_caption("a white snowman with a red hat",
+                                      facts({"white {o} with a red hat"}, "snowman"));
+    EXPECT_TRUE(hatted.object && hatted.material);
 }
 
 TEST(SharedVision, ClipSeesWhatTheCaptionerSees) {
@@ -214,6 +226,7 @@ TEST(ShippedNetworks, TellHeldOutShapesApart) {
             wish.material = materials[i];
             wish.light = &light;
             wish.plain_background = true;
+            wish.part = "none";
             Example example = draw_example(random, views[i], {}, wish);
             images.push_back((example.image * 255).round().to(torch::kUInt8));
             pictures.facts.push_back(std::move(example.facts));

@@ -5,12 +5,15 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/find_prior.h"
-#include "item3d/prior/captions.h"
+#include "item3d/prior/shapes.h"
+#include "item3d/prior/sheets.h"
 #include "item3d/prior/train.h"
 #include "item3d/prior/vision_language.h"
 #include "item3d/prior/vocabulary.h"
 #include "item3d/scene/io/save.h"
 #include "prior_commands.h"
+
+#include <functional>
 
 namespace item3d {
 namespace {
@@ -20,139 +23,175 @@ struct TrainOptions : CommonOptions {
     std::string output;
     std::string work;
     std::string part = "all";
+    std::string recipe = "small";
+    /// Each puts an option that was given into a recipe's settings.
+    std::vector<std::function<void(TrainSettings&)>> given;
+
+    /// The recipe with what the command line says instead.
+    TrainSettings chosen() const {
+        TrainSettings result = train_recipe(recipe);
+        for (const auto& put : given)
+            put(result);
+        result.output = output;
+        result.work = work.empty() ? result.output / "work" : std::filesystem::path(work);
+        return result;
+    }
 };
 
+/// An option for a member of the settings.
+template <class Value>
+CLI::Option* add_setting(CLI::App& command, TrainOptions& options, const std::string& name,
+                         Value TrainSettings::*member, const std::string& help) {
+    CLI::Option* option = command.add_option(name, options.settings.*member, help);
+    options.given.emplace_back([&options, option, member](TrainSettings& to) {
+        if (option->count() > 0) to.*member = options.settings.*member;
+    });
+    return option;
+}
+
 void run_train(const TrainOptions& options) {
+    const TrainSettings settings = options.chosen();
     const bool all = options.part == "all";
-    if (all || options.part == "diffusion") train_prior(options.settings);
+    if (all || options.part == "diffusion") train_prior(settings);
     if (all || options.part != "diffusion")
-        train_vision_language(options.settings, all || options.part == "clip",
+        train_vision_language(settings, all || options.part == "clip",
                               all || options.part == "captioner");
+}
+
+void add_network_settings(CLI::App& command, TrainOptions& options) {
+    add_setting(command, options, "--resolution", &TrainSettings::resolution,
+                "Edge of the pictures in pixels: 64 or 128")
+        ->check(CLI::IsMember({64, 128}))
+        ->capture_default_str();
+    add_setting(command, options, "--widths", &TrainSettings::widths,
+                "Channels of the U-Net's levels, multiples of 16, as 48,96,144")
+        ->delimiter(',')
+        ->check(CLI::IsMember({16, 32, 48, 64, 96, 128, 144, 160, 192, 224, 256, 320, 384, 512}))
+        ->expected(2, 4)
+        ->capture_default_str();
+    add_setting(command, options, "--batch", &TrainSettings::batch,
+                "Pictures a step and replica that the U-Net learns from")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    add_setting(command, options, "--replicas", &TrainSettings::replicas,
+                "Copies of the model that train in parallel")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    add_setting(command, options, "--learning-rate", &TrainSettings::learning_rate,
+                "Highest learning rate")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+}
+
+void add_count_settings(CLI::App& command, TrainOptions& options) {
+    const auto add = [&](const char* name, auto member, const char* help) {
+        return add_setting(command, options, name, member, help)->capture_default_str();
+    };
+    add("--clip-samples", &TrainSettings::clip_samples,
+        "Pictures that CLIP learns from, repetitions counted")
+        ->check(CLI::PositiveNumber);
+    add("--captioner-samples", &TrainSettings::captioner_samples,
+        "Pictures that the captioner learns from, repetitions counted")
+        ->check(CLI::PositiveNumber);
+    add("--labeled-data", &TrainSettings::labeled_samples,
+        "Different pictures for CLIP and the captioner")
+        ->check(CLI::Range(256, 10000000));
+    add("--samples", &TrainSettings::samples, "Pictures to learn from, repetitions counted")
+        ->check(CLI::PositiveNumber);
+    add("--data", &TrainSettings::data_samples, "Different pictures")
+        ->check(CLI::Range(64, 10000000));
+    add("--autoencoder-samples", &TrainSettings::autoencoder_samples,
+        "Pictures that the autoencoder learns from, repetitions counted")
+        ->check(CLI::PositiveNumber);
+    add("--autoencoder-data", &TrainSettings::autoencoder_pictures,
+        "Different pictures for the autoencoder")
+        ->check(CLI::Range(32, 1000000));
+    add("--variants", &TrainSettings::shape_variants, "Shapes of each class")
+        ->check(CLI::Range(1, training_variants));
+    add("--views", &TrainSettings::views_each, "Views of each shape")->check(CLI::Range(1, 1000));
+    add("--lights", &TrainSettings::lights, "Different lights")->check(CLI::Range(1, 100000));
 }
 
 void add_train(CLI::App& app) {
     auto options = std::make_shared<TrainOptions>();
     CLI::App* command =
         add_command(app, "train", "Train the embedded prior from nothing", *options);
-    TrainSettings& settings = options->settings;
     command->add_option("-o,--output", options->output, "Folder to write the prior to")->required();
     command->add_option("--work", options->work,
                         "Folder for data and checkpoints; without it, work/ in the output folder");
+    command
+        ->add_option("--recipe", options->recipe,
+                     "Settings by name, where no option says otherwise; the defaults below are "
+                     "those of small")
+        ->check(CLI::IsMember(train_recipe_names()))
+        ->capture_default_str();
     command
         ->add_option("--part", options->part,
                      "What to train: diffusion (autoencoder, text encoder and U-Net), clip, "
                      "captioner, or all")
         ->check(CLI::IsMember({"all", "diffusion", "clip", "captioner"}))
         ->capture_default_str();
-    command
-        ->add_option("--clip-samples", settings.clip_samples,
-                     "Pictures that CLIP learns from, repetitions counted")
-        ->check(CLI::PositiveNumber)
+    add_count_settings(*command, *options);
+    add_network_settings(*command, *options);
+    add_setting(*command, *options, "--seed", &TrainSettings::seed, "Of everything random")
         ->capture_default_str();
-    command
-        ->add_option("--captioner-samples", settings.captioner_samples,
-                     "Pictures that the captioner learns from, repetitions counted")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    command
-        ->add_option("--labeled-data", settings.labeled_samples,
-                     "Different pictures for CLIP and the captioner")
-        ->check(CLI::Range(256, 10000000))
-        ->capture_default_str();
-    command
-        ->add_option("--samples", settings.samples, "Pictures to learn from, repetitions counted")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    command->add_option("--data", settings.data_samples, "Different pictures")
-        ->check(CLI::Range(64, 10000000))
-        ->capture_default_str();
-    command
-        ->add_option("--autoencoder-samples", settings.autoencoder_samples,
-                     "Pictures that the autoencoder learns from, repetitions counted")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    command
-        ->add_option("--autoencoder-data", settings.autoencoder_pictures,
-                     "Different pictures for the autoencoder")
-        ->check(CLI::Range(32, 1000000))
-        ->capture_default_str();
-    command->add_option("--variants", settings.shape_variants, "Shapes of each class")
-        ->check(CLI::Range(1, 30))
-        ->capture_default_str();
-    command->add_option("--views", settings.views_each, "Views of each shape")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    command->add_option("--lights", settings.lights, "Different lights")
-        ->check(CLI::Range(1, 100000))
-        ->capture_default_str();
-    command
-        ->add_option("--batch", settings.batch,
-                     "Pictures a step and replica that the U-Net learns from")
-        ->check(CLI::Range(1, 4096))
-        ->capture_default_str();
-    command
-        ->add_option("--replicas", settings.replicas, "Copies of the model that train in parallel")
-        ->check(CLI::Range(1, 256))
-        ->capture_default_str();
-    command->add_option("--learning-rate", settings.learning_rate, "Highest learning rate")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    command->add_option("--seed", settings.seed, "Of everything random")->capture_default_str();
-    command->add_option("--stop-after", settings.stop_after,
-                        "End after so many pictures, to go on later with --resume");
-    command->add_flag("--resume", settings.resume, "Go on from the checkpoint in the work folder");
+    add_setting(*command, *options, "--stop-after", &TrainSettings::stop_after,
+                "End after so many pictures, to go on later with --resume");
+    CLI::Option* resume = command->add_flag("--resume", options->settings.resume,
+                                            "Go on from the checkpoint in the work folder");
+    options->given.emplace_back([resume](TrainSettings& to) { to.resume = resume->count() > 0; });
     command->callback([options] {
         start_command(*options);
-        options->settings.output = options->output;
-        options->settings.work = options->work.empty() ? options->settings.output / "work"
-                                                       : std::filesystem::path(options->work);
         run_train(*options);
     });
 }
 
 struct PicturesOptions : CommonOptions {
     std::string output;
-    int columns = 8;
-    int rows = 8;
-    int variants = 2;
-    std::uint64_t seed = 1;
+    std::string of = "examples";
+    SheetOptions sheet;
 };
 
 /// A contact sheet of training pictures; their captions go to stdout, row by row.
 void run_pictures(const PicturesOptions& options) {
-    std::vector<TrainingLight> lights = make_training_lights(options.seed + 1, 64, 2);
-    const ExampleSource source(make_view_pool(false, options.variants, 4, options.seed, 2),
-                               std::move(lights), options.seed);
-    constexpr int tile = picture_size + 2;
-    Image sheet(options.columns * tile, options.rows * tile, 3, 1.0f);
-    nlohmann::json captions = nlohmann::json::array();
-    for (int i = 0; i < options.columns * options.rows; ++i) {
-        const Example example = source.draw(i);
-        const auto* pixels = example.image.data_ptr<float>();
-        for (int y = 0; y < picture_size; ++y)
-            for (int x = 0; x < picture_size; ++x)
-                for (int c = 0; c < 3; ++c)
-                    sheet.at(i % options.columns * tile + x, i / options.columns * tile + y, c) =
-                        pixels[(y * picture_size + x) * 3 + c];
-        captions.push_back(example.caption);
-        if (!options.json) fmt::print("{}\n", example.caption);
+    const Sheet sheet = options.of == "objects"     ? object_sheet(options.sheet)
+                        : options.of == "materials" ? material_sheet(options.sheet)
+                        : options.of == "lights"    ? light_sheet(options.sheet)
+                                                    : example_sheet(options.sheet);
+    save_image(options.output, sheet.image);
+    if (options.json) {
+        print_json({{"captions", sheet.captions}});
+    } else {
+        for (const std::string& caption : sheet.captions)
+            fmt::print("{}\n", caption);
     }
-    save_image(options.output, sheet);
-    if (options.json) print_json({{"captions", captions}});
 }
 
 void add_pictures(CLI::App& app) {
     auto options = std::make_shared<PicturesOptions>();
     CLI::App* command = add_command(app, "pictures", "Draw a sheet of training pictures", *options);
+    SheetOptions& sheet = options->sheet;
     command->add_option("-o,--output", options->output, "Image file")->required();
-    command->add_option("--columns", options->columns)
+    command
+        ->add_option("--of", options->of,
+                     "examples as they come, or every one of the objects, materials or lights")
+        ->check(CLI::IsMember({"examples", "objects", "materials", "lights"}))
+        ->capture_default_str();
+    command->add_option("--columns", sheet.columns)
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
-    command->add_option("--rows", options->rows)->check(CLI::Range(1, 64))->capture_default_str();
-    command->add_option("--variants", options->variants, "Shapes of each class")
-        ->check(CLI::Range(1, 30))
+    command->add_option("--rows", sheet.rows, "Of examples")
+        ->check(CLI::Range(1, 64))
         ->capture_default_str();
-    command->add_option("--seed", options->seed)->capture_default_str();
+    command
+        ->add_option("--resolution", sheet.picture,
+                     "Edge of a picture in pixels: 48, 64, 96 or 128")
+        ->check(CLI::IsMember({48, 64, 96, 128}))
+        ->capture_default_str();
+    command->add_option("--variants", sheet.variants, "Shapes of each class, of examples")
+        ->check(CLI::Range(1, training_variants))
+        ->capture_default_str();
+    command->add_option("--seed", sheet.seed)->capture_default_str();
     command->callback([options] {
         start_command(*options);
         run_pictures(*options);

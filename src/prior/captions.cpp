@@ -74,9 +74,7 @@ namespace {
 struct Sentence {
     std::string early_light, frame, thing, light;
 
-    std::string text() const {
-        return mend_articles(early_light + " " + frame + thing + light);
-    }
+    std::string text() const { return mend_articles(early_light + " " + frame + thing + light); }
 };
 
 /// "a wooden chair with a red seat", or one of the two alone.
@@ -98,8 +96,15 @@ std::string thing_said(Random& random, const PictureWords& words, const std::str
 }  // namespace
 
 std::string make_caption(Random& random, const PictureWords& words) {
-    static const std::vector<std::string> frames{"", "", "", "", "", "a photo of ", "a photo of ",
-                                                 "a 3d render of ", "an image of ",
+    static const std::vector<std::string> frames{"",
+                                                 "",
+                                                 "",
+                                                 "",
+                                                 "",
+                                                 "a photo of ",
+                                                 "a photo of ",
+                                                 "a 3d render of ",
+                                                 "an image of ",
                                                  "a picture of "};
     // A second noun is rarer than the first.
     std::string noun =
@@ -109,7 +114,8 @@ std::string make_caption(Random& random, const PictureWords& words) {
     sentence.thing = thing_said(random, words, noun);
     sentence.frame = pick(random, frames);
     sentence.light = random.chance(.85) ? pick(random, words.lights) : std::string();
-    if (sentence.frame.empty() && random.chance(.15)) std::swap(sentence.light, sentence.early_light);
+    if (sentence.frame.empty() && random.chance(.15))
+        std::swap(sentence.light, sentence.early_light);
 
     // What is too long loses the least important words.
     for (std::string* less : {&sentence.frame, &sentence.early_light, &sentence.light}) {

@@ -37,7 +37,8 @@ std::vector<VocabularyEntry> make_vocabulary() {
         std::vector<std::string> spellings{kind};
         const auto other = others.find(kind);
         if (other != others.end()) spellings.push_back(other->second);
-        all.push_back({"lights", kind, spellings, "a {c} {o}" + light_phrases(kind)[0], {}, kind, ""});
+        all.push_back(
+            {"lights", kind, spellings, "a {c} {o}" + light_phrases(kind)[0], {}, kind, ""});
     }
     for (const ShapeClass& shape : shape_classes())
         if (!shape.held_out && shape.name != "blob")
@@ -151,8 +152,8 @@ class Measurement {
         wish.plain_background = true;
         wish.light = &lights_.at(entry.light.empty() ? "plain" : entry.light);
         wish.material = entry.material;
-        const std::string& color =
-            colors_[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(colors_.size())))];
+        const std::string& color = colors_[static_cast<std::size_t>(
+            random.index(static_cast<std::int64_t>(colors_.size())))];
         if (wish.material.kind.empty()) wish.material = {"plain", color, ""};
         wish.part = "none";
         const ShapeClass& shape = shape_classes()[static_cast<std::size_t>(view.shape_class)];

@@ -76,7 +76,8 @@ std::vector<std::size_t> visible_parts(const ShapeView& view) {
         ++counts[part];
     std::vector<std::size_t> visible;
     for (std::size_t i = 1; i < counts.size(); ++i)
-        if (counts[i] * 50 > view.count() && counts[i] * 10 < view.count() * 9) visible.push_back(i);
+        if (counts[i] * 50 > view.count() && counts[i] * 10 < view.count() * 9)
+            visible.push_back(i);
     return visible;
 }
 
@@ -105,7 +106,8 @@ std::optional<PartMaterial> draw_part(Random& random, const ShapeView& view,
     return PartMaterial{view.parts[index], std::move(material)};
 }
 
-/// Material values and normals of a view's points. orm's occlusion is how much of the light arrives.
+/// Material values and normals of a view's points. orm's occlusion is how much of the light
+/// arrives.
 void fill_points(const ShapeView& view, const ProceduralMaterial& rest, const PartMaterial* part,
                  std::size_t part_index, const SkyLight& sky, float shadow, Surface& surface,
                  MaterialSample& sample) {
@@ -135,8 +137,7 @@ void fill_points(const ShapeView& view, const ProceduralMaterial& rest, const Pa
             direction[3 * i + c] = v[k];
             base[3 * i + c] = value.base_color[k];
         }
-        orm[3 * i] =
-            shadow > 0 ? 1 - shadow * (1 - arriving_share(view.sky[i], n, sky)) : 1.0f;
+        orm[3 * i] = shadow > 0 ? 1 - shadow * (1 - arriving_share(view.sky[i], n, sky)) : 1.0f;
         orm[3 * i + 1] = std::clamp(value.roughness, .05f, 1.0f);
         orm[3 * i + 2] = value.metallic;
     }

@@ -17,7 +17,8 @@ void export_autoencoder(const std::filesystem::path& folder, const AutoencoderTi
                         const ClipTokenizer& tokenizer);
 
 /// Writes unet/, text_encoder/ and prior.json with `train` as its "train" (what else an existing
-/// prior.json says is kept). resolution: of its pictures, in pixels. Every file is written atomically.
+/// prior.json says is kept). resolution: of its pictures, in pixels. Every file is written
+/// atomically.
 void export_diffusion(const std::filesystem::path& folder, const UNet2DCondition& unet,
                       const ClipTextModel& text, int resolution, const nlohmann::json& train);
 

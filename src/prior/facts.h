@@ -59,8 +59,8 @@ struct CaptionVerdict {
     bool object = false;
     bool material = false;
 };
-/// Reads "a golden mug", with or without a frame. The object is right where the caption's first noun
-/// is one of its nouns; the material where all the rest is one of its phrases, word for word.
+/// Reads "a golden mug", with or without a frame. The object is right where the caption's first
+/// noun is one of its nouns; the material where all the rest is one of its phrases, word for word.
 CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& facts);
 
 void to_json(nlohmann::json& json, const PictureFacts& facts);

@@ -49,7 +49,7 @@ SoftBox random_box(Random& random, float low, float high, float strength, const 
 struct Room {
     Vec3 sky, ground;
     float horizon = 0, softness = .5f;
-    std::vector<SoftBox> boxes;
+    std::vector<SoftBox> boxes{};
 
     Image draw() const;
 };
@@ -229,7 +229,12 @@ const std::vector<LightKind>& all_lights() {
          candle_room,
          .4,
          .65},
-        {"neon", .035, {" in neon light", " in neon light", " under neon lights"}, neon_room, .5, .8},
+        {"neon",
+         .035,
+         {" in neon light", " in neon light", " under neon lights"},
+         neon_room,
+         .5,
+         .8},
         {"spotlight", .03, {" under a spotlight", " in a spotlight"}, spotlight_room, .85, 1.1},
         {"underwater", .035, {" underwater", " underwater", " under the sea"}, sea_room, .4, .65}};
     return kinds;

@@ -14,8 +14,8 @@ const std::vector<MaterialKind>& all_kinds() {
         std::vector<MaterialKind> all;
         for (const auto theme :
              {plain_materials, metal_materials, wood_materials, stone_materials, craft_materials,
-              fabric_materials, nature_materials, food_materials, fur_patterns,
-              geometric_patterns, ornament_patterns}) {
+              fabric_materials, nature_materials, food_materials, fur_patterns, geometric_patterns,
+              ornament_patterns}) {
             const std::vector<MaterialKind> some = theme();
             all.insert(all.end(), some.begin(), some.end());
         }

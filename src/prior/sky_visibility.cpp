@@ -38,9 +38,8 @@ SkyLight sky_light(const Image& map) {
     for (int y = 0; y < map.height; ++y) {
         const auto solid_angle = static_cast<float>(texel_solid_angle(y, map.height));
         for (int x = 0; x < map.width; ++x) {
-            const Vec3 d =
-                equirectangular_direction((static_cast<float>(x) + .5f) / map.width,
-                                          (static_cast<float>(y) + .5f) / map.height);
+            const Vec3 d = equirectangular_direction((static_cast<float>(x) + .5f) / map.width,
+                                                     (static_cast<float>(y) + .5f) / map.height);
             const float luminance =
                 .2126f * map.at(x, y, 0) + .7152f * map.at(x, y, 1) + .0722f * map.at(x, y, 2);
             std::array<float, sky_parts> weight;

@@ -1,6 +1,7 @@
-// Shadows that are cheap enough for millions of pictures: which parts of the sky a point sees, found
-// once a shape with rays, and how bright these parts are, found once a light. Shading multiplies by
-// the share that arrives, as `--occlusion light` does for a whole model (render/occlusion.h).
+// Shadows that are cheap enough for millions of pictures: which parts of the sky a point sees,
+// found once a shape with rays, and how bright these parts are, found once a light. Shading
+// multiplies by the share that arrives, as `--occlusion light` does for a whole model
+// (render/occlusion.h).
 #pragma once
 
 #include "item3d/core/math.h"

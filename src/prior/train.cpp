@@ -42,10 +42,10 @@ void stop_if_interrupted(const TrainSettings& settings) {
 
 ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLight> lights,
                           bool held_out) {
-    std::vector<ShapeView> views = make_view_pool(
-        held_out, settings.shape_variants, settings.views_each,
-        seed_of(settings, held_out ? held_out_stream : view_stream), settings.replicas,
-        settings.resolution);
+    std::vector<ShapeView> views =
+        make_view_pool(held_out, settings.shape_variants, settings.views_each,
+                       seed_of(settings, held_out ? held_out_stream : view_stream),
+                       settings.replicas, settings.resolution);
     stop_if_interrupted(settings);
     return ExampleSource(std::move(views), std::move(lights),
                          seed_of(settings, held_out ? held_out_stream : example_stream));
@@ -233,7 +233,8 @@ void train_prior(const TrainSettings& settings) {
         prepared_before ? read_prepared(settings) : prepare(settings, tokenizer);
     const ClipTextConfig text = prior_text_config(static_cast<int>(tokenizer.size()),
                                                   tokenizer.bos_id(), tokenizer.eos_id());
-    train_diffusion(prepared.data, settings, {prior_unet_config(settings.widths), text}, prepared.record);
+    train_diffusion(prepared.data, settings, {prior_unet_config(settings.widths), text},
+                    prepared.record);
     write_measurement(settings.output, settings.replicas);
 }
 

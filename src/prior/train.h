@@ -47,6 +47,11 @@ struct TrainSettings {
     double export_seconds = 600;
 };
 
+/// "small" (64 pixels; what is trained without a recipe) or "embedded" (128 pixels, a wider U-Net).
+/// Throws InputError for other names.
+TrainSettings train_recipe(const std::string& name);
+const std::vector<std::string>& train_recipe_names();
+
 /// What all training loops take from the settings; samples and rows are the caller's to say.
 /// checkpoint: the file's name.
 LoopOptions loop_options(const TrainSettings& settings, const std::string& label,

@@ -99,7 +99,8 @@ AutoencoderTinyConfig prior_autoencoder_config(int resolution) {
     config.decoder_block_out_channels = {32, 32, 32};
     config.num_encoder_blocks = {1, 2, 3};
     config.num_decoder_blocks = {3, 2, 1};
-    // Each further level halves the picture. The one at full size is narrow: it is most of the work.
+    // Each further level halves the picture. The one at full size is narrow: it is most of the
+    // work.
     for (int size = 4 * latent_size; size < resolution; size *= 2) {
         config.encoder_block_out_channels.insert(config.encoder_block_out_channels.begin(), 16);
         config.num_encoder_blocks.insert(config.num_encoder_blocks.begin(), 0);

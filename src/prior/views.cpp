@@ -74,8 +74,7 @@ std::vector<ShapeView> make_views(const std::string& shape_class, int variant, i
         cameras.push_back(random_camera(random, mesh.primitive.positions));
     const Raster raster = rasterize(geometry, cameras, size, size);
     const Surface surface = interpolate_surface(geometry, raster, cameras);
-    const torch::Tensor depth =
-        depth_condition(raster.depth, size / latent_size);  // [N, 1, h, w]
+    const torch::Tensor depth = depth_condition(raster.depth, size / latent_size);  // [N, 1, h, w]
 
     std::vector<ShapeView> views(cameras.size());
     for (std::size_t i = 0; i < views.size(); ++i) {

@@ -46,8 +46,8 @@ struct ShapeView {
 
 /// `count` views of one shape from random cameras all around: elevation -10..50 degrees,
 /// horizontal field of view 25..45 degrees, the shape filling 60 to 95 % of the picture.
-/// resolution: of the grid that the shape is polygonised on. picture: edge of the pictures to be, at
-/// most 128.
+/// resolution: of the grid that the shape is polygonised on. picture: edge of the pictures to be,
+/// at most 128.
 std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
                                   std::uint64_t seed, int resolution = 96,
                                   int picture = picture_size);
@@ -56,7 +56,6 @@ std::vector<ShapeView> make_views(const std::string& shape_class, int variant, i
 /// training_variants on, and whole classes), in a fixed order. variants: at most this many of each
 /// class. Returns what there is after an interrupt.
 std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_each,
-                                      std::uint64_t seed, int threads,
-                                      int picture = picture_size);
+                                      std::uint64_t seed, int threads, int picture = picture_size);
 
 }  // namespace item3d

@@ -13,8 +13,8 @@ ProceduralMaterial porcelain(Random& random, const MaterialWish&) {
     const float thin = draw(random, .16, .26);
     return {"",
             "",
-            {"porcelain {o}", "porcelain {o}", "{o} made of porcelain", "blue and white porcelain {o}",
-             "china {o}"},
+            {"porcelain {o}", "porcelain {o}", "{o} made of porcelain",
+             "blue and white porcelain {o}", "china {o}"},
             [=](const Vec3& p, const Vec3&) {
                 const float v = vines(p);
                 const float line = 1 - smooth_step(std::abs(v), thin, thin + .15f);
@@ -44,8 +44,8 @@ ProceduralMaterial glaze(Random& random, const MaterialWish& wish) {
 /// As glass looks that hides what is behind it: dark clear tones, sharp lights, bubbles.
 ProceduralMaterial glass(Random& random, const MaterialWish& wish) {
     static constexpr std::array<const char*, 5> tones{"green", "blue", "", "brown", "red"};
-    const std::string tone = wish.color.empty() ? tones[static_cast<std::size_t>(random.index(5))]
-                                                : wish.color;
+    const std::string tone =
+        wish.color.empty() ? tones[static_cast<std::size_t>(random.index(5))] : wish.color;
     const Vec3 color = tone.empty() ? vary(random, {.5f, .6f, .62f}, .06)
                                     : vary(random, color_named(tone) * .55f + .02f);
     const CosineNoise depth(random, 2.2f, 2);
@@ -97,12 +97,9 @@ ProceduralMaterial cardboard(Random& random, const MaterialWish&) {
 ProceduralMaterial cork(Random& random, const MaterialWish&) {
     const Vec3 tone = vary(random, {.55f, .33f, .16f}, .08);
     const float size = draw(random, 4, 5.5);
-    return {"",
-            "",
-            {"cork {o}", "cork {o}", "{o} made of cork"},
-            [=](const Vec3& p, const Vec3&) {
+    return {"", "", {"cork {o}", "cork {o}", "{o} made of cork"}, [=](const Vec3& p, const Vec3&) {
                 const NearPoints near = near_points(p * size);
-                const bool hole = near.value > .78f && near.first < .28f;
+                const bool hole = near.value > .6f && near.first < .33f;
                 return MaterialValue{hole ? tone * .25f : limit(tone * (.78f + .45f * near.value)),
                                      .95f, 0};
             }};
@@ -125,26 +122,30 @@ ProceduralMaterial mosaic(Random& random, const MaterialWish& wish) {
     const auto [first, second] = two_colors(random, wish);
     const Vec3 a = vary(random, color_named(first)), b = vary(random, color_named(second));
     const float size = draw(random, 3, 4.2);
-    return {"",
-            first,
-            {"mosaic {o}", "mosaic tile {o}", "{o} covered in " + first + " and " + second + " tiles",
-             first + " and " + second + " mosaic {o}"},
-            [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n) * size;
-                const float x = std::floor(uv.x), y = std::floor(uv.y);
-                const bool joint = uv.x - x < .14f || uv.y - y < .14f;
-                const float value = cell_value(x, y, flat_coordinates(n, n).x > 0 ? 0 : 7);
-                const Vec3 tile = mix(a, b, value > .5f ? 1.0f : 0.0f) * (.7f + .5f * fraction(value * 7));
-                return MaterialValue{joint ? Vec3(.5f, .48f, .45f) : limit(tile),
-                                     joint ? .9f : .15f, 0};
-            }};
+    return {
+        "",
+        first,
+        {"mosaic {o}", "mosaic tile {o}", "{o} covered in " + first + " and " + second + " tiles",
+         first + " and " + second + " mosaic {o}"},
+        [=](const Vec3& p, const Vec3& n) {
+            const Vec2 uv = flat_coordinates(p, n) * size;
+            const float x = std::floor(uv.x), y = std::floor(uv.y);
+            const bool joint = uv.x - x < .14f || uv.y - y < .14f;
+            const float value = cell_value(x, y, flat_coordinates(n, n).x > 0 ? 0 : 7);
+            const Vec3 tile =
+                mix(a, b, value > .5f ? 1.0f : 0.0f) * (.7f + .5f * fraction(value * 7));
+            return MaterialValue{joint ? Vec3(.5f, .48f, .45f) : limit(tile), joint ? .9f : .15f,
+                                 0};
+        }};
 }
 
 }  // namespace
 
 std::vector<MaterialKind> craft_materials() {
-    return {{"porcelain", .02, porcelain, {material_word("porcelain", "porcelain",
-                                                         {"porcelain", "china"})}},
+    return {{"porcelain",
+             .02,
+             porcelain,
+             {material_word("porcelain", "porcelain", {"porcelain", "china"})}},
             {"glaze", .025, glaze, {word_of("materials", "glaze", "glazed", {"glazed", "glaze"})}},
             {"glass", .02, glass, {material_word("glass", "glass")}},
             {"leather", .025, leather, {material_word("leather", "leather")}},

@@ -8,8 +8,8 @@ namespace {
 
 ProceduralMaterial chocolate(Random& random, const MaterialWish&) {
     const bool dark = random.chance(.5);
-    const Vec3 tone = dark ? vary(random, {.06f, .022f, .01f}, .08)
-                           : vary(random, {.17f, .07f, .03f}, .08);
+    const Vec3 tone =
+        dark ? vary(random, {.06f, .022f, .01f}, .08) : vary(random, {.17f, .07f, .03f}, .08);
     const CosineNoise drips(random, 5, 1);
     std::vector<std::string> phrases{"chocolate {o}", "chocolate {o}", "{o} made of chocolate"};
     phrases.push_back(dark ? "dark chocolate {o}" : "milk chocolate {o}");
@@ -24,15 +24,16 @@ ProceduralMaterial chocolate(Random& random, const MaterialWish&) {
 ProceduralMaterial cheese(Random& random, const MaterialWish&) {
     const Vec3 tone = vary(random, {.88f, .58f, .1f}, .07);
     const float size = draw(random, 1.7, 2.3);
-    return {"",
-            "",
-            {"cheese {o}", "cheese {o}", "{o} made of cheese", "swiss cheese {o}"},
-            [=](const Vec3& p, const Vec3&) {
-                const NearPoints near = near_points(p * size);
-                const float radius = .12f + .22f * near.value;
-                const float hole = 1 - smooth_step(near.first, radius - .04f, radius + .02f);
-                return MaterialValue{tone * (1 - hole * (.45f + .35f * near.first / radius)), .4f, 0};
-            }};
+    return {
+        "",
+        "",
+        {"cheese {o}", "cheese {o}", "{o} made of cheese", "swiss cheese {o}"},
+        [=](const Vec3& p, const Vec3&) {
+            const NearPoints near = near_points(p * size);
+            const float radius = .2f + .24f * near.value;
+            const float hole = 1 - smooth_step(near.first, radius - .04f, radius + .02f);
+            return MaterialValue{tone * (1 - hole * (.45f + .35f * near.first / radius)), .4f, 0};
+        }};
 }
 
 /// Brown biscuit with lines of white icing.
@@ -47,15 +48,16 @@ ProceduralMaterial gingerbread(Random& random, const MaterialWish&) {
                 const float crumb = crumbs.with_gradient(p, gradient);
                 const float v = lines(p);
                 const float icing = 1 - smooth_step(std::abs(v - .4f), .1f, .17f);
-                return MaterialValue{limit(mix(tone * (1 + .14f * crumb), {.85f, .83f, .8f}, icing)),
-                                     .85f - .3f * icing, 0, gradient * (.012f * (1 - icing))};
+                return MaterialValue{
+                    limit(mix(tone * (1 + .14f * crumb), {.85f, .83f, .8f}, icing)),
+                    .85f - .3f * icing, 0, gradient * (.012f * (1 - icing))};
             }};
 }
 
 /// Glossy red and white swirls.
 ProceduralMaterial candy(Random& random, const MaterialWish&) {
-    const Vec3 stripe = vary(random, random.chance(.6) ? Vec3(.7f, .015f, .03f)
-                                                       : Vec3(.85f, .2f, .42f), .06);
+    const Vec3 stripe =
+        vary(random, random.chance(.6) ? Vec3(.7f, .015f, .03f) : Vec3(.85f, .2f, .42f), .06);
     const float twist = draw(random, 3, 6) * (random.chance(.5) ? 1.0f : -1.0f);
     const auto bands = static_cast<float>(2 + random.index(3));
     return {"",
@@ -76,16 +78,16 @@ ProceduralMaterial sprinkles(Random& random, const MaterialWish&) {
                                                                 {.1f, .6f, .15f},
                                                                 {.85f, .85f, .85f}}};
     const bool pink = random.chance(.6);
-    const Vec3 base = pink ? vary(random, {.86f, .36f, .48f}, .07)
-                           : vary(random, {.12f, .045f, .02f}, .07);
+    const Vec3 base =
+        pink ? vary(random, {.86f, .36f, .48f}, .07) : vary(random, {.12f, .045f, .02f}, .07);
     const float size = draw(random, 3.2, 4.2);
     return {"",
             "",
-            {"{o} covered in sprinkles", "sprinkle covered {o}", "{o} with sprinkles"},
+            {"sprinkle covered {o}", "{o} covered in sprinkles", "{o} with sprinkles"},
             [=](const Vec3& p, const Vec3&) {
                 const NearPoints near = near_points(p * size);
                 const auto& tone = tones[static_cast<std::size_t>(near.value * 4.999f)];
-                const bool on = near.first < .27f;
+                const bool on = near.first < .36f;
                 return MaterialValue{on ? Vec3(tone[0], tone[1], tone[2]) : base, .3f, 0};
             }};
 }
@@ -93,13 +95,16 @@ ProceduralMaterial sprinkles(Random& random, const MaterialWish&) {
 }  // namespace
 
 std::vector<MaterialKind> food_materials() {
-    return {{"chocolate", .02, chocolate, {material_word("chocolate", "chocolate")}},
-            {"cheese", .015, cheese, {material_word("cheese", "cheese")}},
-            {"gingerbread", .015, gingerbread, {material_word("gingerbread", "gingerbread")}},
-            {"candy", .015, candy, {material_word("candy", "candy", {"candy", "cane", "peppermint"})}},
-            {"sprinkles", .015, sprinkles,
-             {word_of("patterns", "sprinkles", "sprinkles", {"sprinkles", "sprinkle"},
-                      "a {o} covered in sprinkles")}}};
+    return {
+        {"chocolate", .02, chocolate, {material_word("chocolate", "chocolate")}},
+        {"cheese", .015, cheese, {material_word("cheese", "cheese")}},
+        {"gingerbread", .015, gingerbread, {material_word("gingerbread", "gingerbread")}},
+        {"candy", .015, candy, {material_word("candy", "candy", {"candy", "cane", "peppermint"})}},
+        {"sprinkles",
+         .015,
+         sprinkles,
+         {word_of("patterns", "sprinkles", "sprinkles", {"sprinkles", "sprinkle"},
+                  "a {o} covered in sprinkles")}}};
 }
 
 }  // namespace item3d::paint

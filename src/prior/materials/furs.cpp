@@ -37,14 +37,14 @@ ProceduralMaterial leopard(Random& random, const MaterialWish&) {
 /// Orange with dark bands that taper and break off.
 ProceduralMaterial tiger(Random& random, const MaterialWish&) {
     const CosineNoise warp(random, 3.5f), breaks(random, 5);
-    const float frequency = draw(random, 11, 15);
+    const float frequency = draw(random, 13, 17);
     const Vec3 fur = vary(random, {.75f, .27f, .035f}, .08), pale(.85f, .72f, .55f);
     return {"",
             "",
             {"tiger {o}", "{o} with tiger stripes", "tiger striped {o}", "tiger print {o}"},
             [=](const Vec3& p, const Vec3& n) {
                 const float s = std::sin(p.x * frequency + 1.8f * warp(p)) + .45f * breaks(p);
-                const float band = smooth_step(s, .45f, .65f);
+                const float band = smooth_step(s, .3f, .5f);
                 const Vec3 coat = mix(fur, pale, smooth_step(-n.y, .2f, .8f) * .8f);
                 return MaterialValue{mix(coat, {.02f, .015f, .012f}, band), .8f, 0};
             }};
@@ -54,8 +54,8 @@ ProceduralMaterial tiger(Random& random, const MaterialWish&) {
 ProceduralMaterial giraffe(Random& random, const MaterialWish&) {
     const float size = draw(random, 2, 2.8);
     const CosineNoise warp(random, 5);
-    const Vec3 patch = vary(random, {.36f, .14f, .04f}, .1), line = vary(random, {.78f, .6f, .36f},
-                                                                         .06);
+    const Vec3 patch = vary(random, {.36f, .14f, .04f}, .1),
+               line = vary(random, {.78f, .6f, .36f}, .06);
     return {"",
             "",
             {"giraffe {o}", "{o} with giraffe spots", "giraffe print {o}", "giraffe patterned {o}"},
@@ -75,8 +75,9 @@ ProceduralMaterial dalmatian(Random& random, const MaterialWish&) {
             {"dalmatian {o}", "{o} with dalmatian spots", "dalmatian print {o}"},
             [=](const Vec3& p, const Vec3&) {
                 const NearPoints near = near_points(p * size);
-                const float radius = .14f + .22f * near.value;
-                const float w = smooth_step(near.first + .05f * warp(p), radius - .03f, radius + .03f);
+                const float radius = .2f + .22f * near.value;
+                const float w =
+                    smooth_step(near.first + .05f * warp(p), radius - .03f, radius + .03f);
                 return MaterialValue{mix({.015f, .014f, .014f}, {.84f, .82f, .78f}, w), .75f, 0};
             }};
 }
@@ -95,7 +96,7 @@ ProceduralMaterial scales(Random& random, const MaterialWish& wish) {
                 const float row = std::floor(uv.y * 1.4f);
                 const float u = fraction(uv.x + (odd(row) ? .5f : 0.0f)) * 2 - 1;
                 const float down = 1 - (uv.y * 1.4f - row);  // the tip of a scale is below
-                const float edge = std::hypot(u, down) ;
+                const float edge = std::hypot(u, down);
                 const float w = smooth_step(edge, .75f, 1.05f);
                 return MaterialValue{limit(color * (1.15f - .85f * w)), .35f, 0,
                                      flat_slope({.5f * u, -.4f * down}, n)};
@@ -106,7 +107,9 @@ ProceduralMaterial scales(Random& random, const MaterialWish& wish) {
 
 std::vector<MaterialKind> fur_patterns() {
     return {{"zebra", .025, zebra, {pattern_word("zebra", "zebra")}},
-            {"leopard", .025, leopard,
+            {"leopard",
+             .025,
+             leopard,
              {word_of("patterns", "leopard", "leopard", {"leopard"}, "a leopard print {o}")}},
             {"tiger", .02, tiger, {pattern_word("tiger", "tiger")}},
             {"giraffe", .02, giraffe, {pattern_word("giraffe", "giraffe")}},

@@ -1,5 +1,5 @@
-// Patterns of two colours: what the prior finds hardest, so cells are large and edges soft enough to
-// survive 64 pixels.
+// Patterns of two colours: what the prior finds hardest, so cells are large and edges soft enough
+// to survive 64 pixels.
 #include "item3d/prior/materials/makers.h"
 
 namespace item3d::paint {
@@ -13,7 +13,8 @@ struct TwoTone {
 
 TwoTone two_tones(Random& random, const MaterialWish& wish) {
     const auto [first, second] = two_colors(random, wish);
-    const Vec3 a = vary(random, color_named(first), .09), b = vary(random, color_named(second), .09);
+    const Vec3 a = vary(random, color_named(first), .09),
+               b = vary(random, color_named(second), .09);
     return {first, second, a, b, draw(random, .3, .8)};
 }
 
@@ -25,10 +26,14 @@ Vec3 any_shift(Random& random) {
 std::vector<std::string> ways_to_say(const TwoTone& tones, const std::string& adjective,
                                      const std::string& noun) {
     const std::string both = tones.first + " and " + tones.second;
-    return {both + " " + adjective + " {o}",      both + " " + adjective + " {o}",
-            adjective + " " + both + " {o}",      adjective + " {o}",
-            adjective + " {o}",                   "{o} with " + both + " " + noun,
-            "{o} with " + noun,                   "{o} with " + noun + " in " + both};
+    return {both + " " + adjective + " {o}",
+            both + " " + adjective + " {o}",
+            adjective + " " + both + " {o}",
+            adjective + " {o}",
+            adjective + " {o}",
+            "{o} with " + both + " " + noun,
+            "{o} with " + noun,
+            "{o} with " + noun + " in " + both};
 }
 
 ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {
@@ -69,19 +74,20 @@ ProceduralMaterial dots(Random& random, const MaterialWish& wish) {
     const auto& [first, second, a, b, roughness] = tones;
     const float frequency = draw(random, 1.8, 3.6), size = draw(random, .24, .33);
     const Vec3 shift = any_shift(random);
-    return {"",
-            first,
-            {first + " and " + second + " polka dot {o}", first + " {o} with " + second + " polka dots",
-             first + " {o} with " + second + " dots", "polka dot {o}", "polka dot {o}",
-             "{o} with polka dots", "{o} with " + second + " dots", "dotted {o}"},
-            [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p * frequency + shift, n);
-                const float row = std::floor(uv.y);
-                const float u = uv.x + (odd(row) ? .5f : 0.0f);
-                const float d = std::hypot(fraction(u) - .5f, uv.y - row - .5f);
-                const float w = smooth_step(d, size - .02f, size + .03f);
-                return MaterialValue{mix(tones.b, tones.a, w), tones.roughness, 0};
-            }};
+    return {
+        "",
+        first,
+        {first + " and " + second + " polka dot {o}", first + " {o} with " + second + " polka dots",
+         first + " {o} with " + second + " dots", "polka dot {o}", "polka dot {o}",
+         "{o} with polka dots", "{o} with " + second + " dots", "dotted {o}"},
+        [=](const Vec3& p, const Vec3& n) {
+            const Vec2 uv = flat_coordinates(p * frequency + shift, n);
+            const float row = std::floor(uv.y);
+            const float u = uv.x + (odd(row) ? .5f : 0.0f);
+            const float d = std::hypot(fraction(u) - .5f, uv.y - row - .5f);
+            const float w = smooth_step(d, size - .02f, size + .03f);
+            return MaterialValue{mix(tones.b, tones.a, w), tones.roughness, 0};
+        }};
 }
 
 ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
@@ -102,7 +108,8 @@ ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
 ProceduralMaterial tartan(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish);
     const float frequency = draw(random, 1.3, 2), wide = draw(random, .38, .55);
-    const Vec3 line = color_named(random.chance(.5) ? "white" : "yellow"), shift = any_shift(random);
+    const Vec3 line = color_named(random.chance(.5) ? "white" : "yellow"),
+               shift = any_shift(random);
     std::vector<std::string> phrases = ways_to_say(tones, "tartan", "tartan");
     phrases[5] = "{o} in " + tones.first + " and " + tones.second + " tartan";
     phrases[6] = "plaid {o}";
@@ -111,7 +118,8 @@ ProceduralMaterial tartan(Random& random, const MaterialWish& wish) {
                 const Vec2 uv = flat_coordinates(p * frequency + shift, n);
                 const float x = fraction(uv.x), y = fraction(uv.y);
                 const float bands = (x < wide ? .5f : 0.0f) + (y < wide ? .5f : 0.0f);
-                const bool thin = std::abs(x - wide * .5f) < .05f || std::abs(y - wide * .5f) < .05f;
+                const bool thin =
+                    std::abs(x - wide * .5f) < .05f || std::abs(y - wide * .5f) < .05f;
                 const Vec3 cloth = mix(tones.a, tones.b, bands);
                 return MaterialValue{thin ? mix(cloth, line, .7f) : cloth, .95f, 0};
             }};
@@ -158,17 +166,27 @@ ProceduralMaterial gradient(Random& random, const MaterialWish& wish) {
 
 std::vector<MaterialKind> geometric_patterns() {
     return {{"striped", .08, stripes, {pattern_word("striped", "striped", {"striped", "stripes"})}},
-            {"checkered", .06, checks,
+            {"checkered",
+             .06,
+             checks,
              {pattern_word("checkered", "checkered", {"checkered", "checkerboard", "checks"})}},
-            {"dots", .055, dots,
+            {"dots",
+             .055,
+             dots,
              {pattern_word("dots", "polka dot", {"polka", "dot", "dots", "dotted"})}},
-            {"zigzag", .03, zigzags,
+            {"zigzag",
+             .03,
+             zigzags,
              {pattern_word("zigzag", "zigzag", {"zigzag", "zigzags", "chevron"})}},
             {"tartan", .035, tartan, {pattern_word("tartan", "tartan", {"tartan", "plaid"})}},
-            {"honeycomb", .025, hexagons,
+            {"honeycomb",
+             .025,
+             hexagons,
              {pattern_word("honeycomb", "honeycomb", {"honeycomb", "hexagons"})}},
-            {"gradient", .03, gradient, {pattern_word("gradient", "gradient",
-                                                      {"gradient", "fading"})}}};
+            {"gradient",
+             .03,
+             gradient,
+             {pattern_word("gradient", "gradient", {"gradient", "fading"})}}};
 }
 
 }  // namespace item3d::paint

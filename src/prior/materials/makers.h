@@ -108,10 +108,10 @@ struct Grain {
     Vec3 dark, light;
     float frequency;  ///< of the noise, radians a unit
     int octaves = 2;
-    float spread = 1.3f;                         ///< noise from -spread to spread runs dark to light
+    float spread = 1.3f;  ///< noise from -spread to spread runs dark to light
     float rough_dark = .85f, rough_light = .85f;
-    float relief = 0;                            ///< steepest slope, about
-    Vec3 stretch{1.0f};                          ///< of the noise's coordinates
+    float relief = 0;    ///< steepest slope, about
+    Vec3 stretch{1.0f};  ///< of the noise's coordinates
 };
 std::function<MaterialValue(const Vec3&, const Vec3&)> grained(Random& random, const Grain& grain);
 

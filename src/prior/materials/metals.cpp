@@ -56,7 +56,7 @@ ProceduralMaterial metal(Random& random, const MaterialWish& wish) {
     const MetalFinish finish = wish.color.empty() ? draw_finish(random) : MetalFinish::smooth;
     const bool mirror = finish == MetalFinish::polished || name == "chrome";
     const Vec3 color = vary(random, color_named(name), .05);
-    const float roughness = mirror                          ? draw(random, .04, .12)
+    const float roughness = mirror                           ? draw(random, .04, .12)
                             : finish == MetalFinish::brushed ? draw(random, .35, .5)
                             : name == "iron"                 ? draw(random, .4, .6)
                                                              : draw(random, .12, .38);
@@ -125,8 +125,10 @@ std::vector<MaterialKind> metal_materials() {
         words.push_back(word);
     }
     return {{"metal", .13, metal, words},
-            {"rust", .025, rust, {word_of("materials", "rust", "rust", {"rusty", "rust"},
-                                          "a rusty {o}")}}};
+            {"rust",
+             .025,
+             rust,
+             {word_of("materials", "rust", "rust", {"rusty", "rust"}, "a rusty {o}")}}};
 }
 
 }  // namespace item3d::paint

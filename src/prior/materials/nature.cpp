@@ -13,8 +13,8 @@ ProceduralMaterial grass(Random& random, const MaterialWish&) {
              "grass {o}"},
             [=](const Vec3& p, const Vec3&) {
                 Vec3 gradient(0.0f);
-                const float w = smooth_step(
-                    patches(p) + .5f * blades.with_gradient(p, gradient), -1.4f, 1.4f);
+                const float w =
+                    smooth_step(patches(p) + .5f * blades.with_gradient(p, gradient), -1.4f, 1.4f);
                 return MaterialValue{mix(dark, light, w), 1, 0, gradient * .014f};
             }};
 }
@@ -46,8 +46,8 @@ ProceduralMaterial snow(Random& random, const MaterialWish&) {
             {"snowy {o}", "{o} covered in snow", "{o} covered in snow", "snow covered {o}"},
             [=](const Vec3& p, const Vec3& n) {
                 Vec3 gradient(0.0f);
-                const float w = smooth_step(n.y + .35f * edge.with_gradient(p, gradient), -.35f,
-                                            .1f);
+                const float w =
+                    smooth_step(n.y + .35f * edge.with_gradient(p, gradient), -.35f, .1f);
                 return MaterialValue{mix(below, {.88f, .9f, .94f}, w), .5f + .4f * w, 0,
                                      gradient * (.05f * w)};
             }};
@@ -55,12 +55,15 @@ ProceduralMaterial snow(Random& random, const MaterialWish&) {
 
 ProceduralMaterial ice(Random& random, const MaterialWish&) {
     const CosineNoise frost(random, 5, 3), cracks(random, 4, 2);
-    return {"", "", {"icy {o}", "{o} made of ice", "ice {o}", "frozen {o}"},
+    return {"",
+            "",
+            {"icy {o}", "{o} made of ice", "ice {o}", "frozen {o}"},
             [=](const Vec3& p, const Vec3&) {
                 const float w = smooth_step(frost(p), -1, 1);
                 const float crack = std::exp(-std::abs(cracks(p)) * 9);
-                return MaterialValue{limit(mix({.42f, .66f, .82f}, {.8f, .92f, .97f}, w) + .3f * crack),
-                                     .05f + .2f * w, 0};
+                return MaterialValue{
+                    limit(mix({.42f, .66f, .82f}, {.8f, .92f, .97f}, w) + .3f * crack),
+                    .05f + .2f * w, 0};
             }};
 }
 
@@ -90,41 +93,53 @@ ProceduralMaterial sand(Random& random, const MaterialWish&) {
             {"sandy {o}", "{o} made of sand", "sand {o}", "{o} covered in sand"},
             [=](const Vec3& p, const Vec3&) {
                 const float phase = p.y * ripples + 1.6f * warp(p);
-                return MaterialValue{limit(tone * (.92f + .1f * std::sin(phase) + .07f * grains(p))),
-                                     1, 0, Vec3(0, .4f * std::cos(phase), 0)};
+                return MaterialValue{
+                    limit(tone * (.92f + .1f * std::sin(phase) + .07f * grains(p))), 1, 0,
+                    Vec3(0, .4f * std::cos(phase), 0)};
             }};
 }
 
 ProceduralMaterial bark(Random& random, const MaterialWish&) {
     const CosineNoise plates(random, 8, 2, {1, .22f, 1});
     const Vec3 light = vary(random, {.26f, .17f, .1f}), dark = light * .18f;
-    return {"",
-            "",
-            {"bark {o}", "{o} covered in bark", "{o} made of tree bark"},
-            [=](const Vec3& p, const Vec3&) {
-                Vec3 gradient(0.0f);
-                const float value = plates.with_gradient(p, gradient);
-                const float w = smooth_step(std::abs(value), .05f, .7f);
-                return MaterialValue{mix(dark, light, w), 1, 0,
-                                     gradient * (value < 0 ? -.1f : .1f)};
-            }};
+    return {
+        "",
+        "",
+        {"bark {o}", "{o} covered in bark", "{o} made of tree bark"},
+        [=](const Vec3& p, const Vec3&) {
+            Vec3 gradient(0.0f);
+            const float value = plates.with_gradient(p, gradient);
+            const float w = smooth_step(std::abs(value), .05f, .7f);
+            return MaterialValue{mix(dark, light, w), 1, 0, gradient * (value < 0 ? -.1f : .1f)};
+        }};
 }
 
 }  // namespace
 
 std::vector<MaterialKind> nature_materials() {
-    return {{"grass", .025, grass, {word_of("materials", "grass", "grass", {"grass", "grassy"},
-                                            "a {o} covered in grass")}},
-            {"moss", .02, moss, {word_of("materials", "moss", "moss", {"moss", "mossy"},
-                                         "a {o} covered in moss")}},
-            {"snow", .025, snow, {word_of("materials", "snow", "snow", {"snow", "snowy"},
-                                          "a {o} covered in snow")}},
-            {"ice", .02, ice, {word_of("materials", "ice", "ice", {"ice", "icy", "frozen"},
-                                       "a {o} made of ice")}},
-            {"lava", .015, lava, {material_word("lava", "lava", {"lava", "molten"})}},
-            {"sand", .015, sand, {word_of("materials", "sand", "sand", {"sand", "sandy"},
-                                          "a {o} made of sand")}},
-            {"bark", .012, bark, {material_word("bark", "bark")}}};
+    return {
+        {"grass",
+         .025,
+         grass,
+         {word_of("materials", "grass", "grass", {"grass", "grassy"}, "a {o} covered in grass")}},
+        {"moss",
+         .02,
+         moss,
+         {word_of("materials", "moss", "moss", {"moss", "mossy"}, "a {o} covered in moss")}},
+        {"snow",
+         .025,
+         snow,
+         {word_of("materials", "snow", "snow", {"snow", "snowy"}, "a {o} covered in snow")}},
+        {"ice",
+         .02,
+         ice,
+         {word_of("materials", "ice", "ice", {"ice", "icy", "frozen"}, "a {o} made of ice")}},
+        {"lava", .015, lava, {material_word("lava", "lava", {"lava", "molten"})}},
+        {"sand",
+         .015,
+         sand,
+         {word_of("materials", "sand", "sand", {"sand", "sandy"}, "a {o} made of sand")}},
+        {"bark", .012, bark, {material_word("bark", "bark")}}};
 }
 
 }  // namespace item3d::paint

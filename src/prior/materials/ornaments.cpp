@@ -12,25 +12,26 @@ ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
     const Vec3 ground = vary(random, color_named(first)), petal = vary(random, color_named(second));
     const Vec3 core = second == "yellow" ? Vec3(.7f, .1f, .02f) : Vec3(.9f, .65f, .05f);
     const float frequency = draw(random, 1.5, 2.1);
-    return {"",
-            first,
-            {"floral {o}", "floral {o}", first + " {o} with " + second + " flowers",
-             "{o} with a floral pattern", "flowery {o}", "{o} with flowers"},
-            [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n) * frequency;
-                const float row = std::floor(uv.y);
-                const float u = uv.x + (odd(row) ? .5f : 0.0f), column = std::floor(u);
-                const Vec2 jitter(cell_value(column, row, 1) - .5f, cell_value(column, row, 2) - .5f);
-                const Vec2 q(fraction(u) - .5f - .15f * jitter.x, uv.y - row - .5f - .15f * jitter.y);
-                const float r = glm::length(q);
-                const float angle = std::atan2(q.y, q.x) + 6 * cell_value(column, row);
-                const float edge = .24f + .11f * std::cos(5 * angle);
-                const float leaf = .4f * std::pow(std::max(std::cos(1.5f * angle), 0.0f), 3.0f);
-                if (r < .1f) return MaterialValue{core, .6f, 0};
-                if (r < edge) return MaterialValue{petal * (.6f + r), .6f, 0};
-                if (r < leaf) return MaterialValue{{.04f, .2f, .03f}, .6f, 0};
-                return MaterialValue{ground, .6f, 0};
-            }};
+    return {
+        "",
+        first,
+        {"floral {o}", "floral {o}", first + " {o} with " + second + " flowers",
+         "{o} with a floral pattern", "flowery {o}", "{o} with flowers"},
+        [=](const Vec3& p, const Vec3& n) {
+            const Vec2 uv = flat_coordinates(p, n) * frequency;
+            const float row = std::floor(uv.y);
+            const float u = uv.x + (odd(row) ? .5f : 0.0f), column = std::floor(u);
+            const Vec2 jitter(cell_value(column, row, 1) - .5f, cell_value(column, row, 2) - .5f);
+            const Vec2 q(fraction(u) - .5f - .15f * jitter.x, uv.y - row - .5f - .15f * jitter.y);
+            const float r = glm::length(q);
+            const float angle = std::atan2(q.y, q.x) + 6 * cell_value(column, row);
+            const float edge = .24f + .11f * std::cos(5 * angle);
+            const float leaf = .4f * std::pow(std::max(std::cos(1.5f * angle), 0.0f), 3.0f);
+            if (r < .1f) return MaterialValue{core, .6f, 0};
+            if (r < edge) return MaterialValue{petal * (.6f + r), .6f, 0};
+            if (r < leaf) return MaterialValue{{.04f, .2f, .03f}, .6f, 0};
+            return MaterialValue{ground, .6f, 0};
+        }};
 }
 
 ProceduralMaterial camouflage(Random& random, const MaterialWish&) {
@@ -43,15 +44,16 @@ ProceduralMaterial camouflage(Random& random, const MaterialWish&) {
     for (std::size_t i = 0; i < 3; ++i)
         colors[i + 1] = vary(random, {tones[i][0], tones[i][1], tones[i][2]}, .08);
     const CosineNoise one(random, 4.5f, 2), two(random, 4.5f, 2);
-    return {"",
-            "",
-            {"camouflage {o}", "camouflage {o}", "{o} with a camouflage pattern", "camo {o}",
-             "{o} in camouflage"},
-            [=](const Vec3& p, const Vec3&) {
-                const float a = one(p), b = two(p);
-                const std::size_t which = a > .75f ? 0 : a > 0 ? (b > .2f ? 1 : 2) : b > -.3f ? 2 : 3;
-                return MaterialValue{colors[which], .9f, 0};
-            }};
+    return {
+        "",
+        "",
+        {"camouflage {o}", "camouflage {o}", "{o} with a camouflage pattern", "camo {o}",
+         "{o} in camouflage"},
+        [=](const Vec3& p, const Vec3&) {
+            const float a = one(p), b = two(p);
+            const std::size_t which = a > .75f ? 0 : a > 0 ? (b > .2f ? 1 : 2) : b > -.3f ? 2 : 3;
+            return MaterialValue{colors[which], .9f, 0};
+        }};
 }
 
 /// Dark cracks between dry plates.
@@ -61,16 +63,17 @@ ProceduralMaterial cracks(Random& random, const MaterialWish& wish) {
     const Vec3 deep = name == "black" ? Vec3(.35f) : color * .06f;
     const float size = draw(random, 1.9, 2.8);
     const CosineNoise warp(random, 6, 2);
-    return {"",
-            name,
-            {"cracked {o}", "cracked " + name + " {o}", "{o} with cracks", "cracked {o}",
-             name + " {o} with cracks"},
-            [=](const Vec3& p, const Vec3&) {
-                const NearPoints near = near_points(p * size + .12f * warp(p));
-                const float gap = near.second - near.first;
-                const float w = smooth_step(gap, .05f, .11f);
-                return MaterialValue{limit(mix(deep, color * (.85f + .3f * near.value), w)), .75f, 0};
-            }};
+    return {
+        "",
+        name,
+        {"cracked {o}", "cracked " + name + " {o}", "{o} with cracks", "cracked {o}",
+         name + " {o} with cracks"},
+        [=](const Vec3& p, const Vec3&) {
+            const NearPoints near = near_points(p * size + .12f * warp(p));
+            const float gap = near.second - near.first;
+            const float w = smooth_step(gap, .05f, .11f);
+            return MaterialValue{limit(mix(deep, color * (.85f + .3f * near.value), w)), .75f, 0};
+        }};
 }
 
 ProceduralMaterial flames(Random& random, const MaterialWish&) {
@@ -126,8 +129,8 @@ ProceduralMaterial splashes(Random& random, const MaterialWish& wish) {
     }
     return {"",
             name,
-            {"paint splattered {o}", "{o} splattered with paint", name + " {o} splattered with paint",
-             "{o} with splashes of paint"},
+            {"paint splattered {o}", "{o} splattered with paint",
+             name + " {o} splattered with paint", "{o} with splashes of paint"},
             [=](const Vec3& p, const Vec3&) {
                 Vec3 color = ground;
                 for (std::size_t i = 0; i < paints.size(); ++i)
@@ -156,48 +159,59 @@ ProceduralMaterial swirls(Random& random, const MaterialWish& wish) {
 ProceduralMaterial patchwork(Random& random, const MaterialWish&) {
     const float frequency = draw(random, 1.3, 1.9);
     const auto shift = static_cast<float>(random.index(500));
-    return {"",
-            "",
-            {"patchwork {o}", "patchwork {o}", "patchwork quilt {o}", "{o} made of patchwork"},
-            [=](const Vec3& p, const Vec3& n) {
-                const auto& colors = plain_colors();
-                const Vec2 uv = flat_coordinates(p, n) * frequency + Vec2(shift, 0);
-                const float x = std::floor(uv.x), y = std::floor(uv.y);
-                const auto any = [&](float salt) {
-                    return colors[static_cast<std::size_t>(cell_value(x, y, salt) *
-                                                           (static_cast<float>(colors.size()) - .01f))]
-                        .linear;
-                };
-                const Vec2 q(uv.x - x, uv.y - y);
-                const bool seam = std::min(std::min(q.x, 1 - q.x), std::min(q.y, 1 - q.y)) < .045f;
-                const float kind = cell_value(x, y, 9);
-                bool other = false;
-                if (kind > .7f)
-                    other = fraction(q.x * 2.5f) < .5f;
-                else if (kind > .45f)
-                    other = std::hypot(fraction(q.x * 2) - .5f, fraction(q.y * 2) - .5f) < .27f;
-                const Vec3 color = other ? any(2) : any(1);
-                return MaterialValue{seam ? color * .3f : color, .95f, 0};
-            }};
+    return {
+        "",
+        "",
+        {"patchwork {o}", "patchwork {o}", "patchwork quilt {o}", "{o} made of patchwork"},
+        [=](const Vec3& p, const Vec3& n) {
+            const auto& colors = plain_colors();
+            const Vec2 uv = flat_coordinates(p, n) * frequency + Vec2(shift, 0);
+            const float x = std::floor(uv.x), y = std::floor(uv.y);
+            const auto any = [&](float salt) {
+                return colors[static_cast<std::size_t>(cell_value(x, y, salt) *
+                                                       (static_cast<float>(colors.size()) - .01f))]
+                    .linear;
+            };
+            const Vec2 q(uv.x - x, uv.y - y);
+            const bool seam = std::min(std::min(q.x, 1 - q.x), std::min(q.y, 1 - q.y)) < .045f;
+            const float kind = cell_value(x, y, 9);
+            bool other = false;
+            if (kind > .7f)
+                other = fraction(q.x * 2.5f) < .5f;
+            else if (kind > .45f)
+                other = std::hypot(fraction(q.x * 2) - .5f, fraction(q.y * 2) - .5f) < .27f;
+            const Vec3 color = other ? any(2) : any(1);
+            return MaterialValue{seam ? color * .3f : color, .95f, 0};
+        }};
 }
 
 }  // namespace
 
 std::vector<MaterialKind> ornament_patterns() {
-    return {{"floral", .03, floral,
+    return {{"floral",
+             .03,
+             floral,
              {pattern_word("floral", "floral", {"floral", "flowers", "flowery"})}},
-            {"camouflage", .025, camouflage,
+            {"camouflage",
+             .025,
+             camouflage,
              {pattern_word("camouflage", "camouflage", {"camouflage", "camo"})}},
             {"cracked", .025, cracks, {pattern_word("cracked", "cracked", {"cracked", "cracks"})}},
-            {"flames", .02, flames,
+            {"flames",
+             .02,
+             flames,
              {word_of("patterns", "flames", "flames", {"flame", "flames"},
                       "a {o} with a flame pattern")}},
             {"stars", .025, stars, {pattern_word("stars", "starry", {"starry", "stars"})}},
-            {"splashes", .02, splashes,
+            {"splashes",
+             .02,
+             splashes,
              {word_of("patterns", "splashes", "splattered", {"splattered", "splashes"},
                       "a paint splattered {o}")}},
             {"swirls", .02, swirls, {pattern_word("swirls", "swirly", {"swirly", "swirls"})}},
-            {"patchwork", .02, patchwork,
+            {"patchwork",
+             .02,
+             patchwork,
              {pattern_word("patchwork", "patchwork", {"patchwork", "quilt"})}}};
 }
 

@@ -36,7 +36,7 @@ ProceduralMaterial plain(Random& random, const MaterialWish& wish) {
     const std::string c = name == "gray" && random.chance(.2) ? "grey" : name;
     std::vector<std::string> phrases{word + " " + c + " {o}"};
     if (word.empty()) {
-        phrases = {c + " {o}", c + " {o}", c + " {o}", "{o} painted " + c, "plain " + c + " {o}",
+        phrases = {c + " {o}",   c + " {o}", c + " {o}", "{o} painted " + c, "plain " + c + " {o}",
                    "{o} in " + c};
     } else if (word == "plastic" || word == "rubber") {
         phrases = {c + " " + word + " {o}", "{o} made of " + c + " " + word};

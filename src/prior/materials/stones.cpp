@@ -29,14 +29,14 @@ ProceduralMaterial marble(Random& random, const MaterialWish&) {
 ProceduralMaterial granite(Random& random, const MaterialWish&) {
     const bool rosy = random.chance(.4);
     const Vec3 main = rosy ? vary(random, {.5f, .28f, .22f}) : vary(random, {.4f, .4f, .39f});
-    const float size = draw(random, 5, 7), roughness = draw(random, .15, .4);
+    const float size = draw(random, 8.5, 11), roughness = draw(random, .15, .4);
     return {"",
             "",
             {"granite {o}", "granite {o}", "{o} made of granite", "speckled granite {o}"},
             [=](const Vec3& p, const Vec3&) {
                 const NearPoints near = near_points(p * size);
-                const Vec3 color = near.value < .3f   ? Vec3(.04f, .04f, .045f)
-                                   : near.value < .55f ? Vec3(.72f, .7f, .67f)
+                const Vec3 color = near.value < .2f    ? Vec3(.07f, .07f, .075f)
+                                   : near.value < .45f ? Vec3(.66f, .64f, .61f)
                                                        : main * (.75f + .5f * near.value);
                 return MaterialValue{limit(color), roughness, 0};
             }};
@@ -47,15 +47,16 @@ ProceduralMaterial sandstone(Random& random, const MaterialWish&) {
     const CosineNoise waves(random, 2.5f, 2), grain(random, 32);
     const Vec3 light = vary(random, {.75f, .52f, .28f}), dark = vary(random, {.48f, .24f, .1f});
     const float layers = draw(random, 2.5, 4.5);
-    return {"",
-            "",
-            {"sandstone {o}", "sandstone {o}", "{o} made of sandstone", "{o} carved from sandstone"},
-            [=](const Vec3& p, const Vec3&) {
-                const float s = fraction(p.y * layers + .25f * waves(p));
-                const float w = smooth_step(std::abs(s - .5f), .1f, .4f) * .8f;
-                return MaterialValue{limit(mix(light, dark, w) * (1 + .07f * grain(p))), .95f, 0,
-                                     Vec3(0, (s < .5f ? .2f : -.2f), 0)};
-            }};
+    return {
+        "",
+        "",
+        {"sandstone {o}", "sandstone {o}", "{o} made of sandstone", "{o} carved from sandstone"},
+        [=](const Vec3& p, const Vec3&) {
+            const float s = fraction(p.y * layers + .25f * waves(p));
+            const float w = smooth_step(std::abs(s - .5f), .1f, .4f) * .8f;
+            return MaterialValue{limit(mix(light, dark, w) * (1 + .07f * grain(p))), .95f, 0,
+                                 Vec3(0, (s < .5f ? .2f : -.2f), 0)};
+        }};
 }
 
 /// Split plates: steps of slightly different tone.
@@ -137,10 +138,15 @@ ProceduralMaterial brick(Random& random, const MaterialWish&) {
                 const float across = fraction(u), up = uv.y * 2 - row;
                 const bool joint = across < .085f || up < .17f;
                 // Rounded edges beside the joints.
-                const Vec2 slope(across < .16f ? -.5f : across > .93f ? .5f : 0.0f,
-                                 up < .3f ? -.5f : up > .88f ? .5f : 0.0f);
-                return MaterialValue{joint ? mortar : mix(light, dark, cell_value(std::floor(u), row)),
-                                     .9f, 0, joint ? Vec3(0.0f) : flat_slope(slope, n)};
+                const Vec2 slope(across < .16f   ? -.5f
+                                 : across > .93f ? .5f
+                                                 : 0.0f,
+                                 up < .3f    ? -.5f
+                                 : up > .88f ? .5f
+                                             : 0.0f);
+                return MaterialValue{
+                    joint ? mortar : mix(light, dark, cell_value(std::floor(u), row)), .9f, 0,
+                    joint ? Vec3(0.0f) : flat_slope(slope, n)};
             }};
 }
 
@@ -164,12 +170,18 @@ std::vector<MaterialKind> stone_materials() {
             {"sandstone", .02, sandstone, {material_word("sandstone", "sandstone")}},
             {"slate", .015, slate, {material_word("slate", "slate")}},
             {"stone", .025, stone, {material_word("stone", "stone", {"stone", "rock"})}},
-            {"concrete", .015, concrete, {material_word("concrete", "concrete",
-                                                        {"concrete", "cement"})}},
-            {"cobblestone", .02, cobblestone,
+            {"concrete",
+             .015,
+             concrete,
+             {material_word("concrete", "concrete", {"concrete", "cement"})}},
+            {"cobblestone",
+             .02,
+             cobblestone,
              {material_word("cobblestone", "cobblestone", {"cobblestone", "cobblestones"})}},
             {"brick", .03, brick, {material_word("brick", "brick", {"brick", "bricks"})}},
-            {"terracotta", .02, terracotta,
+            {"terracotta",
+             .02,
+             terracotta,
              {material_word("terracotta", "terracotta", {"terracotta", "clay"})}}};
 }
 

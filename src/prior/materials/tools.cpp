@@ -5,27 +5,27 @@ namespace item3d {
 
 const std::vector<PlainColor>& plain_colors() {
     static const std::vector<PlainColor> colors{
-        {"red", {.7f, .02f, .02f}},          {"green", {.03f, .42f, .05f}},
-        {"blue", {.02f, .08f, .65f}},        {"yellow", {.85f, .65f, .02f}},
-        {"orange", {.85f, .25f, .01f}},      {"purple", {.28f, .03f, .5f}},
-        {"pink", {.85f, .3f, .45f}},         {"white", {.85f, .85f, .85f}},
-        {"black", {.012f, .012f, .012f}},    {"gray", {.22f, .22f, .22f}},
-        {"brown", {.16f, .06f, .02f}},       {"cyan", {.02f, .6f, .65f}},
-        {"navy", {.008f, .012f, .1f}},       {"teal", {.0f, .16f, .17f}},
-        {"maroon", {.15f, .005f, .015f}},    {"olive", {.16f, .16f, .01f}},
-        {"lime", {.42f, .8f, .02f}},         {"magenta", {.75f, .01f, .45f}},
-        {"lavender", {.5f, .4f, .8f}},       {"beige", {.72f, .6f, .42f}},
-        {"turquoise", {.04f, .58f, .42f}},   {"salmon", {.88f, .3f, .2f}},
-        {"mint", {.45f, .85f, .58f}},        {"mustard", {.5f, .28f, .015f}}};
+        {"red", {.7f, .02f, .02f}},        {"green", {.03f, .42f, .05f}},
+        {"blue", {.02f, .08f, .65f}},      {"yellow", {.85f, .65f, .02f}},
+        {"orange", {.85f, .25f, .01f}},    {"purple", {.28f, .03f, .5f}},
+        {"pink", {.85f, .3f, .45f}},       {"white", {.85f, .85f, .85f}},
+        {"black", {.012f, .012f, .012f}},  {"gray", {.22f, .22f, .22f}},
+        {"brown", {.16f, .06f, .02f}},     {"cyan", {.02f, .6f, .65f}},
+        {"navy", {.008f, .012f, .1f}},     {"teal", {.0f, .16f, .17f}},
+        {"maroon", {.15f, .005f, .015f}},  {"olive", {.16f, .16f, .01f}},
+        {"lime", {.42f, .8f, .02f}},       {"magenta", {.75f, .01f, .45f}},
+        {"lavender", {.5f, .4f, .8f}},     {"beige", {.72f, .6f, .42f}},
+        {"turquoise", {.04f, .58f, .42f}}, {"salmon", {.88f, .3f, .2f}},
+        {"mint", {.45f, .85f, .58f}},      {"mustard", {.5f, .28f, .015f}}};
     return colors;
 }
 
 const std::vector<PlainColor>& metal_colors() {
     static const std::vector<PlainColor> colors{
-        {"gold", {1.f, .63f, .18f}},     {"silver", {.92f, .91f, .88f}},
-        {"copper", {.92f, .42f, .26f}},  {"bronze", {.5f, .3f, .11f}},
-        {"brass", {.82f, .62f, .22f}},   {"steel", {.56f, .57f, .58f}},
-        {"iron", {.22f, .21f, .2f}},     {"chrome", {.72f, .74f, .76f}}};
+        {"gold", {1.f, .63f, .18f}},    {"silver", {.92f, .91f, .88f}},
+        {"copper", {.92f, .42f, .26f}}, {"bronze", {.5f, .3f, .11f}},
+        {"brass", {.82f, .62f, .22f}},  {"steel", {.56f, .57f, .58f}},
+        {"iron", {.22f, .21f, .2f}},    {"chrome", {.72f, .74f, .76f}}};
     return colors;
 }
 
@@ -43,8 +43,11 @@ std::uint64_t cell_bits(float x, float y, float z) {
 
 MaterialWord word_of(const std::string& group, const std::string& kind, const std::string& word,
                      const std::vector<std::string>& spellings, const std::string& caption) {
-    return {group, word, caption.empty() ? "a " + word + " {o}" : caption,
-            spellings.empty() ? std::vector<std::string>{word} : spellings, {kind, "", ""}};
+    return {group,
+            word,
+            caption.empty() ? "a " + word + " {o}" : caption,
+            spellings.empty() ? std::vector<std::string>{word} : spellings,
+            {kind, "", ""}};
 }
 
 Vec3 vary(Random& random, const Vec3& color, double spread) {
@@ -95,7 +98,8 @@ NearPoints near_points(const Vec3& p) {
     for (int i = 0; i < 27; ++i) {
         const Vec3 cell = base + Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
         const std::uint64_t bits = cell_bits(cell.x, cell.y, cell.z);
-        const Vec3 offset(static_cast<float>(bits & 0xffffu), static_cast<float>(bits >> 16 & 0xffffu),
+        const Vec3 offset(static_cast<float>(bits & 0xffffu),
+                          static_cast<float>(bits >> 16 & 0xffffu),
                           static_cast<float>(bits >> 32 & 0xffffu));
         const float distance = glm::length(cell + .15f + .7f / 65536.0f * offset - p);
         if (distance < near.first) {

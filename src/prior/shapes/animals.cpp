@@ -14,24 +14,25 @@ struct Limbs {
 
 /// Two legs that are mirrored by a folded z, so four.
 float four_legs(const Vec3& q, const Limbs& at) {
-    return std::min(capsule(q, {at.front, at.hip, at.side}, {at.front, at.foot, at.side * 1.1f},
-                            at.radius),
-                    capsule(q, {at.back, at.hip, at.side}, {at.back, at.foot, at.side * 1.1f},
-                            at.radius));
+    return std::min(
+        capsule(q, {at.front, at.hip, at.side}, {at.front, at.foot, at.side * 1.1f}, at.radius),
+        capsule(q, {at.back, at.hip, at.side}, {at.back, at.foot, at.side * 1.1f}, at.radius));
 }
 
 Shape fish(Draw& u) {
     const float l = u(.6, .72), h = u(.3, .42), w = u(.15, .25), tail = u(.25, .4);
-    return {
-        {{"", [=](const Vec3& p) { return ellipsoid(p, {.1f, 0, 0}, {l, h, w}); }},
-         {"fins",
-          [=](const Vec3& p) {
-              return smooth_merge(
-                  .08f, {ellipsoid(p, {-l - .08f, 0, 0}, {.22f, tail, .05f}),
-                         ellipsoid(p, {0, h, 0}, {.28f, .16f, .045f}),
-                         ellipsoid(fold(p, false, true), {.15f, -.1f, w}, {.15f, .06f, .12f})});
-          }}},
-        .08f};
+    return {{{"",
+              [=](const Vec3& p) {
+                  return ellipsoid(p, {.1f, 0, 0}, {l, h, w});
+              }},
+             {"fins",
+              [=](const Vec3& p) {
+                  return smooth_merge(
+                      .08f, {ellipsoid(p, {-l - .08f, 0, 0}, {.22f, tail, .05f}),
+                             ellipsoid(p, {0, h, 0}, {.28f, .16f, .045f}),
+                             ellipsoid(fold(p, false, true), {.15f, -.1f, w}, {.15f, .06f, .12f})});
+              }}},
+            .08f};
 }
 
 Shape duck(Draw& u) {
@@ -52,13 +53,11 @@ Shape cow(Draw& u) {
     return {{{"",
               [=](const Vec3& p) {
                   const Vec3 q = fold(p, false, true);
-                  const float legs =
-                      merge({capsule(q, {l * .7f, -.1f, h * .55f}, {l * .75f, -.68f, h * .6f}, leg),
-                             capsule(q, {-l * .7f, -.1f, h * .55f}, {-l * .75f, -.68f, h * .6f},
-                                     leg)});
+                  const float legs = merge(
+                      {capsule(q, {l * .7f, -.1f, h * .55f}, {l * .75f, -.68f, h * .6f}, leg),
+                       capsule(q, {-l * .7f, -.1f, h * .55f}, {-l * .75f, -.68f, h * .6f}, leg)});
                   const float head = smooth_merge(
-                      .1f, {ellipsoid(p, {l + .2f, .33f, 0},
-                                      {muzzle * 1.2f, muzzle, muzzle * .9f}),
+                      .1f, {ellipsoid(p, {l + .2f, .33f, 0}, {muzzle * 1.2f, muzzle, muzzle * .9f}),
                             sphere(p, {l + .38f, .27f, 0}, muzzle * .6f)});
                   return smooth_merge(
                       .08f, {ellipsoid(p, {0, .05f, 0}, {l * 1.25f, h, h * .95f}), legs, head,
@@ -75,30 +74,30 @@ Shape cow(Draw& u) {
 Shape dog(Draw& u) {
     const float l = u(.42, .52), r = u(.19, .24), head = u(.2, .25), tail = u(.1, .45);
     const float snout = u(.14, .24), y = u(.32, .42);
-    return {{{"",
-              [=](const Vec3& p) {
-                  const Vec3 q = fold(p, false, true);
-                  return smooth_merge(
-                      .07f, {capsule(p, {-l, -.02f, 0}, {l, .03f, 0}, r, r * 1.15f),
-                             four_legs(q, {l, -l, -.1f, .13f, -.68f, .075f}),
-                             capsule(p, {l, .1f, 0}, {l + .15f, y, 0}, r * .7f),
-                             sphere(p, {l + .2f, y + .05f, 0}, head),
-                             capsule(p, {l + .25f, y - .02f, 0}, {l + .3f + snout, y - .06f, 0},
-                                     .12f, .085f),
-                             capsule(p, {-l - .1f, .05f, 0}, {-l - .3f, .05f + tail, 0}, .06f,
-                                     .035f)});
-              }},
-             {"ears",
-              [=](const Vec3& p) {
-                  return ellipsoid(fold(p, false, true), {l + .12f, y + .06f, head + .01f},
-                                   {.1f, .2f, .06f});
-              }},
-             {"collar", [=](const Vec3& p) {
-                  // Across the neck, which leans forwards.
-                  const Vec3 q(p.x - l - .07f, p.y - y * .62f, p.z);
-                  const Vec3 t(q.x * .9f - q.y * .43f, q.y * .9f + q.x * .43f, q.z);
-                  return torus(t, {0, 0, 0}, r * .75f, .05f);
-              }}}};
+    return {
+        {{"",
+          [=](const Vec3& p) {
+              const Vec3 q = fold(p, false, true);
+              return smooth_merge(
+                  .07f,
+                  {capsule(p, {-l, -.02f, 0}, {l, .03f, 0}, r, r * 1.15f),
+                   four_legs(q, {l, -l, -.1f, .13f, -.68f, .075f}),
+                   capsule(p, {l, .1f, 0}, {l + .15f, y, 0}, r * .7f),
+                   sphere(p, {l + .2f, y + .05f, 0}, head),
+                   capsule(p, {l + .25f, y - .02f, 0}, {l + .3f + snout, y - .06f, 0}, .12f, .085f),
+                   capsule(p, {-l - .1f, .05f, 0}, {-l - .3f, .05f + tail, 0}, .06f, .035f)});
+          }},
+         {"ears",
+          [=](const Vec3& p) {
+              return ellipsoid(fold(p, false, true), {l + .12f, y + .06f, head + .01f},
+                               {.1f, .2f, .06f});
+          }},
+         {"collar", [=](const Vec3& p) {
+              // Across the neck, which leans forwards.
+              const Vec3 q(p.x - l - .07f, p.y - y * .62f, p.z);
+              const Vec3 t(q.x * .9f - q.y * .43f, q.y * .9f + q.x * .43f, q.z);
+              return torus(t, {0, 0, 0}, r * .75f, .05f);
+          }}}};
 }
 
 Shape cat(Draw& u) {
@@ -124,10 +123,12 @@ Shape cat(Draw& u) {
                               y + .12f + head * .55f, y + .16f + head * 1.35f, .12f, .01f) *
                          .8f;
               }},
-             {"tail", [=](const Vec3& p) {
-                  return smooth_merge(.05f, {capsule(p, {-.42f, -.6f, 0}, {-.75f, -.55f, .1f}, .07f),
-                                             capsule(p, {-.75f, -.55f, .1f},
-                                                     {-.85f, -.55f + tail, .12f}, .07f, .055f)});
+             {"tail",
+              [=](const Vec3& p) {
+                  return smooth_merge(
+                      .05f,
+                      {capsule(p, {-.42f, -.6f, 0}, {-.75f, -.55f, .1f}, .07f),
+                       capsule(p, {-.75f, -.55f, .1f}, {-.85f, -.55f + tail, .12f}, .07f, .055f)});
               }}},
             .03f};
 }
@@ -146,10 +147,13 @@ Shape rabbit(Draw& u) {
              {"ears",
               [=](const Vec3& p) {
                   const Vec3 q = fold(p, false, true);
-                  return ellipsoid({q.x - lean * (q.y - .25f), q.y, q.z}, {.22f, .25f + ear * .6f, .11f},
-                                   {.05f, ear * .6f, .085f});
+                  return ellipsoid({q.x - lean * (q.y - .25f), q.y, q.z},
+                                   {.22f, .25f + ear * .6f, .11f}, {.05f, ear * .6f, .085f});
               }},
-             {"tail", [=](const Vec3& p) { return sphere(p, {-.53f, -.42f, 0}, .12f); }}},
+             {"tail",
+              [=](const Vec3& p) {
+                  return sphere(p, {-.53f, -.42f, 0}, .12f);
+              }}},
             .03f};
 }
 
@@ -182,12 +186,12 @@ Shape elephant(Draw& u) {
                   const Vec3 q = fold(p, false, true);
                   const Vec3 face(l + .28f, .22f, 0), bend(l + .6f, -.18f, 0);
                   return smooth_merge(
-                      .1f, {ellipsoid(p, {0, .02f, 0}, {l * 1.3f, r, r * .9f}),
-                            four_legs(q, {l * .8f, -l * .8f, -.1f, r * .5f, -.66f, leg}),
-                            sphere(p, face, .24f),
-                            capsule(p, {l + .45f, .15f, 0}, bend, .11f, .085f),
-                            capsule(p, bend, {l + .72f, -.32f + lift, 0}, .085f, .06f),
-                            capsule(p, {-l * 1.25f, .1f, 0}, {-l * 1.45f, -.2f, 0}, .035f)});
+                      .1f,
+                      {ellipsoid(p, {0, .02f, 0}, {l * 1.3f, r, r * .9f}),
+                       four_legs(q, {l * .8f, -l * .8f, -.1f, r * .5f, -.66f, leg}),
+                       sphere(p, face, .24f), capsule(p, {l + .45f, .15f, 0}, bend, .11f, .085f),
+                       capsule(p, bend, {l + .72f, -.32f + lift, 0}, .085f, .06f),
+                       capsule(p, {-l * 1.25f, .1f, 0}, {-l * 1.45f, -.2f, 0}, .035f)});
               }},
              {"ears",
               [=](const Vec3& p) {
@@ -239,25 +243,26 @@ Shape turtle(Draw& u) {
 
 Shape snail(Draw& u) {
     const float r = u(.36, .42), tube = u(.13, .16), feeler = u(.22, .32);
-    return {{{"",
-              [=](const Vec3& p) {
-                  const Vec3 q = fold(p, false, true);
-                  return smooth_merge(
-                      .08f, {capsule({p.x, p.y, p.z * .75f}, {-.75f, -.6f, 0}, {.55f, -.57f, 0},
-                                     .05f, .13f),
-                             capsule(p, {.5f, -.55f, 0}, {.68f, -.25f, 0}, .13f, .12f),
-                             capsule(q, {.7f, -.2f, .05f}, {.78f, -.2f + feeler, .14f}, .03f, .045f)});
-              }},
-             {"shell", [=](const Vec3& p) {
-                  // A tube along an Archimedean spiral, thinner inwards.
-                  const Vec3 q = p - Vec3(-.12f, -.08f, 0);
-                  const float radius = std::hypot(q.x, q.y), angle = std::atan2(q.y, q.x) / (2 * pi);
-                  const float pitch = tube * 1.45f;
-                  const float turn = std::round(radius / pitch - angle);
-                  const float at = std::clamp((turn + angle) * pitch, .0f, r);
-                  const float thick = tube * (.55f + .6f * at / r);
-                  return std::hypot(radius - at, q.z) * .85f - thick * .85f;
-              }}}};
+    return {
+        {{"",
+          [=](const Vec3& p) {
+              const Vec3 q = fold(p, false, true);
+              return smooth_merge(
+                  .08f,
+                  {capsule({p.x, p.y, p.z * .75f}, {-.75f, -.6f, 0}, {.55f, -.57f, 0}, .05f, .13f),
+                   capsule(p, {.5f, -.55f, 0}, {.68f, -.25f, 0}, .13f, .12f),
+                   capsule(q, {.7f, -.2f, .05f}, {.78f, -.2f + feeler, .14f}, .03f, .045f)});
+          }},
+         {"shell", [=](const Vec3& p) {
+              // A tube along an Archimedean spiral, thinner inwards.
+              const Vec3 q = p - Vec3(-.12f, -.08f, 0);
+              const float radius = std::hypot(q.x, q.y), angle = std::atan2(q.y, q.x) / (2 * pi);
+              const float pitch = tube * 1.45f;
+              const float turn = std::round(radius / pitch - angle);
+              const float at = std::clamp((turn + angle) * pitch, .0f, r);
+              const float thick = tube * (.55f + .6f * at / r);
+              return std::hypot(radius - at, q.z) * .85f - thick * .85f;
+          }}}};
 }
 
 }  // namespace

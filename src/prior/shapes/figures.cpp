@@ -10,7 +10,8 @@ Shape snowman(Draw& u) {
     const float a = u(.4, .48), b = u(.28, .35), c = u(.2, .26);
     const float y = -.85f + a, y2 = y + a + b * .7f, y3 = y2 + b + c * .6f;
     const bool arms = u.pick(2) == 1, hat = u.pick(2) == 1;
-    Shape shape{{{"", [=](const Vec3& p) {
+    Shape shape{{{"",
+                  [=](const Vec3& p) {
                       const float d =
                           smooth_merge(.05f, {sphere(p, {0, y, 0}, a), sphere(p, {0, y2, 0}, b),
                                               sphere(p, {0, y3, 0}, c)});
@@ -23,10 +24,9 @@ Shape snowman(Draw& u) {
                   }}}};
     if (hat)
         shape.parts.push_back({"hat", [=](const Vec3& p) {
-                                   return merge({cylinder(p, {0, y3 + c * .75f, 0}, c * 1.1f,
-                                                          .025f),
-                                                 cylinder(p, {0, y3 + c * .75f + .1f, 0}, c * .7f,
-                                                          .12f)});
+                                   return merge(
+                                       {cylinder(p, {0, y3 + c * .75f, 0}, c * 1.1f, .025f),
+                                        cylinder(p, {0, y3 + c * .75f + .1f, 0}, c * .7f, .12f)});
                                }});
     return shape;
 }
@@ -48,25 +48,24 @@ Shape robot(Draw& u) {
              {"head",
               [=](const Vec3& p) {
                   const float y = h + head + .02f;
-                  const float skull =
-                      round_head ? sphere(p, {0, y, 0}, head * 1.15f)
-                                 : box(p, {0, y, 0}, {head * 1.25f, head, head}, .04f);
+                  const float skull = round_head
+                                          ? sphere(p, {0, y, 0}, head * 1.15f)
+                                          : box(p, {0, y, 0}, {head * 1.25f, head, head}, .04f);
                   return merge({skull, cylinder(p, {0, h - .06f, 0}, .09f, .08f),
                                 capsule(p, {0, y + head, 0}, {0, y + head + .2f, 0}, .025f),
                                 sphere(p, {0, y + head + .22f, 0}, .055f)});
               }},
              {"eyes", [=](const Vec3& p) {
                   const float y = h + head + .06f;
-                  return sphere(fold(p, true, false), {head * .5f, y, head * (round_head ? 1.f : .95f)},
-                                .065f);
+                  return sphere(fold(p, true, false),
+                                {head * .5f, y, head * (round_head ? 1.f : .95f)}, .065f);
               }}}};
 }
 
 Shape pawn(Draw& u) {
     const float head = u(.24, .3), foot = u(.45, .55), neck = u(.12, .17);
-    const Lathe body({-.85f, -.72f, -.66f, -.5f, .1f, .25f}, {foot, foot, foot * .78f, foot * .7f,
-                                                              neck, neck},
-                     {0, .5f});
+    const Lathe body({-.85f, -.72f, -.66f, -.5f, .1f, .25f},
+                     {foot, foot, foot * .78f, foot * .7f, neck, neck}, {0, .5f});
     const float y = .3f + head * .8f;
     return whole([=](const Vec3& p) {
         return merge({body.distance(p), sphere(p, {0, y, 0}, head),
@@ -104,11 +103,11 @@ Shape gnome(Draw& u) {
     return {{{"",
               [=](const Vec3& p) {
                   const Vec3 q = fold(p, true, false);
-                  return smooth_merge(.05f, {cone(p, -.75f, -.05f, w * 1.1f, w * .75f) - .03f,
-                                             sphere(p, {0, .1f, 0}, w * .75f),
-                                             capsule(q, {w * .75f, -.1f, 0}, {w * .7f, -.38f, .3f},
-                                                     .1f),
-                                             sphere(p, {0, .08f, w * .75f}, .085f)});
+                  return smooth_merge(.05f,
+                                      {cone(p, -.75f, -.05f, w * 1.1f, w * .75f) - .03f,
+                                       sphere(p, {0, .1f, 0}, w * .75f),
+                                       capsule(q, {w * .75f, -.1f, 0}, {w * .7f, -.38f, .3f}, .1f),
+                                       sphere(p, {0, .08f, w * .75f}, .085f)});
               }},
              {"hat",
               [=](const Vec3& p) {
@@ -124,32 +123,36 @@ Shape gnome(Draw& u) {
 Shape ghost(Draw& u) {
     const float r = u(.4, .5), flare = u(1.1, 1.35);
     const auto folds = static_cast<float>(4 + u.pick(3));
-    return {{{"",
-              [=](const Vec3& p) {
-                  const float down = std::clamp((.2f - p.y) / .95f, 0.0f, 1.0f);
-                  const float angle = std::atan2(p.z, p.x);
-                  const float radius =
-                      r * (1 + (flare - 1) * down) + .06f * down * std::cos(angle * folds);
-                  const float side = p.y > .2f ? sphere(p, {0, .2f, 0}, r)
-                                               : std::hypot(p.x, p.z) - radius;
-                  const float hem = -.78f + .07f * std::cos(angle * folds + 1.5f);
-                  const Vec3 q = fold(p, true, false);
-                  return std::max(smooth_merge(.08f, {side * .8f,
-                                                      capsule(q, {r * .8f, -.05f, .1f},
-                                                              {r + .2f, .08f, .2f}, .11f, .07f)}),
-                                  hem - p.y);
-              }},
-             {"eyes", [=](const Vec3& p) {
-                  return ellipsoid(fold(p, true, false), {.15f, .28f, r * .93f}, {.075f, .11f, .06f});
-              }}}};
+    return {
+        {{"",
+          [=](const Vec3& p) {
+              const float down = std::clamp((.2f - p.y) / .95f, 0.0f, 1.0f);
+              const float angle = std::atan2(p.z, p.x);
+              const float radius =
+                  r * (1 + (flare - 1) * down) + .06f * down * std::cos(angle * folds);
+              const float side =
+                  p.y > .2f ? sphere(p, {0, .2f, 0}, r) : std::hypot(p.x, p.z) - radius;
+              const float hem = -.78f + .07f * std::cos(angle * folds + 1.5f);
+              const Vec3 q = fold(p, true, false);
+              return std::max(
+                  smooth_merge(.08f, {side * .8f, capsule(q, {r * .8f, -.05f, .1f},
+                                                          {r + .2f, .08f, .2f}, .11f, .07f)}),
+                  hem - p.y);
+          }},
+         {"eyes", [=](const Vec3& p) {
+              return ellipsoid(fold(p, true, false), {.15f, .28f, r * .93f}, {.075f, .11f, .06f});
+          }}}};
 }
 
 }  // namespace
 
 std::vector<ShapeMaker> figure_shapes() {
-    return {{{"snowman", {"snowman"}}, snowman}, {{"robot", {"robot"}}, robot},
-            {{"pawn", {"pawn"}}, pawn},          {{"teddy", {"teddy"}}, teddy},
-            {{"gnome", {"gnome", "dwarf"}}, gnome}, {{"ghost", {"ghost"}}, ghost}};
+    return {{{"snowman", {"snowman"}}, snowman},
+            {{"robot", {"robot"}}, robot},
+            {{"pawn", {"pawn"}}, pawn},
+            {{"teddy", {"teddy"}}, teddy},
+            {{"gnome", {"gnome", "dwarf"}}, gnome},
+            {{"ghost", {"ghost"}}, ghost}};
 }
 
 }  // namespace item3d

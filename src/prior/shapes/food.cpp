@@ -24,8 +24,8 @@ Shape apple(Draw& u) {
     return {{{"", turned(body)},
              {"stem", [=](const Vec3& p) {
                   const float stem = capsule(p, {0, .5f, 0}, {.06f, .85f, 0}, .04f);
-                  return leaf ? std::min(stem, ellipsoid(p - Vec3(0, p.x * .25f, 0),
-                                                         {.24f, .7f, 0}, {.22f, .035f, .11f}))
+                  return leaf ? std::min(stem, ellipsoid(p - Vec3(0, p.x * .25f, 0), {.24f, .7f, 0},
+                                                         {.22f, .035f, .11f}))
                               : stem;
               }}}};
 }
@@ -57,7 +57,8 @@ Shape banana(Draw& u) {
                   return std::hypot(off, over) * .8f -
                          thick * std::sqrt(std::max(1 - part * part * .8f, .05f)) * .8f;
               }},
-             {"tips", [=](const Vec3& p) {
+             {"tips",
+              [=](const Vec3& p) {
                   float angle;
                   const float off = along(p, angle);
                   const float end = std::abs(angle) - half;
@@ -87,30 +88,29 @@ Shape strawberry(Draw& u) {
     const float r = u(.5, .6);
     const Lathe body({-.85f, -.7f, -.2f, .3f, .5f}, {.04f, .2f, r * .8f, r, .15f}, {0, .55f});
     const int leaves = 5 + u.pick(3);
-    return {{{"", turned(body)},
-             {"leaves", [=](const Vec3& p) {
-                  return std::min(leaf_star(p, leaves, .56f, r * 1.1f, .15f, .3f),
-                                  capsule(p, {0, .5f, 0}, {.05f, .75f, 0}, .05f));
-              }}}};
+    return {{{"", turned(body)}, {"leaves", [=](const Vec3& p) {
+                                      return std::min(
+                                          leaf_star(p, leaves, .56f, r * 1.1f, .15f, .3f),
+                                          capsule(p, {0, .5f, 0}, {.05f, .75f, 0}, .05f));
+                                  }}}};
 }
 
 Shape carrot(Draw& u) {
     const float r = u(.24, .32), bend = u(-.08, .08);
     const Lathe body({-.95f, -.85f, -.2f, .3f, .4f}, {.02f, .06f, r * .75f, r, r * .5f}, {0, .7f});
-    return {{{"",
-              [=](const Vec3& p) {
-                  return body.distance(p - Vec3(bend * p.y * p.y, 0, 0)) * .95f;
-              }},
-             {"leaves", [=](const Vec3& p) {
-                  float d = 1e9f;
-                  for (int i = 0; i < 5; ++i) {
-                      const float a = 2 * pi * static_cast<float>(i) / 5;
-                      const Vec3 tip(.25f * std::cos(a), .85f + .05f * static_cast<float>(i % 2),
-                                     .25f * std::sin(a));
-                      d = std::min(d, capsule(p, {0, .35f, 0}, tip, .035f, .085f));
-                  }
-                  return d;
-              }}}};
+    return {
+        {{"",
+          [=](const Vec3& p) { return body.distance(p - Vec3(bend * p.y * p.y, 0, 0)) * .95f; }},
+         {"leaves", [=](const Vec3& p) {
+              float d = 1e9f;
+              for (int i = 0; i < 5; ++i) {
+                  const float a = 2 * pi * static_cast<float>(i) / 5;
+                  const Vec3 tip(.25f * std::cos(a), .85f + .05f * static_cast<float>(i % 2),
+                                 .25f * std::sin(a));
+                  d = std::min(d, capsule(p, {0, .35f, 0}, tip, .035f, .085f));
+              }
+              return d;
+          }}}};
 }
 
 Shape pineapple(Draw& u) {
@@ -147,7 +147,10 @@ Shape mushroom(Draw& u) {
 
 Shape donut(Draw& u) {
     const float ring = u(.5, .58), tube = u(.2, .3);
-    return {{{"", [=](const Vec3& p) { return torus(p, {0, 0, 0}, ring, tube); }},
+    return {{{"",
+              [=](const Vec3& p) {
+                  return torus(p, {0, 0, 0}, ring, tube);
+              }},
              {"icing", [=](const Vec3& p) {
                   const float edge = .03f * std::sin(std::atan2(p.z, p.x) * 7);
                   return std::max(torus(p, {0, 0, 0}, ring, tube + .025f), .03f + edge - p.y);
@@ -194,7 +197,9 @@ Shape cake(Draw& u) {
                   }
                   return d;
               }},
-             {"plate", [=](const Vec3& p) { return cylinder(p, {0, -.44f, 0}, plate, .04f); }}}};
+             {"plate", [=](const Vec3& p) {
+                  return cylinder(p, {0, -.44f, 0}, plate, .04f);
+              }}}};
 }
 
 }  // namespace

@@ -28,8 +28,9 @@ Shape chair(Draw& u) {
         }
         return merge({legs, back});
     };
-    return {{{"", frame},
-             {"seat", [=](const Vec3& p) { return box(p, {0, seat, 0}, {w, .06f, w}, .03f); }}}};
+    return {{{"", frame}, {"seat", [=](const Vec3& p) {
+                               return box(p, {0, seat, 0}, {w, .06f, w}, .03f);
+                           }}}};
 }
 
 Shape table(Draw& u) {
@@ -41,15 +42,18 @@ Shape table(Draw& u) {
                       return merge({cylinder(p, {0, 0, 0}, leg * 1.3f, h),
                                     cylinder(p, {0, -h, 0}, w * .5f, .05f)});
                   }},
-                 {"top", [=](const Vec3& p) { return cylinder(p, {0, h, 0}, w, top); }}}};
+                 {"top", [=](const Vec3& p) {
+                      return cylinder(p, {0, h, 0}, w, top);
+                  }}}};
     }
-    return {
-        {{"",
-          [=](const Vec3& p) {
-              const Vec3 q = fold(p, true, true);
-              return box(q, {w - .1f, -.1f, depth - .1f}, {leg, h + .1f, leg}, .01f);
-          }},
-         {"top", [=](const Vec3& p) { return box(p, {0, h, 0}, {w, top, depth}, .02f); }}}};
+    return {{{"",
+              [=](const Vec3& p) {
+                  const Vec3 q = fold(p, true, true);
+                  return box(q, {w - .1f, -.1f, depth - .1f}, {leg, h + .1f, leg}, .01f);
+              }},
+             {"top", [=](const Vec3& p) {
+                  return box(p, {0, h, 0}, {w, top, depth}, .02f);
+              }}}};
 }
 
 Shape lamp(Draw& u) {
@@ -76,32 +80,34 @@ Shape stool(Draw& u) {
         }
         return std::min(d, torus(p, {0, -h * .35f, 0}, at + spread * .7f, .035f));
     };
-    return {{{"", legs},
-             {"seat", [=](const Vec3& p) { return cylinder(p, {0, h, 0}, r, .075f, .04f); }}}};
+    return {{{"", legs}, {"seat", [=](const Vec3& p) {
+                              return cylinder(p, {0, h, 0}, r, .075f, .04f);
+                          }}}};
 }
 
 Shape sofa(Draw& u) {
     const float w = u(.75, .95), depth = u(.34, .42), arm = u(.09, .16), back = u(.3, .45);
     const int seats = 2 + u.pick(2);
-    return {{{"",
-              [=](const Vec3& p) {
-                  const Vec3 q = fold(p, true, true);
-                  return merge({box(p, {0, -.25f, 0}, {w, .12f, depth}, .04f),
-                                box(p, {0, back * .5f - .2f, -depth + .08f},
-                                    {w, back * .5f + .2f, .11f}, .06f),
-                                box(fold(p, true, false), {w - arm, -.12f, 0}, {arm, .24f, depth}, .07f),
-                                box(q, {w - .1f, -.42f, depth - .1f}, {.045f, .09f, .045f})});
-              }},
-             {"cushions", [=](const Vec3& p) {
-                  const float inner = w - 2 * arm, wide = inner / static_cast<float>(seats);
-                  float d = 1e9f;
-                  for (int i = 0; i < seats; ++i) {
-                      const float x = -inner + wide * (2 * static_cast<float>(i) + 1);
-                      d = std::min(d, box(p, {x, -.06f, .07f}, {wide - .015f, .085f, depth - .12f},
-                                          .05f));
-                  }
-                  return d;
-              }}}};
+    return {
+        {{"",
+          [=](const Vec3& p) {
+              const Vec3 q = fold(p, true, true);
+              return merge(
+                  {box(p, {0, -.25f, 0}, {w, .12f, depth}, .04f),
+                   box(p, {0, back * .5f - .2f, -depth + .08f}, {w, back * .5f + .2f, .11f}, .06f),
+                   box(fold(p, true, false), {w - arm, -.12f, 0}, {arm, .24f, depth}, .07f),
+                   box(q, {w - .1f, -.42f, depth - .1f}, {.045f, .09f, .045f})});
+          }},
+         {"cushions", [=](const Vec3& p) {
+              const float inner = w - 2 * arm, wide = inner / static_cast<float>(seats);
+              float d = 1e9f;
+              for (int i = 0; i < seats; ++i) {
+                  const float x = -inner + wide * (2 * static_cast<float>(i) + 1);
+                  d = std::min(d,
+                               box(p, {x, -.06f, .07f}, {wide - .015f, .085f, depth - .12f}, .05f));
+              }
+              return d;
+          }}}};
 }
 
 Shape bed(Draw& u) {
@@ -138,8 +144,7 @@ Shape bench(Draw& u) {
         for (int i = 0; i < slats; ++i) {
             const float part = (static_cast<float>(i) + .5f) / static_cast<float>(slats);
             const float half = .82f / static_cast<float>(slats);
-            d = merge({d,
-                       box(p, {0, h, depth * (2 * part - 1)}, {w, .04f, depth * half}, .015f),
+            d = merge({d, box(p, {0, h, depth * (2 * part - 1)}, {w, .04f, depth * half}, .015f),
                        box(p, {0, h + .12f + back * part * .9f, -depth + .03f},
                            {w, back * half * .45f, .035f}, .015f)});
         }
@@ -170,8 +175,8 @@ Shape bookcase(Draw& u) {
                 const auto thick = static_cast<float>(random.uniform(.035, .06));
                 const float tall = (step - .1f) * static_cast<float>(random.uniform(.3, .44));
                 if (random.chance(.85))
-                    d = std::min(d, box(p, {x + thick, floor + tall, .02f},
-                                        {thick, tall, depth - .06f}));
+                    d = std::min(
+                        d, box(p, {x + thick, floor + tall, .02f}, {thick, tall, depth - .06f}));
                 x += 2 * thick + .008f;
             }
         }

@@ -62,9 +62,9 @@ Shape heart(Draw& u) {
     const float thick = u(.24, .34), lobe = u(.36, .42), x = u(.28, .33);
     return whole([=](const Vec3& p) {
         const Vec3 q(std::abs(p.x), p.y - .2f, p.z * lobe / thick);
-        const float body = smooth_merge(
-            .1f, {capsule(q, {x, .1f, 0}, {.03f, -.72f, 0}, lobe, .05f),
-                  capsule(q, {x * .4f, -.1f, 0}, {0, -.6f, 0}, lobe * .8f, .1f)});
+        const float body =
+            smooth_merge(.1f, {capsule(q, {x, .1f, 0}, {.03f, -.72f, 0}, lobe, .05f),
+                               capsule(q, {x * .4f, -.1f, 0}, {0, -.6f, 0}, lobe * .8f, .1f)});
         return body * .75f;
     });
 }
@@ -85,7 +85,9 @@ Shape gear(Draw& u) {
 Shape ring(Draw& u) {
     const float r = u(.62, .72), tube = u(.06, .1), stone = u(.17, .24);
     return {{{"",
-              [=](const Vec3& p) { return torus(p, {0, -.15f, 0}, r, tube, 2); }},
+              [=](const Vec3& p) {
+                  return torus(p, {0, -.15f, 0}, r, tube, 2);
+              }},
              {"gem", [=](const Vec3& p) {
                   const Vec3 q(p.x, p.y - r + .15f - stone * .8f, p.z);
                   const float side = std::abs(std::hypot(q.x, q.z));
@@ -157,18 +159,12 @@ Shape blob(Draw& u) {
 }  // namespace
 
 std::vector<ShapeMaker> solid_shapes() {
-    return {{{"ball", {"ball", "sphere"}}, ball},
-            {{"cube", {"cube", "box"}}, cube},
-            {{"cone", {"cone"}}, upright_cone},
-            {{"cylinder", {"cylinder"}}, upright_cylinder},
-            {{"pyramid", {"pyramid"}}, pyramid},
-            {{"star", {"star"}}, star},
-            {{"heart", {"heart"}}, heart},
-            {{"gear", {"gear"}}, gear},
-            {{"ring", {"ring"}}, ring},
-            {{"diamond", {"diamond"}}, diamond},
-            {{"spring", {"spring"}}, spring},
-            {{"blob", {"object"}}, blob}};
+    return {{{"ball", {"ball", "sphere"}}, ball}, {{"cube", {"cube", "box"}}, cube},
+            {{"cone", {"cone"}}, upright_cone},   {{"cylinder", {"cylinder"}}, upright_cylinder},
+            {{"pyramid", {"pyramid"}}, pyramid},  {{"star", {"star"}}, star},
+            {{"heart", {"heart"}}, heart},        {{"gear", {"gear"}}, gear},
+            {{"ring", {"ring"}}, ring},           {{"diamond", {"diamond"}}, diamond},
+            {{"spring", {"spring"}}, spring},     {{"blob", {"object"}}, blob}};
 }
 
 }  // namespace item3d

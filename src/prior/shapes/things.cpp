@@ -14,18 +14,18 @@ Shape house(Draw& u) {
     return {{{"",
               [=](const Vec3& p) {
                   // Walls up to the ridge, so that gables are walls.
-                  const float gable = std::max(
-                      std::max((p.y - eaves - roof + .06f + std::abs(p.z) * slope) * scale,
-                               eaves - .02f - p.y),
-                      std::abs(p.x) - w);
+                  const float gable =
+                      std::max(std::max((p.y - eaves - roof + .06f + std::abs(p.z) * slope) * scale,
+                                        eaves - .02f - p.y),
+                               std::abs(p.x) - w);
                   return merge({box(p, {0, -.35f, 0}, {w, h, depth}, .01f), gable});
               }},
              {"roof",
               [=](const Vec3& p) {
                   const float side = (p.y - eaves - roof + std::abs(p.z) * slope) * scale;
-                  const float slab = std::max(std::max(side, -side - .07f),
-                                              std::max(std::abs(p.x) - w - overhang,
-                                                       eaves - .09f - p.y));
+                  const float slab =
+                      std::max(std::max(side, -side - .07f),
+                               std::max(std::abs(p.x) - w - overhang, eaves - .09f - p.y));
                   if (!chimney) return slab;
                   return merge({slab, box(p, {w * .5f, eaves + roof * .6f, -depth * .4f},
                                           {.08f, roof * .5f, .08f})});
@@ -48,8 +48,7 @@ Shape tower(Draw& u) {
         return merge({body, std::max(top, -std::min(hollow, battlement))});
     };
     if (!roofed) return whole(stone);
-    return {{{"",
-              [=](const Vec3& p) { return cone(p, -.9f, h - .1f, r * 1.12f, r); }},
+    return {{{"", [=](const Vec3& p) { return cone(p, -.9f, h - .1f, r * 1.12f, r); }},
              {"roof", [=](const Vec3& p) {
                   return cone(p, h - .12f, h - .12f + 2 * tip, crown * 1.1f, .01f);
               }}}};
@@ -70,9 +69,9 @@ Shape tree(Draw& u) {
                   for (int i = 0; i < 6; ++i) {
                       const float a = 2 * pi * static_cast<float>(i) / 6;
                       const auto lift = static_cast<float>(random.uniform(.05, .6));
-                      d = smooth_merge(.06f, {d, sphere(p, {.33f * std::cos(a), lift,
-                                                            .33f * std::sin(a)},
-                                                        r * .85f)});
+                      d = smooth_merge(
+                          .06f,
+                          {d, sphere(p, {.33f * std::cos(a), lift, .33f * std::sin(a)}, r * .85f)});
                   }
                   return d;
               }},
@@ -87,17 +86,17 @@ Shape cactus(Draw& u) {
               [=](const Vec3& p) {
                   const float rib = .018f * std::cos(std::atan2(p.z, p.x) * 10);
                   return smooth_merge(
-                             .05f, {capsule(p, {0, -.5f, 0}, {0, h, 0}, r) + rib,
-                                    capsule(p, {0, left, 0}, {.42f, left, 0}, r * .55f),
-                                    capsule(p, {.42f, left, 0}, {.42f, left + .32f, 0}, r * .6f),
-                                    capsule(p, {0, right, 0}, {-.4f, right, 0}, r * .55f),
-                                    capsule(p, {-.4f, right, 0}, {-.4f, right + .38f, 0},
-                                            r * .6f)}) *
+                             .05f,
+                             {capsule(p, {0, -.5f, 0}, {0, h, 0}, r) + rib,
+                              capsule(p, {0, left, 0}, {.42f, left, 0}, r * .55f),
+                              capsule(p, {.42f, left, 0}, {.42f, left + .32f, 0}, r * .6f),
+                              capsule(p, {0, right, 0}, {-.4f, right, 0}, r * .55f),
+                              capsule(p, {-.4f, right, 0}, {-.4f, right + .38f, 0}, r * .6f)}) *
                          .9f;
               }},
              {"pot", [=](const Vec3& p) {
-                  return merge({cone(p, -.95f, -.45f, .26f, .36f),
-                                cylinder(p, {0, -.45f, 0}, .4f, .06f)});
+                  return merge(
+                      {cone(p, -.95f, -.45f, .26f, .36f), cylinder(p, {0, -.45f, 0}, .4f, .06f)});
               }}}};
 }
 
@@ -112,8 +111,10 @@ Shape flower(Draw& u) {
                   const float step = 2 * pi / static_cast<float>(petals);
                   const float turn = std::round(std::atan2(q.y, q.x) / step) * step;
                   const float c = std::cos(turn), s = std::sin(turn);
-                  const Vec3 t(q.x * c + q.y * s, q.y * c - q.x * s, q.z + cup * std::hypot(q.x, q.y));
-                  return ellipsoid(t, {core + length * .42f, 0, 0}, {length * .6f, width, .055f}) * .85f;
+                  const Vec3 t(q.x * c + q.y * s, q.y * c - q.x * s,
+                               q.z + cup * std::hypot(q.x, q.y));
+                  return ellipsoid(t, {core + length * .42f, 0, 0}, {length * .6f, width, .055f}) *
+                         .85f;
               }},
              {"center",
               [=](const Vec3& p) {
@@ -133,10 +134,9 @@ Shape hat(Draw& u) {
               [=](const Vec3& p) {
                   const float edge = std::hypot(p.x, p.z);
                   const float curl = lift * std::max(edge - crown, 0.0f);
-                  return smooth_merge(.06f, {cylinder(p - Vec3(0, curl, 0), {0, -.3f, 0}, brim,
-                                                      .035f, .03f),
-                                             cone(p, -.3f, -.3f + 2 * h, crown, crown - taper) -
-                                                 .02f});
+                  return smooth_merge(
+                      .06f, {cylinder(p - Vec3(0, curl, 0), {0, -.3f, 0}, brim, .035f, .03f),
+                             cone(p, -.3f, -.3f + 2 * h, crown, crown - taper) - .02f});
               }},
              {"band", [=](const Vec3& p) {
                   return cylinder(p, {0, -.17f, 0}, crown + .035f, .075f);
@@ -149,19 +149,18 @@ Shape boot(Draw& u) {
               [=](const Vec3& p) {
                   const float top = -.45f + shaft * 1.5f;
                   const float leg = cone(p + Vec3(.25f, 0, 0), -.5f, top, w, w * 1.12f);
-                  const float foot = std::max(
-                      capsule({p.x, p.y, p.z * .92f}, {-.28f, -.5f, 0}, {length - .1f, -.58f, 0},
-                              w * 1.08f, w * .95f),
-                      -.68f - p.y);
-                  const float hollow = cone(p + Vec3(.25f, 0, 0), top - .3f, top + .1f, w * .9f,
-                                            w * .97f);
+                  const float foot =
+                      std::max(capsule({p.x, p.y, p.z * .92f}, {-.28f, -.5f, 0},
+                                       {length - .1f, -.58f, 0}, w * 1.08f, w * .95f),
+                               -.68f - p.y);
+                  const float hollow =
+                      cone(p + Vec3(.25f, 0, 0), top - .3f, top + .1f, w * .9f, w * .97f);
                   return std::max(smooth_merge(.12f, {leg, foot}), -hollow);
               }},
              {"sole", [=](const Vec3& p) {
-                  const float foot = std::hypot(std::max(std::abs(p.x - (length - .38f) * .5f) -
-                                                             (length + .18f) * .5f,
-                                                         0.0f),
-                                                p.z);
+                  const float foot = std::hypot(
+                      std::max(std::abs(p.x - (length - .38f) * .5f) - (length + .18f) * .5f, 0.0f),
+                      p.z);
                   const float heel = p.x < -.1f ? sole * 2.2f : sole;
                   return std::max((foot - w * 1.05f), std::abs(p.y + .66f + heel) - heel);
               }}}};
@@ -169,17 +168,17 @@ Shape boot(Draw& u) {
 
 Shape bell(Draw& u) {
     const float mouth = u(.58, .7), waist = u(.3, .36), wall = .07f;
-    const Lathe body({-.6f, -.5f, -.1f, .4f, .58f}, {mouth, mouth * .82f, waist * 1.15f, waist,
-                                                     .06f},
-                     {0, .5f});
+    const Lathe body({-.6f, -.5f, -.1f, .4f, .58f},
+                     {mouth, mouth * .82f, waist * 1.15f, waist, .06f}, {0, .5f});
     return {{{"",
               [=](const Vec3& p) {
-                  return std::max(body.distance(p), -body.distance(p / .86f + Vec3(0, .14f, 0)) *
-                                                        .86f);
+                  return std::max(body.distance(p),
+                                  -body.distance(p / .86f + Vec3(0, .14f, 0)) * .86f);
               }},
-             {"clapper", [=](const Vec3& p) {
-                  return merge({sphere(p, {0, -.6f, 0}, .13f),
-                                capsule(p, {0, -.5f, 0}, {0, .3f, 0}, .03f)});
+             {"clapper",
+              [=](const Vec3& p) {
+                  return merge(
+                      {sphere(p, {0, -.6f, 0}, .13f), capsule(p, {0, -.5f, 0}, {0, .3f, 0}, .03f)});
               }},
              {"handle", [=](const Vec3& p) {
                   return torus(p, {0, .68f + wall, 0}, .14f, .05f, 2);
@@ -206,11 +205,11 @@ Shape hammer(Draw& u) {
               [=](const Vec3& p) {
                   const Vec3 q(p.y - .62f, p.x, p.z);  // the head lies along x
                   const float face = cylinder(q, {0, head * .5f, 0}, r, head * .55f, .03f);
-                  if (!claw) return merge({face, cylinder(q, {0, -head * .5f, 0}, r, head * .55f,
-                                                          .03f)});
+                  if (!claw)
+                      return merge({face, cylinder(q, {0, -head * .5f, 0}, r, head * .55f, .03f)});
                   const float bend = (p.x < 0 ? p.x * p.x * .9f : 0.0f);
-                  return merge({face, box(p, {-head * .55f, .66f - bend, 0}, {head * .7f, .05f, r},
-                                          .03f)});
+                  return merge(
+                      {face, box(p, {-head * .55f, .66f - bend, 0}, {head * .7f, .05f, r}, .03f)});
               }},
              {"handle", [=](const Vec3& p) {
                   return capsule(p, {0, .75f, 0}, {0, -.85f, 0}, grip * .85f, grip * 1.3f);
@@ -220,18 +219,19 @@ Shape hammer(Draw& u) {
 Shape umbrella(Draw& u) {
     const float r = u(.8, .92), h = u(.4, .55);
     const auto ribs = static_cast<float>(6 + 2 * u.pick(2));
-    return {{{"",
-              [=](const Vec3& p) {
-                  const float rib = std::abs(std::sin(std::atan2(p.z, p.x) * ribs * .5f));
-                  const float scallop = .08f * rib;
-                  const Vec3 q = p - Vec3(0, .2f, 0);
-                  const float dome = ellipsoid(q, {0, 0, 0}, {r, h, r});
-                  return std::max(std::max(dome, -dome - .06f), scallop - q.y);
-              }},
-             {"handle", [=](const Vec3& p) {
-                  const float hook = std::max(torus(p, {.14f, -.72f, 0}, .14f, .045f, 2), p.y + .72f);
-                  return merge({capsule(p, {0, .2f + h + .06f, 0}, {0, -.72f, 0}, .04f), hook});
-              }}}};
+    return {
+        {{"",
+          [=](const Vec3& p) {
+              const float rib = std::abs(std::sin(std::atan2(p.z, p.x) * ribs * .5f));
+              const float scallop = .08f * rib;
+              const Vec3 q = p - Vec3(0, .2f, 0);
+              const float dome = ellipsoid(q, {0, 0, 0}, {r, h, r});
+              return std::max(std::max(dome, -dome - .06f), scallop - q.y);
+          }},
+         {"handle", [=](const Vec3& p) {
+              const float hook = std::max(torus(p, {.14f, -.72f, 0}, .14f, .045f, 2), p.y + .72f);
+              return merge({capsule(p, {0, .2f + h + .06f, 0}, {0, -.72f, 0}, .04f), hook});
+          }}}};
 }
 
 Shape drum(Draw& u) {
@@ -259,11 +259,14 @@ Shape drum(Draw& u) {
 
 Shape present(Draw& u) {
     const float a = u(.5, .62), h = u(.35, .55), band = u(.07, .11), bow = u(.17, .24);
-    return {{{"", [=](const Vec3& p) { return box(p, {0, -.15f, 0}, {a, h, a}, .015f); }},
+    return {{{"",
+              [=](const Vec3& p) {
+                  return box(p, {0, -.15f, 0}, {a, h, a}, .015f);
+              }},
              {"ribbon", [=](const Vec3& p) {
                   const float around = std::min(std::abs(p.x), std::abs(p.z)) - band;
-                  const float wrap = std::max(box(p, {0, -.15f, 0}, {a + .025f, h + .025f, a + .025f}),
-                                              around);
+                  const float wrap =
+                      std::max(box(p, {0, -.15f, 0}, {a + .025f, h + .025f, a + .025f}), around);
                   const Vec3 q = fold(p, true, false);
                   const float y = h - .15f;
                   const Vec3 t((q.x - bow) * .8f + (q.y - y - bow * .6f) * .3f,
@@ -309,9 +312,9 @@ Shape trophy(Draw& u) {
              {"handles",
               [=](const Vec3& p) {
                   const Vec3 q = fold(p, true, false);
-                  return std::max(torus({q.x * 1.1f, q.y * .85f, q.z}, {cup * 1.05f, .38f, 0}, .22f,
-                                        .045f, 2),
-                                  cup * .8f - q.x);
+                  return std::max(
+                      torus({q.x * 1.1f, q.y * .85f, q.z}, {cup * 1.05f, .38f, 0}, .22f, .045f, 2),
+                      cup * .8f - q.x);
               }},
              {"base", [=](const Vec3& p) {
                   return box(p, {0, -.68f, 0}, {foot, .2f, foot}, .02f);
@@ -326,8 +329,8 @@ Shape alarm_clock(Draw& u) {
                   const Vec3 flat(p.x, p.z, p.y);
                   const float rim = std::max(cylinder(flat, Vec3(0.0f), r, depth, .04f),
                                              -cylinder(flat, {0, depth, 0}, r - .09f, .07f));
-                  return merge({rim, capsule(q, {r * .5f, -r * .75f, 0}, {r * .7f, -r - .12f, 0},
-                                             .06f),
+                  return merge({rim,
+                                capsule(q, {r * .5f, -r * .75f, 0}, {r * .7f, -r - .12f, 0}, .06f),
                                 capsule(q, {r * .5f, r * .7f, 0}, {r * .6f, r * .95f, 0}, .04f)});
               }},
              {"bells",
@@ -350,20 +353,19 @@ Shape anvil(Draw& u) {
     const float l = u(.45, .55), w = u(.18, .24), horn = u(.35, .45);
     return whole([=](const Vec3& p) {
         const float neck = .5f + 1.4f * p.y * p.y * 2;
-        return merge({box(p, {-.12f, .32f, 0}, {l, .14f, w}, .02f),
-                      capsule({p.x, p.y, p.z}, {l - .15f, .33f, 0}, {l + horn, .38f, 0}, .15f, .03f),
-                      box({p.x / neck, p.y, p.z / neck}, {-.05f, -.1f, 0}, {.32f, .36f, w}, .02f) *
-                          .5f,
-                      box(p, {-.05f, -.5f, 0}, {.48f, .1f, w * 1.5f}, .02f)});
+        return merge(
+            {box(p, {-.12f, .32f, 0}, {l, .14f, w}, .02f),
+             capsule({p.x, p.y, p.z}, {l - .15f, .33f, 0}, {l + horn, .38f, 0}, .15f, .03f),
+             box({p.x / neck, p.y, p.z / neck}, {-.05f, -.1f, 0}, {.32f, .36f, w}, .02f) * .5f,
+             box(p, {-.05f, -.5f, 0}, {.48f, .1f, w * 1.5f}, .02f)});
     });
 }
 
 Shape guitar(Draw& u) {
     const float low = u(.36, .42), high = low * u(.7, .8), depth = u(.08, .11);
     const auto plate = [=](const Vec3& p, float inset, float half) {
-        const float outline =
-            smooth_merge(.16f, {std::hypot(p.x, p.y + .5f) - low + inset,
-                                std::hypot(p.x, p.y + .02f) - high + inset});
+        const float outline = smooth_merge(.16f, {std::hypot(p.x, p.y + .5f) - low + inset,
+                                                  std::hypot(p.x, p.y + .02f) - high + inset});
         return std::max(outline, std::abs(p.z) - half);
     };
     return {{{"",

@@ -23,8 +23,8 @@ Shape car(Draw& u) {
     return {{{"",
               [=](const Vec3& p) {
                   const float body = box(p, {0, -.05f, 0}, {l, h, w}, .1f);
-                  return std::max(body, -wheels_at(p, {-l * .6f, l * .6f}, -.2f, w, wheel + .03f,
-                                                   .14f));
+                  return std::max(body,
+                                  -wheels_at(p, {-l * .6f, l * .6f}, -.2f, w, wheel + .03f, .14f));
               }},
              {"roof",
               [=](const Vec3& p) {
@@ -43,37 +43,39 @@ Shape truck(Draw& u) {
     const float cab = u(.26, .32), tall = u(.3, .38);
     const bool closed = u.pick(2) == 1;
     const float load = closed ? tall + .12f : bed;
-    return {{{"",
-              [=](const Vec3& p) {
-                  return merge({box(p, {0, -.24f, 0}, {l, .07f, w * .8f}, .02f),
-                                box(p, {l - cab, tall * .5f - .2f, 0}, {cab, tall * .5f + .12f, w},
-                                    .07f)});
-              }},
-             {"cargo",
-              [=](const Vec3& p) {
-                  const float half = l - cab - .05f, x = -l + half;
-                  const float whole_box =
-                      box(p, {x, load - .2f, 0}, {half, load, w}, .02f);
-                  if (closed) return whole_box;
-                  return std::max(whole_box,
-                                  -box(p, {x, load - .06f, 0}, {half - .05f, load, w - .05f}));
-              }},
-             {"wheels", [=](const Vec3& p) {
-                  return wheels_at(p, {-l * .62f, -l * .18f, l * .66f}, -.32f, w - .05f, wheel,
-                                   .07f);
-              }}}};
+    return {
+        {{"",
+          [=](const Vec3& p) {
+              return merge(
+                  {box(p, {0, -.24f, 0}, {l, .07f, w * .8f}, .02f),
+                   box(p, {l - cab, tall * .5f - .2f, 0}, {cab, tall * .5f + .12f, w}, .07f)});
+          }},
+         {"cargo",
+          [=](const Vec3& p) {
+              const float half = l - cab - .05f, x = -l + half;
+              const float whole_box = box(p, {x, load - .2f, 0}, {half, load, w}, .02f);
+              if (closed) return whole_box;
+              return std::max(whole_box,
+                              -box(p, {x, load - .06f, 0}, {half - .05f, load, w - .05f}));
+          }},
+         {"wheels", [=](const Vec3& p) {
+              return wheels_at(p, {-l * .62f, -l * .18f, l * .66f}, -.32f, w - .05f, wheel, .07f);
+          }}}};
 }
 
 Shape bus(Draw& u) {
     const float l = u(.85, .95), h = u(.28, .36), w = u(.26, .32), wheel = u(.13, .16);
     const int windows = 4 + u.pick(3);
-    return {{{"", [=](const Vec3& p) { return box(p, {0, .05f, 0}, {l, h, w}, .08f); }},
+    return {{{"",
+              [=](const Vec3& p) {
+                  return box(p, {0, .05f, 0}, {l, h, w}, .08f);
+              }},
              {"windows",
               [=](const Vec3& p) {
                   const float pitch = 1.7f * l / static_cast<float>(windows);
-                  const float i = std::clamp(std::round(p.x / pitch + .5f * static_cast<float>(
-                                                                            windows % 2 + 1)),
-                                             -2.0f, 3.0f);
+                  const float i = std::clamp(
+                      std::round(p.x / pitch + .5f * static_cast<float>(windows % 2 + 1)), -2.0f,
+                      3.0f);
                   const float x = (i - .5f * static_cast<float>(windows % 2 + 1)) * pitch;
                   return merge({box(fold(p, false, true), {x, .05f + h * .35f, w},
                                     {pitch * .38f, h * .34f, .02f}),
@@ -89,12 +91,12 @@ Shape locomotive(Draw& u) {
     const float chimney = u(.25, .4), flare = u(.06, .12);
     return {{{"",
               [=](const Vec3& p) {
-                  return merge({cylinder({p.y - .02f, p.x - .15f, p.z}, Vec3(0.0f), r, l * .75f,
-                                         .04f),
-                                box(p, {-l + cab, .12f, 0}, {cab, .34f, .3f}, .02f),
-                                box(p, {-l + cab, .48f, 0}, {cab + .07f, .035f, .36f}, .02f),
-                                box(p, {0, -.25f, 0}, {l, .06f, .26f}, .02f),
-                                sphere(p, {.1f, .02f + r, 0}, .1f)});
+                  return merge(
+                      {cylinder({p.y - .02f, p.x - .15f, p.z}, Vec3(0.0f), r, l * .75f, .04f),
+                       box(p, {-l + cab, .12f, 0}, {cab, .34f, .3f}, .02f),
+                       box(p, {-l + cab, .48f, 0}, {cab + .07f, .035f, .36f}, .02f),
+                       box(p, {0, -.25f, 0}, {l, .06f, .26f}, .02f),
+                       sphere(p, {.1f, .02f + r, 0}, .1f)});
               }},
              {"chimney",
               [=](const Vec3& p) {
@@ -122,9 +124,9 @@ Shape airplane(Draw& u) {
                   const float body = ellipsoid(p, {0, 0, 0}, {l, r, r});
                   const float upright = box({p.x + l * .82f + (p.y - .1f) * .5f, p.y, p.z},
                                             {0, fin * .5f, 0}, {.12f, fin * .5f, .03f}, .02f);
-                  return smooth_merge(.03f, {body, upright * .85f,
-                                             ellipsoid(p, {l * .45f, r * .6f, 0},
-                                                       {.2f, .1f, .08f})});
+                  return smooth_merge(.03f,
+                                      {body, upright * .85f,
+                                       ellipsoid(p, {l * .45f, r * .6f, 0}, {.2f, .1f, .08f})});
               }},
              {"wings", wings}}};
 }
@@ -145,7 +147,8 @@ Shape boat(Draw& u) {
              {"sail", [=](const Vec3& p) {
                   // A triangle behind the mast and a smaller one before it.
                   const float y = p.y + .2f, tall = mast + .14f;
-                  const float side = p.x < .05f ? (.0f - p.x) / (l * .85f) : (p.x - .1f) / (l * .5f);
+                  const float side =
+                      p.x < .05f ? (.0f - p.x) / (l * .85f) : (p.x - .1f) / (l * .5f);
                   const float edge = (side + y / tall - 1) * .45f;
                   const float slab = std::abs(p.z) - .025f;
                   const float gap = .03f - std::abs(p.x - .05f);

@@ -10,19 +10,18 @@ Shape mug(Draw& u) {
     const float r = u(.45, .6), h = u(.5, .65), wall = u(.06, .09), ring = u(.24, .36);
     const float taper = u(-.08, .1), y = u(-.08, .08), tube = u(.05, .08);
     const Lathe body({-h, 0, h}, {r - taper, r - taper * .4f, r}, {wall, .8f});
-    return {{{"", turned(body)},
-             {"handle", [=](const Vec3& p) {
-                  const Vec3 q(p.x, (p.y - y) * .85f, p.z);
-                  return std::max(torus(q, {r - taper * .4f + .02f, 0, 0}, ring, tube, 2),
-                                  (r - taper) * .9f - std::hypot(p.x, p.z));
-              }}}};
+    return {{{"", turned(body)}, {"handle", [=](const Vec3& p) {
+                                      const Vec3 q(p.x, (p.y - y) * .85f, p.z);
+                                      return std::max(
+                                          torus(q, {r - taper * .4f + .02f, 0, 0}, ring, tube, 2),
+                                          (r - taper) * .9f - std::hypot(p.x, p.z));
+                                  }}}};
 }
 
 Shape vase(Draw& u) {
-    return whole(turned(Lathe({-.85f, -.5f, -.1f, .3f, .6f, .85f},
-                              {u(.2, .35), u(.35, .55), u(.35, .6), u(.2, .5), u(.15, .25),
-                               u(.22, .4)},
-                              {.06f, .6f})));
+    return whole(turned(Lathe(
+        {-.85f, -.5f, -.1f, .3f, .6f, .85f},
+        {u(.2, .35), u(.35, .55), u(.35, .6), u(.2, .5), u(.15, .25), u(.22, .4)}, {.1f, .6f})));
 }
 
 Shape bowl(Draw& u) {
@@ -36,8 +35,9 @@ Shape bottle(Draw& u) {
     const Lathe body({-.9f, -.85f, s - .1f, s + .25f, .8f, .82f, .9f},
                      {b * .9f, b, b, n, n, n * 1.25f, n * 1.25f}, {0, .5f});
     const float cap = n * u(1.5, 1.8);
-    return {{{"", turned(body)},
-             {"cap", [=](const Vec3& p) { return cylinder(p, {0, .86f, 0}, cap, .1f); }}}};
+    return {{{"", turned(body)}, {"cap", [=](const Vec3& p) {
+                                      return cylinder(p, {0, .86f, 0}, cap, .1f);
+                                  }}}};
 }
 
 Shape teapot(Draw& u) {
@@ -66,8 +66,9 @@ Shape pitcher(Draw& u) {
                      {.06f, .6f});
     return {{{"",
               [=](const Vec3& p) {
-                  const float beak = std::max(ellipsoid(p, {lip * .8f, .78f, 0}, {.3f, .16f, .14f}),
-                                              -ellipsoid(p, {lip * .7f, .86f, 0}, {.28f, .16f, .1f}));
+                  const float beak =
+                      std::max(ellipsoid(p, {lip * .8f, .78f, 0}, {.3f, .16f, .14f}),
+                               -ellipsoid(p, {lip * .7f, .86f, 0}, {.28f, .16f, .1f}));
                   return smooth_merge(.03f, {body.distance(p), std::max(beak, p.y - .8f)});
               }},
              {"handle", [=](const Vec3& p) {
@@ -105,9 +106,9 @@ Shape barrel(Draw& u) {
     const Lathe body({-h, 0, h}, {end, belly, end}, {0, .8f});
     return {{{"",
               [=](const Vec3& p) {
-                  return std::max(body.distance(p),
-                                  end * .85f > std::hypot(p.x, p.z) ? std::abs(p.y) - h + .06f
-                                                                    : std::abs(p.y) - h);
+                  return std::max(body.distance(p), end * .85f > std::hypot(p.x, p.z)
+                                                        ? std::abs(p.y) - h + .06f
+                                                        : std::abs(p.y) - h);
               }},
              {"hoops", [=](const Vec3& p) {
                   const float y = std::abs(std::abs(p.y) - h * .55f) - .065f;
@@ -141,14 +142,17 @@ Shape basket(Draw& u) {
 
 Shape candle(Draw& u) {
     const float r = u(.24, .34), h = u(.35, .6), foot = u(.45, .6);
-    return {{{"", [=](const Vec3& p) { return cylinder(p, {0, -.7f + h, 0}, r, h, .05f); }},
+    return {{{"",
+              [=](const Vec3& p) {
+                  return cylinder(p, {0, -.7f + h, 0}, r, h, .05f);
+              }},
              {"flame",
               [=](const Vec3& p) {
                   const float y = -.7f + 2 * h;
-                  return smooth_merge(.08f, {capsule(p, {0, y, 0}, {0, y + .1f, 0}, .02f),
-                                             sphere(p, {0, y + .18f, 0}, .1f),
-                                             capsule(p, {0, y + .2f, 0}, {0, y + .42f, 0}, .08f,
-                                                     .01f)});
+                  return smooth_merge(.08f,
+                                      {capsule(p, {0, y, 0}, {0, y + .1f, 0}, .02f),
+                                       sphere(p, {0, y + .18f, 0}, .1f),
+                                       capsule(p, {0, y + .2f, 0}, {0, y + .42f, 0}, .08f, .01f)});
               }},
              {"dish", [=](const Vec3& p) {
                   return merge({cylinder(p, {0, -.72f, 0}, foot, .05f),
