@@ -3,6 +3,7 @@
 
 #include "item3d/models/autoencoder.h"
 #include "item3d/models/clip_text.h"
+#include "item3d/models/clip_tokenizer.h"
 #include "item3d/models/unet.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/dataset.h"
