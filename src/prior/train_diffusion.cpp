@@ -1,3 +1,4 @@
+#include "item3d/core/error.h"
 #include "item3d/core/random.h"
 #include "item3d/models/noise_schedule.h"
 #include "item3d/prior/export.h"
@@ -73,6 +74,18 @@ torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
 
 }  // namespace
 
+namespace {
+
+/// Heads of 24 channels where the width divides by that, else of 32, else of 16.
+int heads_of(int width) {
+    for (const int channels : {24, 32, 16})
+        if (width % channels == 0) return width / channels;
+    ITEM3D_CHECK(false, "widths are multiples of 16");
+    return 1;
+}
+
+}  // namespace
+
 UNet2DConditionConfig prior_unet_config(const std::vector<int>& widths) {
     UNet2DConditionConfig config;
     config.sample_size = latent_size;
@@ -85,7 +98,7 @@ UNet2DConditionConfig prior_unet_config(const std::vector<int>& widths) {
     config.layers_per_block.assign(levels, 1);
     config.attention_head_dim.clear();
     for (const int width : widths)
-        config.attention_head_dim.push_back(std::max(1, width / 24));
+        config.attention_head_dim.push_back(heads_of(width));
     config.transformer_layers_per_block.assign(levels, 1);
     config.cross_attention_dim.assign(levels, 192);
     config.norm_num_groups = 16;
