@@ -51,7 +51,7 @@ void FlatModel::use_values(const torch::Tensor& other) {
 }
 
 ReplicaGroup::ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas,
-                           const AdamOptions& options)
+                           const AdamWOptions& options)
     : replicas_(std::move(replicas)),
       options_(options),
       square_sums_(replicas_.size()),

@@ -29,7 +29,7 @@ class FlatModel {
     std::vector<torch::Tensor> parameters_;
 };
 
-struct AdamOptions {
+struct AdamWOptions {
     float beta1 = 0.9f;
     float beta2 = 0.99f;
     float epsilon = 1e-8f;
@@ -41,7 +41,7 @@ struct AdamOptions {
 class ReplicaGroup {
   public:
     /// All replicas get the first one's values.
-    ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas, const AdamOptions& options);
+    ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas, const AdamWOptions& options);
 
     FlatModel& replica(int rank) { return *replicas_[static_cast<std::size_t>(rank)]; }
     int size() const { return static_cast<int>(replicas_.size()); }
@@ -75,7 +75,7 @@ class ReplicaGroup {
     void wait();
 
     std::vector<std::unique_ptr<FlatModel>> replicas_;
-    AdamOptions options_;
+    AdamWOptions options_;
     torch::Tensor first_moment_, second_moment_, average_;
     std::vector<double> square_sums_;
     std::int64_t steps_ = 0;

@@ -53,7 +53,7 @@ TrainingLoop::TrainingLoop(const LoopOptions& options, std::vector<LoopReplica> 
     std::vector<std::unique_ptr<FlatModel>> flat;
     for (const LoopReplica& replica : replicas_)
         flat.push_back(std::make_unique<FlatModel>(replica.modules));
-    group_ = std::make_unique<ReplicaGroup>(std::move(flat), AdamOptions{});
+    group_ = std::make_unique<ReplicaGroup>(std::move(flat), AdamWOptions{});
     if (options_.resume && std::filesystem::exists(options_.checkpoint)) load_checkpoint();
 }
 

@@ -25,7 +25,7 @@ struct Reconstruction {
     const Dataset& dataset;
     Model model;  ///< as written
     Image light;
-    std::optional<Shape> shape;  ///< none for a given mesh
+    std::optional<FoundShape> shape;  ///< none for a given mesh
     RefineCurves refine;
     std::vector<ScoredView> train, test;  ///< a few of the former
     std::vector<ScoredView> test_without_shadows;

@@ -89,16 +89,16 @@ std::int64_t StageRunner::total_iterations() const {
     return request_.refine.iterations + (request_.mesh.empty() ? request_.shape.iterations : 0);
 }
 
-std::optional<Shape> StageRunner::found_shape() const {
+std::optional<FoundShape> StageRunner::found_shape() const {
     if (!reader_ || !reader_->has("shape.positions")) return std::nullopt;
-    return Shape{{reader_->get("shape.positions"), reader_->get("shape.triangles")},
-                 {curve_values(reader_->get("shape.curve.picture")),
-                  curve_values(reader_->get("shape.curve.mask"))},
-                 curve_values(reader_->get("shape.curve.triangles")),
-                 reader_->get("shape.hull_overlap").item<double>()};
+    return FoundShape{{reader_->get("shape.positions"), reader_->get("shape.triangles")},
+                      {curve_values(reader_->get("shape.curve.picture")),
+                       curve_values(reader_->get("shape.curve.mask"))},
+                      curve_values(reader_->get("shape.curve.triangles")),
+                      reader_->get("shape.hull_overlap").item<double>()};
 }
 
-void StageRunner::keep(const Shape& shape) {
+void StageRunner::keep(const FoundShape& shape) {
     shape_ = {{"shape.positions", shape.mesh.positions},
               {"shape.triangles", shape.mesh.triangles},
               {"shape.curve.picture", curve_tensor(shape.curves.picture)},

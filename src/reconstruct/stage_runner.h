@@ -19,9 +19,9 @@ class StageRunner {
     StageRunner(const ReconstructRequest& request, const Dataset& dataset);
 
     /// The shape that the interrupted run had found already, if it had.
-    std::optional<Shape> found_shape() const;
+    std::optional<FoundShape> found_shape() const;
     /// From now on part of every checkpoint.
-    void keep(const Shape& shape);
+    void keep(const FoundShape& shape);
 
     /// Goes on from the checkpoint where that was made in this stage, then to the end. Throws
     /// Interrupted, with the checkpoint written, after Ctrl-C or at the request's stop_after.

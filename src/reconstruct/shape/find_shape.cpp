@@ -219,7 +219,7 @@ void ShapeSearch::load_state(const CheckpointReader& reader) {
     triangles_ = curve_values(reader.get("curve.triangles"));
 }
 
-Shape ShapeSearch::shape() {
+FoundShape ShapeSearch::shape() {
     const TriangleMesh mesh = field_->mesh();
     if (mesh.triangles.size(0) == 0) refuse_vanished_shape();
     return {simplified(without_specks(mesh), options_.triangles), learning_.curves, triangles_,

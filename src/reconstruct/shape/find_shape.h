@@ -34,7 +34,7 @@ struct ShapeOptions {
     std::uint64_t seed = 0;
 };
 
-struct Shape {
+struct FoundShape {
     TriangleMesh mesh;
     RefineCurves curves;
     std::vector<double> triangles;  ///< of the surface that was drawn, by iteration
@@ -72,7 +72,7 @@ class ShapeSearch : public Stage {
     void load_state(const CheckpointReader& reader) override;
 
     /// Cleaned and simplified, when all is done.
-    Shape shape();
+    FoundShape shape();
 
   private:
     int end_of_level(int level) const;
