@@ -16,7 +16,7 @@
 namespace item3d {
 
 struct ShapeOptions {
-    std::string extraction = "tetrahedra";  ///< see extraction_names()
+    std::string extraction = "flexicubes";  ///< see extraction_names()
     std::vector<int> cells{48, 96};     ///< along the box's longest edge, each twice the one before
     int iterations = 1000;              ///< in all; half as many on every lattice but the last
     double value_learning_rate = 0.02;  ///< in cells
