@@ -60,7 +60,7 @@ TEST(Checkpoint, SaysWhatDoesNotFit) {
               "here: was made with steps = 3, this command has 4; use the same command, or leave "
               "out --resume to begin anew");
     EXPECT_EQ(message_of<InputError>([&] {
-                  require_same_identity("here", saved, {{"model", "b"}},
+                  require_same_identity("here", saved, {{"alpha", 1}, {"model", "b"}},
                                         {{"model", "belongs to another model file"}});
               }),
               "here: belongs to another model file; use the same command, or leave out --resume to "

@@ -35,8 +35,8 @@ struct EditScene {
     torch::Device device = torch::kCPU;  ///< where all tensors of the edit are
 };
 
-/// Returns while the prior is still being loaded, if verify_prior() has nothing against it. Throws
-/// InputError for what cannot be read, ResourceError where memory will not do.
+/// Returns while the prior is still being loaded. Throws InputError for what cannot be read of the
+/// rest, ResourceError where memory will not do.
 EditScene load_scene(const EditRequest& request);
 
 }  // namespace item3d

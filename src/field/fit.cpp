@@ -39,7 +39,7 @@ Examples draw_examples(const SurfaceSampler& sampler, const FieldSpace& space,
         {linear_to_srgb(own.base_color.clamp(0.0f, 1.0f)), own.orm.clamp(0.0f, 1.0f), slopes}, 1);
     // The sampler goes over the surface in order: each step takes one of `steps` neighbours.
     const auto deal = [&](const torch::Tensor& rows) {
-        return rows.view({points, steps, -1}).transpose(0, 1).contiguous();
+        return rows.reshape({points, steps, -1}).transpose(0, 1).contiguous();
     };
     return {deal(space.positions(surface)), deal(values)};
 }

@@ -86,18 +86,21 @@ std::string hash_of_file(const std::filesystem::path& path) {
 void require_same_identity(const std::filesystem::path& path, const nlohmann::json& saved,
                            const nlohmann::json& now,
                            const std::map<std::string, std::string>& inputs) {
-    for (const auto& [key, value] : now.items()) {
-        const nlohmann::json before =
-            saved.is_object() ? saved.value(key, nlohmann::json()) : nlohmann::json();
-        if (before == value) continue;
-        const auto input = inputs.find(key);
-        throw InputError(path.string(),
-                         input != inputs.end()
-                             ? input->second
-                             : fmt::format("was made with {} = {}, this command has {}", key,
-                                           before.dump(), value.dump()),
+    const auto reject = [&](const std::string& problem) {
+        throw InputError(path.string(), problem,
                          "use the same command, or leave out --resume to begin anew");
-    }
+    };
+    const auto before = [&](const std::string& key) {
+        return saved.is_object() ? saved.value(key, nlohmann::json()) : nlohmann::json();
+    };
+    // First of all what settings follow from: without its --mesh a run has settings that one has
+    // not.
+    for (const auto& [key, problem] : inputs)
+        if (now.contains(key) && before(key) != now[key]) reject(problem);
+    for (const auto& [key, value] : now.items())
+        if (before(key) != value)
+            reject(fmt::format("was made with {} = {}, this command has {}", key,
+                               before(key).dump(), value.dump()));
 }
 
 void append_parameters(NamedTensors& tensors, const std::string& prefix,
