@@ -1,6 +1,5 @@
 #include "item3d/models/conv3x3.h"
 #include "item3d/models/direct_convolution.h"
-#include "item3d/models/matrix_kernel.h"
 #include "item3d/models/unet_blocks.h"
 #include "item3d/models/winograd.h"
 #include "models_testing.h"
@@ -100,13 +99,10 @@ TEST(Winograd, LeavesHeavyWeightsAndFewPixelsToOthersInFloat) {
 }
 
 TEST(DirectConvolution, IsTakenForSmallMaps) {
-    if (!runs_here(torch::kFloat32)) GTEST_SKIP() << "no AVX-512";
-    // With matrix units bfloat16's small maps stay with the library.
-    const torch::Dtype dtype =
-        matrix_kernel_runs<BrainFloat>() ? torch::kBFloat16 : torch::kFloat32;
-    const torch::Tensor weight = torch::randn({64, 64, 3, 3}).to(dtype);
+    if (!runs_here(torch::kBFloat16)) GTEST_SKIP() << "no AVX-512 for bfloat16";
+    const torch::Tensor weight = torch::randn({64, 64, 3, 3}).to(torch::kBFloat16);
     const auto made_for = [&](const std::vector<std::int64_t>& shape) {
-        return FrozenConvolution::make(torch::empty(shape, dtype), weight);
+        return FrozenConvolution::make(torch::empty(shape, torch::kBFloat16), weight);
     };
     EXPECT_NE(std::dynamic_pointer_cast<DirectConvolution>(made_for({4, 64, 8, 8})), nullptr);
     EXPECT_NE(std::dynamic_pointer_cast<WinogradConvolution>(made_for({4, 64, 16, 16})), nullptr);

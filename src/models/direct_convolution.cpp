@@ -37,6 +37,46 @@ void convolve_any(const ConvolutionShape& shape, const torch::Tensor& x,
     });
 }
 
+/// x [N, H, W, C] three times, as convolve_taps_in_units() wants it.
+torch::Tensor shifted_maps(const torch::Tensor& x) {
+    const int64_t pictures = x.size(0), height = x.size(1), width = x.size(2), channels = x.size(3);
+    constexpr int64_t beyond = 16;
+    const torch::Tensor all =
+        torch::zeros({(3 * pictures * (height + 2) * width + beyond) * channels}, x.options());
+    const torch::Tensor maps = all.narrow(0, 0, 3 * pictures * (height + 2) * width * channels)
+                                   .view({3, pictures, height + 2, width, channels})
+                                   .narrow(2, 1, height);
+    maps[0].narrow(2, 1, width - 1).copy_(x.narrow(2, 0, width - 1));
+    maps[1].copy_(x);
+    maps[2].narrow(2, 0, width - 1).copy_(x.narrow(2, 1, width - 1));
+    return all;
+}
+
+void convolve_in_units(const ConvolutionShape& shape, const torch::Tensor& x,
+                       const torch::Tensor& packed, const float* bias, const torch::Tensor& y) {
+    // As many as keep a column's sums in a core's cache, beside its weights.
+    constexpr int64_t most_tiles = 32;
+    const int64_t tiles = unit_tiles(shape);
+    const int64_t ranges = (tiles + most_tiles - 1) / most_tiles;
+    const int64_t each = (tiles + ranges - 1) / ranges;
+    const torch::Tensor shifted = shifted_maps(x.permute({0, 2, 3, 1}));
+    at::parallel_for(
+        0, ranges * (shape.out_channels / packed_columns), 1, [&](int64_t first, int64_t last) {
+            const torch::Tensor scratch = torch::empty({unit_taps_scratch(each)}, torch::kUInt8);
+            for (int64_t task = first; task < last; ++task) {
+                TilePart part;
+                part.first_tile = task % ranges * each;
+                part.last_tile = std::min(tiles, part.first_tile + each);
+                part.first_channel = task / ranges * packed_columns;
+                part.last_channel = part.first_channel + packed_columns;
+                convolve_taps_in_units(shape, static_cast<const BrainFloat*>(shifted.data_ptr()),
+                                       static_cast<const BrainFloat*>(packed.data_ptr()), bias,
+                                       static_cast<BrainFloat*>(y.data_ptr()), part,
+                                       scratch.data_ptr());
+            }
+        });
+}
+
 /// Weights that were rounded to float16 stay so: half the memory, and not a bit less.
 torch::Dtype type_of_packed(const torch::Tensor& weight, torch::Dtype maps) {
     const bool rounded = weight.scalar_type() == torch::kFloat16 && maps == torch::kFloat32;
@@ -53,9 +93,7 @@ void pack_any(const void* weights, int64_t out_channels, int64_t in_channels, in
 }  // namespace
 
 bool DirectConvolution::gains(const torch::Tensor& x, const torch::Tensor& weight) {
-    // The library's take their bfloat16 to matrix units, where there are any.
-    return fits(x, weight) &&
-           (x.scalar_type() != torch::kBFloat16 || matrix_kernel_runs<BrainFloat>());
+    return fits(x, weight);
 }
 
 DirectConvolution::DirectConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget)
@@ -82,9 +120,11 @@ torch::Tensor DirectConvolution::convolve(const torch::Tensor& x, const torch::T
         torch::empty({shape.pictures, out_channels, shape.height, shape.width},
                      x.options().memory_format(torch::MemoryFormat::ChannelsLast));
     const float* added = bias.defined() ? bias.data_ptr<float>() : nullptr;
-    const auto run = packed_dtype() == torch::kBFloat16  ? convolve_any<BrainFloat>
-                     : packed_dtype() == torch::kFloat16 ? convolve_any<HalfFloat>
-                                                         : convolve_any<float>;
+    const bool in_units = packed_dtype() == torch::kBFloat16 && matrix_units_run();
+    const auto run = in_units                             ? convolve_in_units
+                     : packed_dtype() == torch::kBFloat16 ? convolve_any<BrainFloat>
+                     : packed_dtype() == torch::kFloat16  ? convolve_any<HalfFloat>
+                                                          : convolve_any<float>;
     run(shape, x, packed, added, y);
     return y;
 }

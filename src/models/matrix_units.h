@@ -12,8 +12,8 @@
 
 namespace item3d::units {
 
-/// Rows multiplied at a time: two tiles.
-constexpr int rows = 32;
+/// Of a tile, and multiplied at a time: two tiles.
+constexpr int tile_rows = 16, rows = 2 * tile_rows;
 
 inline std::int64_t whole_rows(std::int64_t count) {
     return (count + rows - 1) / rows * rows;
@@ -37,12 +37,15 @@ class Tiles {
     Tiles& operator=(const Tiles&) = delete;
 };
 
-/// sums [count, 64] = a [count, depth] times b [depth / 2, 64, 2]; count is a multiple of `rows`,
-/// depth of 32. `next` is the b of the call after this one: it is fetched meanwhile, for processors
-/// do not foresee what tiles will read, and to wait for it takes as long again as multiplying.
-inline void multiply(const BrainFloat* a, std::int64_t count, std::int64_t depth,
-                     const BrainFloat* b, const BrainFloat* next, float* sums) {
-    constexpr int tile = 16, half = 2 * tile, group = 2, line = 64;
+/// sums [count, 64] = (or +=, with `add`) a [count, depth] times b [depth / 2, 64, 2]; count is a
+/// multiple of `rows`, depth of 32. Rows of a are told by tiles: tile_at(i) is the first of
+/// sixteen, each `depth` numbers after the one before. `next` is the b of the call after this one:
+/// it is fetched meanwhile, for processors do not foresee what tiles will read, and to wait for it
+/// takes as long again as multiplying.
+template <typename TileAt>
+void multiply(const TileAt& tile_at, std::int64_t count, std::int64_t depth, const BrainFloat* b,
+              const BrainFloat* next, float* sums, bool add) {
+    constexpr int half = packed_columns / 2, group = 2, line = 64;
     constexpr int b_stride = packed_columns * group * static_cast<int>(sizeof(BrainFloat));
     constexpr int sums_stride = packed_columns * static_cast<int>(sizeof(float));
     const auto a_stride = depth * static_cast<std::int64_t>(sizeof(BrainFloat));
@@ -51,34 +54,44 @@ inline void multiply(const BrainFloat* a, std::int64_t count, std::int64_t depth
     const std::int64_t lines_a_step = (bytes / line + steps - 1) / steps;
     const char* fetched = reinterpret_cast<const char*>(next);
     const char* const fetched_end = fetched + bytes;
-    for (std::int64_t row = 0; row < count; row += rows)
+    for (std::int64_t row = 0; row < count; row += rows) {
+        const BrainFloat* const upper = tile_at(row / tile_rows);
+        const BrainFloat* const lower = tile_at(row / tile_rows + 1);
         for (int column = 0; column < packed_columns; column += half) {
-            _tile_zero(0);
-            _tile_zero(1);
-            _tile_zero(2);
-            _tile_zero(3);
+            float* const top = sums + row * packed_columns + column;
+            float* const bottom = top + tile_rows * packed_columns;
+            if (add) {
+                _tile_loadd(0, top, sums_stride);
+                _tile_loadd(1, top + tile_rows, sums_stride);
+                _tile_loadd(2, bottom, sums_stride);
+                _tile_loadd(3, bottom + tile_rows, sums_stride);
+            } else {
+                _tile_zero(0);
+                _tile_zero(1);
+                _tile_zero(2);
+                _tile_zero(3);
+            }
             for (std::int64_t k = 0; k < depth; k += half) {
                 for (std::int64_t i = 0; i < lines_a_step && fetched < fetched_end; ++i) {
                     _mm_prefetch(fetched, _MM_HINT_T1);
                     fetched += line;
                 }
-                const BrainFloat* upper = a + row * depth + k;
                 const BrainFloat* left = b + k * packed_columns + column * group;
-                _tile_loadd(4, upper, a_stride);
+                _tile_loadd(4, upper + k, a_stride);
                 _tile_loadd(6, left, b_stride);
                 _tile_dpbf16ps(0, 4, 6);
-                _tile_loadd(7, left + tile * group, b_stride);
+                _tile_loadd(7, left + tile_rows * group, b_stride);
                 _tile_dpbf16ps(1, 4, 7);
-                _tile_loadd(5, upper + tile * depth, a_stride);
+                _tile_loadd(5, lower + k, a_stride);
                 _tile_dpbf16ps(2, 5, 6);
                 _tile_dpbf16ps(3, 5, 7);
             }
-            float* corner = sums + row * packed_columns + column;
-            _tile_stored(0, corner, sums_stride);
-            _tile_stored(1, corner + tile, sums_stride);
-            _tile_stored(2, corner + tile * packed_columns, sums_stride);
-            _tile_stored(3, corner + tile * packed_columns + tile, sums_stride);
+            _tile_stored(0, top, sums_stride);
+            _tile_stored(1, top + tile_rows, sums_stride);
+            _tile_stored(2, bottom, sums_stride);
+            _tile_stored(3, bottom + tile_rows, sums_stride);
         }
+    }
 }
 
 }  // namespace item3d::units

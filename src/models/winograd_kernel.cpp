@@ -224,7 +224,8 @@ void multiply_rows(const Number* a, int64_t count, int64_t depth, const Number* 
     if constexpr (std::is_same_v<Number, BrainFloat>)
         if (matrix_units_run()) {
             const units::Tiles tiles;
-            return units::multiply(a, count, depth, b, next, sums);
+            const auto tile = [&](int64_t i) { return a + i * units::tile_rows * depth; };
+            return units::multiply(tile, count, depth, b, next, sums, false);
         }
     for (int64_t r = 0; r < count; r += rows) {
         const Number* at[rows];
