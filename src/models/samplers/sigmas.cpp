@@ -24,7 +24,13 @@ double timestep_of(const std::vector<double>& sigmas, double sigma) {
 std::vector<double> training_sigmas(const NoiseSchedule& schedule) {
     const torch::Tensor& alphas = schedule.alphas_cumprod();
     const torch::Tensor sigmas = ((1 - alphas) / alphas).sqrt();
-    return {sigmas.data_ptr<float>(), sigmas.data_ptr<float>() + sigmas.numel()};
+    std::vector<double> result{sigmas.data_ptr<float>(), sigmas.data_ptr<float>() + sigmas.numel()};
+    // The root of 2^24 - 1 is this to float's precision, but only some processors' root; any number
+    // but a power of two costs each sample a rounding that the small ones after the first step
+    // show.
+    constexpr double at_zero_snr = 4096;
+    if (std::abs(result.back() / at_zero_snr - 1) < 1e-7) result.back() = at_zero_snr;
+    return result;
 }
 
 double interpolate_sigma(const std::vector<double>& sigmas, double timestep) {
