@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Photographs to a model, the model edited, and that seen at sunset: README's second example.
+# Photographs to a model, the model edited, and that seen at sunset.
 #
 #   scripts/photographs.sh DATASET OUT ["a cow" ["a golden cow"]]
 #
-# Leaves OUT/model, OUT/edit and OUT/sunset, each with a model.glb and a report to open. A part that is finished
+# Leaves OUT/model, OUT/edit and OUT/sunset, each with a model.glb and what to look at. A part that is finished
 # is not made again, and one that was interrupted goes on.
 set -euo pipefail
 if (($# < 2)); then
@@ -16,4 +16,4 @@ dataset=$1 out=$2 from=${3:-a cow} to=${4:-a golden cow}
 [[ -e $out/model/reconstruct.json ]] || "$item3d" reconstruct "$dataset" -o "$out/model" --resume
 [[ -e $out/edit/edit.json ]] || "$item3d" edit "$out/model/model.glb" --from "$from" --to "$to" -o "$out/edit" --resume
 "$item3d" relight "$out/edit/model.glb" -o "$out/sunset" --from-light "$out/model/light.hdr" --light sunset
-echo "Open $out/model/report.html, $out/edit/report.html and $out/sunset/report.html"
+echo "Open $out/model/report.html, $out/edit/report.html and $out/sunset/sheet.png"
