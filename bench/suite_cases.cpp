@@ -22,7 +22,7 @@ Vec3 color_of(const PriorVocabulary& vocabulary, const std::string& word) {
             return *known.base_color;
     }
     throw InputError("prior.json", "has no base colour for '" + word + "'",
-                     "run item3d prior measure on the prior");
+                     "run item3d prior evaluate on the prior");
 }
 
 }  // namespace

@@ -263,6 +263,33 @@ TEST(Refine, LossesSeeWhatTheyShould) {
         EXPECT_GT(level.grad().abs().min().item<float>(), 0);
 }
 
+TEST(Refine, LightAloneIsComparedWithThePhotographsLargestChannel) {
+    const Model model = striped_sphere();
+    const Geometry geometry = Geometry::from_model(model);
+    TargetView view{"view", testing::ring_of_cameras(1).front(), torch::zeros({1, 24, 24, 4})};
+    fit_depth_range(view.camera, model.bounds());
+    Appearance appearance = make_appearance(model.bounds(), {view}, 0);
+    const EnvironmentLight light = appearance.light.prefiltered();
+    const RenderedView rendered = render_view(geometry, appearance.field, light, view);
+    MaterialSample white = rendered.shaded;
+    white.base_color = torch::ones_like(white.base_color);
+    white.orm = white.orm * torch::tensor({1.0f, 1.0f, 0.0f});
+    // Red paint, whose largest channel is that of paper.
+    const torch::Tensor lit = shade(rendered.surface, white, light).mean(1, true).detach() * 0.8f;
+    const torch::Tensor red = torch::cat({lit, 0.1f * lit, 0.2f * lit, torch::ones_like(lit)}, 1);
+    const auto picture = [&](float exposure) {
+        const torch::Tensor scale = torch::tensor({exposure, exposure, exposure, 1.0f});
+        return scatter(red * scale, rendered.surface, rendered.raster, torch::zeros({4}));
+    };
+    EXPECT_NEAR(demodulated_light_loss(rendered, light, picture(1)).item<float>(), 0, 1e-4);
+    const torch::Tensor darker = demodulated_light_loss(rendered, light, picture(0.5f));
+    EXPECT_GT(darker.item<float>(), 0.05f);
+    darker.backward();
+    // What is to be mended is the light, and not the base colour.
+    EXPECT_GT(appearance.light.parameters().front().grad().sum().item<float>(), 0);
+    EXPECT_EQ(demodulated_light_loss(rendered, light, view.image).item<float>(), 0);
+}
+
 TEST(MovableMesh, SeamsMoveAsOne) {
     Model model = striped_sphere();
     MovableMesh mesh(model, true);

@@ -9,6 +9,7 @@
 #include "item3d/hub/find_prior.h"
 #include "item3d/models/depth_condition.h"
 #include "item3d/models/pipeline_extras.h"
+#include "item3d/prior/generate_defaults.h"
 #include "item3d/prior/vocabulary.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/render/shade.h"
@@ -39,26 +40,14 @@ struct GenerateCommand : CommonOptions {
     nlohmann::json extras = nlohmann::json::object();  ///< what of PipelineExtras is given
 };
 
-/// What was not said: what the prior's own prior.json recommends ("generate": {"steps",
-/// "guidance_scale"}) where it has one, else what is usual for the scheduler and for the model.
+/// What was not said is the prior's own.
 void complete_options(const GenerateCommand& command, const fs::path& prior,
                       const Pipeline& pipeline, GenerateOptions& options) {
-    const std::string own = pipeline.scheduler.config().sampler_name();
-    if (options.scheduler.empty()) options.scheduler = own;
-    for (const SamplerKind& kind : sampler_kinds())
-        if (kind.name == options.scheduler) options.steps = kind.usual_steps;
-    options.guidance_scale = pipeline.is_sdxl() ? 5.0f : 7.5f;
-    if (fs::exists(prior / "prior.json")) {
-        const Config config = Config::read(prior / "prior.json");
-        const Config defaults(
-            config.has("generate") ? config.json().at("generate") : nlohmann::json::object(),
-            config.subject() + ": generate");
-        if (options.scheduler == own) options.steps = defaults.size("steps", options.steps);
-        options.guidance_scale =
-            static_cast<float>(defaults.number("guidance_scale", options.guidance_scale));
-    }
-    if (command.steps > 0) options.steps = command.steps;
-    if (command.guidance_scale > 0) options.guidance_scale = command.guidance_scale;
+    const GenerateOptions defaults = generate_defaults(prior, pipeline, options.scheduler);
+    options.scheduler = defaults.scheduler;
+    options.steps = command.steps > 0 ? command.steps : defaults.steps;
+    options.guidance_scale =
+        command.guidance_scale > 0 ? command.guidance_scale : defaults.guidance_scale;
 }
 
 /// The depth of a model from the default view, as the pipeline takes it.

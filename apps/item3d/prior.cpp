@@ -229,7 +229,7 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
             "of {:.0f} %\n",
             part(named, "object"), part(named, "material"), part(named, "object_or_material"));
     }
-    if (kinds.empty()) fmt::print("not measured: see `item3d prior measure`\n");
+    if (kinds.empty()) fmt::print("not measured: see `item3d prior evaluate`\n");
     for (const std::string& kind : kinds) {
         fmt::print("\n{}\n", kind);
         for (const KnownWord& word : vocabulary.words_of(kind)) {
@@ -242,7 +242,7 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
     }
 }
 
-void add_folder_commands(CLI::App& app) {
+void add_info(CLI::App& app) {
     auto info = std::make_shared<FolderOptions>();
     CLI::App* command =
         add_command(app, "info", "List what a prior knows, with its accuracy a word", *info);
@@ -261,18 +261,6 @@ void add_folder_commands(CLI::App& app) {
         else
             print_vocabulary(prior, file.string());
     });
-    auto measure = std::make_shared<FolderOptions>();
-    command =
-        add_command(app, "measure", "Measure a prior on held-out shapes, word by word", *measure);
-    command->add_option("PRIOR", measure->folder, "Its folder or name")->required();
-    command->callback([measure] {
-        start_command(*measure);
-        const auto prior = write_measurement(find_prior(measure->folder), at::get_num_threads());
-        if (measure->json)
-            print_json(prior);
-        else
-            print_vocabulary(prior, measure->folder);
-    });
 }
 
 }  // namespace
@@ -281,7 +269,9 @@ void add_prior_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("prior", "Train, fetch and inspect priors");
     command->require_subcommand(1);
     add_train(*command);
-    add_folder_commands(*command);
+    add_prior_list(*command);
+    add_info(*command);
+    add_prior_evaluate(*command);
     add_prior_pull(*command);
     add_prior_verify(*command);
     add_pictures(*command);

@@ -10,4 +10,9 @@ void add_prior_pull(CLI::App& prior);
 /// `prior verify`: what a folder holds, and whether an edit can use it.
 void add_prior_verify(CLI::App& prior);
 
+/// `prior evaluate`: how good a prior is, in numbers and pictures.
+void add_prior_evaluate(CLI::App& prior);
+/// `prior list`: the names that --prior takes.
+void add_prior_list(CLI::App& prior);
+
 }  // namespace item3d

@@ -20,6 +20,7 @@ struct ReconstructCommand : CommonOptions {
     bool no_normal_map = false;
     bool no_shadows = false;
     int cells = 96;
+    double demodulation = 0;
     std::uint64_t seed = 0;
 };
 
@@ -31,6 +32,7 @@ ReconstructRequest make_request(const ReconstructCommand& options) {
     request.refine.normal_map = !options.no_normal_map;
     request.refine.shadows = !options.no_shadows;
     request.shape.cells = {options.cells / 2, options.cells};
+    request.shape.demodulation_weight = request.refine.weights.demodulation = options.demodulation;
     request.shape.seed = request.refine.seed = options.seed;
     request.command = command_line();
     return request;
@@ -116,6 +118,11 @@ void add_reconstruct_command(CLI::App& app) {
     command->add_flag("--no-normal-map", options->no_normal_map, "The mesh alone has normals");
     command->add_flag("--no-shadows", options->no_shadows,
                       "Do not trace what the object hides from the light");
+    command
+        ->add_option("--demodulation", options->demodulation,
+                     "Weight of a loss that makes the light alone as bright as the photographs")
+        ->check(CLI::Range(0.0, 100.0))
+        ->capture_default_str();
     command->add_option("--reference", request.reference,
                         "The true mesh, to measure a distance to");
     command->add_option("--relit", request.relit.folder,

@@ -142,6 +142,15 @@ std::string html_timings(const std::vector<std::pair<std::string, double>>& seco
     return "<ol class=\"timings\">\n" + body + "</ol>\n";
 }
 
+std::string html_parts(const std::vector<ReportPart>& parts) {
+    std::string body;
+    for (const ReportPart& part : parts)
+        body += fmt::format(
+            "<li><span>{}</span><i style=\"--part:{:.2f}%\"></i><b>{:.0f} %</b><em>{}</em></li>\n",
+            html_escape(part.name), 100 * part.value, 100 * part.value, html_escape(part.remark));
+    return "<ol class=\"timings parts\">\n" + body + "</ol>\n";
+}
+
 std::string html_section(const std::string& title, const std::string& content) {
     if (content.empty()) return "";
     return fmt::format("<section><h2>{}</h2>\n{}</section>\n", html_escape(title), content);

@@ -54,6 +54,13 @@ std::string html_table(const TableRows& rows);
 std::string html_chart(const Chart& chart);
 /// Horizontal bars with their share of the sum: seconds by stage.
 std::string html_timings(const std::vector<std::pair<std::string, double>>& seconds);
+/// Horizontal bars of parts in [0, 1], each with a remark (may be empty).
+struct ReportPart {
+    std::string name;
+    double value = 0;
+    std::string remark;
+};
+std::string html_parts(const std::vector<ReportPart>& parts);
 /// A titled part of the page; nothing when `content` is empty.
 std::string html_section(const std::string& title, const std::string& content);
 /// The page around `body`, with its style and the few lines of script that it needs.

@@ -113,6 +113,7 @@ th { font-weight: 400; color: var(--soft); }
 .timings i::after { content: ""; position: absolute; inset: 0 auto 0 0; width: var(--part);
   min-width: 2px; border-radius: 4px; background: var(--c1); }
 .timings b { font-weight: 400; text-align: right; font-variant-numeric: tabular-nums; }
+.parts li { grid-template-columns: 9em 1fr 4em 13em; } .parts em { text-align: left !important; }
 .timings em { font-style: normal; color: var(--soft); text-align: right; }
 footer { margin-top: 60px; padding-top: 20px; border-top: 1px solid var(--line); color: var(--soft);
   font-size: 13px; overflow-wrap: anywhere; }

@@ -1,6 +1,7 @@
 #include "item3d/prior/classifier.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/words.h"
 #include "item3d/prior/captions.h"
@@ -62,11 +63,32 @@ bool knows(const std::set<std::string>& words, const VocabularyEntry& entry) {
                        [&](const std::string& word) { return words.count(word) > 0; });
 }
 
-/// The part of pictures of each word that were told right, and what it was most often taken for.
+/// The pictures of a word that were told right, and what it was most often taken for.
 struct Outcome {
     int right = 0;
+    int of_new_classes = 0, right_of_new_classes = 0;
     std::map<std::string, int> wrong;
 };
+
+double part_of(int right, int all) {
+    return std::round(1000.0 * right / std::max(all, 1)) / 1000;
+}
+
+/// A kind's summary.
+nlohmann::json kind_summary(const std::vector<Outcome>& outcomes, int pictures) {
+    Outcome sum;
+    for (const Outcome& each : outcomes) {
+        sum.right += each.right;
+        sum.of_new_classes += each.of_new_classes;
+        sum.right_of_new_classes += each.right_of_new_classes;
+    }
+    nlohmann::json summary{
+        {"words", outcomes.size()},
+        {"accuracy", part_of(sum.right, static_cast<int>(outcomes.size()) * pictures)}};
+    if (sum.of_new_classes > 0)
+        summary["on_new_classes"] = part_of(sum.right_of_new_classes, sum.of_new_classes);
+    return summary;
+}
 
 /// Spellings that the prior was trained on.
 std::vector<std::string> known_spellings(const VocabularyEntry& entry,
@@ -95,10 +117,9 @@ std::vector<std::size_t> draw_candidates(Random& random, std::size_t count, std:
 
 class Measurement {
   public:
-    Measurement(const Pipeline& pipeline, const MeasureOptions& options)
-        : pipeline_(pipeline),
-          options_(options),
-          views_(make_view_pool(true, shape_variants, 6, mix_bits(options.seed), options.threads)) {
+    Measurement(const Pipeline& pipeline, const std::vector<ShapeView>& views,
+                const MeasureOptions& options)
+        : pipeline_(pipeline), options_(options), views_(views) {
         for (const std::string& kind : light_kinds()) {
             Random random(options.seed, 77 + lights_.size());
             lights_[kind] = make_training_light(random, kind);
@@ -120,18 +141,24 @@ class Measurement {
         std::mutex mutex;
         run_workers(jobs, options_.threads, [&](std::int64_t job) {
             const auto truth = static_cast<std::size_t>(job / options_.pictures);
-            const std::size_t answer = classify(entries, truth, job);
+            const Answer answer = classify(entries, truth, job);
+            const bool right = answer.candidate == truth;
             const std::lock_guard lock(mutex);
-            if (answer == truth)
-                ++outcomes[truth].right;
-            else
-                ++outcomes[truth].wrong[entries[answer].word];
+            outcomes[truth].right += right;
+            outcomes[truth].of_new_classes += answer.new_class;
+            outcomes[truth].right_of_new_classes += answer.new_class && right;
+            if (!right) ++outcomes[truth].wrong[entries[answer.candidate].word];
             progress.update(++done);
         });
         return outcomes;
     }
 
   private:
+    struct Answer {
+        std::size_t candidate;
+        bool new_class;  ///< the picture's
+    };
+
     const ShapeView& pick_view(Random& random, const std::string& shape_class) const {
         for (;;) {
             const ShapeView& view = views_[static_cast<std::size_t>(
@@ -142,8 +169,8 @@ class Measurement {
         }
     }
 
-    std::size_t classify(const std::vector<VocabularyEntry>& entries, std::size_t truth,
-                         std::int64_t job) const {
+    Answer classify(const std::vector<VocabularyEntry>& entries, std::size_t truth,
+                    std::int64_t job) const {
         const VocabularyEntry& entry = entries[truth];
         Random random(options_.seed,
                       mix_bits(std::uint64_t{1} + truth) + static_cast<std::uint64_t>(job));
@@ -193,12 +220,13 @@ class Measurement {
             const torch::Tensor error = (guess - noise).square().mean({1, 2, 3});
             loss += error / error.mean();
         }
-        return candidates[static_cast<std::size_t>(loss.argmin().item<std::int64_t>())];
+        return {candidates[static_cast<std::size_t>(loss.argmin().item<std::int64_t>())],
+                shape.held_out};
     }
 
     const Pipeline& pipeline_;
     MeasureOptions options_;
-    std::vector<ShapeView> views_;
+    const std::vector<ShapeView>& views_;
     std::map<std::string, TrainingLight> lights_;
     std::vector<std::string> colors_;  ///< that the prior knows
 };
@@ -210,18 +238,31 @@ const std::vector<VocabularyEntry>& prior_vocabulary() {
     return entries;
 }
 
-nlohmann::json measure_prior(const Pipeline& pipeline, const MeasureOptions& options) {
+std::vector<ShapeView> held_out_views(const Pipeline& pipeline, std::uint64_t seed, int threads) {
+    const int edge = pipeline.unet->config().sample_size * pipeline.downscale();
+    if (edge != 64 && edge != 128)
+        throw InputError(
+            "the prior",
+            fmt::format("draws pictures of {} pixels, and those to measure with have 64 or 128",
+                        edge),
+            "measure priors of `item3d prior train`");
+    return make_view_pool(true, shape_variants, 6, mix_bits(seed), threads, edge);
+}
+
+nlohmann::json measure_prior(const Pipeline& pipeline, const std::vector<ShapeView>& views,
+                             const MeasureOptions& options) {
     std::vector<VocabularyEntry> all;
     for (const VocabularyEntry& entry : prior_vocabulary())
         if (knows(options.words, entry)) all.push_back(entry);
     std::vector<std::string> kinds;
     for (const VocabularyEntry& entry : all)
         if (kinds.empty() || kinds.back() != entry.kind) kinds.push_back(entry.kind);
-    Measurement measurement(pipeline, options);
+    Measurement measurement(pipeline, views, options);
     Progress progress("measure", static_cast<std::int64_t>(all.size()) * options.pictures);
     std::int64_t done = 0;
     double right = 0;
     nlohmann::json vocabulary = nlohmann::json::object();
+    nlohmann::json summaries = nlohmann::json::object();
     for (const std::string& kind : kinds) {
         std::vector<VocabularyEntry> entries;
         for (const VocabularyEntry& entry : all)
@@ -247,8 +288,11 @@ nlohmann::json measure_prior(const Pipeline& pipeline, const MeasureOptions& opt
             list.push_back(word);
         }
         vocabulary[kind] = list;
+        summaries[kind] = kind_summary(outcomes, options.pictures);
     }
-    return {{"vocabulary", vocabulary}, {"accuracy", right / static_cast<double>(all.size())}};
+    return {{"vocabulary", vocabulary},
+            {"kinds", summaries},
+            {"accuracy", right / static_cast<double>(all.size())}};
 }
 
 }  // namespace item3d

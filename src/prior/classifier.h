@@ -36,11 +36,18 @@ struct MeasureOptions {
     int threads = 2;
 };
 
+/// Views of shapes that were never trained on, of the size of the prior's pictures: six of each
+/// held-out variant, and of each variant of the held-out classes. Throws InputError for a prior
+/// whose pictures are not of 64 or 128 pixels.
+std::vector<ShapeView> held_out_views(const Pipeline& pipeline, std::uint64_t seed, int threads);
+
 /// Which caption of a kind gives the lowest denoising loss on a picture of each of its words, the
 /// right one or that of a rival?
 /// Returns {"vocabulary": {kind: [{word, spellings, accuracy, most_confused_with, base_color?}]},
-/// "accuracy": mean over all}. The pictures are of held-out shapes, with their depth as the
-/// condition for all kinds but objects.
-nlohmann::json measure_prior(const Pipeline& pipeline, const MeasureOptions& options = {});
+/// "kinds": {kind: {"words", "accuracy", "on_new_classes"?}}, "accuracy": mean over all}.
+/// "on_new_classes" is of those pictures alone whose whole class was never trained on. The pictures
+/// are of `views`, with their depth as the condition for all kinds but objects.
+nlohmann::json measure_prior(const Pipeline& pipeline, const std::vector<ShapeView>& views,
+                             const MeasureOptions& options = {});
 
 }  // namespace item3d

@@ -257,7 +257,8 @@ nlohmann::json write_measurement(const fs::path& folder, int threads) {
     MeasureOptions options;
     options.threads = threads;
     options.words = trained_words(folder, *pipeline.tokenizer);
-    nlohmann::json measured = measure_prior(pipeline, options);
+    const auto views = held_out_views(pipeline, options.seed, threads);
+    nlohmann::json measured = measure_prior(pipeline, views, options);
     measured["words"] = options.words;
     return update_prior_json(folder, measured);
 }

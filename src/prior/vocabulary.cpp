@@ -45,7 +45,7 @@ PriorVocabulary::PriorVocabulary(const nlohmann::json& prior_json, const std::st
                 words_.push_back(read_word(kind, entry));
     } catch (const nlohmann::json::exception& error) {
         throw InputError(subject, std::string("is not a prior's description: ") + error.what(),
-                         "make it again with `item3d prior measure`");
+                         "make it again with `item3d prior evaluate`");
     }
 }
 
@@ -55,7 +55,7 @@ PriorVocabulary PriorVocabulary::load(const std::filesystem::path& folder) {
     const auto json = nlohmann::json::parse(read_text(file), nullptr, false);
     if (!json.is_object())
         throw InputError(file.string(), "is not a JSON object",
-                         "make it again with `item3d prior measure`");
+                         "make it again with `item3d prior evaluate`");
     return PriorVocabulary(json, file.string());
 }
 

@@ -43,6 +43,7 @@ nlohmann::json identity_of(const ReconstructRequest& request, const Dataset& dat
                             {"move vertices", request.move_vertices},
                             {"shadows", request.refine.shadows},
                             {"normal map", request.refine.normal_map},
+                            {"demodulation", request.refine.weights.demodulation},
                             {"seed", request.refine.seed},
                             {"mesh", nullptr}};
     if (!request.mesh.empty()) {

@@ -54,6 +54,7 @@ nlohmann::json summary_json(const Reconstruction& result) {
                              {"move_vertices", request.move_vertices},
                              {"shadows", request.refine.shadows},
                              {"normal_map", request.refine.normal_map},
+                             {"demodulation", request.refine.weights.demodulation},
                              {"texture_size", request.texture_size},
                              {"seed", request.refine.seed},
                              {"threads", at::get_num_threads()}}},

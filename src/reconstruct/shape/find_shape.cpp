@@ -160,6 +160,9 @@ void ShapeSearch::step() {
     const torch::Tensor mask = mask_loss(rendered.image, view.image);
     torch::Tensor loss = picture + options_.mask_weight * mask +
                          loss_besides_picture(rendered, surface, light_alone);
+    if (options_.demodulation_weight > 0)
+        loss = loss + options_.demodulation_weight *
+                          demodulated_light_loss(rendered, learning_.light, view.image);
     if (light_learns) loss = loss + options_.whiteness_weight * appearance_.light.whiteness_loss();
     loss.backward();
     const double rate = blend(1.0, 0.2, i, count);

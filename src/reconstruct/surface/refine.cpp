@@ -77,7 +77,8 @@ RenderedView Refinement::render(const TargetView& view, bool light_alone) {
                         .one_material = light_alone});
 }
 
-torch::Tensor Refinement::regularization(const RenderedView& rendered, const torch::Tensor& mask) {
+torch::Tensor Refinement::regularization(const RenderedView& rendered, const TargetView& view,
+                                         const torch::Tensor& mask) {
     const RegularizerWeights& weights = options_.weights;
     torch::Tensor loss = torch::zeros({});
     if (rendered.surface.count() > 0) {
@@ -85,6 +86,9 @@ torch::Tensor Refinement::regularization(const RenderedView& rendered, const tor
                weights.smoothness * smoothness_loss(appearance_.field, rendered, pixel_, farthest_,
                                                     smoothness_points, learning_.random) +
                weights.brightness * brightness_loss(rendered);
+        if (weights.demodulation > 0)
+            loss = loss + weights.demodulation *
+                              demodulated_light_loss(rendered, learning_.light, view.image);
         if (options_.normal_map)
             loss = loss + weights.flat_normals * (1 - rendered.material.normal.select(1, 2)).mean();
     }
@@ -103,7 +107,7 @@ void Refinement::step() {
         torch::full({3}, static_cast<float>(learning_.random.uniform()));
     const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
     const torch::Tensor mask = mask_loss(rendered.image, view.image);
-    torch::Tensor loss = picture + regularization(rendered, mask);
+    torch::Tensor loss = picture + regularization(rendered, view, mask);
     if (light_learns) loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss();
     loss.backward();
     Adam& adam = learning_.optimizer;

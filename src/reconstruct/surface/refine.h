@@ -20,6 +20,9 @@ struct RegularizerWeights {
     double brightness = 0.5;     ///< white is like paper
     double crumpling = 0.05;     ///< vertices move together
     double flat_normals = 0.01;  ///< the normal map is flat
+    /// The light alone is as bright as the photographs (demodulated_light_loss()). Off: it was
+    /// worse on what was measured (docs/reconstruct.md).
+    double demodulation = 0.0;
 };
 
 struct RefineOptions {
@@ -63,7 +66,8 @@ class Refinement : public Stage {
     };
     void trace();
     RenderedView render(const TargetView& view, bool light_alone);
-    torch::Tensor regularization(const RenderedView& rendered, const torch::Tensor& mask);
+    torch::Tensor regularization(const RenderedView& rendered, const TargetView& view,
+                                 const torch::Tensor& mask);
 
     MovableMesh& mesh_;
     std::vector<TargetView> views_;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr float roughness_weight = 1.0f;
 constexpr float metallic_weight = 1.0f;
+constexpr double paper = 0.8;  ///< base colour of what looks white
 
 /// Steps in all directions, of lengths from `nearest` to `farthest`.
 torch::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random& random) {
@@ -62,7 +63,8 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
         return result;
     }
     result.material = field->forward(result.surface.position);
-    MaterialSample shaded = result.material;
+    MaterialSample& shaded = result.shaded;
+    shaded = result.material;
     if (options.one_material) {
         shaded.base_color = shaded.base_color.mean(0, true).expand_as(shaded.base_color);
         shaded.orm = shaded.orm.mean(0, true).expand_as(shaded.orm);
@@ -115,9 +117,26 @@ torch::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, fl
            roughness_weight * change[1] + metallic_weight * change[2];
 }
 
+torch::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLight& light,
+                                     const torch::Tensor& target) {
+    if (view.surface.count() == 0) return torch::zeros({});
+    MaterialSample white = view.shaded;
+    white.base_color = torch::ones_like(white.base_color);
+    white.orm =
+        torch::cat({white.orm.narrow(1, 0, 2), torch::zeros_like(white.orm.narrow(1, 2, 1))}, 1);
+    const torch::Tensor lit = shade(view.surface, white, light).mean(1);
+    const torch::Tensor photograph = target.reshape({-1, 4}).index_select(0, view.surface.pixel);
+    // White is like paper, as brightness_loss() has it, and photographs end at 1.
+    const torch::Tensor truth = photograph.narrow(1, 0, 3).amax(1);
+    const torch::Tensor open = (truth >= 0.999f).logical_and(lit > truth / paper);
+    const torch::Tensor used = (photograph.select(1, 3) > 0.99f).logical_and(open.logical_not());
+    const torch::Tensor apart = (log_srgb(lit) - log_srgb(truth / paper)).abs();
+    return (apart * used).mean();
+}
+
 torch::Tensor brightness_loss(const RenderedView& view) {
     if (view.surface.count() == 0) return torch::zeros({});
-    constexpr double decile = 0.9, paper = 0.8;
+    constexpr double decile = 0.9;
     const torch::Tensor luminance =
         (view.material.base_color * torch::tensor({0.2126f, 0.7152f, 0.0722f})).sum(1);
     const auto rank =

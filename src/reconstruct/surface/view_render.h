@@ -32,6 +32,7 @@ struct RenderedView {
     Raster raster;
     Surface surface;
     MaterialSample material;
+    MaterialSample shaded;  ///< as it met the light: occlusion traced, one material where asked
 };
 
 struct ViewRenderOptions {
@@ -62,6 +63,13 @@ torch::Tensor mask_loss(const torch::Tensor& rendered, const torch::Tensor& targ
 /// many small ones, which is what shading in a base colour looks like.
 torch::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
                               float farthest, std::int64_t count, Random& random);
+
+/// Hasselgren et al. 2022 ("Shape, Light, and Material Decomposition from Images using Monte Carlo
+/// Rendering and Denoising", section 4): mean absolute difference, log-sRGB, between what the light
+/// would leave of a white object, diffuse and specular, and the photograph's largest channel, which
+/// is about its brightness without the base colour's tint. Where `target` is covered whole.
+torch::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLight& light,
+                                     const torch::Tensor& target);
 
 /// Squared distance of the ninth decile of the view's base colour (luminance) from 0.8. Light and
 /// base colour are known up to a factor: of all pairs, the one whose white is like paper.

@@ -1,0 +1,183 @@
+#include "item3d/prior/evaluation.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/evaluate/animation.h"
+#include "item3d/evaluate/contact_sheet.h"
+#include "item3d/evaluate/html.h"
+#include "item3d/evaluate/picture.h"
+#include "item3d/prior/classifier.h"
+#include "item3d/prior/export.h"
+#include "item3d/prior/train.h"
+#include "item3d/prior/vision_language.h"
+#include "item3d/prior/vision_language_accuracy.h"
+#include "item3d/scene/io/save.h"
+
+#include <algorithm>
+#include <map>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int shown_edge = 128;
+
+Image sample_sheet(const SampleGrid& grid) {
+    std::vector<Tile> tiles;
+    for (std::size_t i = 0; i < grid.pictures.size(); ++i)
+        tiles.push_back({resize(grid.pictures[i], shown_edge, shown_edge), grid.prompts[i]});
+    ContactSheetOptions options;
+    options.columns = static_cast<int>(grid.objects.size());
+    return contact_sheet(tiles, options);
+}
+
+Image reconstruction_sheet(const ReconstructionMeasure& measure) {
+    std::vector<Tile> tiles;
+    for (const auto* row : {&measure.pictures, &measure.reconstructions})
+        for (const Image& picture : *row)
+            tiles.push_back({resize(picture, shown_edge, shown_edge), ""});
+    ContactSheetOptions options;
+    options.columns = static_cast<int>(measure.pictures.size());
+    return contact_sheet(tiles, options);
+}
+
+void stop_if_asked() {
+    if (interrupted()) throw Interrupted("nothing was written");
+}
+
+/// What its own CLIP and captioner make of held-out pictures.
+nlohmann::json measure_readers(const fs::path& folder, const EvaluationOptions& options) {
+    nlohmann::json measured = nlohmann::json::object();
+    const bool clip = fs::exists(folder / clip_folder / "config.json");
+    const bool captioner = fs::exists(folder / captioner_folder / "config.json");
+    if (!clip && !captioner) return measured;
+    const LabeledPictures pictures =
+        draw_held_out(mix_bits(options.seed + 5), options.labeled_pictures, 4, 64, options.threads);
+    stop_if_asked();
+    if (clip) measured["retrieval"] = measure_retrieval(Clip::load(folder / clip_folder), pictures);
+    if (captioner)
+        measured["captions"] =
+            measure_captions(*load_captioner(folder / captioner_folder), pictures, options.threads);
+    return measured;
+}
+
+std::string percent(const nlohmann::json& value) {
+    return fmt::format("{:.0f} %", 100 * value.get<double>());
+}
+
+/// The words of a kind, those it knows least first.
+std::string word_bars(const nlohmann::json& words) {
+    std::vector<ReportPart> parts;
+    for (const nlohmann::json& word : words)
+        parts.push_back({word.at("word"), word.at("accuracy"),
+                         word.contains("most_confused_with")
+                             ? "taken for " + word["most_confused_with"].get<std::string>()
+                             : ""});
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const auto& a, const auto& b) { return a.value < b.value; });
+    return html_parts(parts);
+}
+
+TableRows summary_rows(const nlohmann::json& evaluation) {
+    TableRows rows;
+    for (const auto& [kind, summary] : evaluation.at("kinds").items()) {
+        std::string text = percent(summary.at("accuracy")) +
+                           fmt::format(" of {} words' pictures", summary.at("words").get<int>());
+        if (summary.contains("on_new_classes"))
+            text += ", " + percent(summary["on_new_classes"]) + " on classes never trained on";
+        rows.emplace_back(kind, text);
+    }
+    const nlohmann::json& autoencoder = evaluation.at("autoencoder");
+    rows.emplace_back("autoencoder", fmt::format("{:.1f} dB, on objects {:.1f} dB",
+                                                 autoencoder.at("psnr").get<double>(),
+                                                 autoencoder.at("object_psnr").get<double>()));
+    for (const char* kind : {"samples", "samples_in_shape"}) {
+        if (!evaluation.contains(kind)) continue;
+        const nlohmann::json& samples = evaluation[kind];
+        rows.emplace_back(
+            kind == std::string("samples") ? "samples from text" : "samples in given shapes",
+            fmt::format("CLIP finds the object of {}, the material of {}, both of {} ({} pictures)",
+                        percent(samples.at("object_right")), percent(samples.at("material_right")),
+                        percent(samples.at("right")), samples.at("pictures").get<int>()));
+    }
+    const nlohmann::json& readers = evaluation.at("readers");
+    if (readers.contains("retrieval"))
+        rows.emplace_back(
+            "CLIP", "finds the right one of " + readers["retrieval"].at("candidates").dump() +
+                        " captions for " + percent(readers["retrieval"].at("picture_to_caption")));
+    if (readers.contains("captions")) {
+        const nlohmann::json& named = readers["captions"];
+        rows.emplace_back("captioner", "names the object of " + percent(named.at("object")) +
+                                           ", the material of " + percent(named.at("material")) +
+                                           ", both of " + percent(named.at("both")));
+    }
+    return rows;
+}
+
+}  // namespace
+
+std::string evaluation_page(const nlohmann::json& evaluation,
+                            const std::vector<std::pair<std::string, Bytes>>& sheets) {
+    std::string body = html_section("In numbers", html_table(summary_rows(evaluation)));
+    std::string pictures;
+    for (const auto& [caption, bytes] : sheets)
+        pictures += html_figure({caption, bytes});
+    body += html_section("In pictures", pictures);
+    for (const auto& [kind, words] : evaluation.at("vocabulary").items())
+        body += html_section("Words: " + kind, word_bars(words));
+    return html_page("What " + evaluation.at("prior").get<std::string>() + " knows", body);
+}
+
+nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
+                              const EvaluationOptions& options) {
+    make_output_folder(output);
+    const Pipeline pipeline = Pipeline::load(folder);
+    MeasureOptions measure;
+    measure.pictures = options.word_pictures;
+    measure.words = trained_words(folder, *pipeline.tokenizer);
+    measure.seed = options.seed;
+    measure.threads = options.threads;
+    const std::vector<ShapeView> views = held_out_views(pipeline, options.seed, options.threads);
+    stop_if_asked();
+    const ReconstructionMeasure autoencoder =
+        measure_autoencoder(pipeline, views, options.pictures, options.seed);
+    stop_if_asked();
+    std::vector<std::pair<std::string, Image>> sheets;
+    nlohmann::json evaluation{{"prior", folder.string()}, {"seed", options.seed}};
+    for (const bool with_shape : {false, true}) {
+        if (with_shape && pipeline.condition_channels() == 0) continue;
+        const SampleGrid grid =
+            draw_samples(folder, pipeline, measure.words, 8, with_shape, options.seed);
+        const std::string name = with_shape ? "samples_in_shape" : "samples";
+        if (fs::exists(folder / clip_folder / "config.json"))
+            evaluation[name] = score_samples(folder, grid);
+        sheets.emplace_back(name, sample_sheet(grid));
+    }
+    sheets.emplace_back("autoencoder", reconstruction_sheet(autoencoder));
+    evaluation["autoencoder"] = {{"psnr", autoencoder.psnr},
+                                 {"object_psnr", autoencoder.object_psnr},
+                                 {"pictures", options.pictures}};
+    evaluation["readers"] = measure_readers(folder, options);
+    nlohmann::json measured = measure_prior(pipeline, views, measure);
+    evaluation.update(measured);
+
+    measured["words"] = measure.words;
+    update_prior_json(folder, measured);
+    static const std::map<std::string, std::string> captions{
+        {"samples", "Drawn from the prompts alone"},
+        {"samples_in_shape", "Drawn in the shape of objects that it never saw"},
+        {"autoencoder", "Held-out pictures, and below what the autoencoder leaves of them"}};
+    std::vector<std::pair<std::string, Bytes>> encoded;
+    for (const auto& [name, image] : sheets) {
+        save_image(output / (name + ".png"), image);
+        encoded.emplace_back(captions.at(name), encode_webp(image));
+    }
+    write_atomically(output / "evaluate.json", evaluation.dump(2) + "\n");
+    write_atomically(output / "evaluate.html", evaluation_page(evaluation, encoded));
+    return evaluation;
+}
+
+}  // namespace item3d
