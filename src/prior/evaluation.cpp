@@ -121,14 +121,18 @@ TableRows summary_rows(const nlohmann::json& evaluation) {
 
 std::string evaluation_page(const nlohmann::json& evaluation,
                             const std::vector<std::pair<std::string, Bytes>>& sheets) {
-    std::string body = html_section("In numbers", html_table(summary_rows(evaluation)));
+    const auto prior = evaluation.at("prior").get<std::string>();
+    std::string body =
+        "<header>\n<p class=\"kicker\">item3d prior evaluate</p>\n<p class=\"sentences\">" +
+        html_escape(prior) + "</p>\n</header>\n";
+    body += html_section("In numbers", html_table(summary_rows(evaluation)));
     std::string pictures;
     for (const auto& [caption, bytes] : sheets)
         pictures += html_figure({caption, bytes});
     body += html_section("In pictures", pictures);
     for (const auto& [kind, words] : evaluation.at("vocabulary").items())
         body += html_section("Words: " + kind, word_bars(words));
-    return html_page("What " + evaluation.at("prior").get<std::string>() + " knows", body);
+    return html_page("What " + prior + " knows", body);
 }
 
 nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,

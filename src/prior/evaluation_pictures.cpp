@@ -115,7 +115,8 @@ ReconstructionMeasure measure_autoencoder(const Pipeline& pipeline,
                                           std::uint64_t seed) {
     constexpr int shown = 12;
     const torch::NoGradGuard no_grad;
-    const std::vector<TrainingLight> lights = make_training_lights(mix_bits(seed + 2), std::min(pictures, 32), 1);
+    const std::vector<TrainingLight> lights =
+        make_training_lights(mix_bits(seed + 2), std::min(pictures, 32), 1);
     ReconstructionMeasure measure;
     double squares = 0, object_squares = 0, object_weight = 0;
     for (int i = 0; i < pictures; ++i) {
