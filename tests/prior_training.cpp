@@ -1,12 +1,15 @@
 // Replicas, checkpoints and the learning rate, on networks small enough for a test.
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 #include "item3d/models/safetensors.h"
 #include "item3d/prior/replicas.h"
 #include "item3d/prior/train.h"
 #include "item3d/prior/training_loop.h"
 #include "item3d/prior/workers.h"
+#include "prior_support.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <torch/nn/modules/conv.h>
 #include <torch/nn/modules/linear.h>
 #include <torch/nn/pimpl.h>
@@ -14,7 +17,9 @@
 #include <torch/optim/adamw.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
+#include <functional>
 
 namespace item3d {
 namespace {
@@ -112,6 +117,16 @@ TEST(PriorReplicas, AFailingRankDoesNotLeaveTheOthersWaiting) {
                  std::exception);
 }
 
+/// The message of the InputError.
+std::string refusal(const std::function<void()>& function) {
+    try {
+        function();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
 class PriorTraining : public ::testing::Test {
   protected:
     PriorTraining() {
@@ -177,13 +192,143 @@ TEST_F(PriorTraining, ResumedTrainingEndsWithTheSameWeights) {
         EXPECT_TRUE(fs::exists(parts.output / file)) << file;
 }
 
-TEST_F(PriorTraining, CheckpointOfAnotherNetworkIsRefused) {
+/// Two processes of one replica each do what one of two does, byte by byte: also when they stop and
+/// go on, when one of them alone is told to stop, and when they share no folder.
+TEST_F(PriorTraining, TwoProcessesTrainAsTwoReplicas) {
+    if (testing::is_process()) {
+        const ProcessGroup processes = ProcessGroup::from_environment();
+        root_ = testing::process_folder() / std::to_string(processes.rank());
+        TrainSettings ours = settings("two");
+        ours.processes = processes;
+        ours.replicas = 1;
+        if (!processes.first()) ours.stop_after = 24;
+        EXPECT_THROW(train_diffusion(data_, ours, networks_, {}), Interrupted);
+        ours.stop_after = 0;
+        ours.resume = true;
+        train_diffusion(data_, ours, networks_, {});
+        if (processes.first()) {
+            fs::rename(ours.work / "checkpoint.safetensors",
+                       testing::process_folder() / "two.safetensors");
+        } else {
+            EXPECT_TRUE(fs::is_empty(ours.work));
+            EXPECT_FALSE(fs::exists(ours.output / "unet"));
+        }
+        return;
+    }
+    const TrainSettings one = settings("one");
+    train_diffusion(data_, one, networks_, {});
+    for (const auto& result : testing::run_as_processes(root_))
+        EXPECT_EQ(result.code, 0) << result.output;
+    const NamedTensors expected = checkpoint(one);
+    const SafeTensors found = SafeTensors::open(root_ / "two.safetensors");
+    for (const auto& [name, tensor] : expected)
+        if (name != "record") EXPECT_TRUE(torch::equal(tensor, found.tensor(name))) << name;
+    EXPECT_EQ(found.tensor("record")[0].item<double>(), 48);
+}
+
+TEST_F(PriorTraining, WhatTheCheckpointIsNotOfIsRefused) {
     TrainSettings first = settings("first");
     first.samples = 8;
     train_diffusion(data_, first, networks_, {});
     first.resume = true;
+    const auto expect = [&](const TrainSettings& now, const std::string& problem) {
+        const std::string message = refusal([&] { train_diffusion(data_, now, networks_, {}); });
+        EXPECT_EQ(message.find((first.work / "checkpoint.safetensors").string() + ": "), 0u)
+            << message;
+        EXPECT_NE(message.find(problem), std::string::npos) << message;
+    };
+    const auto with = [&](auto member, auto value) {
+        TrainSettings now = first;
+        now.*member = value;
+        return now;
+    };
+    expect(with(&TrainSettings::batch, 2), "batch: 2 instead of 4");
+    expect(with(&TrainSettings::replicas, 1), "replicas: 1 instead of 2");
+    expect(with(&TrainSettings::learning_rate, 2e-3f), "learning_rate: 0.002 instead of 0.001");
+    expect(with(&TrainSettings::seed, std::uint64_t{2}), "seed: 2 instead of 1");
     networks_.text.vocab_size = 40;
-    EXPECT_THROW(train_diffusion(data_, first, networks_, {}), InputError);
+    expect(first, "network: ");
+    networks_.text.vocab_size = 32;
+    // More pictures are what --resume is for.
+    EXPECT_EQ(train_diffusion(data_, with(&TrainSettings::samples, std::int64_t{16}), networks_,
+                              {})["samples"],
+              16);
+}
+
+TEST_F(PriorTraining, ABrokenCheckpointIsRefused) {
+    TrainSettings first = settings("first");
+    first.samples = 8;
+    train_diffusion(data_, first, networks_, {});
+    first.resume = true;
+    const fs::path file = first.work / "checkpoint.safetensors";
+    const NamedTensors good = checkpoint(first);
+    const auto expect_refused = [&](const std::string& problem) {
+        const std::string message = refusal([&] { train_diffusion(data_, first, networks_, {}); });
+        EXPECT_EQ(message.find(file.string() + ": "), 0u) << message;
+        EXPECT_NE(message.find(problem), std::string::npos) << message;
+    };
+    const auto changed = [&](const std::string& name, const auto& change) {
+        NamedTensors tensors = good;
+        for (auto& entry : tensors)
+            if (entry.first == name) change(entry);
+        save_safetensors(file, tensors);
+    };
+    changed("average", [](auto& entry) { entry.first = "mean"; });
+    expect_refused("tensor 'average' is missing");
+    changed("values", [](auto& entry) { entry.second = entry.second.slice(0, 1); });
+    expect_refused("is of another network: 'values' has ");
+    changed("steps", [](auto& entry) { entry.second = entry.second.to(torch::kFloat32); });
+    expect_refused("'steps'");
+    save_safetensors(file, good, {{"settings", "{"}});
+    expect_refused("does not say what it was made with");
+    save_safetensors(file, good);
+    fs::resize_file(file, fs::file_size(file) - 100);
+    expect_refused("damaged");
+    fs::resize_file(file, 5);
+    expect_refused("at least 8 bytes");
+    save_safetensors(file, good);  // as older programs wrote it, without settings
+    EXPECT_EQ(train_diffusion(data_, first, networks_, {})["samples"], 8);
+}
+
+TEST_F(PriorTraining, AFullDiskLeavesTheOldCheckpoint) {
+    TrainSettings first = settings("first");
+    first.stop_after = 16;
+    EXPECT_THROW(train_diffusion(data_, first, networks_, {}), Interrupted);
+    const Bytes before = read_bytes(first.work / "checkpoint.safetensors");
+    first.resume = true;
+    first.stop_after = 0;
+    {
+        // Files end at 64 kB, as on a disk with so little left.
+        const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+        rlimit limit{};
+        ::getrlimit(RLIMIT_FSIZE, &limit);
+        const rlimit small{1 << 16, limit.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &small);
+        EXPECT_THROW(train_diffusion(data_, first, networks_, {}), ResourceError);
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        std::signal(SIGXFSZ, ignored);
+    }
+    EXPECT_EQ(read_bytes(first.work / "checkpoint.safetensors"), before);
+    EXPECT_EQ(std::distance(fs::directory_iterator(first.work), fs::directory_iterator()), 1);
+    EXPECT_EQ(train_diffusion(data_, first, networks_, {})["samples"], 48);
+}
+
+TEST_F(PriorTraining, DataThatDoesNotBelongIsRefused) {
+    const auto refused = [&](const NamedTensors& tensors, std::size_t vocabulary) {
+        return refusal([&] { LatentData::from_tensors(tensors, vocabulary, "data.safetensors"); });
+    };
+    const NamedTensors good = data_.tensors();
+    EXPECT_EQ(refused(good, 32), "nothing was thrown");
+    EXPECT_NE(refused(good, 31).find("data.safetensors: has tokens from "), std::string::npos);
+    NamedTensors other = good;
+    other[1].second = other[1].second.slice(0, 1);
+    EXPECT_NE(refused(other, 32).find("shapes"), std::string::npos);
+    other = good;
+    other[2].second = other[2].second.to(torch::kInt64);
+    EXPECT_NE(refused(other, 32).find("no 'tokens' of the right type"), std::string::npos);
+    other = good;
+    other[0].first = "latent";
+    EXPECT_NE(refused(other, 32).find("no 'latents'"), std::string::npos);
 }
 
 TEST(PriorTraining128, TheAutoencoderShrinksLargerPicturesMore) {

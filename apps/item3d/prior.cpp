@@ -50,7 +50,11 @@ CLI::Option* add_setting(CLI::App& command, TrainOptions& options, const std::st
 }
 
 void run_train(const TrainOptions& options) {
-    const TrainSettings settings = options.chosen();
+    TrainSettings settings = options.chosen();
+    settings.processes = ProcessGroup::from_environment();
+    if (settings.processes.size() > 1)
+        note(fmt::format("process {} of {} has joined the others", settings.processes.rank(),
+                         settings.processes.size()));
     const bool all = options.part == "all";
     if (all || options.part == "diffusion") train_prior(settings);
     if (all || options.part != "diffusion")
@@ -74,7 +78,7 @@ void add_network_settings(CLI::App& command, TrainOptions& options) {
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
     add_setting(command, options, "--replicas", &TrainSettings::replicas,
-                "Copies of the model that train in parallel")
+                "Copies of the model that each process trains in parallel")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
     add_setting(command, options, "--learning-rate", &TrainSettings::learning_rate,
@@ -140,6 +144,9 @@ void add_train(CLI::App& app) {
     CLI::Option* resume = command->add_flag("--resume", options->settings.resume,
                                             "Go on from the checkpoint in the work folder");
     options->given.emplace_back([resume](TrainSettings& to) { to.resume = resume->count() > 0; });
+    command->footer(
+        "Several processes or machines train one prior where RANK, WORLD_SIZE, MASTER_ADDR and "
+        "MASTER_PORT are set, as torchrun does.");
     command->callback([options] {
         start_command(*options);
         run_train(*options);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace item3d {
 namespace {
@@ -17,6 +16,13 @@ torch::Tensor view_of(const torch::Tensor& flat, std::int64_t offset, const torc
     if (like.dim() != 4) return part.view(like.sizes());
     const auto s = like.sizes();
     return part.view({s[0], s[2], s[3], s[1]}).permute({0, 3, 1, 2});
+}
+
+/// Sums of squares are taken by blocks, so that they do not depend on the number of ranks.
+constexpr std::int64_t block_size = 4096;
+
+std::int64_t block_count(std::int64_t total) {
+    return (total + block_size - 1) / block_size;
 }
 
 }  // namespace
@@ -51,10 +57,10 @@ void FlatModel::use_values(const torch::Tensor& other) {
 }
 
 ReplicaGroup::ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas,
-                           const AdamWOptions& options)
+                           const AdamWOptions& options, ProcessGroup processes)
     : replicas_(std::move(replicas)),
       options_(options),
-      square_sums_(replicas_.size()),
+      processes_(std::move(processes)),
       barrier_(static_cast<std::ptrdiff_t>(replicas_.size())) {
     ITEM3D_CHECK(!replicas_.empty(), "a group needs a replica");
     const torch::Tensor& values = replicas_[0]->values;
@@ -63,39 +69,60 @@ ReplicaGroup::ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas,
     first_moment_ = torch::zeros_like(values);
     second_moment_ = torch::zeros_like(values);
     average_ = values.clone();
+    sum_ = torch::zeros({values.numel() + 1});
+    square_sums_.resize(static_cast<std::size_t>(block_count(values.numel())));
 }
 
 void ReplicaGroup::wait() {
     barrier_.arrive_and_wait();
-    if (failed_) throw std::runtime_error("another replica failed");
+    if (!failed_) return;
+    const std::lock_guard lock(failure_mutex_);
+    std::rethrow_exception(failure_);
 }
 
 void ReplicaGroup::fail() {
+    {
+        const std::lock_guard lock(failure_mutex_);
+        if (!failure_) failure_ = std::current_exception();
+    }
     failed_ = true;
     barrier_.arrive_and_drop();
 }
 
 ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
-    const auto ranks = static_cast<std::int64_t>(replicas_.size());
-    const std::int64_t total = replicas_[0]->size();
-    const std::int64_t begin = total * rank / ranks, end = total * (rank + 1) / ranks;
-    if (rank == 0) stop_ = request.stop;
+    const std::int64_t ranks = size();
+    const std::int64_t total = replicas_[0]->size(), blocks = block_count(total);
+    // Each rank looks after some of the blocks of the vector.
+    const std::int64_t first_block = blocks * rank / ranks, end_block = blocks * (rank + 1) / ranks;
+    const std::int64_t begin = std::min(total, first_block * block_size);
+    const std::int64_t end = std::min(total, end_block * block_size);
     wait();
 
-    // Each rank looks after its part of the vector: the sum goes to replica 0's gradients.
-    auto* sum = replicas_[0]->gradients.data_ptr<float>();
+    auto* sum = sum_.data_ptr<float>();
+    const auto* first = replicas_[0]->gradients.data_ptr<float>();
+    std::copy(first + begin, first + end, sum + begin);
     for (std::int64_t other = 1; other < ranks; ++other) {
         const auto* from = replicas_[static_cast<std::size_t>(other)]->gradients.data_ptr<float>();
         for (std::int64_t i = begin; i < end; ++i)
             sum[i] += from[i];
     }
-    const float share = 1.0f / static_cast<float>(ranks);
-    double squares = 0;
-    for (std::int64_t i = begin; i < end; ++i) {
-        sum[i] *= share;
-        squares += static_cast<double>(sum[i]) * sum[i];
+    if (rank == 0) sum[total] = request.stop ? 1.0f : 0.0f;
+    wait();
+    if (processes_.size() > 1) {
+        if (rank == 0) processes_.sum(sum_);
+        wait();
     }
-    square_sums_[static_cast<std::size_t>(rank)] = squares;
+
+    const float share = 1.0f / static_cast<float>(ranks * processes_.size());
+    for (std::int64_t block = first_block; block < end_block; ++block) {
+        double squares = 0;
+        const std::int64_t block_end = std::min(total, (block + 1) * block_size);
+        for (std::int64_t i = block * block_size; i < block_end; ++i) {
+            sum[i] *= share;
+            squares += static_cast<double>(sum[i]) * sum[i];
+        }
+        square_sums_[static_cast<std::size_t>(block)] = squares;
+    }
     wait();
 
     double all_squares = 0;
@@ -118,14 +145,13 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
             m[i] * correction1 / (std::sqrt(v[i] * correction2) + options_.epsilon);
         values[i] -= request.learning_rate * (change + options_.weight_decay * values[i]);
         average[i] += (1 - request.ema_decay) * (values[i] - average[i]);
-        sum[i] = 0;
     }
-    for (std::int64_t other = 1; other < ranks; ++other) {
-        FlatModel& replica = *replicas_[static_cast<std::size_t>(other)];
-        std::copy(values + begin, values + end, replica.values.data_ptr<float>() + begin);
-        std::fill_n(replica.gradients.data_ptr<float>() + begin, end - begin, 0.0f);
+    for (auto& replica : replicas_) {
+        if (replica != replicas_[0])
+            std::copy(values + begin, values + end, replica->values.data_ptr<float>() + begin);
+        std::fill_n(replica->gradients.data_ptr<float>() + begin, end - begin, 0.0f);
     }
-    const bool stop = stop_;
+    const bool stop = sum[total] > 0;
     wait();
     if (rank == 0) ++steps_;  // read by the others only after the next wait
     return {norm, stop};

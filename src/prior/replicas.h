@@ -1,6 +1,9 @@
-// Data-parallel training on the threads of one process: each replica has its own copy of the model,
-// gradients are averaged in a fixed order, so that results do not depend on timing.
+// Data-parallel training on the threads of a process, and on several processes: each replica has
+// its own copy of the model, gradients are averaged in a fixed order, so that results do not depend
+// on timing.
 #pragma once
+
+#include "item3d/prior/process_group.h"
 
 #include <torch/nn/module.h>
 #include <torch/types.h>
@@ -8,7 +11,9 @@
 #include <atomic>
 #include <barrier>
 #include <cstdint>
+#include <exception>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -40,28 +45,31 @@ struct AdamWOptions {
 /// AdamW (Loshchilov and Hutter 2019) over the replicas, with a moving average of the parameters.
 class ReplicaGroup {
   public:
-    /// All replicas get the first one's values.
-    ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas, const AdamWOptions& options);
+    /// All replicas get the first one's values. Each process has a group of the same size; their
+    /// values and states must be the same when they begin, and stay so, byte by byte.
+    ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas, const AdamWOptions& options,
+                 ProcessGroup processes = {});
 
     FlatModel& replica(int rank) { return *replicas_[static_cast<std::size_t>(rank)]; }
-    int size() const { return static_cast<int>(replicas_.size()); }
+    int size() const { return static_cast<int>(replicas_.size()); }  ///< of this process
 
     struct Request {
         float learning_rate = 0;
         float ema_decay = 0;
-        bool stop = false;  ///< rank 0's is what counts
+        bool stop = false;  ///< that of rank 0 of any process is what counts
     };
     struct Result {
         float gradient_norm;  ///< before clipping
         bool stop;
     };
     /// To be called by every rank, on its own thread, after its backward pass: averages the
-    /// gradients, clips, steps all replicas alike, and clears the gradients. Throws
-    /// std::runtime_error when another rank has failed. Between two calls rank 0 may read
+    /// gradients of all processes, clips, steps all replicas alike, and clears the gradients. When
+    /// another rank has failed, throws what that one did; when another process is gone,
+    /// LostProcess, and the state is that after the step before. Between two calls rank 0 may read
     /// everything but gradients.
     Result step(int rank, const Request& request);
-    /// To be called by a rank that leaves early through an exception, so that the others do not
-    /// wait.
+    /// To be called by a rank that leaves early through an exception, in its handler, so that the
+    /// others do not wait.
     void fail();
 
     std::int64_t steps() const { return steps_; }
@@ -76,10 +84,13 @@ class ReplicaGroup {
 
     std::vector<std::unique_ptr<FlatModel>> replicas_;
     AdamWOptions options_;
+    ProcessGroup processes_;
     torch::Tensor first_moment_, second_moment_, average_;
-    std::vector<double> square_sums_;
+    torch::Tensor sum_;                ///< [P + 1] of all gradients, and of the wishes to stop
+    std::vector<double> square_sums_;  ///< of the averaged gradient's blocks
     std::int64_t steps_ = 0;
-    bool stop_ = false;
+    std::mutex failure_mutex_;
+    std::exception_ptr failure_;  ///< the first
     std::atomic<bool> failed_ = false;
     std::barrier<> barrier_;
 };

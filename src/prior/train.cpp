@@ -8,6 +8,7 @@
 #include "item3d/prior/classifier.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/replicas.h"
+#include "item3d/prior/settings_check.h"
 #include "item3d/prior/tokenizer_training.h"
 #include "item3d/prior/training_loop.h"
 #include "item3d/prior/workers.h"
@@ -113,7 +114,8 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
     return data;
 }
 
-/// What the data depends on: a work folder made with other settings is not gone on with.
+/// What the data depends on: a work folder made with other settings is not gone on with. Replicas
+/// are those of all processes, so that a training may go on with them spread otherwise.
 nlohmann::json fingerprint(const TrainSettings& s) {
     return {{"version", 2},
             {"seed", s.seed},
@@ -124,7 +126,7 @@ nlohmann::json fingerprint(const TrainSettings& s) {
             {"shape_variants", s.shape_variants},
             {"views_each", s.views_each},
             {"lights", s.lights},
-            {"replicas", s.replicas},
+            {"replicas", s.replicas * s.processes.size()},
             {"batch", s.batch}};
 }
 
@@ -132,11 +134,7 @@ void open_work_folder(const TrainSettings& settings) {
     make_output_folder(settings.work);
     const fs::path file = settings.work / "settings.json";
     if (settings.resume && fs::exists(file)) {
-        const auto before = nlohmann::json::parse(read_text(file), nullptr, false);
-        if (before != fingerprint(settings))
-            throw InputError(file.string(),
-                             "the work folder was made with other settings: " + before.dump(),
-                             "give the same ones, or train without --resume");
+        check_settings(file, read_work_json(file), fingerprint(settings));
         return;
     }
     for (const char* stale : {"autoencoder.safetensors", "pictures.safetensors", "data.safetensors",
@@ -148,14 +146,16 @@ void open_work_folder(const TrainSettings& settings) {
 struct Prepared {
     LatentData data;
     nlohmann::json record;  ///< for prior.json's "train"
+    ClipTextConfig text;
 };
 
-Prepared read_prepared(const TrainSettings& settings) {
-    const SafeTensors file = SafeTensors::open(settings.work / "data.safetensors");
+Prepared read_prepared(const TrainSettings& settings, const ClipTokenizer& tokenizer) {
+    const fs::path file = settings.work / "data.safetensors";
     Prepared prepared;
-    prepared.data = {file.tensor("latents"), file.tensor("depth"), file.tensor("tokens"),
-                     file.tensor("empty_tokens")};
-    prepared.record = nlohmann::json::parse(read_text(settings.work / "autoencoder.json"));
+    prepared.data =
+        LatentData::from_tensors(SafeTensors::open(file).tensors(),
+                                 static_cast<std::size_t>(tokenizer.largest_id()) + 1, file);
+    prepared.record = read_work_json(settings.work / "autoencoder.json");
     return prepared;
 }
 
@@ -187,15 +187,112 @@ Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) 
     prepared.record = {{"psnr", autoencoder.psnr}, {"object_psnr", autoencoder.object_psnr}};
     write_atomically(settings.work / "autoencoder.json", prepared.record.dump(2) + "\n");
     prepared.data = draw_latents(source, *autoencoder.model, tokenizer, settings);
-    save_safetensors(settings.work / "data.safetensors",
-                     {{"latents", prepared.data.latents},
-                      {"depth", prepared.data.depth},
-                      {"tokens", prepared.data.tokens},
-                      {"empty_tokens", prepared.data.empty_tokens}});
+    save_safetensors(settings.work / "data.safetensors", prepared.data.tensors());
+    return prepared;
+}
+
+/// Token numbers are rows of the text encoder: data that is gone on with keeps its tokenizer.
+ClipTokenizer read_tokenizer(const TrainSettings& settings) {
+    const fs::path folder = settings.output / "tokenizer";
+    if (!fs::exists(folder / "vocab.json"))
+        throw InputError(folder.string(),
+                         "is missing, but the data in " + settings.work.string() +
+                             " was made with the tokenizer in it",
+                         "give the -o that the training began with, or train without --resume");
+    return ClipTokenizer::load(folder);
+}
+
+/// What process 0 does before all train together.
+Prepared prepare_or_read(const TrainSettings& settings) {
+    make_output_folder(settings.output);
+    open_work_folder(settings);
+    const std::vector<WordCount> counted = prior_words(settings);
+    const bool prepared_before = settings.resume && fs::exists(settings.work / "data.safetensors");
+    const ClipTokenizer tokenizer =
+        prepared_before ? read_tokenizer(settings) : train_tokenizer(counted, text_length);
+    if (!prepared_before) {
+        std::set<std::string> words;
+        for (const WordCount& word : counted)
+            words.insert(word.word);
+        update_prior_json(settings.output, {{"words", words}, {"resolution", settings.resolution}});
+    }
+    Prepared prepared =
+        prepared_before ? read_prepared(settings, tokenizer) : prepare(settings, tokenizer);
+    prepared.text = prior_text_config(static_cast<int>(tokenizer.size()), tokenizer.bos_id(),
+                                      tokenizer.eos_id());
+    return prepared;
+}
+
+/// The same in all processes.
+Prepared hand_on(const ProcessGroup& processes, Prepared prepared) {
+    if (processes.size() == 1) return prepared;
+    processes.wait_for_first();
+    const ClipTextConfig& text = prepared.text;
+    const auto numbers = nlohmann::json::parse(processes.broadcast(
+        nlohmann::json{text.vocab_size, text.bos_token_id, text.eos_token_id}.dump()));
+    prepared.text =
+        prior_text_config(numbers[0].get<int>(), numbers[1].get<int>(), numbers[2].get<int>());
+    const NamedTensors data =
+        processes.broadcast(processes.first() ? prepared.data.tensors() : NamedTensors{});
+    prepared.data = LatentData::from_tensors(
+        data, static_cast<std::size_t>(prepared.text.vocab_size), "the data of process 0");
     return prepared;
 }
 
 }  // namespace
+
+NamedTensors LatentData::tensors() const {
+    return {
+        {"latents", latents}, {"depth", depth}, {"tokens", tokens}, {"empty_tokens", empty_tokens}};
+}
+
+LatentData LatentData::from_tensors(const NamedTensors& tensors, std::size_t vocabulary,
+                                    const fs::path& file) {
+    const std::string hint = "train without --resume, or in another --work folder";
+    const auto take = [&](const char* wanted, torch::Dtype dtype) {
+        for (const auto& [name, tensor] : tensors)
+            if (name == wanted && tensor.scalar_type() == dtype) return tensor;
+        throw InputError(file.string(), fmt::format("has no '{}' of the right type", wanted), hint);
+    };
+    const LatentData data{take("latents", torch::kHalf), take("depth", torch::kHalf),
+                          take("tokens", torch::kInt16), take("empty_tokens", torch::kInt16)};
+    const std::int64_t rows = data.latents.dim() > 0 ? data.latents.size(0) : 0;
+    const auto has = [](const torch::Tensor& tensor, const std::vector<std::int64_t>& shape) {
+        return tensor.sizes().vec() == shape;
+    };
+    if (rows == 0 || !has(data.latents, {rows, 4, latent_size, latent_size}) ||
+        !has(data.depth, {rows, 1, latent_size, latent_size}) ||
+        !has(data.tokens, {rows, text_length}) || !has(data.empty_tokens, {text_length}))
+        throw InputError(file.string(), "its tensors do not have the shapes of this program's data",
+                         hint);
+    const auto lowest = std::min(data.tokens.min().item<std::int16_t>(),
+                                 data.empty_tokens.min().item<std::int16_t>());
+    const auto highest = std::max(data.tokens.max().item<std::int16_t>(),
+                                  data.empty_tokens.max().item<std::int16_t>());
+    if (lowest < 0 || static_cast<std::size_t>(highest) >= vocabulary)
+        throw InputError(file.string(),
+                         fmt::format("has tokens from {} to {}, but the tokenizer has {}", lowest,
+                                     highest, vocabulary),
+                         hint);
+    return data;
+}
+
+int global_rank(const TrainSettings& settings, int rank) {
+    return settings.processes.rank() * settings.replicas + rank;
+}
+
+nlohmann::json settings_json(const TrainSettings& settings) {
+    nlohmann::json all = fingerprint(settings);
+    all.update({{"samples", settings.samples},
+                {"clip_samples", settings.clip_samples},
+                {"captioner_samples", settings.captioner_samples},
+                {"labeled_samples", settings.labeled_samples},
+                {"widths", settings.widths},
+                {"learning_rate", as_written(settings.learning_rate)},
+                {"resume", settings.resume},
+                {"stop_after", settings.stop_after}});
+    return all;
+}
 
 LoopOptions loop_options(const TrainSettings& settings, const std::string& label,
                          const std::string& checkpoint) {
@@ -208,6 +305,7 @@ LoopOptions loop_options(const TrainSettings& settings, const std::string& label
     options.stop_after = settings.stop_after;
     options.checkpoint_seconds = settings.checkpoint_seconds;
     options.export_seconds = settings.export_seconds;
+    options.processes = settings.processes;
     return options;
 }
 
@@ -217,25 +315,14 @@ std::vector<WordCount> prior_words(const TrainSettings& settings) {
 
 void train_prior(const TrainSettings& settings) {
     keep_freed_memory();
-    make_output_folder(settings.output);
-    open_work_folder(settings);
-    // Token numbers are rows of the text encoder: what is gone on with keeps them.
-    const fs::path tokens = settings.output / "tokenizer";
-    const ClipTokenizer tokenizer = settings.resume && fs::exists(tokens / "vocab.json")
-                                        ? ClipTokenizer::load(tokens)
-                                        : train_tokenizer(prior_words(settings), text_length);
-    std::set<std::string> words;
-    for (const WordCount& word : prior_words(settings))
-        words.insert(word.word);
-    update_prior_json(settings.output, {{"words", words}, {"resolution", settings.resolution}});
-    const bool prepared_before = settings.resume && fs::exists(settings.work / "data.safetensors");
+    const ProcessGroup& processes = settings.processes;
+    check_same_settings(processes, settings_json(settings));
     const Prepared prepared =
-        prepared_before ? read_prepared(settings) : prepare(settings, tokenizer);
-    const ClipTextConfig text = prior_text_config(static_cast<int>(tokenizer.size()),
-                                                  tokenizer.bos_id(), tokenizer.eos_id());
-    train_diffusion(prepared.data, settings, {prior_unet_config(settings.widths), text},
+        hand_on(processes, processes.first() ? prepare_or_read(settings) : Prepared{});
+    train_diffusion(prepared.data, settings, {prior_unet_config(settings.widths), prepared.text},
                     prepared.record);
-    write_measurement(settings.output, settings.replicas);
+    if (processes.first()) write_measurement(settings.output, settings.replicas);
+    processes.wait_for_first();
 }
 
 std::set<std::string> trained_words(const fs::path& folder, const ClipTokenizer& tokenizer) {

@@ -7,6 +7,7 @@
 #include "item3d/models/unet.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/dataset.h"
+#include "item3d/prior/process_group.h"
 
 #include <nlohmann/json.hpp>
 #include <torch/types.h>
@@ -38,20 +39,27 @@ struct TrainSettings {
     int resolution = picture_size;  ///< of the pictures, 64 or 128; latents are 16 x 16 for both
     /// Widths of the U-Net's levels, multiples of 16.
     std::vector<int> widths{48, 96, 144};
-    int replicas = 2;
-    int batch = 32;  ///< pictures a step and replica
+    int replicas = 2;  ///< of each process
+    int batch = 32;    ///< pictures a step and replica
     float learning_rate = 1e-3f;
     std::uint64_t seed = 1;
     bool resume = false;
     std::int64_t stop_after = 0;  ///< ends like an interrupt after so many pictures; 0: never
     double checkpoint_seconds = 120;
     double export_seconds = 600;
+    ProcessGroup processes;  ///< that train together
 };
 
 /// "small" (64 pixels; what is trained without a recipe) or "embedded" (128 pixels, a wider U-Net).
 /// Throws InputError for other names.
 TrainSettings train_recipe(const std::string& name);
 const std::vector<std::string>& train_recipe_names();
+
+/// Which of all processes' replicas this process's replica of that number is.
+int global_rank(const TrainSettings& settings, int rank);
+
+/// All that results depend on. Processes that train together must agree in it.
+nlohmann::json settings_json(const TrainSettings& settings);
 
 /// What all training loops take from the settings; samples and rows are the caller's to say.
 /// checkpoint: the file's name.
@@ -63,6 +71,12 @@ std::vector<WordCount> prior_words(const TrainSettings& settings);
 
 /// What the U-Net learns from, encoded. N rows.
 struct LatentData {
+    /// As they are called in a file. from_tensors() throws InputError, naming the file, for what
+    /// does not belong together or has tokens beyond the vocabulary.
+    NamedTensors tensors() const;
+    static LatentData from_tensors(const NamedTensors& tensors, std::size_t vocabulary,
+                                   const std::filesystem::path& file);
+
     torch::Tensor latents;       ///< [N, 4, 16, 16] fp16, scaled
     torch::Tensor depth;         ///< [N, 1, 16, 16] fp16
     torch::Tensor tokens;        ///< [N, text_length] int16
@@ -98,12 +112,13 @@ struct DiffusionConfig {
     ClipTextConfig text;
 };
 
-/// Trains text encoder and U-Net together. Exports now and then. Throws Interrupted after writing a
-/// checkpoint. Returns {"samples", "loss", "seconds", ...}.
+/// Trains text encoder and U-Net together. Exports now and then, in process 0. Throws Interrupted
+/// after writing a checkpoint. Returns {"samples", "loss", "seconds", ...} there.
 nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& settings,
                                const DiffusionConfig& networks, const nlohmann::json& so_far);
 
-/// The whole training; fills settings.output and measures it.
+/// The whole training; fills settings.output and measures it. Process 0 makes the data and writes
+/// everything; the others get all that they need from it.
 void train_prior(const TrainSettings& settings);
 
 /// The words that the prior in `folder` was trained on: those of its prior.json, or, where that has

@@ -7,7 +7,10 @@
 #include "item3d/prior/training_loop.h"
 #include "item3d/prior/vision_language.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <filesystem>
 
 namespace item3d {
 namespace {
@@ -34,6 +37,17 @@ void write_tokenizer(const std::filesystem::path& folder, const std::vector<Word
                                 {"pad_token", "[PAD]"},
                                 {"mask_token", "[MASK]"}};
     write_atomically(folder / "tokenizer_config.json", config.dump(2) + "\n");
+}
+
+/// As load() gives it after write_tokenizer(), for a process that may not write to the output.
+BertTokenizer tokenizer_without_folder(const std::vector<WordCount>& words) {
+    const auto folder =
+        std::filesystem::temp_directory_path() / ("item3d_tokenizer_" + std::to_string(::getpid()));
+    make_output_folder(folder);
+    write_tokenizer(folder, words);
+    BertTokenizer tokenizer = BertTokenizer::load(folder);
+    std::filesystem::remove_all(folder);
+    return tokenizer;
 }
 
 BlipModel make_captioner(const TrainSettings& settings, const BlipConfig& config) {
@@ -112,17 +126,20 @@ BlipConfig prior_captioner_config(int words) {
 nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings& settings,
                                const std::vector<WordCount>& words, const BlipConfig& config) {
     const auto folder = settings.output / captioner_folder;
-    make_output_folder(folder);
-    write_tokenizer(folder, words);
-    write_preprocessor(folder, "BlipImageProcessor");
-    const BertTokenizer tokenizer = BertTokenizer::load(folder);
+    if (settings.processes.first()) {
+        make_output_folder(folder);
+        write_tokenizer(folder, words);
+        write_preprocessor(folder, "BlipImageProcessor");
+    }
+    const BertTokenizer tokenizer =
+        settings.processes.first() ? BertTokenizer::load(folder) : tokenizer_without_folder(words);
 
     std::vector<LoopReplica> replicas;
     for (int rank = 0; rank < settings.replicas; ++rank) {
         const BlipModel model = make_captioner(settings, config);
-        replicas.push_back({{model.ptr()}, [&, model, rank](const auto& rows, auto step) {
-                                const Random random(settings.seed,
-                                                    0xb11900 + static_cast<std::uint64_t>(rank),
+        const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));
+        replicas.push_back({{model.ptr()}, [&, model, stream](const auto& rows, auto step) {
+                                const Random random(settings.seed, 0xb11900 + stream,
                                                     static_cast<std::uint64_t>(step) * 65536);
                                 return caption_loss(model, data, tokenizer, rows, random);
                             }});

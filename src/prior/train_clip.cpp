@@ -130,7 +130,9 @@ ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text)
 nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& settings,
                           const ClipTokenizer& tokenizer, const ClipConfig& config) {
     BlipModel captioner{nullptr};
-    if (fs::exists(settings.output / captioner_folder / "config.json"))
+    // The others get their first values from process 0.
+    if (settings.processes.first() &&
+        fs::exists(settings.output / captioner_folder / "config.json"))
         captioner = load_blip(settings.output / captioner_folder);
     const torch::Tensor sample = first_pictures(data, settings.seed);
     bool warm = false;
@@ -138,9 +140,9 @@ nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& sett
     for (int rank = 0; rank < settings.replicas; ++rank) {
         const ClipModel model = make_clip(settings, config);
         if (captioner) warm = copy_vision(captioner, model, sample);
-        replicas.push_back({{model.ptr()}, [&, model, rank](const auto& rows, auto step) {
-                                const Random random(settings.seed,
-                                                    0xc11900 + static_cast<std::uint64_t>(rank),
+        const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));
+        replicas.push_back({{model.ptr()}, [&, model, stream](const auto& rows, auto step) {
+                                const Random random(settings.seed, 0xc11900 + stream,
                                                     static_cast<std::uint64_t>(step) * 65536);
                                 return clip_loss(model, data, tokenizer, rows, random);
                             }});
@@ -151,9 +153,11 @@ nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& sett
     TrainingLoop loop(options, std::move(replicas));
 
     const auto folder = settings.output / clip_folder;
-    make_output_folder(folder);
-    tokenizer.save(folder);
-    write_preprocessor(folder, "CLIPImageProcessor");
+    if (settings.processes.first()) {
+        make_output_folder(folder);
+        tokenizer.save(folder);
+        write_preprocessor(folder, "CLIPImageProcessor");
+    }
     const ClipModel exported = make_clip(settings, config);
     FlatModel flat({exported.ptr()});
     nlohmann::json train;

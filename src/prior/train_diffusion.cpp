@@ -126,9 +126,10 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
     std::vector<LoopReplica> replicas;
     for (int rank = 0; rank < settings.replicas; ++rank) {
         const Networks networks = make_networks(settings, config);
-        replicas.push_back({networks.modules(), [&, networks, rank](const auto& rows, auto step) {
+        const int stream = global_rank(settings, rank);
+        replicas.push_back({networks.modules(), [&, networks, stream](const auto& rows, auto step) {
                                 return diffusion_loss(networks, data, schedule, rows, settings.seed,
-                                                      step, rank);
+                                                      step, stream);
                             }});
     }
     LoopOptions options = loop_options(settings, "prior", "checkpoint.safetensors");

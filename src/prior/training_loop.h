@@ -2,8 +2,10 @@
 // rate, checkpoints, progress.
 #pragma once
 
+#include "item3d/prior/process_group.h"
 #include "item3d/prior/replicas.h"
 
+#include <nlohmann/json.hpp>
 #include <torch/types.h>
 
 #include <cstdint>
@@ -28,9 +30,11 @@ struct LoopOptions {
     std::int64_t stop_after = 0;  ///< ends like an interrupt after so many samples; 0: never
     double checkpoint_seconds = 120;
     double export_seconds = 600;
+    ProcessGroup processes;  ///< each with as many replicas
 };
 
-/// One replica: what it trains, and the loss of rows of the data, random by (step, rank) alone.
+/// One replica: what it trains, and the loss of rows of the data, random by (step, rank) alone,
+/// where ranks count the replicas of all processes: those of process 0 first.
 struct LoopReplica {
     std::vector<std::shared_ptr<torch::nn::Module>> modules;
     std::function<torch::Tensor(const std::vector<std::int64_t>& rows, std::int64_t step)> loss;
@@ -46,18 +50,23 @@ struct LoopRecord {
 class TrainingLoop {
   public:
     /// Copies the first replica's values to the others; when resuming, reads the checkpoint if
-    /// there is one. Throws InputError for that of another network.
+    /// there is one. Other processes get all of that from process 0. Throws InputError for a
+    /// checkpoint that is damaged, or of another network or other settings.
     TrainingLoop(const LoopOptions& options, std::vector<LoopReplica> replicas);
 
     std::int64_t parameters() const { return group_->average().numel(); }
     /// Trains to the end. write_export gets the moving average of the parameters, in the order of
-    /// FlatModel, now and then and at the end. Throws Interrupted after a checkpoint and an export.
+    /// FlatModel, now and then and at the end, in process 0 alone. Throws Interrupted after a
+    /// checkpoint and an export, and LostProcess after a checkpoint.
     using Export = std::function<void(const torch::Tensor& average, const LoopRecord& record)>;
     void run(const Export& write_export);
 
   private:
     void train(int rank, const Export& write_export);
     bool should_stop(std::int64_t seen) const;
+    NamedTensors state() const;
+    void load_state(const NamedTensors& state);
+    nlohmann::json checkpoint_settings() const;
     void save_checkpoint() const;
     void load_checkpoint();
 

@@ -5,6 +5,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/prior/export.h"
+#include "item3d/prior/settings_check.h"
 #include "item3d/prior/tokenizer_training.h"
 #include "item3d/prior/vision_language_accuracy.h"
 #include "item3d/prior/workers.h"
@@ -44,13 +45,7 @@ void prepare_labeled(const TrainSettings& settings) {
     make_output_folder(settings.work);
     const fs::path file = settings.work / "labeled_settings.json";
     const bool resumes = settings.resume && fs::exists(file);
-    if (resumes) {
-        const auto before = nlohmann::json::parse(read_text(file), nullptr, false);
-        if (before != labeled_fingerprint(settings))
-            throw InputError(file.string(),
-                             "the pictures were made with other settings: " + before.dump(),
-                             "give the same ones, or train without --resume");
-    }
+    if (resumes) check_settings(file, read_work_json(file), labeled_fingerprint(settings));
     if (resumes && has_labeled(settings.work, seen_name) &&
         has_labeled(settings.work, held_out_name))
         return;
@@ -70,6 +65,17 @@ void prepare_labeled(const TrainSettings& settings) {
     const LabeledPictures seen = draw_labeled(source, settings.labeled_samples, settings.replicas);
     stop_here_if_interrupted(settings);
     save_labeled(settings.work, seen_name, seen);
+}
+
+/// The same in all processes.
+LabeledPictures hand_on_labeled(const ProcessGroup& processes, LabeledPictures data) {
+    if (processes.size() == 1) return data;
+    processes.wait_for_first();
+    const std::string facts = processes.broadcast(nlohmann::json(data.facts).dump());
+    const NamedTensors images = processes.broadcast(NamedTensors{{"images", data.images}});
+    if (!processes.first())
+        data = {images[0].second, nlohmann::json::parse(facts).get<std::vector<PictureFacts>>()};
+    return data;
 }
 
 }  // namespace
@@ -126,19 +132,28 @@ void write_preprocessor(const fs::path& folder, const std::string& processor_cla
 
 void train_vision_language(const TrainSettings& settings, bool clip, bool captioner) {
     keep_freed_memory();
-    make_output_folder(settings.output);
-    prepare_labeled(settings);
+    const ProcessGroup& processes = settings.processes;
+    check_same_settings(processes, settings_json(settings));
+    LabeledPictures data, held_out;
+    if (processes.first()) {
+        make_output_folder(settings.output);
+        prepare_labeled(settings);
+        data = load_labeled(settings.work, seen_name);
+        held_out = load_labeled(settings.work, held_out_name);
+    }
+    data = hand_on_labeled(processes, std::move(data));
     const std::vector<WordCount> words = prior_words(settings);
-    const LabeledPictures data = load_labeled(settings.work, seen_name);
-    const LabeledPictures held_out = load_labeled(settings.work, held_out_name);
     // CLIP starts from what the captioner has learnt to see.
     if (captioner) {
         nlohmann::json record = train_captioner(
             data, settings, words, prior_captioner_config(static_cast<int>(words.size())));
-        record["captions"] = measure_captions(*load_captioner(settings.output / captioner_folder),
-                                              held_out, settings.replicas);
-        note("captioner: " + record["captions"].dump());
-        update_prior_json(settings.output, {{"captioner", record}});
+        if (processes.first()) {
+            record["captions"] = measure_captions(
+                *load_captioner(settings.output / captioner_folder), held_out, settings.replicas);
+            note("captioner: " + record["captions"].dump());
+            update_prior_json(settings.output, {{"captioner", record}});
+        }
+        processes.wait_for_first();
     }
     if (clip) {
         const ClipTokenizer tokenizer = train_tokenizer(words, text_length);
@@ -146,10 +161,12 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
             train_clip(data, settings, tokenizer,
                        prior_clip_config(static_cast<int>(tokenizer.size()), tokenizer.bos_id(),
                                          tokenizer.eos_id()));
-        record["retrieval"] =
-            measure_retrieval(Clip::load(settings.output / clip_folder), held_out);
-        note("clip: " + record["retrieval"].dump());
-        update_prior_json(settings.output, {{"clip", record}});
+        if (processes.first()) {
+            record["retrieval"] =
+                measure_retrieval(Clip::load(settings.output / clip_folder), held_out);
+            note("clip: " + record["retrieval"].dump());
+            update_prior_json(settings.output, {{"clip", record}});
+        }
     }
 }
 

@@ -1,0 +1,42 @@
+// Names of Gloo that c10d's ProcessGroupGloo.hpp mentions. LibTorch holds Gloo's code but not its
+// headers; these say just enough for that one header to compile (src/CMakeLists.txt puts them where
+// it looks). Nothing of them is called from here: all work goes through c10d's own functions.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gloo {
+
+class Context {
+  public:
+    void setTimeout(std::chrono::milliseconds timeout);
+};
+
+namespace rendezvous {
+
+class Store {
+  public:
+    virtual ~Store();
+    virtual void set(const std::string& key, const std::vector<char>& data) = 0;
+    virtual std::vector<char> get(const std::string& key) = 0;
+    virtual void wait(const std::vector<std::string>& keys) = 0;
+    virtual void wait(const std::vector<std::string>& keys,
+                      const std::chrono::milliseconds& timeout) = 0;
+};
+
+}  // namespace rendezvous
+
+namespace transport {
+
+class Device;
+
+class UnboundBuffer {
+  public:
+    virtual ~UnboundBuffer();
+};
+
+}  // namespace transport
+}  // namespace gloo

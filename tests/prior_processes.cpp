@@ -1,0 +1,178 @@
+// What processes that train together ask of their environment and of each other.
+#include "item3d/core/error.h"
+#include "item3d/prior/process_group.h"
+#include "item3d/prior/settings_check.h"
+#include "item3d/prior/training_loop.h"
+#include "prior_support.h"
+
+#include <gtest/gtest.h>
+#include <torch/nn/modules/linear.h>
+
+#include <functional>
+#include <list>
+#include <optional>
+
+namespace item3d {
+namespace {
+
+using testing::ScopedVariable;
+
+/// The message of the InputError, or what else happened.
+std::string input_error(const std::function<void()>& function) {
+    try {
+        function();
+    } catch (const InputError& error) {
+        return error.what();
+    } catch (const std::exception& error) {
+        return std::string("not an InputError: ") + error.what();
+    }
+    return "nothing was thrown";
+}
+
+using Variables = std::vector<std::pair<const char*, const char*>>;
+
+/// The group of an environment with these alone.
+ProcessGroup group_of(const Variables& variables) {
+    std::list<ScopedVariable> set;
+    for (const char* name : {"RANK", "WORLD_SIZE", "MASTER_ADDR", "MASTER_PORT"})
+        set.emplace_back(name, std::nullopt);
+    for (const auto& [name, value] : variables)
+        set.emplace_back(name, value);
+    return ProcessGroup::from_environment(std::chrono::seconds(1));
+}
+
+TEST(PriorProcesses, WithoutVariablesThereIsOne) {
+    for (const Variables& alone : {Variables{}, Variables{{"WORLD_SIZE", "1"}},
+                                   Variables{{"RANK", "0"}, {"WORLD_SIZE", "1"}}}) {
+        const ProcessGroup group = group_of(alone);
+        EXPECT_EQ(group.size(), 1);
+        EXPECT_TRUE(group.first());
+        torch::Tensor ones = torch::ones({3});
+        group.sum(ones);
+        group.barrier();
+        group.wait_for_first();
+        EXPECT_TRUE(torch::equal(ones, torch::ones({3})));
+        EXPECT_EQ(group.broadcast("text"), "text");
+    }
+}
+
+TEST(PriorProcesses, AnEnvironmentThatCannotBeIsAnInputError) {
+    const auto expect = [](const Variables& variables, const std::string& subject,
+                           const std::string& problem) {
+        const std::string message = input_error([&] { group_of(variables); });
+        EXPECT_EQ(message.find(subject + ": "), 0u) << message;
+        EXPECT_NE(message.find(problem), std::string::npos) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    };
+    expect({{"RANK", "0"}}, "WORLD_SIZE", "not set");
+    expect({{"WORLD_SIZE", "2"}}, "RANK", "not set");
+    expect({{"WORLD_SIZE", "two"}, {"RANK", "0"}}, "WORLD_SIZE", "found 'two'");
+    expect({{"WORLD_SIZE", "0"}, {"RANK", "0"}}, "WORLD_SIZE", "found '0'");
+    expect({{"WORLD_SIZE", "2"}, {"RANK", "2"}}, "RANK", "from 0 to 1, found '2'");
+    expect({{"WORLD_SIZE", "2"}, {"RANK", "-1"}}, "RANK", "found '-1'");
+    expect({{"WORLD_SIZE", "1"}, {"RANK", "1"}}, "RANK", "from 0 to 0, found '1'");
+    expect({{"WORLD_SIZE", "2"}, {"RANK", "0"}}, "MASTER_ADDR", "not set");
+    expect({{"WORLD_SIZE", "2"}, {"RANK", "0"}, {"MASTER_ADDR", "localhost"}}, "MASTER_PORT",
+           "not set");
+    const auto at = [](const char* rank, const std::string& port) {
+        return Variables{{"WORLD_SIZE", "2"},
+                         {"RANK", rank},
+                         {"MASTER_ADDR", "localhost"},
+                         {"MASTER_PORT", port.c_str()}};
+    };
+    expect(at("0", "70000"), "MASTER_PORT", "found '70000'");
+    expect(at("0", "29500x"), "MASTER_PORT", "found '29500x'");
+    // Nobody is there, or does not come.
+    const std::string port = std::to_string(testing::free_port());
+    const std::string where = "MASTER_ADDR=localhost MASTER_PORT=" + port;
+    expect(at("1", port), where, "cannot join");
+    expect(at("0", port), where, "1 of 2 processes have come after 1 s");
+}
+
+TEST(PriorProcesses, ExchangeNumbersTextsAndTensors) {
+    if (!testing::is_process()) {
+        const std::filesystem::path folder = std::filesystem::temp_directory_path() /
+                                             ("item3d_exchange_" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder);
+        for (const auto& result : testing::run_as_processes(folder))
+            EXPECT_EQ(result.code, 0) << result.output;
+        std::filesystem::remove_all(folder);
+        return;
+    }
+    const ProcessGroup group = ProcessGroup::from_environment();
+    ASSERT_EQ(group.size(), 2);
+    const auto rank = static_cast<float>(group.rank());
+    group.wait_for_first();
+    torch::manual_seed(4);
+    const torch::Tensor numbers = torch::randn({2, 30011});
+    torch::Tensor sum = numbers[group.rank()].clone();
+    group.sum(sum);
+    EXPECT_TRUE(torch::equal(sum, numbers[0] + numbers[1]));
+
+    EXPECT_EQ(group.broadcast(group.first() ? "of the first" : "another"), "of the first");
+    EXPECT_EQ(group.broadcast(std::string()), "");
+    const NamedTensors got = group.broadcast(
+        NamedTensors{{"half", torch::full({2, 3}, 5 + rank, torch::kHalf)},
+                     {"none", torch::empty({0, 4})},
+                     {"long", torch::scalar_tensor(7 + group.rank(), torch::kInt64)}});
+    ASSERT_EQ(got.size(), 3u);
+    EXPECT_TRUE(torch::equal(got[0].second, torch::full({2, 3}, 5, torch::kHalf)));
+    EXPECT_EQ(got[1].second.sizes(), (std::vector<std::int64_t>{0, 4}));
+    EXPECT_EQ(got[2].second.item<std::int64_t>(), 7);
+
+    const nlohmann::json settings{{"batch", 32 + group.rank()}, {"seed", 1}};
+    const std::string message = input_error([&] { check_same_settings(group, settings); });
+    if (group.first())
+        EXPECT_EQ(message, "nothing was thrown");
+    else
+        EXPECT_NE(message.find("process 1 of 2: has other settings than process 0: "
+                               "batch: 33 instead of 32;"),
+                  std::string::npos)
+            << message;
+    group.barrier();
+}
+
+TEST(PriorProcesses, AProcessThatDiesIsSaidAndTheCheckpointKept) {
+    if (!testing::is_process()) {
+        const std::filesystem::path folder =
+            std::filesystem::temp_directory_path() / ("item3d_lost_" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder);
+        const auto results = testing::run_as_processes(folder);
+        EXPECT_EQ(results[0].code, 0) << results[0].output;
+        EXPECT_EQ(results[1].code, 7) << results[1].output;
+        const auto checkpoint = SafeTensors::open(folder / "checkpoint.safetensors");
+        EXPECT_EQ(checkpoint.tensor("steps").item<std::int64_t>(), 3);
+        EXPECT_EQ(checkpoint.tensor("record")[0].item<double>(), 3 * 2 * 4);
+        std::filesystem::remove_all(folder);
+        return;
+    }
+    LoopOptions options;
+    options.label = "toy";
+    options.checkpoint = testing::process_folder() / "checkpoint.safetensors";
+    options.samples = 80;
+    options.rows = 16;
+    options.batch = 4;
+    options.processes = ProcessGroup::from_environment();
+    const torch::nn::Linear layer(3, 1);
+    std::vector<LoopReplica> replicas{
+        {{layer.ptr()}, [&](const auto& rows, std::int64_t step) {
+             if (step == 3 && !options.processes.first()) ::_exit(7);
+             return layer->forward(torch::ones({static_cast<std::int64_t>(rows.size()), 3}))
+                 .square()
+                 .mean();
+         }}};
+    TrainingLoop loop(options, std::move(replicas));
+    try {
+        loop.run([](const auto&, const auto&) {});
+        FAIL() << "nobody was missed";
+    } catch (const LostProcess& error) {
+        EXPECT_EQ(error.code(), ExitCode::no_resource);
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("another process of this training is gone"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace item3d
