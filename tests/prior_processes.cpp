@@ -132,6 +132,78 @@ TEST(PriorProcesses, ExchangeNumbersTextsAndTensors) {
     group.barrier();
 }
 
+/// A small training whose loss depends on the rows and on the global rank.
+struct Toy {
+    Toy(const std::filesystem::path& checkpoint, int count, const ProcessGroup& processes = {}) {
+        options.label = "toy";
+        options.checkpoint = checkpoint;
+        options.samples = 80;
+        options.rows = 16;
+        options.batch = 4;
+        options.processes = processes;
+        for (int rank = 0; rank < count; ++rank) {
+            torch::manual_seed(5 + processes.rank());  // all get process 0's values
+            layers.emplace_back(70, 70);
+        }
+    }
+    std::vector<LoopReplica> replicas() {
+        std::vector<LoopReplica> result;
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const auto count = static_cast<int>(layers.size());
+            const int rank = options.processes.rank() * count + static_cast<int>(i);
+            result.push_back({{layers[i].ptr()}, [this, i, rank](const auto& rows, auto step) {
+                                  if (step == dies_at && rank == 1) ::_exit(7);
+                                  return loss(layers[i], rows, rank);
+                              }});
+        }
+        return result;
+    }
+    static torch::Tensor loss(torch::nn::Linear layer, const std::vector<std::int64_t>& rows,
+                              int rank) {
+        const torch::Tensor columns = torch::arange(70) + .5f * static_cast<float>(rank);
+        const torch::Tensor x = torch::sin(torch::tensor(rows).unsqueeze(1) * columns);
+        return (layer(x) - x.flip(1)).square().mean();
+    }
+    void train(bool resume, std::int64_t stop_after = 0) {
+        options.resume = resume;
+        options.stop_after = stop_after;
+        TrainingLoop(options, replicas()).run([](const auto&, const auto&) {});
+    }
+
+    LoopOptions options;
+    std::vector<torch::nn::Linear> layers;
+    std::int64_t dies_at = -1;
+};
+
+/// Also when they stop and go on, when one of them alone is told to stop, and when they share no
+/// folder.
+TEST(PriorProcesses, TwoTrainAsTwoReplicasDo) {
+    if (testing::is_process()) {
+        const ProcessGroup processes = ProcessGroup::from_environment();
+        const auto folder = testing::process_folder();
+        const std::filesystem::path file =
+            folder / (processes.first() ? "two.safetensors" : "nobody/none.safetensors");
+        Toy toy(file, 1, processes);
+        EXPECT_THROW(toy.train(false, processes.first() ? 0 : 24), Interrupted);
+        Toy again(file, 1, processes);
+        again.train(true);
+        EXPECT_FALSE(std::filesystem::exists(folder / "nobody"));
+        return;
+    }
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("item3d_equal_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    Toy(folder / "one.safetensors", 2).train(false);
+    for (const auto& result : testing::run_as_processes(folder))
+        EXPECT_EQ(result.code, 0) << result.output;
+    const auto one = SafeTensors::open(folder / "one.safetensors");
+    const auto two = SafeTensors::open(folder / "two.safetensors");
+    for (const char* name : {"values", "average", "first_moment", "second_moment", "steps"})
+        EXPECT_TRUE(torch::equal(one.tensor(name), two.tensor(name))) << name;
+    EXPECT_EQ(two.tensor("record")[0].item<double>(), 80);
+    std::filesystem::remove_all(folder);
+}
+
 TEST(PriorProcesses, AProcessThatDiesIsSaidAndTheCheckpointKept) {
     if (!testing::is_process()) {
         const std::filesystem::path folder =
@@ -146,22 +218,10 @@ TEST(PriorProcesses, AProcessThatDiesIsSaidAndTheCheckpointKept) {
         std::filesystem::remove_all(folder);
         return;
     }
-    LoopOptions options;
-    options.label = "toy";
-    options.checkpoint = testing::process_folder() / "checkpoint.safetensors";
-    options.samples = 80;
-    options.rows = 16;
-    options.batch = 4;
-    options.processes = ProcessGroup::from_environment();
-    const torch::nn::Linear layer(3, 1);
-    std::vector<LoopReplica> replicas{
-        {{layer.ptr()}, [&](const auto& rows, std::int64_t step) {
-             if (step == 3 && !options.processes.first()) ::_exit(7);
-             return layer->forward(torch::ones({static_cast<std::int64_t>(rows.size()), 3}))
-                 .square()
-                 .mean();
-         }}};
-    TrainingLoop loop(options, std::move(replicas));
+    Toy toy(testing::process_folder() / "checkpoint.safetensors", 1,
+            ProcessGroup::from_environment());
+    toy.dies_at = 3;
+    TrainingLoop loop(toy.options, toy.replicas());
     try {
         loop.run([](const auto&, const auto&) {});
         FAIL() << "nobody was missed";

@@ -26,9 +26,12 @@ using Clock = std::chrono::steady_clock;
 /// Of a single message. What takes longer (making data) is waited for by wait_for_first().
 constexpr std::chrono::minutes message_timeout{30};
 
-/// c10d's messages go on with a stack trace.
+/// c10d's messages go on with a stack trace, and Gloo's begin with "[its/source.cc:123] ".
 std::string first_line(const std::string& text) {
-    return text.substr(0, text.find('\n'));
+    const std::string line = text.substr(0, text.find('\n'));
+    const std::size_t place = line.find(".cc:");
+    const std::size_t end = line.find("] ");
+    return line[0] == '[' && place < end && end != std::string::npos ? line.substr(end + 2) : line;
 }
 
 std::optional<std::string> variable(const char* name) {
@@ -89,7 +92,7 @@ Place place_from_environment() {
 
 /// What c10d logs comes as an exception too; a user who sets its own variable sees it all.
 void silence_c10d() {
-    if (!variable("TORCH_CPP_LOG_LEVEL")) c10::FLAGS_caffe2_log_level = 3;  // fatal errors
+    if (!variable("TORCH_CPP_LOG_LEVEL")) FLAGS_caffe2_log_level = 3;  // fatal errors
 }
 
 template <class Function>
