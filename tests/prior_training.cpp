@@ -222,7 +222,9 @@ TEST_F(PriorTraining, TwoProcessesTrainAsTwoReplicas) {
     const NamedTensors expected = checkpoint(one);
     const SafeTensors found = SafeTensors::open(root_ / "two.safetensors");
     for (const auto& [name, tensor] : expected)
-        if (name != "record") EXPECT_TRUE(torch::equal(tensor, found.tensor(name))) << name;
+        if (name != "record") {
+            EXPECT_TRUE(torch::equal(tensor, found.tensor(name))) << name;
+        }
     EXPECT_EQ(found.tensor("record")[0].item<double>(), 48);
 }
 
