@@ -13,6 +13,7 @@
 #include <torch/csrc/distributed/c10d/TCPStore.hpp>
 
 #include <charconv>
+#include <csignal>
 #include <cstdlib>
 #include <optional>
 #include <thread>
@@ -140,6 +141,8 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds patience) {
     if (place.size == 1) return group;
 
     silence_c10d();
+    // Writing to a process that is gone is to be an error, not the end.
+    std::signal(SIGPIPE, SIG_IGN);
     const auto connection = std::make_shared<Connection>();
     const std::string hint =
         "start all processes, and see that the address is that of process 0's machine and the port "
