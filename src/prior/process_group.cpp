@@ -26,6 +26,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Of a single message. What takes longer (making data) is waited for by wait_for_first().
 constexpr std::chrono::minutes message_timeout{30};
+/// How long process 0 waits for others to see what they asked for; one that has died never does.
+constexpr std::chrono::seconds farewell{30};
 
 /// c10d's messages go on with a stack trace, and Gloo's begin with "[its/source.cc:123] ".
 std::string first_line(const std::string& text) {
@@ -237,10 +239,21 @@ void ProcessGroup::wait_for_first() const {
         const std::string key = fmt::format("first/{}", connection_->waits++);
         if (first()) connection_->store->set(key, std::vector<std::uint8_t>{1});
         // A message that waits could not be given up at an interrupt; a question can.
-        while (!connection_->store->check({key})) {
-            if (interrupted()) throw std::runtime_error("interrupted");
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        }
+        const auto ask_until = [&](auto&& answered) {
+            while (!answered()) {
+                if (interrupted()) throw std::runtime_error("interrupted");
+                std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            }
+        };
+        ask_until([&] { return connection_->store->check({key}); });
+        // The store is process 0's: it must not end before all have seen its answer.
+        const std::string seen = key + "/seen";
+        connection_->store->add(seen, 1);
+        const auto give_up = Clock::now() + farewell;
+        if (first())
+            ask_until([&] {
+                return connection_->store->add(seen, 0) >= size_ || Clock::now() > give_up;
+            });
     });
 }
 
