@@ -181,14 +181,26 @@ std::vector<TimelineEntry> timeline_of(const std::vector<AdjustmentRecord>& reco
     return timeline;
 }
 
+/// As people write it: 0.06 and not all digits of the nearest float, lists without brackets.
+std::string readable(const json& value) {
+    if (value.is_number_float()) return fmt::format("{}", value.get<float>());
+    if (value.is_array()) {
+        std::string list;
+        for (const json& each : value)
+            list += (list.empty() ? "" : ", ") + readable(each);
+        return list.empty() ? "none" : list;
+    }
+    if (!value.is_string()) return value.dump();
+    return value.get<std::string>().empty() ? "none" : value.get<std::string>();
+}
+
 TableRows settings_table(const json& summary) {
     TableRows rows;
     for (const auto& [key, value] : summary["settings"].items()) {
-        rows.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
+        rows.emplace_back(key, readable(value));
     }
     for (const char* key : {"prior", "device", "precision", "threads"}) {
-        rows.emplace_back(
-            key, summary[key].is_string() ? summary[key].get<std::string>() : summary[key].dump());
+        rows.emplace_back(key, readable(summary[key]));
     }
     rows.emplace_back("peak memory",
                       fmt::format("{:.0f} MB", summary["peak_memory_bytes"].get<double>() / 1e6));
