@@ -12,7 +12,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/find_prior.h"
-#include "suite_models.h"
+#include "item3d/suite/models.h"
 
 #include <ATen/Parallel.h>
 #include <CLI/CLI.hpp>

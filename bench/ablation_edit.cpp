@@ -10,6 +10,7 @@
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 #include "item3d/scene/light_layout.h"
+#include "item3d/suite/look_by_clip.h"
 
 #include <cmath>
 
@@ -43,28 +44,6 @@ EditRequest request_of(const Contender& contender, const SuiteCase& test, std::u
     return request;
 }
 
-/// Which of the prior's colours and materials CLIP sees in the pictures.
-std::string look_by_clip(const torch::Tensor& pictures, const std::string& noun,
-                         const AblationJudge& judge) {
-    std::vector<std::string> words, sentences;
-    for (const char* kind : {"colors", "materials"}) {
-        for (const KnownWord& known : judge.vocabulary.words_of(kind)) {
-            // As the suite's sentences have it.
-            const std::string look = known.word == "gold"    ? "golden"
-                                     : known.word == "wood"  ? "wooden"
-                                     : known.word == "rust"  ? "rusty"
-                                     : known.word == "grass" ? "covered in grass"
-                                     : known.word == "snow"  ? "covered in snow"
-                                                             : known.word;
-            words.push_back(look);
-            sentences.push_back(prompt_of(look, noun));
-        }
-    }
-    const torch::Tensor scores =
-        judge.clip.embed_images(pictures).matmul(judge.clip.embed_texts(sentences).t()).mean(0);
-    return words[static_cast<std::size_t>(scores.argmax().item<std::int64_t>())];
-}
-
 /// "right" and how that was found; nothing for stripes.
 json success(const SuiteCase& test, const SurfaceMeans& means, const torch::Tensor& pictures,
              const AblationJudge& judge) {
@@ -74,9 +53,10 @@ json success(const SuiteCase& test, const SurfaceMeans& means, const torch::Tens
         const auto colors = named_colors(judge.vocabulary);
         found = colors[nearest_color(means.base_color, colors)].name;
     } else {
-        found = look_by_clip(pictures, test.mesh, judge);
+        found = look_by_clip(pictures, test.mesh, judge.clip, judge.vocabulary,
+                             {"colors", "materials"});
     }
-    return {{"found", found}, {"right", found == test.target}};
+    return {{"found", found}, {"right", found == test.word}};
 }
 
 void save_first(const std::filesystem::path& path, const torch::Tensor& pictures) {

@@ -4,7 +4,7 @@
 #include "ablation_contenders.h"
 #include "item3d/models/clip_model.h"
 #include "item3d/prior/vocabulary.h"
-#include "suite_cases.h"
+#include "item3d/suite/cases.h"
 
 #include <nlohmann/json.hpp>
 

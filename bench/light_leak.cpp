@@ -21,7 +21,7 @@
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
 #include "item3d/scene/light_layout.h"
-#include "suite_models.h"
+#include "item3d/suite/models.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

@@ -6,12 +6,17 @@
 #include "item3d/hub/cache.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/prior/evaluation.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/suite/edit_suite.h"
+#include "item3d/suite/models.h"
 #include "prior_commands.h"
 
 #include <ATen/Parallel.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -21,12 +26,33 @@ namespace fs = std::filesystem;
 struct EvaluateOptions : CommonOptions {
     std::string prior;
     std::string output;
+    std::vector<std::string> meshes;
     EvaluationOptions evaluation;
 };
+
+/// The prior's edits of these meshes, below the folder of the evaluation.
+nlohmann::json run_edits(const EvaluateOptions& options) {
+    SuiteOptions suite;
+    suite.prior = find_prior(options.prior);
+    suite.output = fs::path(options.output) / "edits";
+    suite.meshes = named_meshes(options.meshes);
+    std::vector<std::string> nouns;
+    for (const auto& [noun, path] : suite.meshes)
+        nouns.push_back(noun);
+    std::vector<SuiteEdit> edits;
+    for (const SuiteCase& test : prior_suite_cases(nouns, PriorVocabulary::load(suite.prior)))
+        edits.push_back({test});
+    return run_edit_suite(edits, suite).at("totals");
+}
 
 void run_evaluate(const EvaluateOptions& options) {
     EvaluationOptions evaluation = options.evaluation;
     evaluation.threads = at::get_num_threads();
+    if (!options.meshes.empty()) {
+        for (const auto& [noun, path] : named_meshes(options.meshes))
+            load_model(path);  // what is wrong with them is said before the measuring
+        evaluation.edits = [&] { return run_edits(options); };
+    }
     const fs::path output = options.output;
     const nlohmann::json result = evaluate_prior(find_prior(options.prior), output, evaluation);
     if (options.json) {
@@ -143,6 +169,9 @@ void add_prior_evaluate(CLI::App& prior) {
         ->add_option("-o,--output", options->output,
                      "Folder for evaluate.html, evaluate.json and sheets of samples")
         ->required();
+    command->add_option("--mesh", options->meshes,
+                        "NOUN=FILE, again for each mesh: ten edits of it by the prior's words, "
+                        "with a page of their own, edits/suite.html");
     EvaluationOptions& evaluation = options->evaluation;
     command->add_option("--word-pictures", evaluation.word_pictures, "Pictures of each word")
         ->check(CLI::Range(1, 1000))

@@ -114,6 +114,14 @@ TableRows summary_rows(const nlohmann::json& evaluation) {
                                            ", the material of " + percent(named.at("material")) +
                                            ", both of " + percent(named.at("both")));
     }
+    if (!evaluation.contains("edits")) return rows;
+    for (const auto& [group, total] : evaluation["edits"].at("groups").items())
+        rows.emplace_back(
+            "edits: " + group,
+            fmt::format("{}{}, {:.0f} s each, detail kept {:.2f}",
+                        total.contains("right") ? total["right"].dump() + " right of " : "",
+                        total.at("edits").dump(), total.at("seconds").get<double>(),
+                        total.at("kept").get<double>()));
     return rows;
 }
 
@@ -170,6 +178,7 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
 
     measured["words"] = measure.words;
     update_prior_json(folder, measured);
+    if (options.edits) evaluation["edits"] = options.edits();
     static const std::map<std::string, std::string> captions{
         {"samples", "Drawn from the prompts alone"},
         {"samples_in_shape", "Drawn in the shape of objects that it never saw"},

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <string>
 #include <utility>
@@ -23,6 +24,10 @@ struct EvaluationOptions {
     int labeled_pictures = 2000;  ///< that CLIP and captioner are measured on
     std::uint64_t seed = 7;
     int threads = 2;
+    /// Runs the edits that the prior is judged by, when its prior.json has the words that were
+    /// measured; what it returns becomes "edits" (suite_totals() of suite/edit_suite.h). Empty: no
+    /// edits. The library of edits is above this one.
+    std::function<nlohmann::json()> edits;
 };
 
 /// A grid of generated pictures, objects across and materials down.
@@ -55,10 +60,10 @@ ReconstructionMeasure measure_autoencoder(const Pipeline& pipeline,
                                           std::uint64_t seed);
 
 /// Evaluates the prior in `folder`: words (classifier.h), samples, autoencoder, and CLIP and
-/// captioner where it has them. Puts what was measured into its prior.json, and writes
+/// captioner where it has them. Puts the words into its prior.json, runs the edits, and writes
 /// evaluate.json, evaluate.html and the samples' sheets into `output`. Returns evaluate.json.
-/// Throws InputError for a folder that is no prior or cannot be written to, Interrupted with
-/// nothing written.
+/// Throws InputError for a folder that is no prior or cannot be written to; Interrupted, before the
+/// edits with nothing written.
 nlohmann::json evaluate_prior(const std::filesystem::path& folder,
                               const std::filesystem::path& output,
                               const EvaluationOptions& options);

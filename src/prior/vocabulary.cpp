@@ -24,6 +24,7 @@ KnownWord read_word(const std::string& kind, const nlohmann::json& entry) {
     KnownWord known;
     known.kind = kind;
     known.word = entry.at("word").get<std::string>();
+    known.caption = entry.value("caption", "a " + known.word + " {o}");
     known.spellings = entry.value("spellings", std::vector<std::string>{known.word});
     known.accuracy = entry.value("accuracy", 0.0);
     if (entry.contains("base_color")) {

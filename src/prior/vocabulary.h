@@ -16,8 +16,9 @@ namespace item3d {
 inline constexpr double weak_accuracy = 0.8;
 
 struct KnownWord {
-    std::string kind;  ///< "colors", "materials", "patterns", "lights" or "objects"
-    std::string word;  ///< "gold"
+    std::string kind;     ///< "colors", "materials", "patterns", "lights" or "objects"
+    std::string word;     ///< "gold"
+    std::string caption;  ///< how to say it: "a golden {o}"
     std::vector<std::string> spellings;  ///< words of prompts that mean it: "gold", "golden"
     double accuracy = 0;                 ///< of the diffusion classifier on held-out shapes, 0 .. 1
     std::optional<Vec3> base_color;      ///< linear RGB, for colours and metals

@@ -11,7 +11,9 @@
 
 namespace item3d {
 
-/// The demo mug, and those that were named as NOUN=FILE, by noun. Throws UsageError.
+/// Meshes that were named as NOUN=FILE, by noun. Throws UsageError.
+std::map<std::string, std::filesystem::path> named_meshes(const std::vector<std::string>& named);
+/// The same and the demo mug.
 std::map<std::string, std::filesystem::path> suite_meshes(const std::vector<std::string>& named);
 
 /// The mesh with one material of this base colour (linear), roughness 0.5, no metal, no textures.

@@ -1,4 +1,4 @@
-#include "suite_models.h"
+#include "item3d/suite/models.h"
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
@@ -9,14 +9,20 @@
 
 namespace item3d {
 
-std::map<std::string, std::filesystem::path> suite_meshes(const std::vector<std::string>& named) {
-    std::map<std::string, std::filesystem::path> meshes{
-        {"mug", assets_folder() / "demo" / "mug.glb"}};
+std::map<std::string, std::filesystem::path> named_meshes(const std::vector<std::string>& named) {
+    std::map<std::string, std::filesystem::path> meshes;
     for (const std::string& mesh : named) {
         const auto split = mesh.find('=');
-        if (split == std::string::npos) throw UsageError("--mesh takes NOUN=FILE");
+        if (split == std::string::npos || split == 0)
+            throw UsageError("--mesh " + mesh + ": takes NOUN=FILE");
         meshes[mesh.substr(0, split)] = mesh.substr(split + 1);
     }
+    return meshes;
+}
+
+std::map<std::string, std::filesystem::path> suite_meshes(const std::vector<std::string>& named) {
+    auto meshes = named_meshes(named);
+    meshes.try_emplace("mug", assets_folder() / "demo" / "mug.glb");
     return meshes;
 }
 

@@ -1,0 +1,194 @@
+#include "item3d/suite/edit_suite.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/edit/edit.h"
+#include "item3d/evaluate/html.h"
+#include "item3d/evaluate/model_pictures.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/render/shade.h"
+#include "item3d/scene/io/load.h"
+#include "item3d/scene/io/save.h"
+#include "item3d/scene/light_layout.h"
+#include "item3d/suite/look_by_clip.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace item3d {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr double metal_enough = 0.6;
+constexpr int judged_views = 6;
+constexpr int judged_pixels = 256;
+
+/// What all edits share.
+struct Judge {
+    PriorVocabulary vocabulary;
+    std::vector<NamedColor> colors;
+    std::unique_ptr<Clip> clip;  ///< none where the prior has none
+};
+
+EditRequest request_of(const SuiteEdit& edit, const SuiteOptions& options, const fs::path& folder) {
+    EditRequest request;
+    request.model = folder / "source.glb";
+    request.prior = options.prior;
+    request.output = folder;
+    json overrides = {{"from", prompt_of(edit.test.source, edit.test.mesh)},
+                      {"to", prompt_of(edit.test.target, edit.test.mesh)},
+                      {"seed", options.seed}};
+    if (edit.method == "sds") overrides["guidance"] = "sds";
+    if (edit.method == "off") overrides["adjust"] = "off";
+    request.settings = resolve_settings(options.prior, overrides);
+    request.command = fmt::format("item3d edit {} --from '{}' --to '{}'", request.model.string(),
+                                  request.settings.from, request.settings.to);
+    return request;
+}
+
+torch::Tensor pictures_of(const fs::path& model_file, const std::string& light_name) {
+    const torch::NoGradGuard no_grad;
+    const Model model = load_model(model_file);
+    const EnvironmentLight light = prefilter(load_light(light_name), 64);
+    return over_white(
+        draw_pictures(model, light, picture_cameras(model, judged_views), judged_pixels));
+}
+
+/// "found" and "right", where there is something to be right about.
+json verdict_of(const SuiteCase& test, const json& summary, const EditRequest& request,
+                const Judge& judge) {
+    const json& after = summary["scores"]["after"];
+    if (test.group == "colors") {
+        const json mean = after["base_color_linear"];
+        const std::size_t nearest = nearest_color(
+            Vec3(mean[0].get<float>(), mean[1].get<float>(), mean[2].get<float>()), judge.colors);
+        const std::string& found = judge.colors[nearest].name;
+        return {{"found", found}, {"right", found == test.word}};
+    }
+    if (test.group == "metals") {
+        const double metallic = after["metallic"].get<double>();
+        return {{"found", fmt::format("metallic {:.2f}", metallic)},
+                {"right", metallic > metal_enough}};
+    }
+    if (test.word.empty() || !judge.clip) return json::object();
+    const torch::Tensor pictures =
+        pictures_of(request.output / "model.glb", request.settings.light);
+    const std::string found =
+        look_by_clip(pictures, test.mesh, *judge.clip, judge.vocabulary, {"materials", "patterns"});
+    return {{"found", found}, {"right", found == test.word}};
+}
+
+json run_edit(const SuiteEdit& edit, const SuiteOptions& options, const Judge& judge,
+              const fs::path& folder) {
+    const SuiteCase& test = edit.test;
+    make_output_folder(folder);
+    const EditRequest request = request_of(edit, options, folder);
+    save_model(request.model,
+               source_model(test, load_model(options.meshes.at(test.mesh)), judge.vocabulary));
+    const json summary = edit_model(request);
+    json result = verdict_of(test, summary, request, judge);
+    result.update({{"group", test.group},
+                   {"mesh", test.mesh},
+                   {"from", summary["from"]},
+                   {"to", summary["to"]},
+                   {"method", edit.method},
+                   {"scores", summary["scores"]},
+                   {"seconds", summary["seconds"]["total"]},
+                   {"peak_memory_bytes", summary["peak_memory_bytes"]}});
+    return result;
+}
+
+std::string verdict_text(const json& result) {
+    std::string text =
+        result["method"] == "learned" ? "" : result["method"].get<std::string>() + ", ";
+    if (result.contains("right"))
+        text += fmt::format("{}: {}", result["right"].get<bool>() ? "right" : "wrong",
+                            result["found"].get<std::string>());
+    else
+        text += fmt::format("detail kept {:.2f}", result["scores"]["detail_kept"].get<double>());
+    return text;
+}
+
+/// Failures first.
+std::string page_of(std::vector<json> results, const json& totals, const SuiteOptions& options) {
+    std::stable_sort(results.begin(), results.end(), [](const json& a, const json& b) {
+        return a.value("right", true) < b.value("right", true);
+    });
+    TableRows rows;
+    for (const auto& [group, total] : totals["groups"].items())
+        rows.emplace_back(
+            group, fmt::format("{}{} edits, {:.0f} s each, {:.0f} s at most, detail kept {:.2f}",
+                               total.contains("right") ? total["right"].dump() + " right of " : "",
+                               total["edits"].get<int>(), total["seconds"].get<double>(),
+                               total["seconds_most"].get<double>(), total["kept"].get<double>()));
+    std::string body = html_section("In numbers", html_table(rows));
+    for (const auto& [group, total] : totals["groups"].items()) {
+        std::vector<std::string> figures;
+        for (const json& result : results) {
+            if (result["group"] != group) continue;
+            const auto folder = options.output / result["folder"].get<std::string>();
+            figures.push_back(html_figure(
+                {result["from"].get<std::string>(), read_bytes(folder / "before.png")}));
+            figures.push_back(html_figure(
+                {fmt::format("{} ({})", result["to"].get<std::string>(), verdict_text(result)),
+                 read_bytes(folder / "after.png")}));
+        }
+        body += html_section(group, html_gallery(figures, 420));
+    }
+    return html_page("Edit suite", body);
+}
+
+}  // namespace
+
+json suite_totals(const std::vector<json>& results) {
+    json groups = json::object();
+    double memory = 0;
+    for (const json& result : results) {
+        json& total = groups[result["group"].get<std::string>()];
+        if (total.is_null()) total = json::object();
+        const auto add = [&](const char* name, double value) {
+            total[name] = total.value(name, 0.0) + value;
+        };
+        const double seconds = result["seconds"].get<double>();
+        total["edits"] = total.value("edits", 0) + 1;
+        if (result.contains("right"))
+            total["right"] = total.value("right", 0) + (result["right"].get<bool>() ? 1 : 0);
+        add("kept", result["scores"]["detail_kept"].get<double>());
+        add("seconds", seconds);
+        total["seconds_most"] = std::max(total.value("seconds_most", 0.0), seconds);
+        memory = std::max(memory, result["peak_memory_bytes"].get<double>());
+    }
+    for (json& total : groups)
+        for (const char* mean : {"kept", "seconds"})
+            total[mean] = total[mean].get<double>() / total["edits"].get<double>();
+    return {{"groups", groups}, {"edits", results.size()}, {"peak_memory_bytes", memory}};
+}
+
+json run_edit_suite(const std::vector<SuiteEdit>& edits, const SuiteOptions& options) {
+    Judge judge{PriorVocabulary::load(options.prior), {}, nullptr};
+    judge.colors = named_colors(judge.vocabulary);
+    const fs::path clip = find_in_prior(options.prior, "clip");
+    if (!clip.empty()) judge.clip = std::make_unique<Clip>(Clip::load(clip));
+    std::vector<json> results;
+    for (const SuiteEdit& edit : edits) {
+        const std::string name =
+            fmt::format("{:02}-{}-{}", results.size(), edit.test.group, edit.test.mesh);
+        json result = run_edit(edit, options, judge, options.output / name);
+        result["folder"] = name;
+        note(fmt::format("{} of {}: {} -> {}: {}", results.size() + 1, edits.size(),
+                         result["from"].get<std::string>(), result["to"].get<std::string>(),
+                         verdict_text(result)));
+        results.push_back(result);
+    }
+    const json totals = suite_totals(results);
+    const json summary = {{"totals", totals}, {"seed", options.seed}, {"edits", results}};
+    write_atomically(options.output / "suite.json", summary.dump(2) + "\n");
+    write_atomically(options.output / "suite.html", page_of(results, totals, options));
+    return summary;
+}
+
+}  // namespace item3d

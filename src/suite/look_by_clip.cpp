@@ -1,0 +1,23 @@
+#include "item3d/suite/look_by_clip.h"
+
+#include "item3d/core/error.h"
+#include "item3d/suite/cases.h"
+
+namespace item3d {
+
+std::string look_by_clip(const torch::Tensor& pictures, const std::string& noun, const Clip& clip,
+                         const PriorVocabulary& vocabulary, const std::vector<std::string>& kinds) {
+    std::vector<std::string> words, sentences;
+    for (const std::string& kind : kinds) {
+        for (const KnownWord& known : vocabulary.words_of(kind)) {
+            words.push_back(known.word);
+            sentences.push_back(prompt_of(known.caption, noun));
+        }
+    }
+    ITEM3D_CHECK(!words.empty(), "nothing to be seen");
+    const torch::Tensor scores =
+        clip.embed_images(pictures).matmul(clip.embed_texts(sentences).t()).mean(0);
+    return words[static_cast<std::size_t>(scores.argmax().item<std::int64_t>())];
+}
+
+}  // namespace item3d

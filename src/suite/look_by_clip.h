@@ -1,0 +1,19 @@
+// Which of a prior's words a CLIP sees on pictures.
+#pragma once
+
+#include "item3d/models/clip_model.h"
+#include "item3d/prior/vocabulary.h"
+
+#include <torch/types.h>
+
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// The word of these kinds ("materials", ...) whose caption is nearest to the pictures on average.
+/// pictures: [N, 3, H, W] sRGB in [0, 1]. The vocabulary has words of these kinds.
+std::string look_by_clip(const torch::Tensor& pictures, const std::string& noun, const Clip& clip,
+                         const PriorVocabulary& vocabulary, const std::vector<std::string>& kinds);
+
+}  // namespace item3d
