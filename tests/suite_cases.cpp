@@ -13,8 +13,8 @@ namespace {
 const std::vector<std::string> six_nouns{"chair", "cow", "duck", "lamp", "mug", "object"};
 
 TEST(PriorSuite, HasTenEditsOfEachMeshInThePriorsOwnWords) {
-    const PriorVocabulary vocabulary = PriorVocabulary::load(
-        std::filesystem::path(ITEM3D_TEST_DATA) / "../../assets/prior");
+    const PriorVocabulary vocabulary =
+        PriorVocabulary::load(std::filesystem::path(ITEM3D_TEST_DATA) / "../../assets/prior");
     const std::vector<SuiteCase> cases = prior_suite_cases(six_nouns, vocabulary);
     ASSERT_EQ(cases.size(), 60u);
     std::map<std::string, std::set<std::string>> words;
