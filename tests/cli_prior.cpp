@@ -1,6 +1,8 @@
-// item3d prior pull and verify, and priors by name.
+// item3d prior pull, verify and list, and priors by name.
 #include "cli_support.h"
 #include "hub_server.h"
+
+#include <map>
 
 namespace item3d::testing {
 namespace {
@@ -60,6 +62,27 @@ TEST_F(PriorProgram, InstalledPriorsAreFoundByName) {
     EXPECT_EQ(run("prior verify small", environment()).code, 0);
     EXPECT_EQ(run("prior verify embedded", environment()).code, 0);
     expect_error("prior verify large", 3, "data/item3d/priors", environment());
+}
+
+TEST_F(PriorProgram, ListNamesEveryPriorAndWhatIsWrongWithIt) {
+    ASSERT_EQ(run("prior pull someone/model", environment()).code, 0);
+    const fs::path installed = folder_ / "data/item3d/priors";
+    fs::create_directories(installed / "empty");
+    fs::copy(small_prior, installed / "odd", fs::copy_options::recursive);
+    std::ofstream(installed / "odd" / "prior.json")
+        << R"({"vocabulary": {"colors": [{}]}, "accuracy": "high"})";
+    const Result listed = run("prior list --json", environment());
+    ASSERT_EQ(listed.code, 0) << listed.error;
+    std::map<std::string, std::string> remarks;
+    const nlohmann::json json = nlohmann::json::parse(listed.out);
+    for (const auto& prior : json["priors"])
+        remarks[prior["name"]] = prior["remark"];
+    EXPECT_EQ(remarks.size(), 4u) << listed.out;
+    EXPECT_NE(remarks["embedded"].find("told right"), std::string::npos);
+    EXPECT_EQ(remarks["empty"], "incomplete: no model_index.json");
+    EXPECT_EQ(remarks["odd"], "prior.json is broken");
+    EXPECT_EQ(remarks["someone/model"], "open vocabulary");
+    EXPECT_EQ(run("prior list", environment()).code, 0);
 }
 
 TEST_F(PriorProgram, AnInterruptedPullGoesOnWhereItStopped) {

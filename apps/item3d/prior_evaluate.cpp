@@ -14,6 +14,7 @@
 #include <ATen/Parallel.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -86,7 +87,8 @@ std::string remark_of(const fs::path& folder) {
     if (!fs::exists(folder / "model_index.json")) return "incomplete: no model_index.json";
     if (!fs::exists(folder / "prior.json")) return "open vocabulary";
     const auto json = nlohmann::json::parse(read_text(folder / "prior.json"), nullptr, false);
-    if (!json.is_object()) return "prior.json is broken";
+    if (!json.is_object() || (json.contains("accuracy") && !json["accuracy"].is_number()))
+        return "prior.json is broken";
     std::size_t words = 0;
     if (json.contains("vocabulary") && json["vocabulary"].is_object())
         for (const auto& kind : json["vocabulary"])
