@@ -85,6 +85,22 @@ TEST(PriorCaptions, TheVocabularyIsWide) {
     }
 }
 
+TEST(PriorCaptions, PatternsComeAsOftenAsAsked) {
+    std::set<std::string> patterns;
+    for (const MaterialWord& word : material_words())
+        if (word.group == "patterns") patterns.insert(word.wish.kind);
+    for (const auto& [weight, share] : {std::pair{0.0f, 0.0}, {1.0f, .35}, {3.0f, .618}}) {
+        MaterialWish wish;
+        wish.pattern_weight = weight;
+        int found = 0;
+        for (std::uint64_t i = 0; i < 4000; ++i) {
+            Random random(6, i);
+            found += static_cast<int>(patterns.count(make_material(random, wish).kind));
+        }
+        EXPECT_NEAR(found / 4000.0, share, .03) << weight;
+    }
+}
+
 TEST(PriorCaptions, EveryMaterialSaysWhatItIs) {
     for (const std::string& kind : material_kinds()) {
         Random random(4, 2);

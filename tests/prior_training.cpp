@@ -248,6 +248,8 @@ TEST_F(PriorTraining, WhatTheCheckpointIsNotOfIsRefused) {
     expect(with(&TrainSettings::replicas, 1), "replicas: 1 instead of 2");
     expect(with(&TrainSettings::learning_rate, 2e-3f), "learning_rate: 0.002 instead of 0.001");
     expect(with(&TrainSettings::seed, std::uint64_t{2}), "seed: 2 instead of 1");
+    expect(with(&TrainSettings::prediction_type, "epsilon"),
+           "objective: \"epsilon\" instead of \"v_prediction\"");
     networks_.text.vocab_size = 40;
     expect(first, "network: ");
     networks_.text.vocab_size = 32;
@@ -255,6 +257,30 @@ TEST_F(PriorTraining, WhatTheCheckpointIsNotOfIsRefused) {
     EXPECT_EQ(train_diffusion(data_, with(&TrainSettings::samples, std::int64_t{16}), networks_,
                               {})["samples"],
               16);
+}
+
+TEST_F(PriorTraining, WhatItPredictsAndIsToldIsWrittenBesideTheWeights) {
+    TrainSettings noise = settings("noise");
+    noise.samples = 8;
+    noise.prediction_type = "epsilon";
+    noise.depth_condition = false;
+    networks_.unet.in_channels = prior_unet_config(noise).in_channels;
+    EXPECT_EQ(networks_.unet.in_channels, 4);
+    const double loss = train_diffusion(data_, noise, networks_, {})["loss"];
+    const auto json = [&](const char* file) {
+        return nlohmann::json::parse(read_text(noise.output / file));
+    };
+    EXPECT_EQ(json("scheduler/scheduler_config.json")["prediction_type"], "epsilon");
+    EXPECT_EQ(json("unet/config.json")["in_channels"], 4);
+    // The same network, data and noise, asked for the velocity.
+    TrainSettings velocity = noise;
+    velocity.output = root_ / "velocity";
+    velocity.work = root_;
+    velocity.prediction_type = "v_prediction";
+    EXPECT_NE(train_diffusion(data_, velocity, networks_, {})["loss"].get<double>(), loss);
+    EXPECT_EQ(nlohmann::json::parse(read_text(
+                  velocity.output / "scheduler/scheduler_config.json"))["prediction_type"],
+              "v_prediction");
 }
 
 TEST_F(PriorTraining, ABrokenCheckpointIsRefused) {

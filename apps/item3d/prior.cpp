@@ -23,7 +23,7 @@ struct TrainOptions : CommonOptions {
     std::string output;
     std::string work;
     std::string part = "all";
-    std::string recipe = "small";
+    std::string recipe = "embedded";
     /// Each puts an option that was given into a recipe's settings.
     std::vector<std::function<void(TrainSettings&)>> given;
 
@@ -73,6 +73,15 @@ void add_network_settings(CLI::App& command, TrainOptions& options) {
         ->check(CLI::IsMember({16, 32, 48, 64, 96, 128, 144, 160, 192, 224, 256, 320, 384, 512}))
         ->expected(2, 4)
         ->capture_default_str();
+    add_setting(command, options, "--prediction", &TrainSettings::prediction_type,
+                "What the U-Net learns to say: v_prediction or epsilon")
+        ->check(CLI::IsMember({"v_prediction", "epsilon"}))
+        ->capture_default_str();
+    CLI::Option* no_depth =
+        command.add_flag("!--no-depth", options.settings.depth_condition,
+                         "A U-Net that is not told the depth, as most of Stable Diffusion's");
+    options.given.emplace_back(
+        [no_depth](TrainSettings& to) { to.depth_condition = no_depth->count() == 0; });
     add_setting(command, options, "--batch", &TrainSettings::batch,
                 "Pictures a step and replica that the U-Net learns from")
         ->check(CLI::Range(1, 4096))
@@ -114,6 +123,9 @@ void add_count_settings(CLI::App& command, TrainOptions& options) {
         ->check(CLI::Range(1, training_variants));
     add("--views", &TrainSettings::views_each, "Views of each shape")->check(CLI::Range(1, 1000));
     add("--lights", &TrainSettings::lights, "Different lights")->check(CLI::Range(1, 100000));
+    add("--patterns", &TrainSettings::pattern_weight,
+        "How often patterns come, against all else: 1 is 35 % of the pictures")
+        ->check(CLI::Range(0.0, 100.0));
 }
 
 void add_train(CLI::App& app) {
@@ -126,7 +138,7 @@ void add_train(CLI::App& app) {
     command
         ->add_option("--recipe", options->recipe,
                      "Settings by name, where no option says otherwise; the defaults below are "
-                     "those of small")
+                     "those of embedded")
         ->check(CLI::IsMember(train_recipe_names()))
         ->capture_default_str();
     command
@@ -138,6 +150,10 @@ void add_train(CLI::App& app) {
     add_count_settings(*command, *options);
     add_network_settings(*command, *options);
     add_setting(*command, *options, "--seed", &TrainSettings::seed, "Of everything random")
+        ->capture_default_str();
+    add_setting(*command, *options, "--word-pictures", &TrainSettings::word_pictures,
+                "Held-out pictures that each word is asked about at the end")
+        ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     add_setting(*command, *options, "--stop-after", &TrainSettings::stop_after,
                 "End after so many pictures, to go on later with --resume");

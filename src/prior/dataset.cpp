@@ -146,8 +146,10 @@ void fill_points(const ShapeView& view, const ProceduralMaterial& rest, const Pa
 }  // namespace
 
 ExampleSource::ExampleSource(std::vector<ShapeView> views, std::vector<TrainingLight> lights,
-                             std::uint64_t seed)
+                             std::uint64_t seed, float pattern_weight)
     : views_(std::move(views)), lights_(std::move(lights)), seed_(seed) {
+    wish_.material.pattern_weight = pattern_weight;
+    wish_.part_material.pattern_weight = pattern_weight;
     ITEM3D_CHECK(!views_.empty() && !lights_.empty(), "examples need views and lights");
 }
 
@@ -155,7 +157,7 @@ Example ExampleSource::draw(std::int64_t index) const {
     Random random(seed_, static_cast<std::uint64_t>(index));
     const auto view =
         static_cast<std::size_t>(random.index(static_cast<std::int64_t>(views_.size())));
-    return draw_example(random, views_[view], lights_);
+    return draw_example(random, views_[view], lights_, wish_);
 }
 
 Example draw_example(Random& random, const ShapeView& view,

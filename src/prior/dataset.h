@@ -43,7 +43,7 @@ Example draw_example(Random& random, const ShapeView& view,
 class ExampleSource {
   public:
     ExampleSource(std::vector<ShapeView> views, std::vector<TrainingLight> lights,
-                  std::uint64_t seed);
+                  std::uint64_t seed, float pattern_weight = 1);
 
     /// The example of that index depends on the seed and the index alone.
     Example draw(std::int64_t index) const;
@@ -54,6 +54,7 @@ class ExampleSource {
     std::vector<ShapeView> views_;
     std::vector<TrainingLight> lights_;
     std::uint64_t seed_;
+    ExampleWish wish_;
 };
 
 }  // namespace item3d

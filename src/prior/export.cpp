@@ -31,12 +31,10 @@ nlohmann::json model_index() {
 
 void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencoder,
                         const ClipTokenizer& tokenizer) {
-    for (const char* part : {"tokenizer", "vae", "scheduler"})
+    for (const char* part : {"tokenizer", "vae"})
         make_output_folder(folder / part);
     tokenizer.save(folder / "tokenizer");
     save_autoencoder(folder / "vae", autoencoder);
-    write_json(folder / "scheduler" / "scheduler_config.json",
-               SchedulerConfig::stable_diffusion("v_prediction").to_json());
     write_json(folder / "model_index.json", model_index());
 }
 
@@ -65,9 +63,11 @@ nlohmann::json edit_defaults(int resolution) {
 }  // namespace
 
 void export_diffusion(const fs::path& folder, const UNet2DCondition& unet,
-                      const ClipTextModel& text, int resolution, const nlohmann::json& train) {
-    for (const char* part : {"unet", "text_encoder"})
+                      const ClipTextModel& text, const SchedulerConfig& scheduler, int resolution,
+                      const nlohmann::json& train) {
+    for (const char* part : {"unet", "text_encoder", "scheduler"})
         make_output_folder(folder / part);
+    write_json(folder / "scheduler" / "scheduler_config.json", scheduler.to_json());
     save_unet(folder / "unet", unet);
     save_clip_text(folder / "text_encoder", text);
 

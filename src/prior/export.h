@@ -12,15 +12,16 @@
 
 namespace item3d {
 
-/// Writes tokenizer/, vae/, scheduler/ and model_index.json.
+/// Writes tokenizer/, vae/ and model_index.json.
 void export_autoencoder(const std::filesystem::path& folder, const AutoencoderTiny& autoencoder,
                         const ClipTokenizer& tokenizer);
 
-/// Writes unet/, text_encoder/ and prior.json with `train` as its "train" (what else an existing
-/// prior.json says is kept). resolution: of its pictures, in pixels. Every file is written
+/// Writes unet/, text_encoder/, scheduler/ and prior.json with `train` as its "train" (what else an
+/// existing prior.json says is kept). resolution: of its pictures, in pixels. Every file is written
 /// atomically.
 void export_diffusion(const std::filesystem::path& folder, const UNet2DCondition& unet,
-                      const ClipTextModel& text, int resolution, const nlohmann::json& train);
+                      const ClipTextModel& text, const SchedulerConfig& scheduler, int resolution,
+                      const nlohmann::json& train);
 
 /// Puts these members into the folder's prior.json, which is made if there is none; others are
 /// kept. Returns what it then holds.

@@ -51,13 +51,17 @@ const std::vector<std::string>& material_kinds() {
 
 ProceduralMaterial make_material(Random& random, const MaterialWish& wish) {
     const auto& kinds = paint::all_kinds();
+    const auto share = [&](const paint::MaterialKind& kind) {
+        const bool pattern = !kind.words.empty() && kind.words[0].group == "patterns";
+        return pattern ? kind.share * wish.pattern_weight : kind.share;
+    };
     double total = 0;
     for (const paint::MaterialKind& kind : kinds)
-        total += kind.share;
+        total += share(kind);
     double at = random.uniform() * total;
     const paint::MaterialKind* chosen = nullptr;
     for (const paint::MaterialKind& kind : kinds) {
-        if (wish.kind.empty() ? (at -= kind.share) < 0 : wish.kind == kind.name) {
+        if (wish.kind.empty() ? (at -= share(kind)) < 0 : wish.kind == kind.name) {
             chosen = &kind;
             break;
         }

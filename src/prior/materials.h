@@ -42,6 +42,7 @@ struct MaterialWish {
     std::string kind;
     std::string color;  ///< as ProceduralMaterial::color
     std::string second_color;
+    float pattern_weight = 1;  ///< how often patterns come where the kind is drawn
 };
 
 /// A word that a prior is measured by (classifier.h).

@@ -8,23 +8,21 @@
 namespace item3d {
 namespace {
 
-TrainSettings embedded_recipe() {
+TrainSettings large_recipe() {
     TrainSettings settings;
     settings.resolution = 128;
     settings.widths = {64, 128, 192};
     settings.samples = 800000;
     settings.data_samples = 100000;
-    settings.autoencoder_samples = 48000;
     settings.autoencoder_pictures = 8000;
     settings.shape_variants = 12;
     settings.views_each = 6;
-    settings.seed = 1;
     return settings;
 }
 
 const std::map<std::string, TrainSettings>& recipes() {
-    static const std::map<std::string, TrainSettings> known{{"small", TrainSettings{}},
-                                                            {"embedded", embedded_recipe()}};
+    static const std::map<std::string, TrainSettings> known{{"embedded", TrainSettings{}},
+                                                            {"embedded-xl", large_recipe()}};
     return known;
 }
 

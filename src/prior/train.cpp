@@ -49,7 +49,8 @@ ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLig
                        settings.replicas, settings.resolution);
     stop_if_interrupted(settings);
     return ExampleSource(std::move(views), std::move(lights),
-                         seed_of(settings, held_out ? held_out_stream : example_stream));
+                         seed_of(settings, held_out ? held_out_stream : example_stream),
+                         settings.pattern_weight);
 }
 
 PictureData draw_pictures(const ExampleSource& source, std::int64_t count,
@@ -126,6 +127,7 @@ nlohmann::json fingerprint(const TrainSettings& s) {
             {"shape_variants", s.shape_variants},
             {"views_each", s.views_each},
             {"lights", s.lights},
+            {"pattern_weight", as_written(s.pattern_weight)},
             {"replicas", s.replicas * s.processes.size()},
             {"batch", s.batch}};
 }
@@ -288,6 +290,8 @@ nlohmann::json settings_json(const TrainSettings& settings) {
                 {"captioner_samples", settings.captioner_samples},
                 {"labeled_samples", settings.labeled_samples},
                 {"widths", settings.widths},
+                {"depth_condition", settings.depth_condition},
+                {"prediction_type", settings.prediction_type},
                 {"learning_rate", as_written(settings.learning_rate)},
                 {"resume", settings.resume},
                 {"stop_after", settings.stop_after}});
@@ -319,9 +323,10 @@ void train_prior(const TrainSettings& settings) {
     check_same_settings(processes, settings_json(settings));
     const Prepared prepared =
         hand_on(processes, processes.first() ? prepare_or_read(settings) : Prepared{});
-    train_diffusion(prepared.data, settings, {prior_unet_config(settings.widths), prepared.text},
+    train_diffusion(prepared.data, settings, {prior_unet_config(settings), prepared.text},
                     prepared.record);
-    if (processes.first()) write_measurement(settings.output, settings.replicas);
+    if (processes.first())
+        write_measurement(settings.output, settings.word_pictures, settings.replicas);
     processes.wait_for_first();
 }
 
@@ -339,9 +344,10 @@ std::set<std::string> trained_words(const fs::path& folder, const ClipTokenizer&
     return words;
 }
 
-nlohmann::json write_measurement(const fs::path& folder, int threads) {
+nlohmann::json write_measurement(const fs::path& folder, int word_pictures, int threads) {
     const Pipeline pipeline = Pipeline::load(folder);
     MeasureOptions options;
+    options.pictures = word_pictures;
     options.threads = threads;
     options.words = trained_words(folder, *pipeline.tokenizer);
     const auto views = held_out_views(pipeline, options.seed, threads);

@@ -26,8 +26,8 @@ struct LoopOptions;
 struct TrainSettings {
     std::filesystem::path output;        ///< the diffusers folder
     std::filesystem::path work;          ///< data, checkpoints; may be deleted afterwards
-    std::int64_t samples = 600000;       ///< pictures that the U-Net sees, repetitions counted
-    std::int64_t data_samples = 120000;  ///< different pictures
+    std::int64_t samples = 350000;       ///< pictures that the U-Net sees, repetitions counted
+    std::int64_t data_samples = 140000;  ///< different pictures
     std::int64_t autoencoder_samples = 48000;
     std::int64_t autoencoder_pictures = 12000;
     std::int64_t clip_samples = 240000;       ///< that CLIP sees, repetitions counted
@@ -37,11 +37,16 @@ struct TrainSettings {
     int views_each = 4;
     int lights = 480;
     int resolution = picture_size;  ///< of the pictures, 64 or 128; latents are 16 x 16 for both
+    /// How often patterns come, against all other materials: 1 is 35 % of the pictures.
+    float pattern_weight = 1;
     /// Widths of the U-Net's levels, multiples of 16.
     std::vector<int> widths{48, 96, 144};
-    int replicas = 2;  ///< of each process
-    int batch = 32;    ///< pictures a step and replica
+    bool depth_condition = true;                   ///< a fifth input channel
+    std::string prediction_type = "v_prediction";  ///< or "epsilon"
+    int replicas = 2;                              ///< of each process
+    int batch = 32;                                ///< pictures a step and replica
     float learning_rate = 1e-3f;
+    int word_pictures = 12;  ///< that each word is asked about at the end
     std::uint64_t seed = 1;
     bool resume = false;
     std::int64_t stop_after = 0;  ///< ends like an interrupt after so many pictures; 0: never
@@ -50,7 +55,7 @@ struct TrainSettings {
     ProcessGroup processes;  ///< that train together
 };
 
-/// "small" (64 pixels; what is trained without a recipe) or "embedded" (128 pixels, a wider U-Net).
+/// "embedded" (what is trained without a recipe) or "embedded-xl" (128 pixels, a wider U-Net).
 /// Throws InputError for other names.
 TrainSettings train_recipe(const std::string& name);
 const std::vector<std::string>& train_recipe_names();
@@ -93,7 +98,7 @@ struct PictureData {
 
 /// Downsamples pictures of that resolution to latent_size.
 AutoencoderTinyConfig prior_autoencoder_config(int resolution = picture_size);
-UNet2DConditionConfig prior_unet_config(const std::vector<int>& widths = {48, 96, 144});
+UNet2DConditionConfig prior_unet_config(const TrainSettings& settings = {});
 ClipTextConfig prior_text_config(int vocabulary, int start_of_text, int end_of_text);
 
 /// Trains (or, when resuming, reads) the autoencoder. Sets its scaling factor. Returns it with its
@@ -128,6 +133,7 @@ std::set<std::string> trained_words(const std::filesystem::path& folder,
 
 /// Measures the prior in `folder` (classifier.h) by the words that it was trained on and puts the
 /// result, with these words, into its prior.json. Returns what that then holds.
-nlohmann::json write_measurement(const std::filesystem::path& folder, int threads);
+nlohmann::json write_measurement(const std::filesystem::path& folder, int word_pictures,
+                                 int threads);
 
 }  // namespace item3d

@@ -35,7 +35,7 @@ Networks make_networks(const TrainSettings& settings, const DiffusionConfig& con
     return networks;
 }
 
-/// v-prediction loss on the pictures of one replica's batch. Everything random depends on
+/// The denoising loss on the pictures of one replica's batch. Everything random depends on
 /// (seed, step, rank) alone.
 torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
                              const NoiseSchedule& schedule, const std::vector<std::int64_t>& rows,
@@ -58,18 +58,18 @@ torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
     const torch::Tensor timesteps = torch::tensor(times);
     auto generator = at::detail::createCPUGenerator(random.bits());
     const torch::Tensor noise = torch::randn(latents.sizes(), generator);
-    const torch::Tensor input =
-        torch::cat({schedule.add_noise(latents, noise, timesteps), depth}, 1)
-            .contiguous(torch::MemoryFormat::ChannelsLast);
+    torch::Tensor input = schedule.add_noise(latents, noise, timesteps);
+    if (networks.unet->config().in_channels > input.size(1)) input = torch::cat({input, depth}, 1);
+    input = input.contiguous(torch::MemoryFormat::ChannelsLast);
     torch::Tensor prediction;
     {
         const Autocast autocast;
         const torch::Tensor text = networks.text->forward(tokens).last_hidden_state;
         prediction = networks.unet->forward(input, timesteps, text);
     }
-    return (prediction.to(torch::kFloat32) - schedule.get_velocity(latents, noise, timesteps))
-        .square()
-        .mean();
+    const torch::Tensor wanted =
+        schedule.predicts_velocity() ? schedule.get_velocity(latents, noise, timesteps) : noise;
+    return (prediction.to(torch::kFloat32) - wanted).square().mean();
 }
 
 }  // namespace
@@ -86,10 +86,11 @@ int heads_of(int width) {
 
 }  // namespace
 
-UNet2DConditionConfig prior_unet_config(const std::vector<int>& widths) {
+UNet2DConditionConfig prior_unet_config(const TrainSettings& settings) {
+    const std::vector<int>& widths = settings.widths;
     UNet2DConditionConfig config;
     config.sample_size = latent_size;
-    config.in_channels = 5;
+    config.in_channels = settings.depth_condition ? 5 : 4;
     config.out_channels = 4;
     const std::size_t levels = widths.size();
     config.block_out_channels = widths;
@@ -122,7 +123,8 @@ ClipTextConfig prior_text_config(int vocabulary, int start_of_text, int end_of_t
 
 nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& settings,
                                const DiffusionConfig& config, const nlohmann::json& so_far) {
-    const NoiseSchedule schedule(SchedulerConfig::stable_diffusion("v_prediction"));
+    const SchedulerConfig scheduler = SchedulerConfig::stable_diffusion(settings.prediction_type);
+    const NoiseSchedule schedule(scheduler);
     std::vector<LoopReplica> replicas;
     for (int rank = 0; rank < settings.replicas; ++rank) {
         const Networks networks = make_networks(settings, config);
@@ -136,6 +138,7 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
     options.samples = settings.samples;
     options.rows = data.latents.size(0);
     options.batch = settings.batch;
+    options.objective = settings.prediction_type;
     TrainingLoop loop(options, std::move(replicas));
 
     const Networks exported = make_networks(settings, config);
@@ -149,7 +152,8 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
         train["seed"] = settings.seed;
         train["resolution"] = settings.resolution;
         train["parameters"] = loop.parameters();
-        export_diffusion(settings.output, exported.unet, exported.text, settings.resolution, train);
+        export_diffusion(settings.output, exported.unet, exported.text, scheduler,
+                         settings.resolution, train);
     });
     return train;
 }

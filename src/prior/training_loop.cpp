@@ -179,6 +179,7 @@ nlohmann::json TrainingLoop::checkpoint_settings() const {
     return {{"network", fmt::format("{} parameters ({:016x})", parameters(), hash)},
             {"rows", options_.rows},
             {"batch", options_.batch},
+            {"objective", options_.objective},
             {"replicas", group_->size() * options_.processes.size()},
             {"learning_rate", as_written(options_.learning_rate)},
             {"seed", options_.seed}};

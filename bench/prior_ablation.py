@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""What each choice of the embedded prior's training is worth: short trainings that differ in one thing.
+
+    bench/prior_ablation.py ITEM3D OUTPUT --samples 40000 --data 40000
+
+Every contender gets the same seed and number of pictures, and then the diffusion classifier on held-out shapes:
+the part of pictures whose word has the lowest denoising loss, of at most 31 of its kind. What was trained already
+is kept, so a run that was stopped goes on. Writes OUTPUT/ablation.json and prints a Markdown table.
+"""
+import argparse
+import json
+import pathlib
+import shutil
+import subprocess
+
+CONTENDERS = {
+    "as shipped": [],
+    "no depth": ["--no-depth"],
+    "epsilon": ["--prediction", "epsilon"],
+    "widths 32,64,96": ["--widths", "32,64,96"],
+    "widths 64,128,192": ["--widths", "64,128,192"],
+    "patterns as often as others": ["--patterns", "0.35"],
+    "twice the patterns": ["--patterns", "2"],
+    "128 pixels": ["--resolution", "128"],
+}
+# These change the data; the others learn from the same.
+OWN_DATA = ("--patterns", "--resolution")
+KINDS = ("colors", "materials", "patterns", "lights")
+
+
+def train(options, name, arguments):
+    """The contender's prior.json."""
+    folder = options.output / name.replace(" ", "_").replace(",", "_")
+    done = folder / "prior.json"
+    if done.exists() and "kinds" in json.loads(done.read_text()):
+        return json.loads(done.read_text())
+    first = options.output / "as_shipped"
+    work = folder / "work"
+    if not work.exists() and folder != first and not any(word in arguments for word in OWN_DATA):
+        work.mkdir(parents=True)
+        for file in ("settings.json", "autoencoder.json", "autoencoder.safetensors", "data.safetensors"):
+            shutil.copy(first / "work" / file, work)
+        for part in ("tokenizer", "vae"):
+            shutil.copytree(first / part, folder / part)
+        for file in ("model_index.json", "prior.json"):
+            shutil.copy(first / file, folder)
+        prior = json.loads(done.read_text())
+        done.write_text(json.dumps({key: prior[key] for key in ("words", "resolution")}))
+    subprocess.run(
+        [options.item3d, "prior", "train", "-o", folder, "--part", "diffusion", "--samples", str(options.samples),
+         "--data", str(options.data), "--autoencoder-samples", str(options.autoencoder_samples),
+         "--word-pictures", str(options.word_pictures), "--seed", str(options.seed), "--resume", *arguments],
+        check=True)
+    return json.loads(done.read_text())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("item3d")
+    parser.add_argument("output", type=pathlib.Path)
+    parser.add_argument("--samples", type=int, default=40000)
+    parser.add_argument("--data", type=int, default=40000)
+    parser.add_argument("--autoencoder-samples", type=int, default=24000)
+    parser.add_argument("--word-pictures", type=int, default=6)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", nargs="+", choices=CONTENDERS, default=list(CONTENDERS))
+    options = parser.parse_args()
+    table = {}
+    for name in ["as shipped"] + [name for name in options.only if name != "as shipped"]:
+        prior = train(options, name, CONTENDERS[name])
+        table[name] = {
+            "parameters": prior["train"]["parameters"],
+            "seconds": prior["train"]["seconds"],
+            "loss": prior["train"]["loss"],
+            **{kind: prior["kinds"][kind]["accuracy"] for kind in KINDS},
+        }
+    (options.output / "ablation.json").write_text(json.dumps(table, indent=2) + "\n")
+    print("| | " + " | ".join(KINDS) + " | loss | million parameters | seconds |")
+    print("|---" * (len(KINDS) + 4) + "|")
+    for name, row in table.items():
+        cells = [f"{row[kind]:.2f}" for kind in KINDS]
+        print(f"| {name} | " + " | ".join(cells) +
+              f" | {row['loss']:.3f} | {row['parameters'] / 1e6:.1f} | {row['seconds']:.0f} |")
+
+
+if __name__ == "__main__":
+    main()
