@@ -120,6 +120,22 @@ TEST(PriorShapes, SkyIsDarkBelowATable) {
     EXPECT_NEAR(total, texel_solid_angle(4, 32), 1e-5);
 }
 
+TEST(PriorShapes, ViewsAreFilledAndSomeAreCloseUps) {
+    const int size = 2 * picture_size;
+    int close_ups = 0;
+    for (const ShapeView& view : make_views("guitar", 2, 40, 9, 48)) {
+        int left = size, right = 0, top = size, bottom = 0;
+        for (const std::uint16_t pixel : view.pixel) {
+            left = std::min(left, pixel % size), right = std::max(right, pixel % size);
+            top = std::min(top, pixel / size), bottom = std::max(bottom, pixel / size);
+        }
+        EXPECT_GT(std::max(right - left, bottom - top), .6 * size);
+        close_ups += left == 0 || top == 0 || right == size - 1 || bottom == size - 1;
+    }
+    EXPECT_GE(close_ups, 3);
+    EXPECT_LE(close_ups, 16);
+}
+
 TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
     const int view_size = 2 * picture_size;
     const std::vector<ShapeView> views = make_views("ball", 3, 3, 9, 48);

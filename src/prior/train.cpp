@@ -118,7 +118,7 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
 /// What the data depends on: a work folder made with other settings is not gone on with. Replicas
 /// are those of all processes, so that a training may go on with them spread otherwise.
 nlohmann::json fingerprint(const TrainSettings& s) {
-    return {{"version", 2},
+    return {{"version", 3},
             {"seed", s.seed},
             {"resolution", s.resolution},
             {"data_samples", s.data_samples},

@@ -13,32 +13,45 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 namespace item3d {
 namespace {
 
-/// A camera on a random side, so far away that the mesh fills that part of the picture.
+/// Of the views, so many show a part of the object alone, as close-ups of an edit do.
+constexpr double close_up_share = .2;
+
+/// A camera on a random side, so far away that the mesh fills a random part of the picture: most of
+/// it, since what is small loses its material to the autoencoder.
 Camera random_camera(Random& random, const std::vector<Vec3>& positions) {
     const auto azimuth = static_cast<float>(random.uniform(0, 2 * pi));
     const auto elevation = static_cast<float>(glm::radians(random.uniform(-10, 50)));
     const auto fov = static_cast<float>(glm::radians(random.uniform(25, 45)));
-    const auto fill = static_cast<float>(random.uniform(.6, .95));
+    const bool close_up = random.chance(close_up_share);
+    const auto fill =
+        static_cast<float>(close_up ? random.uniform(1.1, 1.6) : random.uniform(.7, .95));
     const Mat4 to_camera = orbit_camera(Vec3(0.0f), 1, azimuth, elevation, fov).world_to_camera();
     const float tangent = std::tan(fov / 2);
-    float distance = 0;
+    std::vector<Vec3> seen;  // the origin is 1 in front: z = -1 + ..
+    Vec3 lowest(std::numeric_limits<float>::max()), highest(-lowest);
     // One vertex in seven is enough to find the outline.
     for (std::size_t i = 0; i < positions.size(); i += 7) {
-        const Vec3 p =
-            Vec3(to_camera * Vec4(positions[i], 1));  // origin is 1 in front: z = -1 + ..
-        const float reach = std::max(std::abs(p.x), std::abs(p.y)) / (tangent * fill);
-        distance = std::max(distance, p.z + 1 + reach);
+        seen.emplace_back(to_camera * Vec4(positions[i], 1));
+        lowest = glm::min(lowest, seen.back());
+        highest = glm::max(highest, seen.back());
+    }
+    const Vec3 middle = (lowest + highest) / 2.0f;
+    float distance = 0;
+    for (const Vec3& p : seen) {
+        const float aside = std::max(std::abs(p.x - middle.x), std::abs(p.y - middle.y));
+        distance = std::max(distance, p.z + 1 + aside / (tangent * fill));
     }
     Camera camera = orbit_camera(Vec3(0.0f), distance, azimuth, elevation, fov);
-    // Shift the camera sideways by a part of the free margin.
-    const float margin = (1 - fill) * tangent * distance * .7f;
-    const auto dx = static_cast<float>(random.uniform(-margin, margin));
-    const auto dy = static_cast<float>(random.uniform(-margin, margin));
+    // Beside the middle by a part of the free margin, or of what is beyond the picture's edge.
+    const float margin = std::abs(1 - fill) * tangent * distance * .7f;
+    const float dx = middle.x + static_cast<float>(random.uniform(-margin, margin));
+    const float dy = middle.y + static_cast<float>(random.uniform(-margin, margin));
     camera.camera_to_world[3] += camera.camera_to_world[0] * dx + camera.camera_to_world[1] * dy;
     return camera;
 }
