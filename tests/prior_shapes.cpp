@@ -130,7 +130,11 @@ TEST(PriorShapes, ViewsAreFilledAndSomeAreCloseUps) {
             top = std::min(top, pixel / size), bottom = std::max(bottom, pixel / size);
         }
         EXPECT_GT(std::max(right - left, bottom - top), .6 * size);
-        close_ups += left == 0 || top == 0 || right == size - 1 || bottom == size - 1;
+        const bool cut = left == 0 || top == 0 || right == size - 1 || bottom == size - 1;
+        if (view.close_up) {
+            EXPECT_TRUE(cut);
+        }
+        close_ups += view.close_up;
     }
     EXPECT_GE(close_ups, 3);
     EXPECT_LE(close_ups, 16);

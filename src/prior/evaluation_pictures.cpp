@@ -57,6 +57,14 @@ torch::Tensor stack_images(const std::vector<Image>& images) {
     return torch::stack(all);
 }
 
+/// A held-out shape of that class, all of it.
+ShapeView whole_view(const std::string& object, std::uint64_t seed) {
+    std::vector<ShapeView> views = make_views(object, training_variants, 6, seed);
+    const auto found = std::find_if(views.begin(), views.end(),
+                                    [](const ShapeView& view) { return !view.close_up; });
+    return found == views.end() ? views[0] : *found;
+}
+
 }  // namespace
 
 SampleGrid draw_samples(const std::filesystem::path& prior, const Pipeline& pipeline,
@@ -68,9 +76,7 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const Pipeline& pipe
     std::vector<torch::Tensor> depths;
     if (with_shape)
         for (const std::string& object : grid.objects)
-            depths.push_back(make_views(object, training_variants, 1, seed)[0]
-                                 .depth.to(torch::kFloat32)
-                                 .unsqueeze(0));
+            depths.push_back(whole_view(object, seed).depth.to(torch::kFloat32).unsqueeze(0));
     GenerateOptions options = generate_defaults(prior, pipeline);
     options.show_progress = false;
     Progress progress(with_shape ? "samples in given shapes" : "samples",

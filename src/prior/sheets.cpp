@@ -40,7 +40,7 @@ class SheetWriter {
     Sheet sheet_;
 };
 
-/// A view that shows much of the shape: of a few the one with the most parts in sight.
+/// A view that shows much of the shape: of a few whole ones that with the most parts in sight.
 ShapeView good_view(const std::string& shape_class, int variant, const SheetOptions& options) {
     std::vector<ShapeView> views =
         make_views(shape_class, variant, 6, options.seed, 96, options.picture);
@@ -51,7 +51,7 @@ ShapeView good_view(const std::string& shape_class, int variant, const SheetOpti
         return std::count_if(counts.begin(), counts.end(), [](int n) { return n > 60; });
     };
     return *std::max_element(views.begin(), views.end(), [&](const auto& a, const auto& b) {
-        return in_sight(a) < in_sight(b);
+        return std::pair(!a.close_up, in_sight(a)) < std::pair(!b.close_up, in_sight(b));
     });
 }
 

@@ -22,9 +22,14 @@ namespace {
 /// Of the views, so many show a part of the object alone, as close-ups of an edit do.
 constexpr double close_up_share = .2;
 
+struct ViewCamera {
+    Camera camera;
+    bool close_up;
+};
+
 /// A camera on a random side, so far away that the mesh fills a random part of the picture: most of
 /// it, since what is small loses its material to the autoencoder.
-Camera random_camera(Random& random, const std::vector<Vec3>& positions) {
+ViewCamera random_camera(Random& random, const std::vector<Vec3>& positions) {
     const auto azimuth = static_cast<float>(random.uniform(0, 2 * pi));
     const auto elevation = static_cast<float>(glm::radians(random.uniform(-10, 50)));
     const auto fov = static_cast<float>(glm::radians(random.uniform(25, 45)));
@@ -53,7 +58,7 @@ Camera random_camera(Random& random, const std::vector<Vec3>& positions) {
     const float dx = middle.x + static_cast<float>(random.uniform(-margin, margin));
     const float dy = middle.y + static_cast<float>(random.uniform(-margin, margin));
     camera.camera_to_world[3] += camera.camera_to_world[0] * dx + camera.camera_to_world[1] * dy;
-    return camera;
+    return {camera, close_up};
 }
 
 Geometry to_geometry(const Primitive& primitive) {
@@ -83,13 +88,16 @@ std::vector<ShapeView> make_views(const std::string& shape_class, int variant, i
     const int index = shape_class_index(shape_class);
     Random random(seed, static_cast<std::uint64_t>(index * 1000 + variant));
     std::vector<Camera> cameras;
-    for (int i = 0; i < count; ++i)
-        cameras.push_back(random_camera(random, mesh.primitive.positions));
+    std::vector<ShapeView> views(static_cast<std::size_t>(count));
+    for (ShapeView& view : views) {
+        const auto [camera, close_up] = random_camera(random, mesh.primitive.positions);
+        cameras.push_back(camera);
+        view.close_up = close_up;
+    }
     const Raster raster = rasterize(geometry, cameras, size, size);
     const Surface surface = interpolate_surface(geometry, raster, cameras);
     const torch::Tensor depth = depth_condition(raster.depth, size / latent_size);  // [N, 1, h, w]
 
-    std::vector<ShapeView> views(cameras.size());
     for (std::size_t i = 0; i < views.size(); ++i) {
         views[i].shape_class = index;
         views[i].variant = variant;

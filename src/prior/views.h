@@ -25,6 +25,7 @@ struct ShapeView {
     int shape_class = 0;  ///< index into shape_classes()
     int variant = 0;
     int size = 0;                        ///< edge of the G-buffer: view_samples times the picture's
+    bool close_up = false;               ///< the shape is larger than the picture
     Vec3 camera{0.0f};                   ///< position
     std::vector<std::string> parts;      ///< names of its parts, "" for the first (shapes.h)
     std::vector<std::uint16_t> pixel;    ///< [P] y * size + x
