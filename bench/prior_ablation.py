@@ -14,7 +14,7 @@ import shutil
 import subprocess
 
 CONTENDERS = {
-    "as shipped": [],
+    "the recipe": [],
     "no depth": ["--no-depth"],
     "epsilon": ["--prediction", "epsilon"],
     "widths 32,64,96": ["--widths", "32,64,96"],
@@ -34,7 +34,7 @@ def train(options, name, arguments):
     done = folder / "prior.json"
     if done.exists() and "kinds" in json.loads(done.read_text()):
         return json.loads(done.read_text())
-    first = options.output / "as_shipped"
+    first = options.output / "the_recipe"
     work = folder / "work"
     if not work.exists() and folder != first and not any(word in arguments for word in OWN_DATA):
         work.mkdir(parents=True)
@@ -66,7 +66,7 @@ def main():
     parser.add_argument("--only", nargs="+", choices=CONTENDERS, default=list(CONTENDERS))
     options = parser.parse_args()
     table = {}
-    for name in ["as shipped"] + [name for name in options.only if name != "as shipped"]:
+    for name in ["the recipe"] + [name for name in options.only if name != "the recipe"]:
         prior = train(options, name, CONTENDERS[name])
         table[name] = {
             "parameters": prior["train"]["parameters"],
