@@ -19,7 +19,7 @@ CONTENDERS = {
     "epsilon": ["--prediction", "epsilon"],
     "widths 32,64,96": ["--widths", "32,64,96"],
     "widths 64,128,192": ["--widths", "64,128,192"],
-    "patterns as often as others": ["--patterns", "0.35"],
+    "a third of the patterns": ["--patterns", "0.33"],
     "twice the patterns": ["--patterns", "2"],
     "128 pixels": ["--resolution", "128"],
 }

@@ -19,7 +19,7 @@
 namespace item3d {
 namespace {
 
-/// Of the views, so many show a part of the object alone, as close-ups of an edit do.
+/// Of the views, so many show a part of the object alone, with its material in more pixels.
 constexpr double close_up_share = .2;
 
 struct ViewCamera {
