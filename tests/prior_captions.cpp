@@ -74,7 +74,7 @@ TEST(PriorCaptions, TheVocabularyIsWide) {
         held_out += shape.held_out;
     EXPECT_GE(shape_classes().size(), 44u);
     EXPECT_GE(held_out, 3);
-    EXPECT_GE(material_words().size(), 60u);
+    EXPECT_GE(material_words().size(), 50u);
     EXPECT_EQ(plain_colors().size(), 24u);
     EXPECT_EQ(light_kinds().size(), 10u);
     for (const MaterialWord& word : material_words()) {
@@ -83,6 +83,22 @@ TEST(PriorCaptions, TheVocabularyIsWide) {
         EXPECT_NE(word.caption.find("{o}"), std::string::npos);
         EXPECT_FALSE(word.spellings.empty());
     }
+}
+
+TEST(PriorCaptions, WhatComesInAnyColorHasACaptionThatSaysWhich) {
+    int with_colors = 0;
+    for (const MaterialWord& word : material_words()) {
+        if (word.colored_caption.empty()) continue;
+        ++with_colors;
+        EXPECT_NE(word.colored_caption.find("{c}"), std::string::npos) << word.word;
+        EXPECT_NE(word.colored_caption.find("{o}"), std::string::npos) << word.word;
+        Random random(3);
+        EXPECT_EQ(make_material(random, {word.wish.kind, "red", "white"}).color, "red")
+            << word.word;
+    }
+    EXPECT_GE(with_colors, 10);
+    EXPECT_TRUE(colors_alike("navy", "black"));
+    EXPECT_FALSE(colors_alike("navy", "white"));
 }
 
 TEST(PriorCaptions, PatternsComeAsOftenAsAsked) {

@@ -33,6 +33,15 @@ TEST_F(PriorEvaluation, ColorsAreToldApartOnAHeldOutMug) {
     EXPECT_FALSE(measured["kinds"]["colors"].contains("on_new_classes"));
 }
 
+TEST_F(PriorEvaluation, OakIsNoRivalOfWood) {
+    MeasureOptions options;
+    options.words = {"a", "red", "blue", "oak", "wooden"};
+    options.pictures = 2;
+    const nlohmann::json measured = measure_prior(pipeline_, views_, options);
+    EXPECT_EQ(measured["kinds"]["materials"]["words"], 2);
+    EXPECT_EQ(measured["kinds"]["materials"]["accuracy"], 1.0);
+}
+
 TEST_F(PriorEvaluation, OtherPicturesThanOursAreRefused) {
     namespace fs = std::filesystem;
     const fs::path copy = fs::temp_directory_path() / "item3d_prior_evaluation";

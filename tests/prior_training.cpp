@@ -51,7 +51,7 @@ torch::Tensor train_toy(int ranks, int steps) {
     }
     torch::manual_seed(9);
     const torch::Tensor batch = torch::randn({8, 2, 4, 4});
-    ReplicaGroup group(std::move(flat), AdamWOptions{});
+    ReplicaGroup group(std::move(flat), OptimizerOptions{});
     run_ranks(ranks, [&](int rank) {
         const auto part = 8 / ranks;
         for (int step = 0; step < steps; ++step) {
@@ -79,7 +79,7 @@ TEST(PriorReplicas, StepIsAdamW) {
     std::vector<std::unique_ptr<FlatModel>> flat;
     flat.push_back(
         std::make_unique<FlatModel>(std::vector<std::shared_ptr<torch::nn::Module>>{ours}));
-    ReplicaGroup group(std::move(flat), AdamWOptions{.clip_norm = .05f});
+    ReplicaGroup group(std::move(flat), OptimizerOptions{.clip_norm = .05f});
     torch::optim::AdamW adam(reference->parameters(),
                              torch::optim::AdamWOptions(1e-2).betas({.9, .99}).weight_decay(.01));
     const torch::Tensor batch = torch::randn({4, 2, 4, 4});
@@ -102,7 +102,7 @@ TEST(PriorReplicas, AFailingRankDoesNotLeaveTheOthersWaiting) {
     for (int rank = 0; rank < 2; ++rank)
         flat.push_back(std::make_unique<FlatModel>(
             std::vector<std::shared_ptr<torch::nn::Module>>{std::make_shared<Network>()}));
-    ReplicaGroup group(std::move(flat), AdamWOptions{});
+    ReplicaGroup group(std::move(flat), OptimizerOptions{});
     EXPECT_THROW(run_ranks(2,
                            [&](int rank) {
                                try {

@@ -77,6 +77,10 @@ void add_network_settings(CLI::App& command, TrainOptions& options) {
                 "What the U-Net learns to say: v_prediction or epsilon")
         ->check(CLI::IsMember({"v_prediction", "epsilon"}))
         ->capture_default_str();
+    add_setting(command, options, "--optimizer", &TrainSettings::optimizer,
+                "How the U-Net's weights are stepped: adamw or muon")
+        ->check(CLI::IsMember({"adamw", "muon"}))
+        ->capture_default_str();
     CLI::Option* no_depth =
         command.add_flag("!--no-depth", options.settings.depth_condition,
                          "A U-Net that is not told the depth, as most of Stable Diffusion's");

@@ -27,10 +27,12 @@ std::vector<VocabularyEntry> make_vocabulary() {
                        "a " + color.name + " {o}",
                        {"plain", color.name, ""},
                        "",
+                       "",
                        ""});
     }
     for (const MaterialWord& word : material_words())
-        all.push_back({word.group, word.word, word.spellings, word.caption, word.wish, "", ""});
+        all.push_back({word.group, word.word, word.spellings, word.caption, word.wish, "", "",
+                       word.colored_caption});
     // "in the dark" and "in the sun" are what captions of these lights say too.
     const std::map<std::string, std::string> others{
         {"night", "dark"}, {"noon", "sun"}, {"overcast", "cloudy"}};
@@ -39,11 +41,12 @@ std::vector<VocabularyEntry> make_vocabulary() {
         const auto other = others.find(kind);
         if (other != others.end()) spellings.push_back(other->second);
         all.push_back(
-            {"lights", kind, spellings, "a {c} {o}" + light_phrases(kind)[0], {}, kind, ""});
+            {"lights", kind, spellings, "a {c} {o}" + light_phrases(kind)[0], {}, kind, "", ""});
     }
     for (const ShapeClass& shape : shape_classes())
         if (!shape.held_out && shape.name != "blob")
-            all.push_back({"objects", shape.name, shape.nouns, "a {c} {o}", {}, "", shape.name});
+            all.push_back(
+                {"objects", shape.name, shape.nouns, "a {c} {o}", {}, "", shape.name, ""});
     return all;
 }
 
@@ -99,12 +102,19 @@ std::vector<std::string> known_spellings(const VocabularyEntry& entry,
     return known;
 }
 
-/// `truth` and at most `rivals` others of `count`.
-std::vector<std::size_t> draw_candidates(Random& random, std::size_t count, std::size_t truth,
-                                         int rivals) {
+/// Whether one of the two stands for all of its material, the other included: wood and oak.
+bool one_names_both(const MaterialWish& a, const MaterialWish& b) {
+    return !a.kind.empty() && a.kind == b.kind && (a.color.empty() || b.color.empty());
+}
+
+/// `truth` and at most `rivals` others.
+std::vector<std::size_t> draw_candidates(Random& random,
+                                         const std::vector<VocabularyEntry>& entries,
+                                         std::size_t truth, int rivals) {
     std::vector<std::size_t> others;
-    for (std::size_t i = 0; i < count; ++i)
-        if (i != truth) others.push_back(i);
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        if (i != truth && !one_names_both(entries[i].material, entries[truth].material))
+            others.push_back(i);
     const std::size_t wanted = std::min(others.size(), static_cast<std::size_t>(rivals));
     std::vector<std::size_t> chosen{truth};
     for (std::size_t i = 0; i < wanted; ++i) {
@@ -169,6 +179,20 @@ class Measurement {
         }
     }
 
+    /// Two that look different.
+    std::pair<std::string, std::string> draw_colors(Random& random) const {
+        const auto any = [&] {
+            return colors_[static_cast<std::size_t>(
+                random.index(static_cast<std::int64_t>(colors_.size())))];
+        };
+        const std::string first = any();
+        constexpr int tries = 64;  // a prior may know one colour
+        std::string second = any();
+        for (int i = 0; i < tries && colors_alike(first, second); ++i)
+            second = any();
+        return {first, second};
+    }
+
     Answer classify(const std::vector<VocabularyEntry>& entries, std::size_t truth,
                     std::int64_t job) const {
         const VocabularyEntry& entry = entries[truth];
@@ -179,21 +203,25 @@ class Measurement {
         wish.plain_background = true;
         wish.light = &lights_.at(entry.light.empty() ? "plain" : entry.light);
         wish.material = entry.material;
-        const std::string& color = colors_[static_cast<std::size_t>(
-            random.index(static_cast<std::int64_t>(colors_.size())))];
+        const auto [color, second] = draw_colors(random);
+        const bool in_any_color = !entry.colored_caption.empty();
         if (wish.material.kind.empty()) wish.material = {"plain", color, ""};
+        if (in_any_color) wish.material = {entry.material.kind, color, second};
         wish.part = "none";
         const ShapeClass& shape = shape_classes()[static_cast<std::size_t>(view.shape_class)];
         const std::string noun = shape.held_out ? "object" : shape.nouns[0];
 
         const std::vector<std::size_t> candidates =
-            draw_candidates(random, entries.size(), truth, options_.rivals);
+            draw_candidates(random, entries, truth, options_.rivals);
         std::vector<std::string> captions;
         for (const std::size_t candidate : candidates) {
             const VocabularyEntry& other = entries[candidate];
-            std::string caption = other.caption;
+            std::string caption = in_any_color && !other.colored_caption.empty()
+                                      ? other.colored_caption
+                                      : other.caption;
             replace(caption, "{o}", other.shape_class.empty() ? noun : other.word);
             replace(caption, "{c}", color);
+            replace(caption, "{d}", second);
             captions.push_back(mend_articles(caption));
         }
         const Example example = draw_example(random, view, {}, wish);

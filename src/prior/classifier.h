@@ -22,6 +22,9 @@ struct VocabularyEntry {
     MaterialWish material;    ///< empty: a plain colour at random
     std::string light;        ///< TrainingLight::kind; empty: "plain"
     std::string shape_class;  ///< objects only
+    /// MaterialWord::colored_caption. Captions say the colours of a picture that could have any,
+    /// for the word is what is asked about; those of its rivals too.
+    std::string colored_caption;
 };
 
 /// Every word that is measured, kind by kind.
@@ -42,7 +45,7 @@ struct MeasureOptions {
 std::vector<ShapeView> held_out_views(const Pipeline& pipeline, std::uint64_t seed, int threads);
 
 /// Which caption of a kind gives the lowest denoising loss on a picture of each of its words, the
-/// right one or that of a rival?
+/// right one or that of a rival? A word for many things has none of them as a rival: oak is wood.
 /// Returns {"vocabulary": {kind: [{word, spellings, accuracy, most_confused_with, base_color?}]},
 /// "kinds": {kind: {"words", "accuracy", "on_new_classes"?}}, "accuracy": mean over all}.
 /// "on_new_classes" is of those pictures alone whose whole class was never trained on. The pictures

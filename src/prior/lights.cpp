@@ -158,6 +158,17 @@ Image turned_preset(Random& random, const std::string& name) {
     return adjust_light(make_light_preset(name, map_height), draw(random, 0, 360), 0);
 }
 
+/// Greyer and cooler than other daylight, or nothing would tell it from a studio.
+Image cloudy_sky(Random& random) {
+    Image map = turned_preset(random, "overcast");
+    const Vec3 tint = glm::mix(Vec3(.9f, 1, 1.1f), Vec3(.72f, .95f, 1.22f), draw(random, 0, 1));
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x)
+            for (int c = 0; c < 3; ++c)
+                map.at(x, y, c) *= tint[c];
+    return map;
+}
+
 /// Scales the light so that the brightest white surface has that radiance.
 void normalise(EnvironmentLight& light, float brightest) {
     const auto luminance = light.diffuse.mean(-1).max().item<float>();
@@ -214,9 +225,9 @@ const std::vector<LightKind>& all_lights() {
         {"overcast",
          .04,
          {" on an overcast day", " on an overcast day", " on a cloudy day"},
-         [](Random& r) { return turned_preset(r, "overcast"); },
-         .6,
-         .8},
+         cloudy_sky,
+         .42,
+         .58},
         {"noon",
          .04,
          {" at noon", " in the sun"},

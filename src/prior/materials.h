@@ -18,6 +18,8 @@ struct PlainColor {
 const std::vector<PlainColor>& plain_colors();
 /// Base colours (normal reflectance) of "gold", "silver", "copper", "bronze", ...
 const std::vector<PlainColor>& metal_colors();
+/// Whether two of those names look too much the same to make a pattern.
+bool colors_alike(const std::string& first, const std::string& second);
 
 struct MaterialValue {
     Vec3 base_color;  ///< linear
@@ -52,6 +54,8 @@ struct MaterialWord {
     std::string caption;                 ///< "a wooden {o}"
     std::vector<std::string> spellings;  ///< words of prompts that mean it
     MaterialWish wish;
+    /// For what comes in any colour: "a {c} and {d} striped {o}". Else empty.
+    std::string colored_caption;
 };
 /// Those of all kinds, in a fixed order.
 const std::vector<MaterialWord>& material_words();

@@ -1,6 +1,7 @@
 #include "item3d/prior/replicas.h"
 
 #include "item3d/core/error.h"
+#include "item3d/prior/orthogonalize.h"
 
 #include <ATen/autocast_mode.h>
 
@@ -25,13 +26,25 @@ std::int64_t block_count(std::int64_t total) {
     return (total + block_size - 1) / block_size;
 }
 
+constexpr std::int64_t smallest_matrix = 16;
+
+bool is_hidden_matrix(const std::string& name, const torch::Tensor& parameter) {
+    return parameter.dim() >= 2 && parameter.size(0) >= smallest_matrix &&
+           parameter.numel() / parameter.size(0) >= smallest_matrix &&
+           name.find("embedding") == std::string::npos && name.find("conv_in") == std::string::npos;
+}
+
 }  // namespace
 
 FlatModel::FlatModel(const std::vector<std::shared_ptr<torch::nn::Module>>& modules) {
     std::int64_t total = 0;
     for (const auto& module : modules) {
-        for (const torch::Tensor& parameter : module->parameters()) {
+        for (const auto& item : module->named_parameters()) {
+            const torch::Tensor& parameter = item.value();
             parameters_.push_back(parameter);
+            if (is_hidden_matrix(item.key(), parameter))
+                matrices_.push_back(
+                    {total, parameter.size(0), parameter.numel() / parameter.size(0)});
             total += parameter.numel();
         }
     }
@@ -57,7 +70,7 @@ void FlatModel::use_values(const torch::Tensor& other) {
 }
 
 ReplicaGroup::ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas,
-                           const AdamWOptions& options, ProcessGroup processes)
+                           const OptimizerOptions& options, ProcessGroup processes)
     : replicas_(std::move(replicas)),
       options_(options),
       processes_(std::move(processes)),
@@ -69,6 +82,7 @@ ReplicaGroup::ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas,
     first_moment_ = torch::zeros_like(values);
     second_moment_ = torch::zeros_like(values);
     average_ = values.clone();
+    changes_ = torch::zeros_like(values);
     sum_ = torch::zeros({values.numel() + 1});
     square_sums_.resize(static_cast<std::size_t>(block_count(values.numel())));
 }
@@ -137,13 +151,20 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
     auto* m = first_moment_.data_ptr<float>();
     auto* v = second_moment_.data_ptr<float>();
     auto* average = average_.data_ptr<float>();
+    auto* change = changes_.data_ptr<float>();
     for (std::int64_t i = begin; i < end; ++i) {
         const float gradient = sum[i] * clip;
         m[i] = options_.beta1 * m[i] + (1 - options_.beta1) * gradient;
         v[i] = options_.beta2 * v[i] + (1 - options_.beta2) * gradient * gradient;
-        const float change =
-            m[i] * correction1 / (std::sqrt(v[i] * correction2) + options_.epsilon);
-        values[i] -= request.learning_rate * (change + options_.weight_decay * values[i]);
+        change[i] = m[i] * correction1 / (std::sqrt(v[i] * correction2) + options_.epsilon);
+    }
+    if (options_.orthogonal) {
+        wait();
+        orthogonalize(rank, clip);
+        wait();
+    }
+    for (std::int64_t i = begin; i < end; ++i) {
+        values[i] -= request.learning_rate * (change[i] + options_.weight_decay * values[i]);
         average[i] += (1 - request.ema_decay) * (values[i] - average[i]);
     }
     for (auto& replica : replicas_) {
@@ -155,6 +176,23 @@ ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
     wait();
     if (rank == 0) ++steps_;  // read by the others only after the next wait
     return {norm, stop};
+}
+
+void ReplicaGroup::orthogonalize(int rank, float clip) {
+    const auto& matrices = replicas_[0]->matrices();
+    for (auto i = static_cast<std::size_t>(rank); i < matrices.size();
+         i += static_cast<std::size_t>(size())) {
+        const FlatModel::Matrix& matrix = matrices[i];
+        const auto part = [&](const torch::Tensor& all) {
+            return all.narrow(0, matrix.offset, matrix.rows * matrix.columns)
+                .view({matrix.rows, matrix.columns});
+        };
+        // Nesterov's momentum: the newest gradient once more.
+        const torch::Tensor momentum =
+            part(first_moment_) * options_.beta1 + part(sum_) * (clip * (1 - options_.beta1));
+        part(changes_).copy_(orthogonalized(momentum) *
+                             orthogonal_step_scale(matrix.rows, matrix.columns));
+    }
 }
 
 std::vector<std::pair<std::string, torch::Tensor>> ReplicaGroup::state() const {

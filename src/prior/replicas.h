@@ -28,26 +28,36 @@ class FlatModel {
     torch::Tensor gradients;  ///< [P] float32; backward() adds to it
     /// Makes the modules use another vector of values from now on (for the moving average).
     void use_values(const torch::Tensor& other);
+    /// A weight between hidden layers, seen as a matrix: from `offset` on, row after row.
+    struct Matrix {
+        std::int64_t offset, rows, columns;
+    };
+    /// Those that are no embeddings and neither first nor last; at least 16 x 16.
+    const std::vector<Matrix>& matrices() const { return matrices_; }
     std::int64_t size() const { return values.numel(); }
 
   private:
     std::vector<torch::Tensor> parameters_;
+    std::vector<Matrix> matrices_;
 };
 
-struct AdamWOptions {
+struct OptimizerOptions {
     float beta1 = 0.9f;
     float beta2 = 0.99f;
     float epsilon = 1e-8f;
     float weight_decay = 0.01f;
     float clip_norm = 1.0f;  ///< largest norm of the averaged gradient
+    /// Steps of FlatModel::matrices() are made orthogonal (orthogonalize.h), of the same moments.
+    bool orthogonal = false;
 };
 
-/// AdamW (Loshchilov and Hutter 2019) over the replicas, with a moving average of the parameters.
+/// AdamW (Loshchilov and Hutter 2019), and Muon for matrices where asked, over the replicas, with a
+/// moving average of the parameters.
 class ReplicaGroup {
   public:
     /// All replicas get the first one's values. Each process has a group of the same size; their
     /// values and states must be the same when they begin, and stay so, byte by byte.
-    ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas, const AdamWOptions& options,
+    ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas, const OptimizerOptions& options,
                  ProcessGroup processes = {});
 
     FlatModel& replica(int rank) { return *replicas_[static_cast<std::size_t>(rank)]; }
@@ -81,11 +91,15 @@ class ReplicaGroup {
 
   private:
     void wait();
+    /// Makes changes_ orthogonal, of those matrices that this rank looks after. clip: what the
+    /// newest gradient was scaled by.
+    void orthogonalize(int rank, float clip);
 
     std::vector<std::unique_ptr<FlatModel>> replicas_;
-    AdamWOptions options_;
+    OptimizerOptions options_;
     ProcessGroup processes_;
     torch::Tensor first_moment_, second_moment_, average_;
+    torch::Tensor changes_;            ///< [P] of this step, before the learning rate
     torch::Tensor sum_;                ///< [P + 1] of all gradients, and of the wishes to stop
     std::vector<double> square_sums_;  ///< of the averaged gradient's blocks
     std::int64_t steps_ = 0;

@@ -78,7 +78,7 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
     constexpr std::int64_t at_once = 32;
     const std::int64_t count = settings.data_samples / at_once * at_once;
     LatentData data;
-    data.latents = torch::empty({count, 4, latent_size, latent_size}, torch::kHalf);
+    data.latents = torch::empty({count, latent_channels, latent_size, latent_size}, torch::kHalf);
     data.depth = torch::empty({count, 1, latent_size, latent_size}, torch::kHalf);
     data.tokens = torch::empty({count, text_length}, torch::kInt16);
     data.empty_tokens = tokenizer.encode_batch({""}, text_length)[0].to(torch::kInt16);
@@ -118,7 +118,7 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
 /// What the data depends on: a work folder made with other settings is not gone on with. Replicas
 /// are those of all processes, so that a training may go on with them spread otherwise.
 nlohmann::json fingerprint(const TrainSettings& s) {
-    return {{"version", 3},
+    return {{"version", 4},
             {"seed", s.seed},
             {"resolution", s.resolution},
             {"data_samples", s.data_samples},
@@ -262,7 +262,7 @@ LatentData LatentData::from_tensors(const NamedTensors& tensors, std::size_t voc
     const auto has = [](const torch::Tensor& tensor, const std::vector<std::int64_t>& shape) {
         return tensor.sizes().vec() == shape;
     };
-    if (rows == 0 || !has(data.latents, {rows, 4, latent_size, latent_size}) ||
+    if (rows == 0 || !has(data.latents, {rows, latent_channels, latent_size, latent_size}) ||
         !has(data.depth, {rows, 1, latent_size, latent_size}) ||
         !has(data.tokens, {rows, text_length}) || !has(data.empty_tokens, {text_length}))
         throw InputError(file.string(), "its tensors do not have the shapes of this program's data",
@@ -292,6 +292,7 @@ nlohmann::json settings_json(const TrainSettings& settings) {
                 {"widths", settings.widths},
                 {"depth_condition", settings.depth_condition},
                 {"prediction_type", settings.prediction_type},
+                {"optimizer", settings.optimizer},
                 {"learning_rate", as_written(settings.learning_rate)},
                 {"resume", settings.resume},
                 {"stop_after", settings.stop_after}});

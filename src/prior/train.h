@@ -27,8 +27,8 @@ struct TrainSettings {
     std::filesystem::path output;        ///< the diffusers folder
     std::filesystem::path work;          ///< data, checkpoints; may be deleted afterwards
     std::int64_t samples = 600000;       ///< pictures that the U-Net sees, repetitions counted
-    std::int64_t data_samples = 140000;  ///< different pictures
-    std::int64_t autoencoder_samples = 48000;
+    std::int64_t data_samples = 112000;  ///< different pictures
+    std::int64_t autoencoder_samples = 64000;
     std::int64_t autoencoder_pictures = 12000;
     std::int64_t clip_samples = 240000;       ///< that CLIP sees, repetitions counted
     std::int64_t captioner_samples = 540000;  ///< and the captioner
@@ -43,6 +43,7 @@ struct TrainSettings {
     std::vector<int> widths{48, 96, 144};
     bool depth_condition = true;                   ///< a fifth input channel
     std::string prediction_type = "v_prediction";  ///< or "epsilon"
+    std::string optimizer = "adamw";               ///< or "muon": the U-Net's
     int replicas = 2;                              ///< of each process
     int batch = 32;                                ///< pictures a step and replica
     float learning_rate = 1e-3f;
@@ -82,7 +83,7 @@ struct LatentData {
     static LatentData from_tensors(const NamedTensors& tensors, std::size_t vocabulary,
                                    const std::filesystem::path& file);
 
-    torch::Tensor latents;       ///< [N, 4, 16, 16] fp16, scaled
+    torch::Tensor latents;       ///< [N, latent_channels, 16, 16] fp16, scaled
     torch::Tensor depth;         ///< [N, 1, 16, 16] fp16
     torch::Tensor tokens;        ///< [N, text_length] int16
     torch::Tensor empty_tokens;  ///< [text_length] int16, the empty prompt

@@ -40,6 +40,14 @@ torch::Tensor differences(const torch::Tensor& error, const torch::Tensor& weigh
     return (across.abs() * weights.slice(3, 1)).mean() + (down.abs() * weights.slice(2, 1)).mean();
 }
 
+constexpr int anchored = 3;
+
+/// How far the channels that hold details are from a variance of a half. What has less drowns in
+/// the noise of most timesteps, and the U-Net would learn no pattern from it.
+torch::Tensor spread_loss(const torch::Tensor& latents) {
+    return (latents.slice(1, anchored).var({0, 2, 3}, false) - .5).square().mean();
+}
+
 /// progress: 0 .. 1. The anchor ties the first three latents to the downscaled picture: without it
 /// training takes several times longer.
 torch::Tensor reconstruction_loss(AutoencoderTiny& model, const Batch& data, double progress,
@@ -53,14 +61,14 @@ torch::Tensor reconstruction_loss(AutoencoderTiny& model, const Batch& data, dou
     const torch::Tensor error = images.to(torch::kFloat32) - data.images;
     latents = latents.to(torch::kFloat32);
     const torch::Tensor anchor =
-        (latents.slice(1, 0, 3) -
+        (latents.slice(1, 0, anchored) -
          1.5 * torch::avg_pool2d(data.images, data.images.size(2) / latents.size(2)))
             .square()
             .mean();
     const double anchor_weight = .02 + .98 * std::max(0.0, 1 - 4 * progress);
     return (error.abs() * data.weights).mean() + (error.square() * data.weights).mean() +
            .5 * differences(error, data.weights) + 1e-4 * .5 * latents.square().mean() +
-           anchor_weight * anchor;
+           anchor_weight * anchor + .05 * spread_loss(latents);
 }
 
 std::shared_ptr<AutoencoderTiny> make_model(const TrainSettings& settings) {
@@ -95,6 +103,7 @@ TrainedAutoencoder finish(std::shared_ptr<AutoencoderTiny> model, const PictureD
 
 AutoencoderTinyConfig prior_autoencoder_config(int resolution) {
     AutoencoderTinyConfig config;
+    config.latent_channels = latent_channels;
     config.encoder_block_out_channels = {32, 32, 32};
     config.decoder_block_out_channels = {32, 32, 32};
     config.num_encoder_blocks = {1, 2, 3};
@@ -143,7 +152,7 @@ TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureD
                     rows.push_back(random.index(pictures.images.size(0)));
                 auto generator = at::detail::createCPUGenerator(random.bits());
                 const torch::Tensor noise =
-                    torch::randn({batch, 4, latent_size, latent_size}, generator);
+                    torch::randn({batch, latent_channels, latent_size, latent_size}, generator);
                 const Batch data = gather(pictures, torch::tensor(rows));
                 const torch::Tensor loss = reconstruction_loss(model, data, part, noise);
                 loss.backward();

@@ -35,6 +35,14 @@ Networks make_networks(const TrainSettings& settings, const DiffusionConfig& con
     return networks;
 }
 
+/// [N, 1, h, w]: what the object covers counts four times as much as the background, which captions
+/// say nothing about. depth: depth_condition(), -1 where there is nothing.
+torch::Tensor object_weights(const torch::Tensor& depth) {
+    const torch::Tensor covered = ((depth + 1) / 1.2).clamp(0, 1);
+    const torch::Tensor weights = covered * 3 + 1;
+    return weights / weights.mean();
+}
+
 /// The denoising loss on the pictures of one replica's batch. Everything random depends on
 /// (seed, step, rank) alone.
 torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
@@ -46,6 +54,7 @@ torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
     const torch::Tensor index = torch::tensor(rows);
     const torch::Tensor latents = data.latents.index_select(0, index).to(torch::kFloat32);
     torch::Tensor depth = data.depth.index_select(0, index).to(torch::kFloat32);
+    const torch::Tensor weights = object_weights(depth);
     torch::Tensor tokens = data.tokens.index_select(0, index).to(torch::kInt64);
     std::vector<std::int64_t> times;
     for (std::int64_t i = 0; i < count; ++i) {
@@ -69,7 +78,7 @@ torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
     }
     const torch::Tensor wanted =
         schedule.predicts_velocity() ? schedule.get_velocity(latents, noise, timesteps) : noise;
-    return (prediction.to(torch::kFloat32) - wanted).square().mean();
+    return ((prediction.to(torch::kFloat32) - wanted).square() * weights).mean();
 }
 
 }  // namespace
@@ -90,8 +99,8 @@ UNet2DConditionConfig prior_unet_config(const TrainSettings& settings) {
     const std::vector<int>& widths = settings.widths;
     UNet2DConditionConfig config;
     config.sample_size = latent_size;
-    config.in_channels = settings.depth_condition ? 5 : 4;
-    config.out_channels = 4;
+    config.in_channels = latent_channels + (settings.depth_condition ? 1 : 0);
+    config.out_channels = latent_channels;
     const std::size_t levels = widths.size();
     config.block_out_channels = widths;
     config.down_block_types.assign(levels, "CrossAttnDownBlock2D");
@@ -139,6 +148,7 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
     options.rows = data.latents.size(0);
     options.batch = settings.batch;
     options.objective = settings.prediction_type;
+    options.orthogonal = settings.optimizer == "muon";
     TrainingLoop loop(options, std::move(replicas));
 
     const Networks exported = make_networks(settings, config);

@@ -55,7 +55,8 @@ TrainingLoop::TrainingLoop(const LoopOptions& options, std::vector<LoopReplica> 
     for (const LoopReplica& replica : replicas_)
         flat.push_back(std::make_unique<FlatModel>(replica.modules));
     const ProcessGroup& processes = options_.processes;
-    group_ = std::make_unique<ReplicaGroup>(std::move(flat), AdamWOptions{}, processes);
+    group_ = std::make_unique<ReplicaGroup>(
+        std::move(flat), OptimizerOptions{.orthogonal = options_.orthogonal}, processes);
     if (processes.first() && options_.resume && std::filesystem::exists(options_.checkpoint))
         load_checkpoint();
     if (processes.size() > 1) load_state(processes.broadcast(state()));
@@ -180,6 +181,7 @@ nlohmann::json TrainingLoop::checkpoint_settings() const {
             {"rows", options_.rows},
             {"batch", options_.batch},
             {"objective", options_.objective},
+            {"optimizer", options_.orthogonal ? "muon" : "adamw"},
             {"replicas", group_->size() * options_.processes.size()},
             {"learning_rate", as_written(options_.learning_rate)},
             {"seed", options_.seed}};

@@ -23,7 +23,8 @@ struct LoopOptions {
     std::int64_t samples = 0;          ///< to be seen, repetitions counted
     std::int64_t rows = 0;             ///< different ones
     int batch = 32;                    ///< a step and replica
-    std::string objective;  ///< what the loss is about, where one network could learn several
+    std::string objective;    ///< what the loss is about, where one network could learn several
+    bool orthogonal = false;  ///< OptimizerOptions::orthogonal
     float learning_rate = 1e-3f;
     double rise = 6000;  ///< samples until the highest learning rate
     std::uint64_t seed = 1;

@@ -94,17 +94,6 @@ ProceduralMaterial cardboard(Random& random, const MaterialWish&) {
             }};
 }
 
-ProceduralMaterial cork(Random& random, const MaterialWish&) {
-    const Vec3 tone = vary(random, {.55f, .33f, .16f}, .08);
-    const float size = draw(random, 4, 5.5);
-    return {"", "", {"cork {o}", "cork {o}", "{o} made of cork"}, [=](const Vec3& p, const Vec3&) {
-                const NearPoints near = near_points(p * size);
-                const bool hole = near.value > .6f && near.first < .33f;
-                return MaterialValue{hole ? tone * .25f : limit(tone * (.78f + .45f * near.value)),
-                                     .95f, 0};
-            }};
-}
-
 /// Polished green stone that light enters a little.
 ProceduralMaterial jade(Random& random, const MaterialWish&) {
     const CosineNoise clouds(random, 3.5f, 3);
@@ -117,28 +106,6 @@ ProceduralMaterial jade(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Small tiles with joints, each of its own tone.
-ProceduralMaterial mosaic(Random& random, const MaterialWish& wish) {
-    const auto [first, second] = two_colors(random, wish);
-    const Vec3 a = vary(random, color_named(first)), b = vary(random, color_named(second));
-    const float size = draw(random, 3, 4.2);
-    return {
-        "",
-        first,
-        {"mosaic {o}", "mosaic tile {o}", "{o} covered in " + first + " and " + second + " tiles",
-         first + " and " + second + " mosaic {o}"},
-        [=](const Vec3& p, const Vec3& n) {
-            const Vec2 uv = flat_coordinates(p, n) * size;
-            const float x = std::floor(uv.x), y = std::floor(uv.y);
-            const bool joint = uv.x - x < .14f || uv.y - y < .14f;
-            const float value = cell_value(x, y, flat_coordinates(n, n).x > 0 ? 0 : 7);
-            const Vec3 tile =
-                mix(a, b, value > .5f ? 1.0f : 0.0f) * (.7f + .5f * fraction(value * 7));
-            return MaterialValue{joint ? Vec3(.5f, .48f, .45f) : limit(tile), joint ? .9f : .15f,
-                                 0};
-        }};
-}
-
 }  // namespace
 
 std::vector<MaterialKind> craft_materials() {
@@ -146,13 +113,15 @@ std::vector<MaterialKind> craft_materials() {
              .02,
              porcelain,
              {material_word("porcelain", "porcelain", {"porcelain", "china"})}},
-            {"glaze", .025, glaze, {word_of("materials", "glaze", "glazed", {"glazed", "glaze"})}},
+            {"glaze",
+             .025,
+             glaze,
+             {colored(word_of("materials", "glaze", "glazed", {"glazed", "glaze"}),
+                      "a glazed {c} and {d} {o}")}},
             {"glass", .02, glass, {material_word("glass", "glass")}},
             {"leather", .025, leather, {material_word("leather", "leather")}},
             {"cardboard", .015, cardboard, {material_word("cardboard", "cardboard")}},
-            {"cork", .012, cork, {material_word("cork", "cork")}},
-            {"jade", .012, jade, {material_word("jade", "jade")}},
-            {"mosaic", .02, mosaic, {pattern_word("mosaic", "mosaic", {"mosaic", "tiles"})}}};
+            {"jade", .012, jade, {material_word("jade", "jade")}}};
 }
 
 }  // namespace item3d::paint

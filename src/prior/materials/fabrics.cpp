@@ -9,23 +9,6 @@ std::vector<std::string> dyed(const std::string& color, const std::string& fabri
             "{o} made of " + color + " " + fabric};
 }
 
-/// Felted tufts.
-ProceduralMaterial wool(Random& random, const MaterialWish& wish) {
-    const std::string name = one_color(random, wish);
-    const Vec3 color = vary(random, color_named(name));
-    std::vector<std::string> phrases = dyed(name, "wool");
-    phrases.push_back("woolen {o}");
-    return {"", name, phrases,
-            grained(random, {.dark = color * .55f,
-                             .light = limit(color * 1.15f + .01f),
-                             .frequency = draw(random, 17, 24),
-                             .octaves = 1,
-                             .spread = 1,
-                             .rough_dark = 1,
-                             .rough_light = 1,
-                             .relief = .8f})};
-}
-
 ProceduralMaterial denim(Random& random, const MaterialWish&) {
     const CosineNoise fade(random, 3.5f, 2);
     const Vec3 dark = vary(random, {.025f, .06f, .17f}), light = vary(random, {.16f, .27f, .45f});
@@ -58,11 +41,11 @@ ProceduralMaterial velvet(Random& random, const MaterialWish& wish) {
 ProceduralMaterial knit(Random& random, const MaterialWish& wish) {
     const std::string name = one_color(random, wish);
     const Vec3 color = vary(random, color_named(name));
-    const float columns = draw(random, 3.2, 4.4);
+    const float columns = draw(random, 2.6, 3.4);
     return {"",
             name,
             {"knitted " + name + " {o}", "knitted " + name + " {o}", "knitted {o}", "knit {o}",
-             "{o} knitted from " + name + " yarn"},
+             "{o} knitted from " + name + " yarn", "{o} knitted from " + name + " wool"},
             [=](const Vec3& p, const Vec3& n) {
                 const Vec2 uv = flat_coordinates(p, n);
                 const float across = fraction(uv.x * columns) * 2 - 1;  // one V
@@ -89,34 +72,21 @@ ProceduralMaterial silk(Random& random, const MaterialWish& wish) {
             }};
 }
 
-/// Coarse plain weave.
-ProceduralMaterial burlap(Random& random, const MaterialWish&) {
-    const Vec3 tone = vary(random, {.5f, .34f, .16f}, .08);
-    const float threads = draw(random, 3.4, 4.2);
-    return {"",
-            "",
-            {"burlap {o}", "burlap {o}", "{o} made of burlap", "sackcloth {o}"},
-            [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n) * threads;
-                const float x = std::floor(uv.x), y = std::floor(uv.y);
-                const bool over = odd(x + y);
-                const float along = over ? uv.y - y : uv.x - x, across = over ? uv.x - x : uv.y - y;
-                const float thread = std::sin(pi * across) * (.6f + .4f * std::sin(pi * along));
-                const float slope = -.6f * std::cos(pi * across);
-                return MaterialValue{tone * (.3f + .8f * thread + .25f * cell_value(x, y)), 1, 0,
-                                     flat_slope(over ? Vec2(slope, 0) : Vec2(0, slope), n)};
-            }};
-}
-
 }  // namespace
 
 std::vector<MaterialKind> fabric_materials() {
-    return {{"wool", .02, wool, {material_word("wool", "wool", {"wool", "woolen"})}},
-            {"denim", .02, denim, {material_word("denim", "denim", {"denim", "jeans"})}},
-            {"velvet", .02, velvet, {material_word("velvet", "velvet")}},
-            {"knit", .025, knit, {material_word("knit", "knitted", {"knitted", "knit", "yarn"})}},
-            {"silk", .015, silk, {material_word("silk", "silk", {"silk", "satin"})}},
-            {"burlap", .015, burlap, {material_word("burlap", "burlap", {"burlap", "sackcloth"})}}};
+    return {
+        {"denim", .02, denim, {material_word("denim", "denim", {"denim", "jeans"})}},
+        {"velvet", .03, velvet, {colored(material_word("velvet", "velvet"), "a {c} velvet {o}")}},
+        {"knit",
+         .03,
+         knit,
+         {colored(material_word("knit", "knitted", {"knitted", "knit", "yarn", "wool"}),
+                  "a knitted {c} {o}")}},
+        {"silk",
+         .03,
+         silk,
+         {colored(material_word("silk", "silk", {"silk", "satin"}), "a {c} silk {o}")}}};
 }
 
 }  // namespace item3d::paint

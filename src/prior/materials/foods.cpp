@@ -36,24 +36,6 @@ ProceduralMaterial cheese(Random& random, const MaterialWish&) {
         }};
 }
 
-/// Brown biscuit with lines of white icing.
-ProceduralMaterial gingerbread(Random& random, const MaterialWish&) {
-    const CosineNoise crumbs(random, 22, 2), lines(random, 3.2f);
-    const Vec3 tone = vary(random, {.36f, .15f, .05f}, .08);
-    return {"",
-            "",
-            {"gingerbread {o}", "gingerbread {o}", "{o} made of gingerbread"},
-            [=](const Vec3& p, const Vec3&) {
-                Vec3 gradient(0.0f);
-                const float crumb = crumbs.with_gradient(p, gradient);
-                const float v = lines(p);
-                const float icing = 1 - smooth_step(std::abs(v - .4f), .1f, .17f);
-                return MaterialValue{
-                    limit(mix(tone * (1 + .14f * crumb), {.85f, .83f, .8f}, icing)),
-                    .85f - .3f * icing, 0, gradient * (.012f * (1 - icing))};
-            }};
-}
-
 /// Glossy red and white swirls.
 ProceduralMaterial candy(Random& random, const MaterialWish&) {
     const Vec3 stripe =
@@ -98,7 +80,6 @@ std::vector<MaterialKind> food_materials() {
     return {
         {"chocolate", .02, chocolate, {material_word("chocolate", "chocolate")}},
         {"cheese", .015, cheese, {material_word("cheese", "cheese")}},
-        {"gingerbread", .015, gingerbread, {material_word("gingerbread", "gingerbread")}},
         {"candy", .015, candy, {material_word("candy", "candy", {"candy", "cane", "peppermint"})}},
         {"sprinkles",
          .015,

@@ -82,27 +82,6 @@ ProceduralMaterial dalmatian(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Rows of overlapping scales.
-ProceduralMaterial scales(Random& random, const MaterialWish& wish) {
-    const std::string name = one_color(random, wish);
-    const Vec3 color = vary(random, color_named(name));
-    const float size = draw(random, 3, 4.2);
-    return {"",
-            name,
-            {"scaly {o}", "scaly " + name + " {o}", "{o} covered in " + name + " scales",
-             "{o} with snake scales"},
-            [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n) * size;
-                const float row = std::floor(uv.y * 1.4f);
-                const float u = fraction(uv.x + (odd(row) ? .5f : 0.0f)) * 2 - 1;
-                const float down = 1 - (uv.y * 1.4f - row);  // the tip of a scale is below
-                const float edge = std::hypot(u, down);
-                const float w = smooth_step(edge, .75f, 1.05f);
-                return MaterialValue{limit(color * (1.15f - .85f * w)), .35f, 0,
-                                     flat_slope({.5f * u, -.4f * down}, n)};
-            }};
-}
-
 }  // namespace
 
 std::vector<MaterialKind> fur_patterns() {
@@ -113,8 +92,7 @@ std::vector<MaterialKind> fur_patterns() {
              {word_of("patterns", "leopard", "leopard", {"leopard"}, "a leopard print {o}")}},
             {"tiger", .02, tiger, {pattern_word("tiger", "tiger")}},
             {"giraffe", .02, giraffe, {pattern_word("giraffe", "giraffe")}},
-            {"dalmatian", .02, dalmatian, {pattern_word("dalmatian", "dalmatian")}},
-            {"scales", .02, scales, {pattern_word("scales", "scaly", {"scaly", "scales"})}}};
+            {"dalmatian", .02, dalmatian, {pattern_word("dalmatian", "dalmatian")}}};
 }
 
 }  // namespace item3d::paint

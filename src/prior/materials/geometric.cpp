@@ -44,7 +44,7 @@ ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {
         axis += Vec3{random.normal(0, .5), random.normal(0, .5), random.normal(0, .5)};
     }
     axis = glm::normalize(axis);
-    const float frequency = draw(random, 1.8, 4.2), shift = draw(random, 0, 1);
+    const float frequency = draw(random, 1.6, 3.3), shift = draw(random, 0, 1);
     return {"", tones.first, ways_to_say(tones, "striped", "stripes"),
             [=](const Vec3& p, const Vec3&) {
                 const float s = fraction(glm::dot(p, axis) * frequency + shift);
@@ -55,7 +55,7 @@ ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {
 
 ProceduralMaterial checks(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish);
-    const float frequency = draw(random, 1.6, 3.4);
+    const float frequency = draw(random, 1.5, 2.9);
     const Vec3 shift = any_shift(random);
     const bool flat = random.chance(.6);
     std::vector<std::string> phrases = ways_to_say(tones, "checkered", "checks");
@@ -72,7 +72,7 @@ ProceduralMaterial checks(Random& random, const MaterialWish& wish) {
 ProceduralMaterial dots(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish);
     const auto& [first, second, a, b, roughness] = tones;
-    const float frequency = draw(random, 1.8, 3.6), size = draw(random, .24, .33);
+    const float frequency = draw(random, 1.7, 2.9), size = draw(random, .24, .33);
     const Vec3 shift = any_shift(random);
     return {
         "",
@@ -92,7 +92,7 @@ ProceduralMaterial dots(Random& random, const MaterialWish& wish) {
 
 ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish);
-    const float frequency = draw(random, 1.6, 2.8), width = draw(random, 1.3, 2.2);
+    const float frequency = draw(random, 1.5, 2.4), width = draw(random, 1.3, 2.2);
     std::vector<std::string> phrases = ways_to_say(tones, "zigzag", "zigzags");
     phrases.push_back("{o} with a chevron pattern");
     return {"", tones.first, phrases, [=](const Vec3& p, const Vec3& n) {
@@ -125,25 +125,6 @@ ProceduralMaterial tartan(Random& random, const MaterialWish& wish) {
             }};
 }
 
-ProceduralMaterial hexagons(Random& random, const MaterialWish& wish) {
-    const TwoTone tones = two_tones(random, wish);
-    const float frequency = draw(random, 2, 3), line = draw(random, .07, .1);
-    std::vector<std::string> phrases = ways_to_say(tones, "honeycomb", "hexagons");
-    phrases.push_back("{o} with a honeycomb pattern");
-    return {"", tones.first, phrases, [=](const Vec3& p, const Vec3& n) {
-                // The nearer of two rectangular lattices (Quilez's hexagonal tiling).
-                const Vec2 uv = flat_coordinates(p, n) * frequency;
-                const Vec2 cell(1, 1.7320508f);
-                const Vec2 one = uv - cell * glm::floor(uv / cell) - cell * .5f;
-                const Vec2 moved = uv - cell * .5f;
-                const Vec2 two = moved - cell * glm::floor(moved / cell) - cell * .5f;
-                const Vec2 q = glm::abs(glm::dot(one, one) < glm::dot(two, two) ? one : two);
-                const float edge = .5f - std::max(q.x * .5f + q.y * .8660254f, q.x);
-                const float w = smooth_step(edge, line - .02f, line + .02f);
-                return MaterialValue{mix(tones.b, tones.a, w), tones.roughness, 0};
-            }};
-}
-
 /// From one colour below to another above.
 ProceduralMaterial gradient(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish);
@@ -165,28 +146,37 @@ ProceduralMaterial gradient(Random& random, const MaterialWish& wish) {
 }  // namespace
 
 std::vector<MaterialKind> geometric_patterns() {
-    return {{"striped", .08, stripes, {pattern_word("striped", "striped", {"striped", "stripes"})}},
-            {"checkered",
-             .06,
-             checks,
-             {pattern_word("checkered", "checkered", {"checkered", "checkerboard", "checks"})}},
-            {"dots",
-             .055,
-             dots,
-             {pattern_word("dots", "polka dot", {"polka", "dot", "dots", "dotted"})}},
-            {"zigzag",
-             .03,
-             zigzags,
-             {pattern_word("zigzag", "zigzag", {"zigzag", "zigzags", "chevron"})}},
-            {"tartan", .035, tartan, {pattern_word("tartan", "tartan", {"tartan", "plaid"})}},
-            {"honeycomb",
-             .025,
-             hexagons,
-             {pattern_word("honeycomb", "honeycomb", {"honeycomb", "hexagons"})}},
-            {"gradient",
-             .03,
-             gradient,
-             {pattern_word("gradient", "gradient", {"gradient", "fading"})}}};
+    return {
+        {"striped",
+         .09,
+         stripes,
+         {colored(pattern_word("striped", "striped", {"striped", "stripes"}),
+                  "a {c} and {d} striped {o}")}},
+        {"checkered",
+         .07,
+         checks,
+         {colored(pattern_word("checkered", "checkered", {"checkered", "checkerboard", "checks"}),
+                  "a {c} and {d} checkered {o}")}},
+        {"dots",
+         .07,
+         dots,
+         {colored(pattern_word("dots", "polka dot", {"polka", "dot", "dots", "dotted"}),
+                  "a {c} and {d} polka dot {o}")}},
+        {"zigzag",
+         .05,
+         zigzags,
+         {colored(pattern_word("zigzag", "zigzag", {"zigzag", "zigzags", "chevron"}),
+                  "a {c} and {d} zigzag {o}")}},
+        {"tartan",
+         .055,
+         tartan,
+         {colored(pattern_word("tartan", "tartan", {"tartan", "plaid"}),
+                  "a {c} and {d} tartan {o}")}},
+        {"gradient",
+         .04,
+         gradient,
+         {colored(pattern_word("gradient", "gradient", {"gradient", "fading"}),
+                  "a {c} and {d} gradient {o}")}}};
 }
 
 }  // namespace item3d::paint

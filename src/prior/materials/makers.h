@@ -48,6 +48,12 @@ inline MaterialWord pattern_word(const std::string& kind, const std::string& wor
     return word_of("patterns", kind, word, spellings);
 }
 
+/// The same with a caption that says its colours.
+inline MaterialWord colored(MaterialWord word, const std::string& caption) {
+    word.colored_caption = caption;
+    return word;
+}
+
 inline float draw(Random& random, double low, double high) {
     return static_cast<float>(random.uniform(low, high));
 }

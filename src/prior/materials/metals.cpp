@@ -44,7 +44,7 @@ MetalFinish draw_finish(Random& random) {
 }
 
 ProceduralMaterial metal(Random& random, const MaterialWish& wish) {
-    static constexpr std::array<double, 8> shares{.28, .16, .15, .1, .1, .08, .06, .07};
+    static constexpr std::array<double, 8> shares{.22, .16, .14, .1, .1, .09, .09, .1};
     const auto& metals = metal_colors();
     std::string name = metals.back().name;
     double at = random.uniform();
@@ -124,7 +124,7 @@ std::vector<MaterialKind> metal_materials() {
         if (each.name == "silver") word.spellings = {"silver", "metal"};
         words.push_back(word);
     }
-    return {{"metal", .13, metal, words},
+    return {{"metal", .16, metal, words},
             {"rust",
              .025,
              rust,

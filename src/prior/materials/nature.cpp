@@ -99,21 +99,6 @@ ProceduralMaterial sand(Random& random, const MaterialWish&) {
             }};
 }
 
-ProceduralMaterial bark(Random& random, const MaterialWish&) {
-    const CosineNoise plates(random, 8, 2, {1, .22f, 1});
-    const Vec3 light = vary(random, {.26f, .17f, .1f}), dark = light * .18f;
-    return {
-        "",
-        "",
-        {"bark {o}", "{o} covered in bark", "{o} made of tree bark"},
-        [=](const Vec3& p, const Vec3&) {
-            Vec3 gradient(0.0f);
-            const float value = plates.with_gradient(p, gradient);
-            const float w = smooth_step(std::abs(value), .05f, .7f);
-            return MaterialValue{mix(dark, light, w), 1, 0, gradient * (value < 0 ? -.1f : .1f)};
-        }};
-}
-
 }  // namespace
 
 std::vector<MaterialKind> nature_materials() {
@@ -138,8 +123,7 @@ std::vector<MaterialKind> nature_materials() {
         {"sand",
          .015,
          sand,
-         {word_of("materials", "sand", "sand", {"sand", "sandy"}, "a {o} made of sand")}},
-        {"bark", .012, bark, {material_word("bark", "bark")}}};
+         {word_of("materials", "sand", "sand", {"sand", "sandy"}, "a {o} made of sand")}}};
 }
 
 }  // namespace item3d::paint

@@ -92,127 +92,28 @@ ProceduralMaterial flames(Random& random, const MaterialWish&) {
         }};
 }
 
-/// Stars of five points, one in most cells.
-ProceduralMaterial stars(Random& random, const MaterialWish& wish) {
-    const auto [first, second] = two_colors(random, wish);
-    const Vec3 ground = vary(random, color_named(first)), star = vary(random, color_named(second));
-    const float frequency = draw(random, 1.5, 2.2);
-    return {"",
-            first,
-            {"starry {o}", first + " {o} with " + second + " stars", "{o} with stars",
-             "starry " + first + " {o}"},
-            [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n) * frequency;
-                const float row = std::floor(uv.y);
-                const float u = uv.x + (odd(row) ? .5f : 0.0f);
-                const Vec2 q(fraction(u) - .5f, uv.y - row - .5f);
-                const float tip = 2 * pi / 5, angle = std::atan2(q.x, q.y);
-                const float turn = std::abs(angle - tip * std::round(angle / tip)) / (tip / 2);
-                const float edge = .42f + (.17f - .42f) * std::sqrt(turn);
-                const float w = smooth_step(glm::length(q) - edge, -.02f, .02f);
-                return MaterialValue{mix(star, ground, w), .5f, 0};
-            }};
-}
-
-/// Thrown paint in several colours.
-ProceduralMaterial splashes(Random& random, const MaterialWish& wish) {
-    const std::string name = one_color(random, wish);
-    const Vec3 ground = vary(random, color_named(name));
-    std::array<Vec3, 3> paints;
-    std::vector<CosineNoise> where;
-    for (Vec3& paint : paints) {
-        std::string other = one_color(random, {});
-        while (other == name)
-            other = one_color(random, {});
-        paint = color_named(other);
-        where.emplace_back(random, draw(random, 6, 9), 2);
-    }
-    return {"",
-            name,
-            {"paint splattered {o}", "{o} splattered with paint",
-             name + " {o} splattered with paint", "{o} with splashes of paint"},
-            [=](const Vec3& p, const Vec3&) {
-                Vec3 color = ground;
-                for (std::size_t i = 0; i < paints.size(); ++i)
-                    color = mix(color, paints[i], smooth_step(where[i](p), .95f, 1.05f));
-                return MaterialValue{color, .35f, 0};
-            }};
-}
-
-/// Curls of two colours, as marbled paper.
-ProceduralMaterial swirls(Random& random, const MaterialWish& wish) {
-    const auto [first, second] = two_colors(random, wish);
-    const Vec3 a = vary(random, color_named(first)), b = vary(random, color_named(second));
-    const CosineNoise stream(random, 2.4f, 2), bend(random, 3);
-    const float bands = draw(random, 3.5, 5.5);
-    return {"",
-            first,
-            {"swirly {o}", first + " and " + second + " swirly {o}", "{o} with swirls",
-             "{o} with " + first + " and " + second + " swirls"},
-            [=](const Vec3& p, const Vec3&) {
-                const float s = std::sin(bands * stream(p + .15f * bend(p)));
-                return MaterialValue{mix(a, b, smooth_step(s, -.2f, .2f)), .3f, 0};
-            }};
-}
-
-/// Squares of cloth, each with a pattern of its own.
-ProceduralMaterial patchwork(Random& random, const MaterialWish&) {
-    const float frequency = draw(random, 1.3, 1.9);
-    const auto shift = static_cast<float>(random.index(500));
-    return {
-        "",
-        "",
-        {"patchwork {o}", "patchwork {o}", "patchwork quilt {o}", "{o} made of patchwork"},
-        [=](const Vec3& p, const Vec3& n) {
-            const auto& colors = plain_colors();
-            const Vec2 uv = flat_coordinates(p, n) * frequency + Vec2(shift, 0);
-            const float x = std::floor(uv.x), y = std::floor(uv.y);
-            const auto any = [&](float salt) {
-                return colors[static_cast<std::size_t>(cell_value(x, y, salt) *
-                                                       (static_cast<float>(colors.size()) - .01f))]
-                    .linear;
-            };
-            const Vec2 q(uv.x - x, uv.y - y);
-            const bool seam = std::min(std::min(q.x, 1 - q.x), std::min(q.y, 1 - q.y)) < .045f;
-            const float kind = cell_value(x, y, 9);
-            bool other = false;
-            if (kind > .7f)
-                other = fraction(q.x * 2.5f) < .5f;
-            else if (kind > .45f)
-                other = std::hypot(fraction(q.x * 2) - .5f, fraction(q.y * 2) - .5f) < .27f;
-            const Vec3 color = other ? any(2) : any(1);
-            return MaterialValue{seam ? color * .3f : color, .95f, 0};
-        }};
-}
-
 }  // namespace
 
 std::vector<MaterialKind> ornament_patterns() {
-    return {{"floral",
-             .03,
-             floral,
-             {pattern_word("floral", "floral", {"floral", "flowers", "flowery"})}},
-            {"camouflage",
-             .025,
-             camouflage,
-             {pattern_word("camouflage", "camouflage", {"camouflage", "camo"})}},
-            {"cracked", .025, cracks, {pattern_word("cracked", "cracked", {"cracked", "cracks"})}},
-            {"flames",
-             .02,
-             flames,
-             {word_of("patterns", "flames", "flames", {"flame", "flames"},
-                      "a {o} with a flame pattern")}},
-            {"stars", .025, stars, {pattern_word("stars", "starry", {"starry", "stars"})}},
-            {"splashes",
-             .02,
-             splashes,
-             {word_of("patterns", "splashes", "splattered", {"splattered", "splashes"},
-                      "a paint splattered {o}")}},
-            {"swirls", .02, swirls, {pattern_word("swirls", "swirly", {"swirly", "swirls"})}},
-            {"patchwork",
-             .02,
-             patchwork,
-             {pattern_word("patchwork", "patchwork", {"patchwork", "quilt"})}}};
+    return {
+        {"floral",
+         .05,
+         floral,
+         {colored(pattern_word("floral", "floral", {"floral", "flowers", "flowery"}),
+                  "a {c} {o} with {d} flowers")}},
+        {"camouflage",
+         .025,
+         camouflage,
+         {pattern_word("camouflage", "camouflage", {"camouflage", "camo"})}},
+        {"cracked",
+         .04,
+         cracks,
+         {colored(pattern_word("cracked", "cracked", {"cracked", "cracks"}), "a cracked {c} {o}")}},
+        {"flames",
+         .02,
+         flames,
+         {word_of("patterns", "flames", "flames", {"flame", "flames"},
+                  "a {o} with a flame pattern")}}};
 }
 
 }  // namespace item3d::paint

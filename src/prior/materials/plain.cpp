@@ -49,38 +49,10 @@ ProceduralMaterial plain(Random& random, const MaterialWish& wish) {
             }};
 }
 
-/// Paint that has come off in places.
-ProceduralMaterial chipped_paint(Random& random, const MaterialWish& wish) {
-    const std::string name = one_color(random, wish);
-    const Vec3 coat = vary(random, color_named(name));
-    const bool on_wood = random.chance(.5);
-    const Vec3 below = on_wood ? vary(random, {.42f, .25f, .12f}) : vary(random, {.3f, .28f, .26f});
-    const CosineNoise chips(random, draw(random, 8, 12), 3);
-    const float level = draw(random, .35, .75);
-    return {"",
-            name,
-            {"chipped " + name + " {o}", "{o} with chipped " + name + " paint",
-             "{o} with peeling " + name + " paint", "old painted " + name + " {o}"},
-            [=](const Vec3& p, const Vec3&) {
-                Vec3 gradient(0.0f);
-                const float value = chips.with_gradient(p, gradient);
-                const float bare = smooth_step(value, level, level + .2f);
-                const bool edge = value > level - .15f && value < level + .25f;
-                return MaterialValue{mix(coat, below, bare), .4f + .45f * bare,
-                                     on_wood ? 0.0f : .7f * bare,
-                                     edge ? gradient * -.03f : Vec3(0.0f)};
-            }};
-}
-
 }  // namespace
 
 std::vector<MaterialKind> plain_materials() {
-    return {{"plain", .32, plain, {}},
-            {"chipped paint",
-             .015,
-             chipped_paint,
-             {word_of("materials", "chipped paint", "chipped", {"chipped", "peeling"},
-                      "a {o} with chipped paint")}}};
+    return {{"plain", .27, plain, {}}};
 }
 
 }  // namespace item3d::paint

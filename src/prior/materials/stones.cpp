@@ -42,42 +42,6 @@ ProceduralMaterial granite(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Layers, a little wavy.
-ProceduralMaterial sandstone(Random& random, const MaterialWish&) {
-    const CosineNoise waves(random, 2.5f, 2), grain(random, 32);
-    const Vec3 light = vary(random, {.75f, .52f, .28f}), dark = vary(random, {.48f, .24f, .1f});
-    const float layers = draw(random, 2.5, 4.5);
-    return {
-        "",
-        "",
-        {"sandstone {o}", "sandstone {o}", "{o} made of sandstone", "{o} carved from sandstone"},
-        [=](const Vec3& p, const Vec3&) {
-            const float s = fraction(p.y * layers + .25f * waves(p));
-            const float w = smooth_step(std::abs(s - .5f), .1f, .4f) * .8f;
-            return MaterialValue{limit(mix(light, dark, w) * (1 + .07f * grain(p))), .95f, 0,
-                                 Vec3(0, (s < .5f ? .2f : -.2f), 0)};
-        }};
-}
-
-/// Split plates: steps of slightly different tone.
-ProceduralMaterial slate(Random& random, const MaterialWish&) {
-    const CosineNoise relief(random, 3.5f, 2, {1, 2.2f, 1}), veins(random, 5, 1);
-    const Vec3 tone = vary(random, {.075f, .085f, .1f}, .15);
-    const float steps = draw(random, 2.2, 3.2);
-    return {"",
-            "",
-            {"slate {o}", "slate {o}", "{o} made of slate", "dark slate {o}"},
-            [=](const Vec3& p, const Vec3&) {
-                Vec3 gradient(0.0f);
-                const float height = relief.with_gradient(p, gradient) * steps;
-                const float step = std::floor(height);
-                const float edge = smooth_step(fraction(height), .8f, 1);
-                const float shade = .75f + .5f * cell_value(step, 0) + .06f * veins(p);
-                return MaterialValue{limit(tone * shade * (1 - .5f * edge)), .6f, 0,
-                                     gradient * (.25f * edge)};
-            }};
-}
-
 ProceduralMaterial stone(Random& random, const MaterialWish&) {
     const Vec3 dark = vary(random, {.1f, .095f, .09f}), light = vary(random, {.36f, .34f, .31f});
     return {"",
@@ -167,8 +131,6 @@ ProceduralMaterial terracotta(Random& random, const MaterialWish&) {
 std::vector<MaterialKind> stone_materials() {
     return {{"marble", .05, marble, {material_word("marble", "marble")}},
             {"granite", .02, granite, {material_word("granite", "granite")}},
-            {"sandstone", .02, sandstone, {material_word("sandstone", "sandstone")}},
-            {"slate", .015, slate, {material_word("slate", "slate")}},
             {"stone", .025, stone, {material_word("stone", "stone", {"stone", "rock"})}},
             {"concrete",
              .015,

@@ -47,7 +47,8 @@ MaterialWord word_of(const std::string& group, const std::string& kind, const st
             word,
             caption.empty() ? "a " + word + " {o}" : caption,
             spellings.empty() ? std::vector<std::string>{word} : spellings,
-            {kind, "", ""}};
+            {kind, "", ""},
+            ""};
 }
 
 Vec3 vary(Random& random, const Vec3& color, double spread) {
@@ -78,12 +79,7 @@ std::pair<std::string, std::string> two_colors(Random& random, const MaterialWis
     std::string first = one_color(random, wish);
     std::string second = random.chance(.3) ? "white" : one_color(random, {});
     if (!wish.second_color.empty()) second = wish.second_color;
-    // Two that are hard to tell apart make no pattern.
-    const auto alike = [&] {
-        return glm::length(glm::pow(color_named(first), Vec3(.45f)) -
-                           glm::pow(color_named(second), Vec3(.45f))) < .35f;
-    };
-    while (second == first || (wish.second_color.empty() && alike()))
+    while (second == first || (wish.second_color.empty() && colors_alike(first, second)))
         second = one_color(random, {});
     return {first, second};
 }
@@ -128,4 +124,12 @@ std::function<MaterialValue(const Vec3&, const Vec3&)> grained(Random& random, c
 }
 
 }  // namespace paint
+
+bool colors_alike(const std::string& first, const std::string& second) {
+    const auto seen = [](const std::string& name) {
+        return glm::pow(paint::color_named(name), Vec3(.45f));
+    };
+    return glm::length(seen(first) - seen(second)) < .35f;
+}
+
 }  // namespace item3d

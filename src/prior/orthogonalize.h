@@ -1,0 +1,18 @@
+// Steps of whole matrices: Muon (Jordan et al. 2024, "Muon: An optimizer for hidden layers in
+// neural networks").
+#pragma once
+
+#include <torch/types.h>
+
+namespace item3d {
+
+/// The nearest matrix with orthonormal rows or columns, roughly: singular values between 0.7 and
+/// 1.2, by five Newton-Schulz iterations of fifth order in bfloat16. matrix: [rows, columns]
+/// float32; a matrix of zeros stays one.
+torch::Tensor orthogonalized(const torch::Tensor& matrix);
+
+/// By how much such a step is multiplied to be as large as one of Adam's, so that one learning rate
+/// fits both (Liu et al. 2025, "Muon is Scalable for LLM Training", section 2.2).
+float orthogonal_step_scale(std::int64_t rows, std::int64_t columns);
+
+}  // namespace item3d
