@@ -17,6 +17,7 @@ CONTENDERS = {
     "the recipe": [],
     "no depth": ["--no-depth"],
     "epsilon": ["--prediction", "epsilon"],
+    "adamw": ["--optimizer", "adamw"],
     "widths 32,64,96": ["--widths", "32,64,96"],
     "widths 64,128,192": ["--widths", "64,128,192"],
     "a third of the patterns": ["--patterns", "0.33"],

@@ -5,6 +5,7 @@
 #include "item3d/prior/evaluation.h"
 #include "item3d/prior/generate_defaults.h"
 #include "item3d/prior/shapes.h"
+#include "item3d/prior/vision_language.h"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +59,7 @@ TEST_F(PriorEvaluation, SamplesInAShapeAreKnownAgain) {
     const SampleGrid grid = draw_samples(folder_, pipeline_, {"mug", "red", "gold"}, 8, true, 3);
     EXPECT_EQ(grid.prompts, (std::vector<std::string>{"a red mug", "a golden mug"}));
     EXPECT_EQ(grid.pictures[0].width, 64);
-    const nlohmann::json scores = score_samples(folder_, grid);
+    const nlohmann::json scores = score_samples(Clip::load(folder_ / clip_folder), grid);
     EXPECT_EQ(scores["pictures"], 2);
     EXPECT_EQ(scores["material_right"], 1.0);
 }

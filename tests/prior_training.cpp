@@ -132,7 +132,7 @@ class PriorTraining : public ::testing::Test {
   protected:
     PriorTraining() {
         torch::manual_seed(1);
-        data_.latents = torch::randn({24, 4, 16, 16}).to(torch::kHalf);
+        data_.latents = torch::randn({24, latent_channels, 16, 16}).to(torch::kHalf);
         data_.depth = torch::randn({24, 1, 16, 16}).to(torch::kHalf);
         data_.tokens = torch::randint(0, 30, {24, text_length}).to(torch::kInt16);
         data_.empty_tokens = torch::full({text_length}, 31).to(torch::kInt16);
@@ -251,6 +251,7 @@ TEST_F(PriorTraining, WhatTheCheckpointIsNotOfIsRefused) {
     expect(with(&TrainSettings::seed, std::uint64_t{2}), "seed: 2 instead of 1");
     expect(with(&TrainSettings::prediction_type, "epsilon"),
            "objective: \"epsilon\" instead of \"v_prediction\"");
+    expect(with(&TrainSettings::optimizer, "adamw"), "optimizer: \"adamw\" instead of \"muon\"");
     networks_.text.vocab_size = 40;
     expect(first, "network: ");
     networks_.text.vocab_size = 32;
@@ -266,13 +267,13 @@ TEST_F(PriorTraining, WhatItPredictsAndIsToldIsWrittenBesideTheWeights) {
     noise.prediction_type = "epsilon";
     noise.depth_condition = false;
     networks_.unet.in_channels = prior_unet_config(noise).in_channels;
-    EXPECT_EQ(networks_.unet.in_channels, 4);
+    EXPECT_EQ(networks_.unet.in_channels, latent_channels);
     const double loss = train_diffusion(data_, noise, networks_, {})["loss"];
     const auto json = [&](const char* file) {
         return nlohmann::json::parse(read_text(noise.output / file));
     };
     EXPECT_EQ(json("scheduler/scheduler_config.json")["prediction_type"], "epsilon");
-    EXPECT_EQ(json("unet/config.json")["in_channels"], 4);
+    EXPECT_EQ(json("unet/config.json")["in_channels"], latent_channels);
     // The same network, data and noise, asked for the velocity.
     TrainSettings velocity = noise;
     velocity.output = root_ / "velocity";

@@ -197,7 +197,9 @@ std::string readable(const json& value) {
 TableRows settings_table(const json& summary) {
     TableRows rows;
     for (const auto& [key, value] : summary["settings"].items()) {
-        rows.emplace_back(key, readable(value));
+        // No list of materials means that all of them may change.
+        const bool all = key == "material" && value.empty();
+        rows.emplace_back(key, all ? "all" : readable(value));
     }
     for (const char* key : {"prior", "device", "precision", "threads"}) {
         rows.emplace_back(key, readable(summary[key]));

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 namespace item3d {
 namespace {
@@ -49,15 +50,15 @@ void stop_if_asked() {
 }
 
 /// What its own CLIP and captioner make of held-out pictures.
-nlohmann::json measure_readers(const fs::path& folder, const EvaluationOptions& options) {
+nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>& clip,
+                               const EvaluationOptions& options) {
     nlohmann::json measured = nlohmann::json::object();
-    const bool clip = fs::exists(folder / clip_folder / "config.json");
     const bool captioner = fs::exists(folder / captioner_folder / "config.json");
     if (!clip && !captioner) return measured;
     const LabeledPictures pictures =
         draw_held_out(mix_bits(options.seed + 5), options.labeled_pictures, 4, 64, options.threads);
     stop_if_asked();
-    if (clip) measured["retrieval"] = measure_retrieval(Clip::load(folder / clip_folder), pictures);
+    if (clip) measured["retrieval"] = measure_retrieval(*clip, pictures);
     if (captioner)
         measured["captions"] =
             measure_captions(*load_captioner(folder / captioner_folder), pictures, options.threads);
@@ -157,6 +158,8 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
     const ReconstructionMeasure autoencoder =
         measure_autoencoder(pipeline, views, options.pictures, options.seed);
     stop_if_asked();
+    std::optional<Clip> clip;
+    if (fs::exists(folder / clip_folder / "config.json")) clip = Clip::load(folder / clip_folder);
     std::vector<std::pair<std::string, Image>> sheets;
     nlohmann::json evaluation{{"prior", folder.string()}, {"seed", options.seed}};
     for (const bool with_shape : {false, true}) {
@@ -164,15 +167,14 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
         const SampleGrid grid =
             draw_samples(folder, pipeline, measure.words, 8, with_shape, options.seed);
         const std::string name = with_shape ? "samples_in_shape" : "samples";
-        if (fs::exists(folder / clip_folder / "config.json"))
-            evaluation[name] = score_samples(folder, grid);
+        if (clip) evaluation[name] = score_samples(*clip, grid);
         sheets.emplace_back(name, sample_sheet(grid));
     }
     sheets.emplace_back("autoencoder", reconstruction_sheet(autoencoder));
     evaluation["autoencoder"] = {{"psnr", autoencoder.psnr},
                                  {"object_psnr", autoencoder.object_psnr},
                                  {"pictures", options.pictures}};
-    evaluation["readers"] = measure_readers(folder, options);
+    evaluation["readers"] = measure_readers(folder, clip, options);
     nlohmann::json measured = measure_prior(pipeline, views, measure);
     evaluation.update(measured);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/core/files.h"
+#include "item3d/models/clip_model.h"
 #include "item3d/models/pipeline.h"
 #include "item3d/prior/views.h"
 #include "item3d/scene/image.h"
@@ -44,10 +45,10 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const Pipeline& pipe
                         const std::set<std::string>& words, int side, bool with_shape,
                         std::uint64_t seed);
 
-/// How well the prior's own CLIP knows the samples again, among all prompts of the grid:
+/// How well a CLIP, the prior's own, knows the samples again, among all prompts of the grid:
 /// {"pictures", "right", "object_right", "material_right", "similarity"}; parts, and the mean
 /// cosine of picture and prompt.
-nlohmann::json score_samples(const std::filesystem::path& prior, const SampleGrid& grid);
+nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid);
 
 /// Held-out pictures before and behind the autoencoder.
 struct ReconstructionMeasure {

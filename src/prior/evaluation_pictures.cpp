@@ -1,12 +1,10 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/models/clip_model.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/dataset.h"
 #include "item3d/prior/evaluation.h"
 #include "item3d/prior/generate_defaults.h"
 #include "item3d/prior/shapes.h"
-#include "item3d/prior/vision_language.h"
 #include "item3d/render/shade.h"
 
 #include <algorithm>
@@ -97,9 +95,8 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const Pipeline& pipe
     return grid;
 }
 
-nlohmann::json score_samples(const std::filesystem::path& prior, const SampleGrid& grid) {
+nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid) {
     const torch::NoGradGuard no_grad;
-    const Clip clip = Clip::load(prior / clip_folder);
     const torch::Tensor pictures = clip.embed_images(stack_images(grid.pictures));
     const torch::Tensor cosines = pictures.mm(clip.embed_texts(grid.prompts).t());
     const auto count = static_cast<std::int64_t>(grid.prompts.size());

@@ -43,7 +43,7 @@ struct TrainSettings {
     std::vector<int> widths{48, 96, 144};
     bool depth_condition = true;                   ///< a fifth input channel
     std::string prediction_type = "v_prediction";  ///< or "epsilon"
-    std::string optimizer = "adamw";               ///< or "muon": the U-Net's
+    std::string optimizer = "muon";                ///< of U-Net and text encoder; or "adamw"
     int replicas = 2;                              ///< of each process
     int batch = 32;                                ///< pictures a step and replica
     float learning_rate = 1e-3f;
