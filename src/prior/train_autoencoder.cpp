@@ -42,8 +42,8 @@ torch::Tensor differences(const torch::Tensor& error, const torch::Tensor& weigh
 
 constexpr int anchored = 3;
 
-/// How far the channels that hold details are from a variance of a half. What has less drowns in
-/// the noise of most timesteps, and the U-Net would learn no pattern from it.
+/// How far the channels that hold details are from a variance of a half. What has much less drowns
+/// in the noise of most timesteps.
 torch::Tensor spread_loss(const torch::Tensor& latents) {
     return (latents.slice(1, anchored).var({0, 2, 3}, false) - .5).square().mean();
 }

@@ -16,7 +16,7 @@ namespace item3d {
 /// Edge of a picture where nothing else is said, and of its latents, in pixels.
 inline constexpr int picture_size = 64;
 inline constexpr int latent_size = 16;
-/// With four, as large models have, a network this small loses stripes, dots and stitches.
+/// With four, as large models have, an autoencoder this small blurred dots and lost stitches.
 inline constexpr int latent_channels = 8;
 /// Each pixel of a picture is the mean of so many by so many of the G-buffer.
 inline constexpr int view_samples = 2;

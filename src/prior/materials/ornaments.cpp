@@ -1,4 +1,4 @@
-// Irregular patterns: flowers, camouflage, cracks, flames, stars, splashes.
+// Irregular patterns: flowers, camouflage, cracks, flames.
 #include "item3d/prior/materials/makers.h"
 
 #include <array>
