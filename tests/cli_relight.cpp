@@ -163,7 +163,7 @@ TEST_F(RelightProgram, ExplainsSentencesAndContradictions) {
     const std::string model = "relight " + quoted(cube_) + " -o " + quoted(folder_ / "out") + " ";
     const std::string words = "--from 'a box' --to 'a box at sunset' ";
     expect_error(model + "--from 'a box' --to 'a red box'", 2, "names no light");
-    expect_error(model + "--from 'a box' --to 'a box by candlelight'", 2, "sunset");
+    expect_error(model + "--from 'a box' --to 'a box by torchlight'", 2, "sunset");
     expect_error(model + "--to 'a box at sunset'", 2, "--from and --to");
     expect_error(model + words + "--light noon", 2, "--light");
     expect_error(model + words + "--sky 9", 2, "--sky");

@@ -44,6 +44,8 @@ TEST(PictureFacts, SayWhatIsTrueOfAPicture) {
     const PartMaterial handle{"handle", make_material(random, {"metal", "gold", ""})};
     const PictureFacts two = facts_of(mug, red, night_light, &handle);
     EXPECT_EQ(plain_claim(two).text(), "a red mug with a golden handle");
+    EXPECT_EQ(whole_claim(two).text(), "a red mug");
+    EXPECT_EQ(whole_claim(night).text(), "a red mug");
     EXPECT_TRUE(holds({"red {o}", "mug", ""}, two));
     EXPECT_TRUE(judge_caption("a red cup with a golden handle", two).material);
     EXPECT_FALSE(judge_caption("a golden mug", two).material);

@@ -78,7 +78,7 @@ void add_network_settings(CLI::App& command, TrainOptions& options) {
         ->check(CLI::IsMember({"v_prediction", "epsilon"}))
         ->capture_default_str();
     add_setting(command, options, "--optimizer", &TrainSettings::optimizer,
-                "How the U-Net's weights are stepped: muon or adamw")
+                "How matrices of weights are stepped: muon or adamw")
         ->check(CLI::IsMember({"adamw", "muon"}))
         ->capture_default_str();
     CLI::Option* no_depth =

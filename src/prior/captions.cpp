@@ -17,6 +17,11 @@ const std::string& pick(Random& random, const std::vector<std::string>& from) {
 
 }  // namespace
 
+void fill_in(std::string& text, const std::string& place, const std::string& by) {
+    if (const auto at = text.find(place); at != std::string::npos)
+        text.replace(at, place.size(), by);
+}
+
 std::string mend_articles(const std::string& text) {
     std::istringstream words(text);
     std::string word, result;

@@ -44,6 +44,8 @@ const std::vector<std::string>& part_nouns(const std::string& shape_class);
 
 /// Puts "an" for "a" before vowels.
 std::string mend_articles(const std::string& text);
+/// Puts `by` for the first `place` in the text, as "{o}", if there is one.
+void fill_in(std::string& text, const std::string& place, const std::string& by);
 
 /// A word of the captions and how often it comes.
 struct WordCount {

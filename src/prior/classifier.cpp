@@ -50,17 +50,12 @@ std::vector<VocabularyEntry> make_vocabulary() {
     return all;
 }
 
-void replace(std::string& text, const std::string& what, const std::string& by) {
-    const auto at = text.find(what);
-    if (at != std::string::npos) text.replace(at, what.size(), by);
-}
-
 /// Whether the prior was trained on every word that the entry's captions need.
 bool knows(const std::set<std::string>& words, const VocabularyEntry& entry) {
     if (words.empty()) return true;
     std::string caption = entry.caption;
-    replace(caption, "{o}", entry.shape_class.empty() ? "" : entry.word);
-    replace(caption, "{c}", "");
+    fill_in(caption, "{o}", entry.shape_class.empty() ? "" : entry.word);
+    fill_in(caption, "{c}", "");
     const std::vector<std::string> needed = prompt_words(caption);
     return std::all_of(needed.begin(), needed.end(),
                        [&](const std::string& word) { return words.count(word) > 0; });
@@ -219,9 +214,9 @@ class Measurement {
             std::string caption = in_any_color && !other.colored_caption.empty()
                                       ? other.colored_caption
                                       : other.caption;
-            replace(caption, "{o}", other.shape_class.empty() ? noun : other.word);
-            replace(caption, "{c}", color);
-            replace(caption, "{d}", second);
+            fill_in(caption, "{o}", other.shape_class.empty() ? noun : other.word);
+            fill_in(caption, "{c}", color);
+            fill_in(caption, "{d}", second);
             captions.push_back(mend_articles(caption));
         }
         const Example example = draw_example(random, view, {}, wish);

@@ -31,7 +31,8 @@ std::vector<std::string> sample_objects(const std::set<std::string>& words, int 
                     words, count);
 }
 
-/// Captions of colours, metals, materials and patterns.
+/// Captions of colours, metals, materials and patterns; what comes in any colours comes in red
+/// and white.
 std::vector<std::string> sample_materials(const std::set<std::string>& words, int count) {
     const std::vector<std::string> names =
         known_of({"red", "gold", "wood", "marble", "brick", "striped", "checkered", "moss", "blue",
@@ -41,7 +42,10 @@ std::vector<std::string> sample_materials(const std::set<std::string>& words, in
     for (const std::string& name : names) {
         std::string caption = "a " + name + " {o}";
         for (const MaterialWord& word : material_words())
-            if (word.word == name) caption = word.caption;
+            if (word.word == name)
+                caption = word.colored_caption.empty() ? word.caption : word.colored_caption;
+        fill_in(caption, "{c}", "red");
+        fill_in(caption, "{d}", "white");
         captions.push_back(caption);
     }
     return captions;
@@ -82,7 +86,7 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const Pipeline& pipe
     for (const std::string& material : grid.materials) {
         for (std::size_t column = 0; column < grid.objects.size(); ++column) {
             std::string prompt = material;
-            prompt.replace(prompt.find("{o}"), 3, grid.objects[column]);
+            fill_in(prompt, "{o}", grid.objects[column]);
             options.prompt = mend_articles(prompt);
             options.seed = seed + grid.prompts.size();
             const torch::Tensor picture =

@@ -1,7 +1,11 @@
 #include "item3d/prior/export.h"
 
+#include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/models/pipeline.h"
+#include "item3d/prior/materials.h"
+
+#include <set>
 
 namespace item3d {
 namespace {
@@ -40,6 +44,20 @@ void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencod
 
 namespace {
 
+/// Words of what has a structure that guidance averages away and sampling draws. Not of metals,
+/// which sampling made worse.
+std::vector<std::string> detail_words() {
+    std::set<std::string> structured{"wood",   "oak",   "walnut",  "pine",        "bamboo",
+                                     "marble", "stone", "granite", "cobblestone", "brick",
+                                     "grass",  "moss",  "lava",    "cheese"};
+    std::vector<std::string> words;
+    for (const MaterialWord& word : material_words())
+        if (structured.erase(word.word) > 0 || word.group == "patterns")
+            words.insert(words.end(), word.spellings.begin(), word.spellings.end());
+    ITEM3D_CHECK(structured.empty(), "a material with structure that is none of the vocabulary");
+    return words;
+}
+
 /// Settings of an edit that suit a prior of this size; item3d edit reads them beside the weights.
 nlohmann::json edit_defaults(int resolution) {
     return {{"guidance", "rdl"},
@@ -56,7 +74,7 @@ nlohmann::json edit_defaults(int resolution) {
             {"weighting", "dreamfusion"},
             {"light", "studio"},
             {"background", "vary"},
-            {"detail_words", {"wood", "wooden", "marble", "stone", "grass"}},
+            {"detail_words", detail_words()},
             {"keep", {"occlusion", "normal"}}};
 }
 

@@ -88,6 +88,13 @@ Claim plain_claim(const PictureFacts& facts) {
     return {facts.phrases.front(), facts.nouns.front(), ""};
 }
 
+Claim whole_claim(const PictureFacts& facts) {
+    Claim claim = plain_claim(facts);
+    for (const std::string& phrase : facts.phrases)
+        if (facts.phrases.front().starts_with(phrase + " with ")) claim.phrase = phrase;
+    return claim;
+}
+
 Claim draw_claim(Random& random, const PictureFacts& facts) {
     Claim claim = plain_claim(facts);
     if (random.chance(.3)) claim.phrase = any_of(random, facts.phrases);

@@ -49,6 +49,8 @@ bool holds(const Claim& claim, const PictureFacts& facts);
 
 /// Material and object in their plainest words, nothing about the light.
 Claim plain_claim(const PictureFacts& facts);
+/// The same without the part that has a material of its own.
+Claim whole_claim(const PictureFacts& facts);
 /// One of the true sentences: mostly material and object, now and then less or with the light.
 Claim draw_claim(Random& random, const PictureFacts& facts);
 /// Mostly "", else "a photo of " and its like.

@@ -26,7 +26,7 @@ struct LoopOptions;
 struct TrainSettings {
     std::filesystem::path output;        ///< the diffusers folder
     std::filesystem::path work;          ///< data, checkpoints; may be deleted afterwards
-    std::int64_t samples = 600000;       ///< pictures that the U-Net sees, repetitions counted
+    std::int64_t samples = 285000;       ///< pictures that the U-Net sees, repetitions counted
     std::int64_t data_samples = 112000;  ///< different pictures
     std::int64_t autoencoder_samples = 64000;
     std::int64_t autoencoder_pictures = 12000;
@@ -41,9 +41,9 @@ struct TrainSettings {
     float pattern_weight = 1;
     /// Widths of the U-Net's levels, multiples of 16.
     std::vector<int> widths{48, 96, 144};
-    bool depth_condition = true;                   ///< a fifth input channel
+    bool depth_condition = true;                   ///< one more input channel
     std::string prediction_type = "v_prediction";  ///< or "epsilon"
-    std::string optimizer = "muon";                ///< of U-Net and text encoder; or "adamw"
+    std::string optimizer = "muon";                ///< of all but the autoencoder; or "adamw"
     int replicas = 2;                              ///< of each process
     int batch = 32;                                ///< pictures a step and replica
     float learning_rate = 1e-3f;

@@ -64,14 +64,15 @@ BlipModel make_captioner(const TrainSettings& settings, const BlipConfig& config
     return model;
 }
 
-/// Cross-entropy of each next word of the plain caption.
+/// Cross-entropy of each next word of the plain caption, of the whole: a part with a material of
+/// its own has few pixels here, and one wrong word makes a sentence wrong.
 torch::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
                            const BertTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
                            Random random) {
     std::vector<std::vector<int>> texts;
     std::size_t longest = 0;
     for (const std::int64_t row : rows) {
-        const Claim claim = plain_claim(data.facts[static_cast<std::size_t>(row)]);
+        const Claim claim = whole_claim(data.facts[static_cast<std::size_t>(row)]);
         texts.push_back(tokenizer.encode(claim.text(draw_frame(random))));
         longest = std::max(longest, texts.back().size());
     }

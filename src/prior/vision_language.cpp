@@ -101,6 +101,7 @@ LoopOptions vision_language_loop(const std::string& name, const TrainSettings& s
     options.samples = samples;
     options.rows = data.count();
     options.rise = std::min(30000.0, static_cast<double>(samples) / 8);
+    options.orthogonal = settings.optimizer == "muon";
     return options;
 }
 

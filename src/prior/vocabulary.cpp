@@ -27,6 +27,7 @@ KnownWord read_word(const std::string& kind, const nlohmann::json& entry) {
     known.caption = entry.value("caption", "a " + known.word + " {o}");
     known.spellings = entry.value("spellings", std::vector<std::string>{known.word});
     known.accuracy = entry.value("accuracy", 0.0);
+    known.taken_for = entry.value("most_confused_with", "");
     if (entry.contains("base_color")) {
         const auto color = entry.at("base_color").get<std::vector<float>>();
         if (color.size() == 3) known.base_color = Vec3(color[0], color[1], color[2]);
@@ -75,19 +76,24 @@ std::vector<std::string> PriorVocabulary::unknown_words(const std::string& promp
     return result;
 }
 
+const KnownWord* PriorVocabulary::best_known(const std::string& spelling,
+                                             bool shape_is_given) const {
+    const KnownWord* best = nullptr;
+    for (const KnownWord& known : words_) {
+        if (shape_is_given && known.kind == "objects") continue;
+        const auto& spellings = known.spellings;
+        if (std::find(spellings.begin(), spellings.end(), spelling) == spellings.end()) continue;
+        if (!best || known.accuracy > best->accuracy) best = &known;
+    }
+    return best;
+}
+
 std::vector<std::string> PriorVocabulary::weak_words(const std::string& prompt,
                                                      bool shape_is_given) const {
     std::vector<std::string> result;
     for (const std::string& word : prompt_words(prompt)) {
-        // A word of several meanings is as good as its best.
-        double best = -1;
-        for (const KnownWord& known : words_) {
-            if (shape_is_given && known.kind == "objects") continue;
-            if (std::find(known.spellings.begin(), known.spellings.end(), word) !=
-                known.spellings.end())
-                best = std::max(best, known.accuracy);
-        }
-        if (best >= 0 && best < weak_accuracy) add_once(result, word);
+        const KnownWord* known = best_known(word, shape_is_given);
+        if (known && known->accuracy < weak_accuracy) add_once(result, word);
     }
     return result;
 }
@@ -99,6 +105,9 @@ std::string PriorVocabulary::warning(const std::string& prompt, bool shape_is_gi
     if (!unknown.empty()) text += "does not know " + listed(unknown);
     if (!unknown.empty() && !weak.empty()) text += " and ";
     if (!weak.empty()) text += "knows " + listed(weak) + " badly";
+    for (const std::string& word : weak)
+        if (const std::string& other = best_known(word, shape_is_given)->taken_for; !other.empty())
+            text += "; it takes \"" + word + "\" for \"" + other + "\" at times";
     return text + " (item3d prior info lists its words)";
 }
 

@@ -21,6 +21,7 @@ struct KnownWord {
     std::string caption;  ///< how to say it: "a golden {o}"
     std::vector<std::string> spellings;  ///< words of prompts that mean it: "gold", "golden"
     double accuracy = 0;                 ///< of the diffusion classifier on held-out shapes, 0 .. 1
+    std::string taken_for;               ///< the word it is most often taken for; may be empty
     std::optional<Vec3> base_color;      ///< linear RGB, for colours and metals
 };
 
@@ -48,6 +49,9 @@ class PriorVocabulary {
     std::string warning(const std::string& prompt, bool shape_is_given) const;
 
   private:
+    /// The meaning of a prompt's word that is known best; null where none is measured.
+    const KnownWord* best_known(const std::string& spelling, bool shape_is_given) const;
+
     std::vector<KnownWord> words_;
     std::vector<std::string> all_words_;  ///< sorted; every word of training captions
 };
