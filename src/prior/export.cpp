@@ -44,8 +44,8 @@ void export_autoencoder(const fs::path& folder, const AutoencoderTiny& autoencod
 
 namespace {
 
-/// Words of what has a structure that guidance averages away and sampling draws. Not of metals,
-/// which sampling made worse.
+/// Words of what has a structure that guidance averages away and sampling draws. Not of metals: a
+/// golden vase was the worse for it (docs/benchmarks.md).
 std::vector<std::string> detail_words() {
     std::set<std::string> structured{"wood",   "oak",   "walnut",  "pine",        "bamboo",
                                      "marble", "stone", "granite", "cobblestone", "brick",
