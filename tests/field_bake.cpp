@@ -279,6 +279,34 @@ TEST(Bake, TakesTheNewColourAndKeepsTheFineLuminance) {
     EXPECT_GT(contrast, 0.05);  // 0.1 in the source
 }
 
+/// Green of a row's texels, largest less smallest.
+float green_range(const Image& image, int y, int first, int last) {
+    float low = 1, high = 0;
+    for (int x = first; x < last; ++x) {
+        low = std::min(low, image.at(x, y, 1));
+        high = std::max(high, image.at(x, y, 1));
+    }
+    return high - low;
+}
+
+TEST(Bake, LeavesNoOutlineOfAMarkingThatWasPaintedOver) {
+    // A dark disc's half with an edge that the field can only blur, and dots far from it.
+    Model model = make_model(make_quad());
+    Image& image = model.textures[0].image;
+    const auto is_dot = [](int x, int y) { return x >= 52 && x % 4 == 0 && y % 4 == 0; };
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            for (int c = 0; c < 3; ++c)
+                image.at(x, y, c) = x < 24 ? 0.2f : is_dot(x, y) ? 0.6f : 0.8f;
+        }
+    }
+    Fitted quad(model, 60);
+    quad.paint_blue();
+    const MaterialEdit edit = quad.bake_now(quiet_bake());
+    EXPECT_LT(green_range(*edit.base_color, 33, 16, 32), 0.1);  // 0.25 if all stayed
+    EXPECT_GT(green_range(*edit.base_color, 32, 54, 62), 0.1);  // 0.2 in the source
+}
+
 TEST(Bake, KeepsAlpha) {
     Model model = make_model(make_quad());
     Image rgba(64, 64, 4);

@@ -114,6 +114,24 @@ TEST(Pipeline, GeneratingDependsOnTheSeedAloneAndNotOnTheCount) {
     EXPECT_THROW(generate(pipeline, options), InputError);
 }
 
+TEST(Pipeline, WhatIsKeptOfAPictureStaysAndTheRestIsDrawn) {
+    set_verbosity(Verbosity::quiet);
+    const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
+    GenerateOptions options;
+    options.prompt = "a duck";
+    options.steps = 4;
+    options.image = torch::full({1, pipeline.latent_channels(), 8, 8}, 0.7f);
+    const torch::Tensor drawn = generate_latents(pipeline, options);
+    options.keep = torch::zeros({1, 1, 8, 8});
+    EXPECT_TRUE(generate_latents(pipeline, options).equal(drawn));
+    options.keep.narrow(3, 0, 4).fill_(1);
+    const torch::Tensor half = generate_latents(pipeline, options);
+    EXPECT_TRUE(half.narrow(3, 0, 4).equal(options.image.narrow(3, 0, 4)));
+    EXPECT_GT(largest_difference(half.narrow(3, 4, 4), options.image.narrow(3, 4, 4)), 0.1);
+    // What is drawn knows of what is kept beside it.
+    EXPECT_GT(largest_difference(half.narrow(3, 4, 4), drawn.narrow(3, 4, 4)), 1e-4);
+}
+
 TEST(Pipeline, GeneratingFromAPictureWalksPartOfTheSchedule) {
     set_verbosity(Verbosity::quiet);
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));

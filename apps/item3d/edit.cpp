@@ -111,8 +111,8 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
                          "auto: edit metallic where a sentence names a metal; always: in any case");
     setting<std::string>(
         command, options, "--detail", "detail",
-        "Draw veins, mottling or tufts after the edit. auto: where the target names "
-        "a material that the prior has them for; off; always");
+        "Paint spots, courses or veins after the edit. auto: where the target names "
+        "a pattern, or a material that the prior has them for; off; always");
     setting<std::vector<std::string>>(command, options, "--material", "material",
                                       "Edit only the materials of these names")
         ->delimiter(',');

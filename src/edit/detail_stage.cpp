@@ -2,6 +2,7 @@
 #include "item3d/core/random.h"
 #include "item3d/edit/checkpoint_state.h"
 #include "item3d/edit/optimize.h"
+#include "item3d/edit/painting_plan.h"
 #include "item3d/edit/render_view.h"
 #include "item3d/edit/safekeeping.h"
 #include "item3d/models/depth_condition.h"
@@ -11,15 +12,18 @@
 namespace item3d {
 namespace {
 
-constexpr int sampling_steps = 40;
-constexpr double first_strength = 0.9;  ///< later views keep more of what earlier ones drew
-constexpr double last_strength = 0.4;
+constexpr int sampling_steps = 24;
+/// How much of a picture noise replaces: nearly all where the prior is told the shape by its depth.
+constexpr double whole_strength = 0.95;
+constexpr double whole_strength_without_depth = 0.7;
+constexpr double close_up_strength = 0.5;
 constexpr float guidance_scale = 5.0f;
-/// A small autoencoder flattens what it decodes; twice its difference is about what was there.
-constexpr float contrast = 2.0f;
-/// Detail is what two box filters of this part of the picture's edge take away.
-constexpr int filter_share = 4;
-constexpr int fits = 16;  ///< steps of the optimiser for each view
+/// A small autoencoder flattens what it decodes; so much of what is fine is added once more.
+constexpr float sharpening = 0.3f;
+/// Fine is what two box filters of this part of the picture's edge take away.
+constexpr int filter_share = 8;
+constexpr float known_weight = 0.3f;  ///< of what earlier views painted, where a view is fitted
+constexpr int fits = 24;              ///< steps of the optimiser for each view
 constexpr double learning_rate = 0.01;
 constexpr double network_learning_rate = 0.0025;
 constexpr float spread = 0.5f;              ///< pixels, see ViewOptions
@@ -44,69 +48,117 @@ torch::Tensor inner(const torch::Tensor& coverage) {
     return -torch::max_pool2d(-coverage, 3, 1, 1);
 }
 
-/// What the prior would rather see from here, with the coarse part of the picture as it is.
-torch::Tensor wanted_picture(const EditScene& scene, const EditSettings& settings,
-                             const EditView& view, int index) {
-    const Pipeline& prior = *scene.prior();
+/// The stage in progress.
+class Painter {
+  public:
+    Painter(const EditScene& scene, const EditSettings& settings, EditState& state)
+        : scene_(scene),
+          settings_(settings),
+          state_(state),
+          plan_(plan_painting(scene, settings)) {}
+
+    void paint(std::size_t index);
+
+  private:
+    EditView render(std::size_t index, float spread_pixels = 0, std::uint64_t draw = 0) const;
+    torch::Tensor known_pixels(std::size_t index) const;
+    torch::Tensor target(std::size_t index, const EditView& view) const;
+    torch::Tensor drift(const EditView& view) const;
+    void fit_step(std::size_t chosen, std::uint64_t draw);
+
+    const EditScene& scene_;
+    const EditSettings& settings_;
+    EditState& state_;
+    std::vector<PaintingView> plan_;
+};
+
+EditView Painter::render(std::size_t index, float spread_pixels, std::uint64_t draw) const {
+    ViewOptions options{1, settings_.iterations + static_cast<std::int64_t>(index)};
+    options.camera = &plan_[index].camera;
+    options.light = &scene_.lights->studio();
+    options.spread = spread_pixels;
+    options.spread_draw = draw;
+    return render_view(scene_, settings_, state_.field, options);
+}
+
+/// [1, 1, R, R] 0 .. 1.
+torch::Tensor Painter::known_pixels(std::size_t index) const {
+    return torch::upsample_bilinear2d(plan_[index].known, plan_[index].facing.sizes().slice(2),
+                                      /*align_corners=*/false);
+}
+
+/// What the prior would rather see from here.
+torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
+    const Pipeline& prior = *scene_.prior();
+    const PaintingView& planned = plan_[index];
     const torch::Tensor latents = prior.encode_image(view.images * 2 - 1);
     GenerateOptions options;
-    options.prompt = settings.to;
-    options.negative_prompt = settings.negative_prompt;
+    options.prompt = settings_.to;
+    options.negative_prompt = settings_.negative_prompt;
     options.steps = sampling_steps;
     options.guidance_scale = guidance_scale;
     options.image = latents;
-    options.strength = first_strength + (last_strength - first_strength) * index /
-                                            std::max(1, settings.detail_views - 1);
+    options.keep = planned.known;
+    options.strength = planned.is_close_up  ? close_up_strength
+                       : takes_depth(prior) ? whole_strength
+                                            : whole_strength_without_depth;
     options.scheduler = "ddim";
     options.eta = 1;
-    options.seed = mix_bits(settings.seed) + static_cast<std::uint64_t>(index);
+    options.seed = mix_bits(settings_.seed) + index;
     options.show_progress = false;
     const torch::Tensor depth = condition_of_depth(prior, view.depth, latents);
     const torch::Tensor sampled = generate_latents(prior, options, depth);
+    const torch::Tensor decoded = prior.decode_image(sampled) / 2;
     // The difference of two decoded pictures: what the autoencoder loses cancels out.
-    const torch::Tensor change = (prior.decode_image(sampled) - prior.decode_image(latents)) / 2;
-    return (view.images + contrast * fine_part(change, view.coverage)).clamp(0, 1);
+    const torch::Tensor change = decoded - prior.decode_image(latents) / 2;
+    const torch::Tensor fresh = 1 - known_pixels(index);
+    // Where a view paints anew nothing shall be left of what was there; a close-up adds to it.
+    const torch::Tensor painted = planned.is_close_up
+                                      ? view.images + change
+                                      : view.images + fresh * (decoded + 0.5f - view.images);
+    const torch::Tensor fine = fine_part(planned.is_close_up ? change : decoded, view.coverage);
+    return (painted + sharpening * fresh * fine).clamp(0, 1);
 }
 
 /// How far the channels that the stage leaves alone have moved; the field's features are shared by
 /// all of them.
-torch::Tensor drift(const EditScene& scene, const EditView& view, NeuralTexture& before) {
+torch::Tensor Painter::drift(const EditView& view) const {
     const MaterialSample was = [&] {
         const torch::NoGradGuard no_grad;
-        return scene.source->sample(view.surface, before);
+        return scene_.source->sample(view.surface, state_.detail.before);
     }();
     torch::Tensor moved = (view.material.orm - was.orm).square().mean();
     if (was.normal.defined()) moved = moved + (view.material.normal - was.normal).square().mean();
     return moved;
 }
 
-void fit_step(const EditScene& scene, const EditSettings& settings, EditState& state,
-              std::int64_t chosen, std::uint64_t draw) {
-    const EditView view =
-        render_view(scene, settings, state.field, {1, settings.iterations + chosen, spread, draw});
-    const torch::Tensor weight = inner(view.coverage);
-    const torch::Tensor target = state.detail.targets[static_cast<std::size_t>(chosen)];
+void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
+    const EditView view = render(chosen, spread, draw);
+    const torch::Tensor weight = inner(view.coverage) * plan_[chosen].facing *
+                                 (1 - (1 - known_weight) * known_pixels(chosen));
     const torch::Tensor apart =
-        ((view.images - target).square() * weight).sum() / (weight.sum() + 1e-4f);
-    (apart + drift(scene, view, state.detail.before)).backward();
-    state.detail.optimizer.step();
-    state.detail.optimizer.zero_grad();
+        ((view.images - state_.detail.targets[chosen]).square() * weight).sum() /
+        (weight.sum() + 1e-4f);
+    (apart + drift(view)).backward();
+    state_.detail.optimizer.step();
+    state_.detail.optimizer.zero_grad();
 }
 
-void run_view(const EditScene& scene, const EditSettings& settings, EditState& state) {
-    const auto index = static_cast<int>(state.detail.targets.size());
+void Painter::paint(std::size_t index) {
     {
         const torch::NoGradGuard no_grad;
-        const EditView view = render_view(scene, settings, state.field, {1, state.iteration});
-        state.detail.targets.push_back(wanted_picture(scene, settings, view, index));
+        state_.detail.targets.push_back(target(index, render(index)));
     }
-    for (int i = 0; i < fits; ++i) {
-        const auto draw = static_cast<std::uint64_t>(index * fits + i);
-        Random random(settings.seed, choice_stream, draw);
-        // Every other step looks back, so that one view does not undo another.
-        fit_step(scene, settings, state, i % 2 == 0 ? index : random.index(index + 1), draw);
+    for (std::size_t i = 0; i < fits; ++i) {
+        const std::uint64_t draw = index * fits + i;
+        Random random(settings_.seed, choice_stream, draw);
+        // Every other step looks back, so that one view does not undo another; not from close-ups
+        // to the pictures that they have refined.
+        const auto first = static_cast<std::size_t>(plan_[index].first_of_kind);
+        const auto back = random.index(static_cast<std::int64_t>(index - first) + 1);
+        fit_step(i % 2 == 0 ? index : index - static_cast<std::size_t>(back), draw);
     }
-    ++state.iteration;
+    ++state_.iteration;
 }
 
 }  // namespace
@@ -127,8 +179,9 @@ void add_detail(const EditRequest& request, const EditScene& scene, EditState& s
     if (state.detail.before.is_empty()) begin_detail(state);
     Progress progress("detail", settings.detail_views, state.iteration - settings.iterations);
     Safekeeping safekeeping(request, scene);
+    Painter painter(scene, settings, state);
     while (state.iteration < total) {
-        run_view(scene, settings, state);
+        painter.paint(state.detail.targets.size());
         progress.update(state.iteration - settings.iterations);
         safekeeping.after_step(state, progress);
     }

@@ -64,10 +64,10 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
 
 /// What guidance leaves out. Its gradient is an average over noises, and an average has no grain: a
 /// small prior's edit ends in the right colour, shine and metal, as smooth as before. So the prior
-/// then samples: a picture of the model is noised part of the way, denoised with the target
-/// sentence and fresh noise in each step, and the field's base colour is fitted to the fine part of
-/// what changed, view after view (the dataset updates of Instruct-NeRF2NeRF, Haque et al. 2023,
-/// with SDEdit's sampling). What is coarse, and all other channels, stay as guidance left them.
+/// then samples, view after view (painting_plan.h): a picture of the model is noised, denoised with
+/// the target sentence where no earlier view has painted, and the field's base colour is fitted to
+/// it (TEXTure, Richardson et al. 2023, in a neural texture). Close-ups then refine all of it by
+/// SDEdit's sampling (Meng et al. 2022). All other channels stay as guidance left them.
 /// Does nothing unless wants_detail(settings). Throws as optimize.
 void add_detail(const EditRequest& request, const EditScene& scene, EditState& state);
 

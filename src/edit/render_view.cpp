@@ -30,8 +30,9 @@ EditView render_view(const EditScene& scene, const EditSettings& settings, Neura
                      const ViewOptions& options) {
     const int scale = supersampling(settings.resolution);
     const int size = settings.resolution * scale;
-    const auto cameras =
-        sample_cameras(scene.sphere, options.count, settings.seed, options.iteration);
+    const auto cameras = options.camera ? std::vector<Camera>{*options.camera}
+                                        : sample_cameras(scene.sphere, options.count, settings.seed,
+                                                         options.iteration);
     const EnvironmentLight light =
         options.light ? *options.light : scene.lights->pick(settings.seed, options.iteration);
 

@@ -20,6 +20,7 @@ struct EditView {
 struct ViewOptions {
     int count = 1;               ///< views
     std::int64_t iteration = 0;  ///< draws cameras, light and background, with the settings' seed
+    const Camera* camera = nullptr;  ///< of the one view; null: as the iteration draws
     /// Offsets of the points where the material is looked up, in pixels (standard deviation), so
     /// that what is learnt from one picture covers its pixels and not a point in each.
     float spread = 0;

@@ -44,7 +44,7 @@ struct EditSettings : PipelineExtras {
     /// of `detail_words` that the source has not; or off, or always.
     std::string detail = "auto";
     std::vector<std::string> detail_words;  ///< lower case; the prior's own list
-    int detail_views = 16;
+    int detail_views = 20;
     std::vector<float> timesteps = {0.02f, 0.98f};
     std::string timestep_schedule = "uniform";
     std::string weighting = "dreamfusion";

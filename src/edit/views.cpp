@@ -15,7 +15,7 @@ namespace {
 constexpr float degrees = pi / 180.0f;
 constexpr int light_rotations = 6;
 
-// Streams of the edit's seed; the guidance uses 1 and 5, render_view 6, the detail stage 7.
+// Streams of the edit's seed; the guidance uses 1 and 5, render_view 6, the detail stage 7 and 8.
 enum Stream : std::uint64_t { camera_stream = 2, background_stream = 3, light_stream = 4 };
 
 Random iteration_random(std::uint64_t seed, Stream stream, std::int64_t iteration) {
@@ -104,6 +104,12 @@ const EnvironmentLight& LightRig::at(std::size_t index) {
     light.prefiltered =
         prefilter(adjust_light(*source.image, light.turn, 0.0f), cube_size_, device_);
     return *light.prefiltered;
+}
+
+const EnvironmentLight& LightRig::studio() {
+    if (sources_.front().preset == "studio") return front();
+    if (!studio_) studio_ = prefilter(make_light_preset("studio"), cube_size_, device_);
+    return *studio_;
 }
 
 EnvironmentLight LightRig::pick(std::uint64_t seed, std::int64_t iteration) {

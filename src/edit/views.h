@@ -47,6 +47,8 @@ class LightRig {
     EnvironmentLight pick(std::uint64_t seed, std::int64_t iteration);
     /// The light as it was given, for pictures.
     const EnvironmentLight& front() { return at(0); }
+    /// White whatever light was given: for pictures that stand beside what a prior draws unasked.
+    const EnvironmentLight& studio();
 
   private:
     struct Source {
@@ -62,6 +64,7 @@ class LightRig {
 
     std::vector<Source> sources_;
     std::vector<Light> lights_;
+    std::optional<EnvironmentLight> studio_;  ///< where it is not the first, once it was wanted
     int cube_size_;
     torch::Device device_;
     float exposure_range_ = 0;  ///< stops

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/field/fill.h"
+#include "item3d/field/remainder_gain.h"
 #include "item3d/field/texel_values.h"
 
 #include <algorithm>
@@ -89,7 +90,7 @@ class MaterialBaker {
     void start_base_color();
     void start_orm();
     void start_normal();
-    void write_base_color(const TexelValue& texel);
+    void write_base_color(const TexelValue& texel, const RemainderGain& gain);
     void write_orm(const TexelValue& texel);
     void write_normal(const TexelValue& texel);
 
@@ -198,7 +199,7 @@ void MaterialBaker::start_normal() {
     }
 }
 
-void MaterialBaker::write_base_color(const TexelValue& texel) {
+void MaterialBaker::write_base_color(const TexelValue& texel, const RemainderGain& gain) {
     Image& image = base_color_.image;
     base_color_.cover(texel.x, texel.y);
     Vec3 source;
@@ -220,7 +221,8 @@ void MaterialBaker::write_base_color(const TexelValue& texel) {
     const Vec3 chroma = remainder - Vec3(glm::dot(remainder, luminance_weights));
     const float moved = std::max({std::abs(change.x), std::abs(change.y), std::abs(change.z)});
     const float fade = glm::smoothstep(options_.chroma_fade_begin, options_.chroma_fade_end, moved);
-    const Vec3 baked = clamp_unit(source + change - fade * chroma);
+    const Vec3 kept = gain.at(texel.x, texel.y) * (remainder - fade * chroma);
+    const Vec3 baked = clamp_unit(source + change + (kept - remainder));
     for (int c = 0; c < 3; ++c)
         image.at(texel.x, texel.y, c) = baked[c];
 }
@@ -272,10 +274,13 @@ MaterialEdit MaterialBaker::run(NeuralTexture& fitted, NeuralTexture& now, Progr
         const auto [width, height] = sizes[i];
         const TexelEvaluator evaluator(scene_, index_, width, height, options_.supersampling,
                                        wants_normal_);
+        std::optional<RemainderGain> gain;
+        if (wants_base_color_ && base_color_size_ == sizes[i])
+            gain.emplace(scene_, index_, width, height, fitted, now);
         for (int first = 0; first < height; first += evaluator.rows_at_once()) {
             const int last = std::min(height, first + evaluator.rows_at_once());
             for (const TexelValue& texel : evaluator.rows(first, last, fitted, now)) {
-                if (wants_base_color_ && base_color_size_ == sizes[i]) write_base_color(texel);
+                if (gain) write_base_color(texel, *gain);
                 if (wants_orm_ && orm_size_ == sizes[i]) write_orm(texel);
                 if (wants_normal_ && normal_size_ == sizes[i]) write_normal(texel);
             }

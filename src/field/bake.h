@@ -3,9 +3,11 @@
 // Baked texels are not the field's values. The field is a fit, and what it could not represent
 // (print, grain) would be lost; so a texel is the source's own plus what the edit changed:
 //     baked = source + (now - fitted),    base colour sRGB-encoded, all clamped to [0, 1].
-// A field that was not changed returns the source to the bit. Where the base colour moved far, the
-// remainder source - fitted belongs to a colour that is gone: there its luminance is kept (the
-// detail) and its chroma fades out, fully where a channel moved by a quarter or more.
+// A field that was not changed returns the source to the bit. Of the base colour's remainder
+// source - fitted two things are taken away. Where the colour moved far, the remainder belongs to a
+// colour that is gone: its luminance is kept (the detail) and its chroma fades out, fully where a
+// channel moved by a quarter or more. And it fades with the contrast around it (remainder_gain.h):
+// of a marking that the edit painted over no outline stays.
 #pragma once
 
 #include "item3d/field/atlas.h"

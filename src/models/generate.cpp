@@ -13,6 +13,9 @@
 namespace item3d {
 namespace {
 
+/// Of the noise on what stays (GenerateOptions::keep); below it is the steps' own.
+constexpr int first_kept = 1 << 20;
+
 /// A stream for each picture: it does not change when more of them are asked for. Stream 0 of a
 /// picture is what it starts from, the others belong to the steps.
 torch::Tensor noise_like(const torch::Tensor& latents, std::uint64_t seed, int step) {
@@ -71,6 +74,19 @@ torch::Tensor starting_latents(const Pipeline& pipeline, const GenerateOptions& 
     return noise * sampler.initial_scale();
 }
 
+/// Puts back what stays of the picture, with the noise that step i of the sampler starts from, or
+/// without any where there is no sampler.
+void keep_image(const GenerateOptions& options, const Sampler* sampler, int i,
+                torch::Tensor& latents) {
+    if (!options.keep.defined()) return;
+    ITEM3D_CHECK(options.image.defined(), "what is kept must be in a picture");
+    const torch::Tensor mask = options.keep.to(latents.device(), torch::kFloat32);
+    torch::Tensor image = options.image.to(latents.device(), torch::kFloat32);
+    if (sampler)
+        image = sampler->add_noise(i, image, noise_like(image, options.seed, first_kept + i));
+    latents = image * mask + latents * (1 - mask);
+}
+
 /// Classifier-free guidance (Ho and Salimans 2022): the network, asked with and without the prompt.
 class GuidedNetwork {
   public:
@@ -124,6 +140,7 @@ torch::Tensor generate_latents(const Pipeline& pipeline, const GenerateOptions& 
     std::optional<Progress> progress;
     if (options.show_progress) progress.emplace("generate", sampler->steps());
     for (int i = 0; i < sampler->steps(); ++i) {
+        keep_image(options, sampler.get(), i, latents);
         const torch::Tensor output =
             network(sampler->scale_input(i, latents), sampler->timestep(i));
         const torch::Tensor fresh = sampler->draws_noise(i)
@@ -133,6 +150,7 @@ torch::Tensor generate_latents(const Pipeline& pipeline, const GenerateOptions& 
         if (progress) progress->update(i + 1);
         if (interrupted()) throw Interrupted("generate: stopped");
     }
+    keep_image(options, nullptr, 0, latents);
     return latents;
 }
 

@@ -126,6 +126,9 @@ struct GenerateOptions {
     /// 2022).
     torch::Tensor image;
     double strength = 1;
+    /// [1, 1, h, w] of 0 and 1. Where it is 1, `image` stays, and the rest is drawn to go with it
+    /// (Avrahami et al. 2022, "Blended Diffusion"). Undefined: nothing stays.
+    torch::Tensor keep;
     /// Of scheduler "ddim" alone. 1: fresh noise in each step, as DDPM; small priors draw more
     /// detail with it.
     double eta = 0;
