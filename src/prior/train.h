@@ -26,7 +26,7 @@ struct LoopOptions;
 struct TrainSettings {
     std::filesystem::path output;        ///< the diffusers folder
     std::filesystem::path work;          ///< data, checkpoints; may be deleted afterwards
-    std::int64_t samples = 285000;       ///< pictures that the U-Net sees, repetitions counted
+    std::int64_t samples = 400000;       ///< pictures that the U-Net sees, repetitions counted
     std::int64_t data_samples = 112000;  ///< different pictures
     std::int64_t autoencoder_samples = 64000;
     std::int64_t autoencoder_pictures = 12000;
