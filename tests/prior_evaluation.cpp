@@ -80,6 +80,15 @@ TEST_F(PriorEvaluation, DefaultsAreThePriorsOwnForItsOwnScheduler) {
     EXPECT_EQ(generate_defaults(folder_, pipeline_, "ddpm").steps, 250);
 }
 
+TEST(Evaluation, WordsThatWereNeverMeasuredCannotStay) {
+    EvaluationOptions options;
+    options.word_pictures = 0;
+    const std::filesystem::path unmeasured = ITEM3D_TEST_DATA "/models/pipeline_sd";
+    const auto output = std::filesystem::temp_directory_path() / "item3d_unmeasured";
+    EXPECT_THROW(evaluate_prior(unmeasured, output, options), InputError);
+    EXPECT_FALSE(std::filesystem::exists(output));
+}
+
 TEST(EvaluationPage, ShowsTheWeakestWordsFirst) {
     const nlohmann::json evaluation{
         {"prior", "mine"},

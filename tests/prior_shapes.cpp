@@ -164,5 +164,20 @@ TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
     }
 }
 
+TEST(Shapes, HeldOutVariantsAreNeverForTraining) {
+    const auto of = [](const char* name, bool held_out, int count) {
+        const auto index = static_cast<std::size_t>(shape_class_index(name));
+        return shape_variants_of(shape_classes()[index], held_out, count);
+    };
+    const std::vector<int> training = of("mug", false, 40);
+    ASSERT_EQ(training.size(), 40u);
+    EXPECT_EQ(training.back(), 41);
+    for (const int variant : of("mug", true, 40))
+        EXPECT_EQ(std::count(training.begin(), training.end(), variant), 0);
+    EXPECT_EQ(of("mug", true, 40), (std::vector<int>{training_variants, training_variants + 1}));
+    EXPECT_TRUE(of("teapot", false, 40).empty());
+    EXPECT_EQ(of("teapot", true, 2), (std::vector<int>{0, 1}));
+}
+
 }  // namespace
 }  // namespace item3d

@@ -113,6 +113,8 @@ void add_count_settings(CLI::App& command, TrainOptions& options) {
     add("--labeled-data", &TrainSettings::labeled_samples,
         "Different pictures for CLIP and the captioner")
         ->check(CLI::Range(256, 10000000));
+    add("--labeled-variants", &TrainSettings::labeled_variants, "Shapes of each class for them")
+        ->check(CLI::Range(1, 10000));
     add("--samples", &TrainSettings::samples, "Pictures to learn from, repetitions counted")
         ->check(CLI::PositiveNumber);
     add("--data", &TrainSettings::data_samples, "Different pictures")
@@ -124,7 +126,7 @@ void add_count_settings(CLI::App& command, TrainOptions& options) {
         "Different pictures for the autoencoder")
         ->check(CLI::Range(32, 1000000));
     add("--variants", &TrainSettings::shape_variants, "Shapes of each class")
-        ->check(CLI::Range(1, training_variants));
+        ->check(CLI::Range(1, 10000));
     add("--views", &TrainSettings::views_each, "Views of each shape")->check(CLI::Range(1, 1000));
     add("--lights", &TrainSettings::lights, "Different lights")->check(CLI::Range(1, 100000));
     add("--patterns", &TrainSettings::pattern_weight,
@@ -216,7 +218,7 @@ void add_pictures(CLI::App& app) {
         ->check(CLI::IsMember({48, 64, 96, 128}))
         ->capture_default_str();
     command->add_option("--variants", sheet.variants, "Shapes of each class, of examples")
-        ->check(CLI::Range(1, training_variants))
+        ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     command->add_option("--seed", sheet.seed)->capture_default_str();
     command->callback([options] {

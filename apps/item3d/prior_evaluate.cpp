@@ -28,6 +28,7 @@ struct EvaluateOptions : CommonOptions {
     std::string prior;
     std::string output;
     std::vector<std::string> meshes;
+    bool resume = false;
     EvaluationOptions evaluation;
 };
 
@@ -37,6 +38,7 @@ nlohmann::json run_edits(const EvaluateOptions& options) {
     suite.prior = find_prior(options.prior);
     suite.output = fs::path(options.output) / "edits";
     suite.meshes = named_meshes(options.meshes);
+    suite.resume = options.resume;
     std::vector<std::string> nouns;
     for (const auto& [noun, path] : suite.meshes)
         nouns.push_back(noun);
@@ -174,9 +176,13 @@ void add_prior_evaluate(CLI::App& prior) {
     command->add_option("--mesh", options->meshes,
                         "NOUN=FILE, again for each mesh: ten edits of it by the prior's words, "
                         "with a page of their own, edits/suite.html");
+    command->add_flag("--resume", options->resume,
+                      "Keep the edits that an interrupted run left in the output folder");
     EvaluationOptions& evaluation = options->evaluation;
-    command->add_option("--word-pictures", evaluation.word_pictures, "Pictures of each word")
-        ->check(CLI::Range(1, 1000))
+    command
+        ->add_option("--word-pictures", evaluation.word_pictures,
+                     "Pictures of each word; 0: what prior.json says of them stays")
+        ->check(CLI::Range(0, 1000))
         ->capture_default_str();
     command->add_option("--pictures", evaluation.pictures, "For the autoencoder")
         ->check(CLI::Range(1, 100000))

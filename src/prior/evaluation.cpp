@@ -65,6 +65,21 @@ nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>
     return measured;
 }
 
+/// What the prior's own file says of its words.
+nlohmann::json earlier_measurement(const fs::path& folder) {
+    const fs::path file = folder / "prior.json";
+    nlohmann::json prior;
+    if (fs::exists(file)) prior = nlohmann::json::parse(read_text(file), nullptr, false);
+    nlohmann::json measured = nlohmann::json::object();
+    for (const char* member : {"accuracy", "kinds", "vocabulary"}) {
+        if (!prior.is_object() || !prior.contains(member))
+            throw InputError(file.string(), "says nothing of how well words are known",
+                             "ask for one picture of each word or more");
+        measured[member] = prior[member];
+    }
+    return measured;
+}
+
 std::string percent(const nlohmann::json& value) {
     return fmt::format("{:.0f} %", 100 * value.get<double>());
 }
@@ -146,6 +161,8 @@ std::string evaluation_page(const nlohmann::json& evaluation,
 
 nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
                               const EvaluationOptions& options) {
+    nlohmann::json measured;
+    if (options.word_pictures == 0) measured = earlier_measurement(folder);
     make_output_folder(output);
     const Pipeline pipeline = Pipeline::load(folder);
     MeasureOptions measure;
@@ -175,12 +192,11 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
                                  {"object_psnr", autoencoder.object_psnr},
                                  {"pictures", options.pictures}};
     evaluation["readers"] = measure_readers(folder, clip, options);
-    nlohmann::json measured = measure_prior(pipeline, views, measure);
+    if (options.word_pictures > 0) measured = measure_prior(pipeline, views, measure);
     evaluation.update(measured);
 
     measured["words"] = measure.words;
     update_prior_json(folder, measured);
-    if (options.edits) evaluation["edits"] = options.edits();
     static const std::map<std::string, std::string> captions{
         {"samples", "Drawn from the prompts alone"},
         {"samples_in_shape", "Drawn in the shape of objects that it never saw"},
@@ -190,8 +206,15 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
         save_image(output / (name + ".png"), image);
         encoded.emplace_back(captions.at(name), encode_webp(image));
     }
-    write_atomically(output / "evaluate.json", evaluation.dump(2) + "\n");
-    write_atomically(output / "evaluate.html", evaluation_page(evaluation, encoded));
+    const auto write = [&] {
+        write_atomically(output / "evaluate.json", evaluation.dump(2) + "\n");
+        write_atomically(output / "evaluate.html", evaluation_page(evaluation, encoded));
+    };
+    write();  // edits may take an hour
+    if (options.edits) {
+        evaluation["edits"] = options.edits();
+        write();
+    }
     return evaluation;
 }
 

@@ -20,7 +20,7 @@
 namespace item3d {
 
 struct EvaluationOptions {
-    int word_pictures = 12;       ///< that each word is asked about
+    int word_pictures = 12;       ///< that each word is asked about; 0: what prior.json says stays
     int pictures = 256;           ///< that the autoencoder is measured on
     int labeled_pictures = 2000;  ///< that CLIP and captioner are measured on
     std::uint64_t seed = 7;
@@ -61,10 +61,10 @@ ReconstructionMeasure measure_autoencoder(const Pipeline& pipeline,
                                           std::uint64_t seed);
 
 /// Evaluates the prior in `folder`: words (classifier.h), samples, autoencoder, and CLIP and
-/// captioner where it has them. Puts the words into its prior.json, runs the edits, and writes
-/// evaluate.json, evaluate.html and the samples' sheets into `output`. Returns evaluate.json.
-/// Throws InputError for a folder that is no prior or cannot be written to; Interrupted, before the
-/// edits with nothing written.
+/// captioner where it has them. Puts the words into its prior.json and writes evaluate.json,
+/// evaluate.html and the samples' sheets into `output`; runs the edits, and writes both again.
+/// Returns evaluate.json. Throws InputError for a folder that is no prior or cannot be written to;
+/// Interrupted, before the edits with nothing written.
 nlohmann::json evaluate_prior(const std::filesystem::path& folder,
                               const std::filesystem::path& output,
                               const EvaluationOptions& options);

@@ -54,6 +54,17 @@ const std::vector<ShapeClass>& shape_classes() {
     return classes;
 }
 
+std::vector<int> shape_variants_of(const ShapeClass& shape, bool held_out, int count) {
+    std::vector<int> variants;
+    if (shape.held_out && !held_out) return variants;
+    for (int i = 0; static_cast<int>(variants.size()) < count; ++i) {
+        if (held_out && i >= shape_variants) break;
+        const bool is_held_out = shape.held_out || (i >= training_variants && i < shape_variants);
+        if (is_held_out == held_out) variants.push_back(i);
+    }
+    return variants;
+}
+
 int shape_class_index(const std::string& name) {
     const auto& classes = shape_classes();
     const auto known = std::find_if(classes.begin(), classes.end(),

@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// Variants 0 .. training_variants - 1 of a class are for training, the others up to
-/// shape_variants - 1 are held out for measuring.
+/// Variants training_variants .. shape_variants - 1 of a class are held out for measuring. Those
+/// before them are for training, and those after them, where more are wanted.
 inline constexpr int training_variants = 30;
 inline constexpr int shape_variants = 32;
 
@@ -41,6 +41,10 @@ struct Shape {
 const std::vector<ShapeClass>& shape_classes();
 /// Index into shape_classes(); the class must be there.
 int shape_class_index(const std::string& name);
+
+/// The first `count` variants of a class that are for training (none of a class that is held out),
+/// or those that are held out, where there are so many.
+std::vector<int> shape_variants_of(const ShapeClass& shape, bool held_out, int count);
 
 /// A shape of about unit size around the origin, y up. The same (class, variant) is the same shape.
 Shape make_shape(const std::string& shape_class, int variant);

@@ -289,6 +289,7 @@ nlohmann::json settings_json(const TrainSettings& settings) {
                 {"clip_samples", settings.clip_samples},
                 {"captioner_samples", settings.captioner_samples},
                 {"labeled_samples", settings.labeled_samples},
+                {"labeled_variants", settings.labeled_variants},
                 {"widths", settings.widths},
                 {"depth_condition", settings.depth_condition},
                 {"prediction_type", settings.prediction_type},

@@ -33,6 +33,7 @@ struct TrainSettings {
     std::int64_t clip_samples = 200000;       ///< that CLIP sees, repetitions counted
     std::int64_t captioner_samples = 620000;  ///< and the captioner
     std::int64_t labeled_samples = 60000;     ///< different pictures for these two
+    int labeled_variants = 30;                ///< shapes of each class on those
     int shape_variants = 30;
     int views_each = 4;
     int lights = 480;

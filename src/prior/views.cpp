@@ -145,10 +145,8 @@ std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_eac
     };
     std::vector<Job> jobs;
     for (const ShapeClass& each : shape_classes()) {
-        const int first = held_out && !each.held_out ? training_variants : 0;
-        const int end = held_out ? shape_variants : each.held_out ? 0 : training_variants;
-        for (int i = first; i < std::min(end, first + variants); ++i)
-            jobs.push_back({each.name, i});
+        for (const int variant : shape_variants_of(each, held_out, variants))
+            jobs.push_back({each.name, variant});
     }
     std::vector<std::vector<ShapeView>> made(jobs.size());
     std::atomic<std::int64_t> done = 0;

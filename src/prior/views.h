@@ -55,9 +55,9 @@ std::vector<ShapeView> make_views(const std::string& shape_class, int variant, i
                                   std::uint64_t seed, int resolution = 96,
                                   int picture = picture_size);
 
-/// Views of every shape that is for training, or of every one that is held out (variants from
-/// training_variants on, and whole classes), in a fixed order. variants: at most this many of each
-/// class. Returns what there is after an interrupt.
+/// Views of shapes that are for training, `variants` of each class, or of those that are held out
+/// (at most so many of each class, and whole classes), in a fixed order. Returns what there is
+/// after an interrupt.
 std::vector<ShapeView> make_view_pool(bool held_out, int variants, int views_each,
                                       std::uint64_t seed, int threads, int picture = picture_size);
 

@@ -29,7 +29,7 @@ nlohmann::json labeled_fingerprint(const TrainSettings& s) {
     return {{"version", 3},
             {"seed", s.seed},
             {"labeled_samples", s.labeled_samples},
-            {"shape_variants", s.shape_variants},
+            {"shape_variants", s.labeled_variants},
             {"views_each", s.views_each},
             {"lights", s.lights}};
 }
@@ -58,7 +58,7 @@ void prepare_labeled(const TrainSettings& settings) {
         make_training_lights(mix_bits(seed + 11), settings.lights, settings.replicas);
     stop_here_if_interrupted(settings);
     std::vector<ShapeView> views =
-        make_view_pool(false, settings.shape_variants, settings.views_each, mix_bits(seed + 12),
+        make_view_pool(false, settings.labeled_variants, settings.views_each, mix_bits(seed + 12),
                        settings.replicas);
     stop_here_if_interrupted(settings);
     const ExampleSource source(std::move(views), std::move(lights), mix_bits(seed + 13));

@@ -39,6 +39,7 @@ EditRequest request_of(const SuiteEdit& edit, const SuiteOptions& options, const
     request.model = folder / "source.glb";
     request.prior = options.prior;
     request.output = folder;
+    request.resume = options.resume;
     json overrides = {{"from", prompt_of(edit.test.source, edit.test.mesh)},
                       {"to", prompt_of(edit.test.target, edit.test.mesh)},
                       {"seed", options.seed}};

@@ -24,6 +24,7 @@ struct SuiteOptions {
     std::filesystem::path prior;
     std::map<std::string, std::filesystem::path> meshes;  ///< by noun
     std::uint64_t seed = 0;
+    bool resume = false;  ///< goes on with the edits that are in `output` already
 };
 
 /// Runs each edit in a folder of its own below `output`, with the prior's defaults, and writes
