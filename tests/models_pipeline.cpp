@@ -114,13 +114,18 @@ TEST(Pipeline, GeneratingDependsOnTheSeedAloneAndNotOnTheCount) {
     EXPECT_THROW(generate(pipeline, options), InputError);
 }
 
-TEST(Pipeline, WhatIsKeptOfAPictureStaysAndTheRestIsDrawn) {
-    set_verbosity(Verbosity::quiet);
-    const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
+GenerateOptions from_a_picture(const Pipeline& pipeline) {
     GenerateOptions options;
     options.prompt = "a duck";
     options.steps = 4;
     options.image = torch::full({1, pipeline.latent_channels(), 8, 8}, 0.7f);
+    return options;
+}
+
+TEST(Pipeline, WhatIsKeptOfAPictureStaysAndTheRestIsDrawn) {
+    set_verbosity(Verbosity::quiet);
+    const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
+    GenerateOptions options = from_a_picture(pipeline);
     const torch::Tensor drawn = generate_latents(pipeline, options);
     options.keep = torch::zeros({1, 1, 8, 8});
     EXPECT_TRUE(generate_latents(pipeline, options).equal(drawn));
@@ -135,10 +140,7 @@ TEST(Pipeline, WhatIsKeptOfAPictureStaysAndTheRestIsDrawn) {
 TEST(Pipeline, GeneratingFromAPictureWalksPartOfTheSchedule) {
     set_verbosity(Verbosity::quiet);
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-    GenerateOptions options;
-    options.prompt = "a duck";
-    options.steps = 4;
-    options.image = torch::full({1, pipeline.latent_channels(), 8, 8}, 0.7f);
+    GenerateOptions options = from_a_picture(pipeline);
     options.strength = 0;
     EXPECT_TRUE(generate_latents(pipeline, options).equal(options.image));
     options.strength = 0.25;
