@@ -119,6 +119,7 @@ std::vector<PaintingView> plan_painting(const EditScene& scene, const EditSettin
             view.facing * (as_pixels(sight, best) < clearly_better * own).to(torch::kFloat32);
         view.known = known_cells(fresh, pixels_each);
         earlier.push_back(sight);
+        earlier.back().surface = {};  // large; later views ask for its depth alone
         plan.push_back(view);
     }
     return plan;
