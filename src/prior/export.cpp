@@ -47,9 +47,9 @@ namespace {
 /// Words of what has a structure that guidance averages away and sampling draws. Not of metals: a
 /// golden vase was the worse for it (docs/benchmarks.md).
 std::vector<std::string> detail_words() {
-    std::set<std::string> structured{"wood",   "oak",   "walnut",  "pine",        "bamboo",
-                                     "marble", "stone", "granite", "cobblestone", "brick",
-                                     "grass",  "moss",  "lava",    "cheese"};
+    std::set<std::string> structured{
+        "wood",        "oak",   "walnut", "pine", "bamboo", "marble", "stone", "granite",
+        "cobblestone", "brick", "grass",  "moss", "lava",   "cheese", "rust",  "porcelain"};
     std::vector<std::string> words;
     for (const MaterialWord& word : material_words())
         if (structured.erase(word.word) > 0 || word.group == "patterns")
