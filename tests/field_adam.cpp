@@ -55,6 +55,19 @@ TEST(Adam, TouchesOnlyTheRowsOfASparseGradient) {
     EXPECT_NEAR(table[2][1].item<float>(), 0.9f, 1e-4f);
 }
 
+TEST(Adam, StepsOfRowsAreMultipliedByTheirFactors) {
+    torch::Tensor table = torch::ones({4, 2}).set_requires_grad(true);
+    AdamOptions options{.learning_rate = 0.1};
+    options.row_factors = torch::tensor({1.0f, 0.5f, 0.0f, 1.0f});
+    Adam adam;
+    adam.add_group({table}, options);
+    table.mutable_grad() = sparse_gradient({0, 1, 2}, torch::full({3, 2}, 3.0f), 4);
+    adam.step();
+    const std::vector<float> wanted{0.9f, 0.95f, 1.0f, 1.0f};
+    for (int row = 0; row < 4; ++row)
+        EXPECT_NEAR(table[row][1].item<float>(), wanted[static_cast<std::size_t>(row)], 1e-5f);
+}
+
 TEST(Adam, SumsRepeatedRows) {
     torch::Tensor a = torch::zeros({3, 1}).set_requires_grad(true);
     torch::Tensor b = torch::zeros({3, 1}).set_requires_grad(true);

@@ -123,7 +123,7 @@ TEST(NeuralTexture, GradientsOfTheNetworkMatchFiniteDifferences) {
             const std::int64_t at = random.index(parameter.numel());
             const float wanted = gradient[at].item<float>();
             if (std::abs(wanted) < 0.01f) continue;
-            const float step = 1e-3f;
+            const float step = 3e-4f;  // a larger one meets kinks of relu
             const torch::Tensor flat = parameter.view(-1);
             flat[at] += step;
             const float above = value().item<float>();
@@ -176,6 +176,18 @@ TEST(Fit, ShiftsMetallicToAMean) {
     }
     EXPECT_TRUE(torch::equal(sample().base_color, before.base_color));
     EXPECT_TRUE(torch::equal(sample().orm.select(1, 1), before.orm.select(1, 1)));
+}
+
+TEST(Fit, LeavesTheTableOfAPlainSurfaceAlmostEmpty) {
+    Model model = make_model(make_sphere());
+    for (Texture& texture : model.textures)
+        std::fill(texture.image.pixels.begin(), texture.image.pixels.end(), 0.3f);
+    const Fitted plain(model), patterned(make_model(make_sphere()));
+    EXPECT_GT(plain.result.base_color_psnr, 45.0);
+    const auto spread = [](const Fitted& fitted) {
+        return fitted.field->table().detach().std().item<float>();
+    };
+    EXPECT_LT(spread(plain), 0.2f * spread(patterned));
 }
 
 TEST(Fit, IsDeterministic) {
@@ -300,7 +312,7 @@ TEST(Bake, LeavesNoOutlineOfAMarkingThatWasPaintedOver) {
                 image.at(x, y, c) = x < 24 ? 0.2f : is_dot(x, y) ? 0.6f : 0.8f;
         }
     }
-    Fitted quad(model, 60);
+    Fitted quad(model, 30);
     quad.paint_blue();
     const MaterialEdit edit = quad.bake_now(quiet_bake());
     EXPECT_LT(green_range(*edit.base_color, 33, 16, 32), 0.1);  // 0.25 if all stayed

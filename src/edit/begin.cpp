@@ -23,6 +23,22 @@ AdamOptions adam_options(const EditSettings& settings) {
     return options;
 }
 
+/// [table rows] What the learning rate of a level of the field's grid is multiplied by. Cells finer
+/// than the prior's pixels get no say from it, only noise, which Adam would make as large as any
+/// other step: plain colours became speckled.
+torch::Tensor level_factors(const NeuralTexture& field, int resolution) {
+    const torch::Tensor factors = torch::ones({field->grid().entries()});
+    for (const HashGridLevel& level : field->grid().levels) {
+        const float pixels_a_cell =
+            static_cast<float>(resolution) / static_cast<float>(level.resolution);
+        factors
+            .narrow(0, static_cast<std::int64_t>(level.first),
+                    static_cast<std::int64_t>(level.entries))
+            .fill_(std::min(1.0f, pixels_a_cell));
+    }
+    return factors.to(field->table().device());
+}
+
 int finest_texture(const EditScene& scene, int texture_size) {
     int finest = 0;
     for (const int material : scene.materials) {
@@ -52,7 +68,9 @@ void fit_field(const EditScene& scene, const EditSettings& settings, EditState& 
     state.fitted = snapshot(state.field);
     if (scene.channels.metallic && settings.iterations > 0 &&
         crosses_metallic(settings.from, settings.to)) {
-        shift_metallic(state.field, scene.geometry, *scene.space, settings.metallic_start);
+        const float start = settings.metallic_start;
+        shift_metallic(state.field, scene.geometry, *scene.space,
+                       names_metal(settings.to) ? start : 1 - start);
     }
 }
 
@@ -65,7 +83,9 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         scene.geometry, *scene.space, finest_texture(scene, settings.texture_size), settings.seed));
     state.field->to(scene.device);
     if (edits_texture(settings)) {
-        state.optimizer.add_group({state.field->table()}, adam_options(settings));
+        AdamOptions table_options = adam_options(settings);
+        table_options.row_factors = level_factors(state.field, settings.resolution);
+        state.optimizer.add_group({state.field->table()}, table_options);
         state.optimizer.add_group(state.field->network_parameters(), adam_options(settings));
     }
     if (edits_light(settings)) {

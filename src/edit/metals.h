@@ -11,8 +11,8 @@ bool names_metal(const std::string& prompt);
 
 /// True when exactly one of the prompts does, so that metallic must cross from one end to the
 /// other. Near 0 and 1 base colour alone can imitate the other side well enough to hold the
-/// optimiser there, and "golden" ends as yellow paint; an edit that begins half-way lets the light
-/// decide.
+/// optimiser there, and "golden" ends as yellow paint; an edit that begins on its way lets the
+/// light decide.
 bool crosses_metallic(const std::string& from, const std::string& to);
 
 }  // namespace item3d

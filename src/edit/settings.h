@@ -39,7 +39,8 @@ struct EditSettings : PipelineExtras {
     int resolution = 512;  ///< pixels of the square picture that the prior sees
     float learning_rate = 0.01f;
     std::string metallic = "auto";  ///< auto: edited where a prompt names a metal; or always
-    float metallic_start = 0.5f;    ///< where one prompt names a metal and the other does not
+    /// Where the target names a metal and the source does not; 1 - this where only the source does.
+    float metallic_start = 0.5f;
     /// The detail stage (optimize.h) after the iterations. auto: where the target sentence has one
     /// of `detail_words` that the source has not; or off, or always.
     std::string detail = "auto";

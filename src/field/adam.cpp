@@ -43,6 +43,12 @@ bool rows_rise(const torch::Tensor& indices) {
 std::size_t Adam::add_group(std::vector<torch::Tensor> parameters, const AdamOptions& options) {
     Group group;
     group.options = options;
+    const torch::Tensor& factors = options.row_factors;
+    ITEM3D_CHECK(!factors.defined() ||
+                     (parameters.size() == 1 && factors.numel() == parameters.front().size(0) &&
+                      factors.scalar_type() == torch::kFloat32 && factors.is_contiguous() &&
+                      factors.device() == parameters.front().device()),
+                 "row factors are a float32 for each row of a group's one parameter");
     for (torch::Tensor& parameter : parameters) {
         ITEM3D_CHECK((parameter.is_cpu() || parameter.is_cuda()) && parameter.is_contiguous() &&
                          parameter.dim() > 0 && parameter.scalar_type() == torch::kFloat32,
@@ -95,6 +101,9 @@ void Adam::step() {
                 slot.momentum.data_ptr<float>(),
                 slot.variance.data_ptr<float>(),
                 slot.updates.data_ptr<std::int32_t>(),
+                group.options.row_factors.defined()
+                    ? group.options.row_factors.const_data_ptr<float>()
+                    : nullptr,
                 static_cast<const AdamRates*>(own_rates.const_data_ptr())};
             if (device.is_cuda())
                 cuda::run(cuda::field_table().adam_step, p, rows, device);

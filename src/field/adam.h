@@ -15,6 +15,9 @@ struct AdamOptions {
     double beta1 = 0.9;
     double beta2 = 0.99;
     double epsilon = 1e-15;
+    /// [rows] float32, for groups of one parameter: what each row's learning rate is multiplied by.
+    /// Undefined: by 1.
+    torch::Tensor row_factors = {};
 };
 
 /// Groups of parameters, each with its own options. A parameter whose gradient is dense is updated

@@ -19,29 +19,31 @@ struct AdamParameters {
     const std::int64_t* rows;  ///< [R] rows of the parameter, no row twice; null: all in order
     const float* gradient;     ///< [R, width]
     std::int64_t width;
-    float* parameter;        ///< [*, width]
-    float* momentum;         ///< [*, width]
-    float* variance;         ///< [*, width]
-    std::int32_t* updates;   ///< [*]
-    const AdamRates* rates;  ///< by the row's number of updates, this one included
+    float* parameter;          ///< [*, width]
+    float* momentum;           ///< [*, width]
+    float* variance;           ///< [*, width]
+    std::int32_t* updates;     ///< [*]
+    const float* row_factors;  ///< [*] of the step size; null: all 1
+    const AdamRates* rates;    ///< by the row's number of updates, this one included
 };
 
 ITEM3D_HOST_DEVICE inline void adam_update(float& parameter, float& momentum, float& variance,
-                                           float gradient, const AdamRates& rates) {
+                                           float gradient, const AdamRates& rates, float factor) {
     momentum = rates.beta1 * momentum + (1.0f - rates.beta1) * gradient;
     variance = rates.beta2 * variance + (1.0f - rates.beta2) * gradient * gradient;
-    parameter -=
-        rates.step_size * momentum / (std::sqrt(variance * rates.variance_scale) + rates.epsilon);
+    parameter -= factor * rates.step_size * momentum /
+                 (std::sqrt(variance * rates.variance_scale) + rates.epsilon);
 }
 
 /// index: row of the gradient.
 ITEM3D_HOST_DEVICE inline void adam_step_row(const AdamParameters& p, std::int64_t index) {
     const std::int64_t row = p.rows != nullptr ? p.rows[index] : index;
     const AdamRates& rates = p.rates[++p.updates[row]];
+    const float factor = p.row_factors != nullptr ? p.row_factors[row] : 1.0f;
     for (std::int64_t c = 0; c < p.width; ++c) {
         const std::int64_t at = row * p.width + c;
         adam_update(p.parameter[at], p.momentum[at], p.variance[at],
-                    p.gradient[index * p.width + c], rates);
+                    p.gradient[index * p.width + c], rates, factor);
     }
 }
 

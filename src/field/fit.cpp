@@ -12,6 +12,15 @@
 namespace item3d {
 namespace {
 
+/// Adam steps as far for a small gradient as for a large one, but for those below this. Without it
+/// a surface of one colour filled the table with noise that cancelled out until an edit changed the
+/// network, and then was seen: white chairs with grey speckles.
+constexpr double negligible_gradient = 1e-6;
+
+/// Before the table joins in: what is the same all over the surface is the network's, so the
+/// table's entries, which are seen more or less often, need not take a share of it each.
+constexpr int network_steps = 40;
+
 /// [8] what the squared error of each encoded value counts.
 torch::Tensor column_weights() {
     constexpr float base_color = 1.0f / 3, orm = 0.5f / 3, slope = 0.1f / 3;
@@ -74,33 +83,32 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
     const SurfaceSampler sampler(geometry, space);
     Random random(options.seed, 0x666974);
     Adam adam;
-    const std::size_t table =
-        adam.add_group({field->table()},
-                       {.learning_rate = options.table_learning_rate, .beta1 = 0.9, .beta2 = 0.99});
-    const std::size_t network = adam.add_group(
-        field->network_parameters(),
-        {.learning_rate = options.network_learning_rate, .beta1 = 0.9, .beta2 = 0.99});
+    AdamOptions adam_options;
+    adam_options.epsilon = negligible_gradient;
+    const std::size_t table = adam.add_group({field->table()}, adam_options);
+    const std::size_t network = adam.add_group(field->network_parameters(), adam_options);
+    const int alone = std::min(network_steps, options.steps), steps = alone + options.steps;
     std::optional<Progress> progress;
-    if (options.show_progress) progress.emplace("fit", options.steps);
+    if (options.show_progress) progress.emplace("fit", steps);
     const float steepest = field->options().ranges.normal_slope;
     const torch::Tensor weights = column_weights().to(field->table().device());
     Examples drawn;
-    for (int step = 0; step < options.steps; ++step) {
+    for (int step = 0; step < steps; ++step) {
         // Many at once: to draw few takes as long.
         constexpr int steps_drawn = 16;
         const int place = step % steps_drawn;
         if (place == 0)
-            drawn =
-                draw_examples(sampler, space, materials, steepest,
-                              std::min(steps_drawn, options.steps - step), options.batch, random);
+            drawn = draw_examples(sampler, space, materials, steepest,
+                                  std::min(steps_drawn, steps - step), options.batch, random);
         const torch::Tensor difference =
             field->encoded(drawn.positions[place]) - drawn.values[place];
         adam.zero_grad();
         (difference.square() * weights).sum().div(double(options.batch)).backward();
+        if (step < alone) field->table().mutable_grad() = torch::Tensor();
         // A cosine from the full rate to a hundredth: the last steps average out the batches'
         // noise.
-        const double decay =
-            0.01 + 0.99 * 0.5 * (1.0 + std::cos(3.14159265358979 * step / options.steps));
+        const double part = static_cast<double>(std::max(0, step - alone)) / options.steps;
+        const double decay = 0.01 + 0.99 * 0.5 * (1.0 + std::cos(3.14159265358979 * part));
         adam.options(table).learning_rate = options.table_learning_rate * decay;
         adam.options(network).learning_rate = options.network_learning_rate * decay;
         adam.step();

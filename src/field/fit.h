@@ -8,7 +8,7 @@
 namespace item3d {
 
 struct FitOptions {
-    int steps = 200;
+    int steps = 200;            ///< after up to 40 in which the table stays as it is
     std::int64_t batch = 4096;  ///< surface points a step
     double table_learning_rate = 0.03;
     double network_learning_rate = 0.01;

@@ -15,6 +15,8 @@ constexpr int output_width = 8;  // base colour 3, orm 3, normal's x and y
 /// slope instead of at its infinite ends, so an edit can leave them again.
 constexpr float overshoot = 0.05f;
 
+constexpr float awake = 0.5f;  ///< bound of hidden units' first biases
+
 /// Clamps the value and lets the gradient through.
 class ClampValue : public torch::autograd::Function<ClampValue> {
   public:
@@ -49,12 +51,16 @@ NeuralTextureImpl::NeuralTextureImpl(const NeuralTextureOptions& options)
     const std::array<int, 4> widths{grid_.output_width(), options.hidden_width,
                                     options.hidden_width, output_width};
     for (std::size_t i = 0; i + 1 < widths.size(); ++i) {
-        const float bound = std::sqrt((i + 2 < widths.size() ? 6.0f : 1.0f) / widths[i]);
+        const bool last = i + 2 == widths.size();
+        const float bound = std::sqrt((last ? 1.0f : 6.0f) / widths[i]);
         weights_.push_back(
             register_parameter("weight" + std::to_string(i),
                                uniform_tensor({widths[i + 1], widths[i]}, bound, random)));
+        // Hidden units are awake where the table is empty, so that a plain surface's colour can
+        // change by the network's weights: by the last biases alone it would take far longer.
         biases_.push_back(
-            register_parameter("bias" + std::to_string(i), torch::zeros({widths[i + 1]})));
+            register_parameter("bias" + std::to_string(i),
+                               uniform_tensor({widths[i + 1]}, last ? 0.0f : awake, random)));
     }
     const MaterialRanges& r = options.ranges;
     const float slope = r.normal_slope;

@@ -58,6 +58,7 @@ class NeuralTextureImpl : public torch::nn::Module {
 
     const NeuralTextureOptions& options() const { return options_; }
     const torch::Tensor& table() const { return table_; }
+    const HashGrid& grid() const { return grid_; }  ///< the table's levels
     /// Weights and biases of the network.
     std::vector<torch::Tensor> network_parameters() const;
 
