@@ -25,7 +25,7 @@ AdamOptions adam_options(const EditSettings& settings) {
 
 /// [table rows] What the learning rate of a level of the field's grid is multiplied by. Cells finer
 /// than the prior's pixels get no say from it, only noise, which Adam would make as large as any
-/// other step: plain colours became speckled.
+/// other step.
 torch::Tensor level_factors(const NeuralTexture& field, int resolution) {
     const torch::Tensor factors = torch::ones({field->grid().entries()});
     for (const HashGridLevel& level : field->grid().levels) {
