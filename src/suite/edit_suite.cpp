@@ -103,6 +103,39 @@ json run_edit(const SuiteEdit& edit, const SuiteOptions& options, const Judge& j
     return result;
 }
 
+constexpr const char* verdict_name = "verdict.json";
+
+/// What a verdict depends on.
+json asked(const SuiteEdit& edit, const SuiteOptions& options) {
+    const SuiteCase& test = edit.test;
+    return {{"model", options.meshes.at(test.mesh).string()},
+            {"from", prompt_of(test.source, test.mesh)},
+            {"to", prompt_of(test.target, test.mesh)},
+            {"method", edit.method},
+            {"prior", options.prior.string()},
+            {"seed", options.seed}};
+}
+
+/// The verdict that an interrupted run left in `folder` on the same question, or null.
+json verdict_before(const fs::path& folder, const json& question) {
+    const fs::path file = folder / verdict_name;
+    if (!fs::exists(file)) return nullptr;
+    const json verdict = json::parse(read_text(file), nullptr, false);
+    const bool same = verdict.is_object() && verdict.value("asked", json()) == question;
+    return same ? verdict.at("result") : json();
+}
+
+json run_or_keep(const SuiteEdit& edit, const SuiteOptions& options, const Judge& judge,
+                 const fs::path& folder) {
+    const json question = asked(edit, options);
+    if (json kept = options.resume ? verdict_before(folder, question) : json(); !kept.is_null())
+        return kept;
+    json result = run_edit(edit, options, judge, folder);
+    write_atomically(folder / verdict_name,
+                     json{{"asked", question}, {"result", result}}.dump(2) + "\n");
+    return result;
+}
+
 std::string verdict_text(const json& result) {
     std::string text =
         result["method"] == "learned" ? "" : result["method"].get<std::string>() + ", ";
@@ -174,11 +207,22 @@ json run_edit_suite(const std::vector<SuiteEdit>& edits, const SuiteOptions& opt
     judge.colors = named_colors(judge.vocabulary);
     const fs::path clip = find_in_prior(options.prior, "clip");
     if (!clip.empty()) judge.clip = std::make_unique<Clip>(Clip::load(clip));
+    std::vector<std::string> names;
+    for (const SuiteEdit& edit : edits) {
+        names.push_back(fmt::format("{:02}-{}-{}", names.size(), edit.test.group, edit.test.mesh));
+        if (!options.resume) fs::remove(options.output / names.back() / verdict_name);
+    }
     std::vector<json> results;
     for (const SuiteEdit& edit : edits) {
-        const std::string name =
-            fmt::format("{:02}-{}-{}", results.size(), edit.test.group, edit.test.mesh);
-        json result = run_edit(edit, options, judge, options.output / name);
+        const std::string& name = names[results.size()];
+        json result;
+        try {
+            result = run_or_keep(edit, options, judge, options.output / name);
+        } catch (const Interrupted&) {
+            throw Interrupted(
+                fmt::format("{} of {} edits are done; the same command with --resume goes on",
+                            results.size(), edits.size()));
+        }
         result["folder"] = name;
         note(fmt::format("{} of {}: {} -> {}: {}", results.size() + 1, edits.size(),
                          result["from"].get<std::string>(), result["to"].get<std::string>(),
