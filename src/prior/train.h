@@ -31,9 +31,9 @@ struct TrainSettings {
     std::int64_t autoencoder_samples = 64000;
     std::int64_t autoencoder_pictures = 12000;
     std::int64_t clip_samples = 200000;       ///< that CLIP sees, repetitions counted
-    std::int64_t captioner_samples = 620000;  ///< and the captioner
-    std::int64_t labeled_samples = 60000;     ///< different pictures for these two
-    int labeled_variants = 30;                ///< shapes of each class on those
+    std::int64_t captioner_samples = 720000;  ///< and the captioner
+    std::int64_t labeled_samples = 240000;    ///< different pictures for these two
+    int labeled_variants = 60;                ///< shapes of each class on those
     int shape_variants = 30;
     int views_each = 4;
     int lights = 480;
