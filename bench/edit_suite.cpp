@@ -10,6 +10,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/progress.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/suite/models.h"
 
@@ -50,7 +51,9 @@ int main(int argc, char** argv) {
     app.add_option("--mesh", meshes, "NOUN=FILE; the demo mug is always there");
     app.add_option("--only", only, "colors, materials or stripes");
     app.add_option("--seed", options.seed, "Seed of the edits");
+    app.add_flag("--resume", options.resume, "Keep the edits that an interrupted run has left");
     CLI11_PARSE(app, argc, argv);
+    item3d::install_interrupt_handler();
     try {
         options.prior = item3d::find_prior(options.prior.string());
         options.meshes = item3d::suite_meshes(meshes);

@@ -122,7 +122,7 @@ json verdict_before(const fs::path& folder, const json& question) {
     if (!fs::exists(file)) return nullptr;
     const json verdict = json::parse(read_text(file), nullptr, false);
     const bool same = verdict.is_object() && verdict.value("asked", json()) == question;
-    return same ? verdict.at("result") : json();
+    return same ? verdict.value("result", json()) : json();
 }
 
 json run_or_keep(const SuiteEdit& edit, const SuiteOptions& options, const Judge& judge,
