@@ -13,10 +13,6 @@ namespace {
 using namespace testing_support;
 using OrderedJson = nlohmann::ordered_json;
 
-fs::path fixture(const std::string& name) {
-    return data_folder() / "gltf" / name;
-}
-
 // Encoders reorder vertices and triangles: every triangle of the one must be, within what
 // quantization took, one of the other.
 void expect_same_surface(const Model& model, const Model& original, float tolerance) {
@@ -77,9 +73,6 @@ bool lists(const OrderedJson& json, const char* key, const char* extension) {
     if (!json.contains(key)) return false;
     return std::find(json[key].begin(), json[key].end(), extension) != json[key].end();
 }
-constexpr const char* draco = "KHR_draco_mesh_compression";
-constexpr const char* meshopt = "EXT_meshopt_compression";
-
 ModelEdit red_edit() {
     ModelEdit edit;
     edit.materials[0].base_color = checkered_image(8, 8, 3);
@@ -119,10 +112,10 @@ TEST(Compressed, NewUvsMakePlainGeometry) {
         save_model(folder / name, model, edit);
         const OrderedJson json = read_gltf_file(folder / name).json;
         EXPECT_FALSE(json["meshes"][0]["primitives"][0].contains("extensions"));
-        EXPECT_FALSE(lists(json, "extensionsUsed", draco));
-        EXPECT_FALSE(lists(json, "extensionsRequired", draco));
+        EXPECT_FALSE(lists(json, "extensionsUsed", draco_extension));
+        EXPECT_FALSE(lists(json, "extensionsRequired", draco_extension));
         // The old buffer views are still there, and still compressed.
-        EXPECT_EQ(lists(json, "extensionsRequired", meshopt),
+        EXPECT_EQ(lists(json, "extensionsRequired", meshopt_extension),
                   std::string(name).starts_with("meshopt"));
         const Model back = load_model(folder / name);
         expect_sound(back);
@@ -168,9 +161,9 @@ TEST(Compressed, OtherPrimitivesStayCompressed) {
     save_model(folder / "edited.glb", model, edit);
     const OrderedJson json = read_gltf_file(folder / "edited.glb").json;
     EXPECT_FALSE(json["meshes"][0]["primitives"][0].contains("extensions"));
-    EXPECT_TRUE(json["meshes"][1]["primitives"][0]["extensions"].contains(draco));
-    EXPECT_TRUE(lists(json, "extensionsUsed", draco));
-    EXPECT_TRUE(lists(json, "extensionsRequired", draco));
+    EXPECT_TRUE(json["meshes"][1]["primitives"][0]["extensions"].contains(draco_extension));
+    EXPECT_TRUE(lists(json, "extensionsUsed", draco_extension));
+    EXPECT_TRUE(lists(json, "extensionsRequired", draco_extension));
     expect_same_triangles(model, load_model(folder / "edited.glb"), 1e-6f, false);
 }
 
@@ -188,7 +181,7 @@ TEST(Compressed, RenamedAndDroppedAttributesAreSoInTheExtension) {
     const OrderedJson& primitive = json["meshes"][1]["primitives"][0];
     EXPECT_FALSE(primitive["attributes"].contains("COLOR_0"));
     EXPECT_TRUE(primitive["attributes"].contains("TEXCOORD_1"));
-    EXPECT_EQ(primitive["extensions"][draco]["attributes"],
+    EXPECT_EQ(primitive["extensions"][draco_extension]["attributes"],
               OrderedJson({{"POSITION", 0}, {"NORMAL", 1}, {"TEXCOORD_1", 2}}));
     const Model back = load_model(folder / "edited.glb");
     expect_same_triangles(model, back, 1e-6f, false);
@@ -214,7 +207,7 @@ struct View {
                           {{{"buffer", 1},
                             {"byteLength", stride * count},
                             {"extensions",
-                             {{meshopt,
+                             {{meshopt_extension,
                                {{"buffer", 0},
                                 {"byteLength", encoded.size()},
                                 {"byteStride", stride},

@@ -11,13 +11,6 @@ namespace {
 using namespace testing_support;
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr const char* draco = "KHR_draco_mesh_compression";
-constexpr const char* meshopt = "EXT_meshopt_compression";
-
-fs::path fixture(const std::string& name) {
-    return data_folder() / "gltf" / name;
-}
-
 struct Damage {
     const char* message;  ///< part of what the error says
     std::function<void(GltfFile&)> make;
@@ -49,7 +42,7 @@ TEST(Draco, DamagedFilesAreRefused) {
         return file.json["meshes"][0]["primitives"][0];
     };
     const auto extension = [=](GltfFile& file) -> OrderedJson& {
-        return primitive(file)["extensions"][draco];
+        return primitive(file)["extensions"][draco_extension];
     };
     const auto accessor = [=](GltfFile& file, const char* name) -> OrderedJson& {
         return file.json["accessors"][primitive(file)["attributes"][name].get<std::size_t>()];
@@ -94,7 +87,7 @@ TEST(Draco, DamagedFilesAreRefused) {
 
 TEST(Meshopt, DamagedFilesAreRefused) {
     const auto extension = [](GltfFile& file, int view) -> OrderedJson& {
-        return file.json["bufferViews"][view]["extensions"][meshopt];
+        return file.json["bufferViews"][view]["extensions"][meshopt_extension];
     };
     // Buffer views 3: indices, 4: octahedral normals, 5: positions.
     expect_refused(

@@ -26,6 +26,13 @@ inline fs::path shared_folder() {
     return fs::path(ITEM3D_SHARED_DATA) / "data";
 }
 
+constexpr const char* draco_extension = "KHR_draco_mesh_compression";
+constexpr const char* meshopt_extension = "EXT_meshopt_compression";
+
+inline fs::path fixture(const std::string& name) {
+    return data_folder() / "gltf" / name;
+}
+
 inline nlohmann::json read_manifest(const fs::path& folder) {
     return nlohmann::json::parse(read_text(folder / "manifest.json"));
 }

@@ -16,8 +16,6 @@ namespace item3d {
 
 namespace {
 
-using Json = nlohmann::json;
-
 Mat4 look_from(Vec3 eye, Vec3 backward) {
     const Vec3 up = std::abs(backward.y) > 0.9999f ? Vec3(0, 0, -1) : Vec3(0, 1, 0);
     const Vec3 right = glm::normalize(glm::cross(up, backward));
@@ -64,7 +62,7 @@ float checked_field_of_view(float angle, const std::string& subject) {
 }
 
 /// camera_angle_x, or fl_x (pixels) with w; 0 when the object has neither.
-float field_of_view_of(const Json& object, const std::string& subject) {
+float field_of_view_of(const nlohmann::json& object, const std::string& subject) {
     if (object.contains("camera_angle_x")) {
         return checked_field_of_view(
             finite_json_number(object["camera_angle_x"], subject, "camera_angle_x"), subject);
@@ -187,10 +185,10 @@ void fit_depth_range(Camera& camera, std::array<Vec3, 2> bounds) {
 
 std::vector<Camera> load_cameras(const std::filesystem::path& path) {
     const std::string subject = path.string();
-    Json document;
+    nlohmann::json document;
     try {
-        document = Json::parse(read_text(path));
-    } catch (const Json::exception& error) {
+        document = nlohmann::json::parse(read_text(path));
+    } catch (const nlohmann::json::exception& error) {
         throw InputError(subject, std::string("expected JSON: ") + error.what());
     }
     if (!document.is_object() || !document.contains("frames") || !document["frames"].is_array()) {
@@ -202,7 +200,7 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path) {
 
     std::vector<Camera> cameras;
     std::set<std::string> names;
-    for (const Json& frame : document["frames"]) {
+    for (const nlohmann::json& frame : document["frames"]) {
         const std::string where = fmt::format("{}: frame {}", subject, cameras.size());
         if (!frame.is_object() || !frame.contains("transform_matrix")) {
             throw InputError(where, "expected an object with \"transform_matrix\"");

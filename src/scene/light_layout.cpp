@@ -15,8 +15,8 @@ namespace item3d {
 
 namespace {
 
-enum Face { right, left, up, down, front, back };
-
+// Right, left, up, down, front, back.
+constexpr std::size_t back_face = 5;
 const std::array<CubeFaceAxes, 6> face_axes = {{
     {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
     {{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
@@ -74,7 +74,7 @@ Vec3 look_up_cube(const Image& picture, const FacePlaces& places,
     const CubeFaceAxes& axes = all_axes[face];
     const float depth = glm::dot(direction, axes.forward);
     Vec2 p(glm::dot(direction, axes.right) / depth, -glm::dot(direction, axes.up) / depth);
-    if (face == back && places.back_is_upside_down) p = -p;
+    if (face == back_face && places.back_is_upside_down) p = -p;
     const int side = picture.width / places.columns;
     return bilinear(picture, (p.x + 1) / 2 * side, (p.y + 1) / 2 * side,
                     places.place[face][0] * side, places.place[face][1] * side, side, side);

@@ -20,6 +20,10 @@ namespace item3d {
 /// Keeps the order of keys.
 using Json = nlohmann::ordered_json;
 
+/// What to try when compressed data cannot be read.
+inline constexpr const char* damaged_data =
+    "the file is damaged; export it again without compression";
+
 class SourceDocument {
   public:
     std::filesystem::path path;

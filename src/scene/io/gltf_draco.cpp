@@ -15,8 +15,6 @@
 namespace item3d {
 namespace {
 
-constexpr const char* damaged = "the file is damaged; export it again without compression";
-
 /// What a mesh may hold; checked while it is decoded, before memory is taken.
 struct Limits {
     std::size_t points;
@@ -131,11 +129,11 @@ class DracoPrimitive {
 
     void decode() {
         if (primitive_.integer("mode", 4) != 4) {
-            primitive_.fail("a Draco mesh is of triangles (mode 4)", damaged);
+            primitive_.fail("a Draco mesh is of triangles (mode 4)", damaged_data);
         }
         const auto attributes = primitive_.object("attributes");
         const auto ids = extension_.object("attributes");
-        if (!attributes || !ids) extension_.fail("attributes are missing", damaged);
+        if (!attributes || !ids) extension_.fail("attributes are missing", damaged_data);
         const std::size_t indices = accessor_of(primitive_, "indices");
         const std::size_t position = accessor_of(*attributes, "POSITION");
         if (!document_.decoded_primitives.insert(primitive_.where()).second) return;
@@ -151,14 +149,15 @@ class DracoPrimitive {
                        accessor_shape(document_, accessor_of(*attributes, name.c_str()))));
         }
         if (!document_.decoded_accessors.contains(position)) {
-            extension_.fail("POSITION is not among the compressed attributes", damaged);
+            extension_.fail("POSITION is not among the compressed attributes", damaged_data);
         }
     }
 
   private:
     std::size_t accessor_of(const GltfObject& object, const char* key) const {
         const auto index = object.index(key, root_.list_size("accessors"));
-        if (!index) object.fail(std::string(key) + " is missing, which Draco data needs", damaged);
+        if (!index)
+            object.fail(std::string(key) + " is missing, which Draco data needs", damaged_data);
         return *index;
     }
 
@@ -176,13 +175,13 @@ class DracoPrimitive {
     void read_mesh(std::size_t points, std::size_t faces, std::size_t attributes,
                    draco::Mesh& mesh) const {
         const auto view = extension_.index("bufferView", root_.list_size("bufferViews"));
-        if (!view) extension_.fail("bufferView is missing", damaged);
+        if (!view) extension_.fail("bufferView is missing", damaged_data);
         const std::size_t left = bytes_left();
         if (faces > left / 12 || points > left / 12) {
             extension_.fail(fmt::format("{} vertices and {} triangles are more than the compressed "
                                         "data can hold",
                                         points, faces),
-                            damaged);
+                            damaged_data);
         }
         const draco::Status status = decode_mesh(buffer_view_bytes(document_, *view),
                                                  {points, faces, attributes, left}, mesh);
@@ -190,21 +189,21 @@ class DracoPrimitive {
             extension_.fail(
                 fmt::format("its Draco data cannot be read as {} vertices and {} triangles ({})",
                             points, faces, status.error_msg()),
-                damaged);
+                damaged_data);
         }
         // The encoder leaves out triangles without area, and some exporters count them still.
         if (mesh.num_points() != points || mesh.num_faces() > faces) {
             extension_.fail(fmt::format("its Draco data has {} vertices and {} triangles, the "
                                         "accessors {} and {}",
                                         mesh.num_points(), mesh.num_faces(), points, faces),
-                            damaged);
+                            damaged_data);
         }
     }
 
     Bytes triangles(const draco::Mesh& mesh, const Accessor& shape) const {
         const std::size_t size = shape.element_size;
         if (shape.components != 1 || shape.component_type == ComponentType::f32) {
-            primitive_.fail("indices must be unsigned integers", damaged);
+            primitive_.fail("indices must be unsigned integers", damaged_data);
         }
         Bytes bytes(3 * mesh.num_faces() * size);
         std::uint8_t* out = bytes.data();
@@ -215,7 +214,7 @@ class DracoPrimitive {
                 if (point >= mesh.num_points() || (size < 4 && point >> (8 * size)) != 0) {
                     extension_.fail(fmt::format("index {} of {} vertices, in {} bytes", point,
                                                 mesh.num_points(), size),
-                                    damaged);
+                                    damaged_data);
                 }
                 for (std::size_t byte = 0; byte < size; ++byte)
                     *out++ = static_cast<std::uint8_t>(point >> (8 * byte));
@@ -232,7 +231,7 @@ class DracoPrimitive {
                 : nullptr;
         if (!attribute) {
             extension_.fail(fmt::format("{} is attribute {}, which its Draco data lacks", name, id),
-                            damaged);
+                            damaged_data);
         }
         if (attribute->num_components() != shape.components || shape.type.starts_with("MAT") ||
             shape.count != mesh.num_points()) {
@@ -241,7 +240,7 @@ class DracoPrimitive {
                             "is {} {}",
                             name, attribute->num_components(), mesh.num_points(), shape.count,
                             shape.type),
-                damaged);
+                damaged_data);
         }
         const std::size_t stored =
             attribute->size() *
@@ -252,7 +251,8 @@ class DracoPrimitive {
         Bytes bytes;
         if (!is_whole || !convert(*attribute, mesh.num_points(), shape, bytes)) {
             extension_.fail(
-                fmt::format("the values of {} cannot be read as its accessor says", name), damaged);
+                fmt::format("the values of {} cannot be read as its accessor says", name),
+                damaged_data);
         }
         return bytes;
     }
@@ -263,7 +263,7 @@ class DracoPrimitive {
         const auto [place, is_new] = document_.decoded_accessors.try_emplace(accessor);
         if (!is_new && place->second != bytes) {
             extension_.fail(fmt::format("accessor {} is also that of other Draco data", accessor),
-                            damaged);
+                            damaged_data);
         }
         place->second = std::move(bytes);
     }
@@ -299,7 +299,7 @@ void decode_draco_primitive(SourceDocument& document, const GltfObject& primitiv
     try {
         DracoPrimitive(document, primitive).decode();
     } catch (const std::bad_alloc&) {
-        primitive.fail("its Draco data takes more memory than there is", damaged);
+        primitive.fail("its Draco data takes more memory than there is", damaged_data);
     }
 }
 

@@ -10,7 +10,6 @@ namespace item3d {
 namespace {
 
 constexpr const char* extension_name = "EXT_meshopt_compression";
-constexpr const char* damaged = "the file is damaged; export it again without compression";
 
 /// What the extension says of one buffer view.
 struct CompressedView {
@@ -27,7 +26,7 @@ void check_shape(const GltfObject& extension, const CompressedView& view) {
         if (is_right) return;
         extension.fail(fmt::format("{}, found {} elements of {} bytes, mode {}, filter {}", rule,
                                    view.count, view.stride, view.mode, view.filter),
-                       damaged);
+                       damaged_data);
     };
     if (view.mode == "ATTRIBUTES") {
         require(view.stride >= 4 && view.stride <= 256 && view.stride % 4 == 0,
@@ -70,12 +69,12 @@ CompressedView read_view(const SourceDocument& document, const GltfObject& view,
     if (length != result.count * result.stride) {
         view.fail(fmt::format("byteLength is {}, but {} elements of {} bytes are compressed",
                               length, result.count, result.stride),
-                  damaged);
+                  damaged_data);
     }
     if (view.integer("byteStride", result.stride) != result.stride) {
         view.fail(
             fmt::format("byteStride is not {}, that of the compressed elements", result.stride),
-            damaged);
+            damaged_data);
     }
     return result;
 }
@@ -94,7 +93,7 @@ Bytes decode(const GltfObject& extension, const CompressedView& view) {
     if (failure) {
         extension.fail(fmt::format("its {} bytes cannot be decompressed as {} (error {})", size,
                                    view.mode, failure),
-                       damaged);
+                       damaged_data);
     }
     if (view.filter == "OCTAHEDRAL") {
         meshopt_decodeFilterOct(bytes.data(), view.count, view.stride);
@@ -121,7 +120,7 @@ void decode_meshopt_views(SourceDocument& document) {
         if (!extension) continue;
         const CompressedView compressed = read_view(document, view, *extension);
         if (compressed.count * compressed.stride > left) {
-            view.fail("the buffer views decompress to more than the file can hold", damaged);
+            view.fail("the buffer views decompress to more than the file can hold", damaged_data);
         }
         left -= compressed.count * compressed.stride;
         document.decoded_views[i] = decode(*extension, compressed);
