@@ -80,6 +80,10 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
     setting<int>(command, options, "--resolution", "resolution",
                  "Edge in pixels of the pictures that the prior sees");
     setting<float>(command, options, "--learning-rate", "learning_rate", "Of the neural texture");
+    setting<float>(
+        command, options, "--evenness", "evenness",
+        "How strongly an edit towards a plain colour or metal is held to change the same "
+        "thing everywhere; 0: blotches stay");
     setting<std::vector<float>>(command, options, "--timesteps", "timesteps",
                                 "MIN,MAX noise levels, as parts of the schedule (0.02,0.98)")
         ->delimiter(',')

@@ -5,6 +5,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/edit/adjustment.h"
 #include "item3d/edit/checkpoint_state.h"
+#include "item3d/edit/evenness.h"
 #include "item3d/edit/fixed_point.h"
 #include "item3d/edit/render_view.h"
 #include "item3d/edit/safekeeping.h"
@@ -74,8 +75,8 @@ GuidanceInput look(const EditScene& scene, const EditSettings& settings, EditSta
     return input;
 }
 
-void run_iteration(const EditScene& scene, const EditSettings& settings, EditState& state,
-                   IterationTimes& times) {
+void run_iteration(const EditScene& scene, const EditSettings& settings, const Evenness& evenness,
+                   EditState& state, IterationTimes& times) {
     const double start = seconds_now();
     const GuidanceInput input = look(scene, settings, state);
     const double rendered = seconds_now();
@@ -85,6 +86,7 @@ void run_iteration(const EditScene& scene, const EditSettings& settings, EditSta
     // A single bad prediction (an overflow in bf16) must not destroy the field.
     const torch::Tensor gradient = torch::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
     guidance.latents.backward(gradient / settings.batch);
+    evenness.backward(state);
     if (state.light) state.light->regularization().backward();
     const double back = seconds_now();
 
@@ -125,6 +127,7 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
     const EditSettings& settings = request.settings;
     IterationTimes times;
     const DirectionAdjustment adjustment(request, scene);
+    const Evenness evenness(scene, settings, state);
     const auto adjust = [&](const auto& step) {
         const double start = seconds_now();
         try {
@@ -139,7 +142,7 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
         Safekeeping safekeeping(request, scene);
         while (state.iteration < settings.iterations) {
             adjust([&] { adjustment.before_iteration(state); });
-            run_iteration(scene, settings, state, times);
+            run_iteration(scene, settings, evenness, state, times);
             end_where_settled(settings, state);
             progress.update(state.iteration,
                             fmt::format("direction {:.3f}", state.direction_length.back()));

@@ -52,6 +52,7 @@ void check(const EditSettings& settings) {
     require(settings.resolution >= 16 && settings.resolution <= 2048, "--resolution",
             "must be between 16 and 2048 pixels");
     require(settings.learning_rate > 0, "--learning-rate", "must be above 0");
+    require(settings.evenness >= 0, "--evenness", "must be 0 or more");
     require(settings.optimize == "texture" || settings.optimize == "light" ||
                 settings.optimize == "both",
             "--optimize", "must be texture, light or both");
@@ -126,17 +127,21 @@ bool edits_texture(const EditSettings& settings) {
     return settings.optimize != "light";
 }
 
-bool wants_detail(const EditSettings& settings) {
+bool names_detail(const EditSettings& settings) {
     const auto has = [](const std::vector<std::string>& words, const std::string& word) {
         return std::find(words.begin(), words.end(), word) != words.end();
     };
-    if (settings.iterations == 0 || has(settings.keep, "base_color")) return false;
-    if (!edits_texture(settings)) return false;
-    if (settings.detail != "auto") return settings.detail == "always";
     const std::vector<std::string> from = prompt_words(settings.from);
     const std::vector<std::string> to = prompt_words(settings.to);
     return std::any_of(settings.detail_words.begin(), settings.detail_words.end(),
                        [&](const std::string& word) { return has(to, word) && !has(from, word); });
+}
+
+bool wants_detail(const EditSettings& settings) {
+    const auto& kept = settings.keep;
+    if (settings.iterations == 0 || !edits_texture(settings)) return false;
+    if (std::find(kept.begin(), kept.end(), "base_color") != kept.end()) return false;
+    return settings.detail == "auto" ? names_detail(settings) : settings.detail == "always";
 }
 
 GuidanceOptions guidance_options(const EditSettings& settings) {

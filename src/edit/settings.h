@@ -38,6 +38,9 @@ struct EditSettings : PipelineExtras {
     int batch = 2;         ///< views an iteration
     int resolution = 512;  ///< pixels of the square picture that the prior sees
     float learning_rate = 0.01f;
+    /// How strongly an edit that names nothing with a pattern is held to recolour evenly
+    /// (evenness.h); 0: not at all.
+    float evenness = 0;
     std::string metallic = "auto";  ///< auto: edited where a prompt names a metal; or always
     /// Where the target names a metal and the source does not; 1 - this where only the source does.
     float metallic_start = 0.5f;
@@ -68,10 +71,10 @@ struct EditSettings : PipelineExtras {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     EditSettings, lora, embedding, controlnet, controlnet_scale, vae, from, to, negative_prompt,
     guidance, adjust, anchor, cfg, adjust_learning_rate, adjust_samples, adjust_every,
-    adjust_strength, settle, fit_steps, iterations, batch, resolution, learning_rate, metallic,
-    metallic_start, detail, detail_words, detail_views, timesteps, timestep_schedule, weighting,
-    light, optimize, light_model, light_learning_rate, light_from, light_augment, background,
-    texture_size, keep, material, seed)
+    adjust_strength, settle, fit_steps, iterations, batch, resolution, learning_rate, evenness,
+    metallic, metallic_start, detail, detail_words, detail_views, timesteps, timestep_schedule,
+    weighting, light, optimize, light_model, light_learning_rate, light_from, light_augment,
+    background, texture_size, keep, material, seed)
 
 /// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- what relighting needs, where
 /// the overrides say to optimise the light alone <- what a method was published with, where the
@@ -84,6 +87,9 @@ bool wants_captions(const EditSettings& settings);
 /// Whether a light, or a texture, is among what is optimised.
 bool edits_light(const EditSettings& settings);
 bool edits_texture(const EditSettings& settings);
+
+/// Whether the target sentence has one of `detail_words` that the source has not.
+bool names_detail(const EditSettings& settings);
 
 /// Whether the detail stage runs.
 bool wants_detail(const EditSettings& settings);

@@ -70,6 +70,7 @@ nlohmann::json edit_defaults(int resolution) {
             {"batch", 1},
             {"resolution", resolution},
             {"learning_rate", 0.005},
+            {"evenness", 1000},
             {"metallic_start", 0.9},
             {"timesteps", {0.02, 0.98}},
             {"weighting", "dreamfusion"},
