@@ -16,7 +16,7 @@ namespace item3d::reference {
 namespace {
 
 const Vec3 base_color(0.8f, 0.45f, 0.2f);
-constexpr int size = 256;
+constexpr int sphere_size = 256;
 constexpr int stride = 10;  ///< between the pixels whose split sum is summed exactly
 
 struct PixelList {
@@ -28,17 +28,17 @@ PixelList inner_pixels(const torch::Tensor& mask, const Camera& camera, int step
     PixelList list;
     const float tangent = std::tan(0.5f * camera.field_of_view_x);
     const Vec3 eye = camera.position();
-    for (int y = step / 2; y < size; y += step) {
-        for (int x = step / 2; x < size; x += step) {
+    for (int y = step / 2; y < sphere_size; y += step) {
+        for (int x = step / 2; x < sphere_size; x += step) {
             if (mask[y][x].item<float>() < 0.999f) continue;
             const Vec3 ray = glm::normalize(
-                Vec3(tangent * (2 * (static_cast<float>(x) + 0.5f) / size - 1),
-                     tangent * (1 - 2 * (static_cast<float>(y) + 0.5f) / size), -1.0f));
+                Vec3(tangent * (2 * (static_cast<float>(x) + 0.5f) / sphere_size - 1),
+                     tangent * (1 - 2 * (static_cast<float>(y) + 0.5f) / sphere_size), -1.0f));
             const float along = -glm::dot(eye, ray);
             const float inside = along * along - glm::dot(eye, eye) + 1;
             if (inside < 0.01f) continue;  // within half a degree of the edge
             const Vec3 point = eye + (along - std::sqrt(inside)) * ray;
-            list.pixel.push_back(y * size + x);
+            list.pixel.push_back(y * sphere_size + x);
             list.normal.push_back(glm::normalize(point));
             list.view.push_back(-ray);
         }
@@ -63,7 +63,9 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
     const torch::Tensor index = torch::tensor(pixels.pixel);
     const torch::Tensor inner = torch::tensor(inner_pixels(mask, camera, 1).pixel);
     const auto at = [&](const torch::Tensor& picture, const torch::Tensor& places) {
-        return picture.reshape({size * size, -1}).index_select(0, places).narrow(1, 0, 3);
+        return picture.reshape({sphere_size * sphere_size, -1})
+            .index_select(0, places)
+            .narrow(1, 0, 3);
     };
 
     Section section;
@@ -109,7 +111,7 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
             model.materials[0].roughness_factor = roughness;
             const auto ours = [&](bool multiple_scattering) {
                 RenderOptions options;
-                options.width = options.height = size;
+                options.width = options.height = sphere_size;
                 options.supersampling = 1;
                 options.shade.multiple_scattering = multiple_scattering;
                 return render(geometry, TexturedMaterials(model), light, {camera}, options)[0];

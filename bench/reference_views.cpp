@@ -15,7 +15,7 @@
 namespace item3d::reference {
 namespace {
 
-constexpr int size = 256;
+constexpr int view_size = 256;
 
 struct Views {
     Model model;
@@ -55,10 +55,10 @@ Views load_views(const Folders& folders) {
 
 /// Pixels whose neighbours all see the same as they do (object or nothing), [H, W] bool.
 torch::Tensor away_from_edges(const torch::Tensor& mask) {
-    const torch::Tensor m = mask.to(torch::kFloat32).reshape({1, 1, size, size});
+    const torch::Tensor m = mask.to(torch::kFloat32).reshape({1, 1, view_size, view_size});
     const torch::Tensor most = torch::max_pool2d(m, 3, 1, 1);
     const torch::Tensor least = -torch::max_pool2d(-m, 3, 1, 1);
-    return (most == least).reshape({size, size});
+    return (most == least).reshape({view_size, view_size});
 }
 
 /// Every few pixels of those chosen, at their centres: what the split sum itself gives there, in
@@ -70,8 +70,8 @@ struct SplitSumSample {
 SplitSumSample split_sum_sample(const Views& views, const Camera& camera,
                                 const torch::Tensor& chosen, const Occlusion& occlusion,
                                 const ExactSplitSum& split_sum) {
-    constexpr std::int64_t stride = 29;
-    const Raster raster = rasterize(views.geometry, {camera}, size, size);
+    constexpr std::int64_t every = 29;
+    const Raster raster = rasterize(views.geometry, {camera}, view_size, view_size);
     const Surface surface = interpolate_surface(views.geometry, raster, {camera});
     const MaterialSample material = TexturedMaterials(views.model).sample(surface);
     const torch::Tensor arriving = occlusion.at(raster, surface);
@@ -79,7 +79,7 @@ SplitSumSample split_sum_sample(const Views& views, const Camera& camera,
                                    .index_select(0, surface.pixel)
                                    .nonzero()
                                    .flatten()
-                                   .slice(0, 0, std::nullopt, stride);
+                                   .slice(0, 0, std::nullopt, every);
     const auto vectors = [&](const torch::Tensor& tensor) {
         const torch::Tensor some = tensor.index_select(0, rows).contiguous();
         const auto* values = some.const_data_ptr<float>();
@@ -122,7 +122,7 @@ Section geometry_section(const Folders& folders) {
     for (std::size_t v = 0; v < views.cameras.size(); ++v) {
         const int view = static_cast<int>(v);
         const std::vector<Camera> camera{views.cameras[v]};
-        const Raster raster = rasterize(views.geometry, camera, size, size);
+        const Raster raster = rasterize(views.geometry, camera, view_size, view_size);
         const Surface surface = interpolate_surface(views.geometry, raster, camera);
         const torch::Tensor seen = raster.triangle[0] >= 0;
         const torch::Tensor mask = load_reference(views.file(view, "mask.png")).select(2, 0) > 0.5f;
@@ -152,7 +152,7 @@ Section geometry_section(const Folders& folders) {
         nlohmann::json by_samples;
         for (const int samples : {1, 2, 4, 8}) {
             RenderOptions options;
-            options.width = options.height = size;
+            options.width = options.height = view_size;
             options.supersampling = samples;
             const torch::Tensor alpha =
                 render(views.geometry, TexturedMaterials(views.model), light, camera, options)[0]
@@ -212,7 +212,7 @@ Section view_section(const Folders& folders) {
         std::array<torch::Tensor, 3> pictures;
         for (std::size_t i = 0; i < pictures.size(); ++i) {
             RenderOptions options;
-            options.width = options.height = size;
+            options.width = options.height = view_size;
             options.shade.multiple_scattering = false;
             options.occlusion = occlusions[i];
             pictures[i] = render(views.geometry, TexturedMaterials(views.model), light,
@@ -223,7 +223,9 @@ Section view_section(const Folders& folders) {
         const torch::Tensor mask = load_reference(views.file(view, "mask.png")).select(2, 0) > 0.5f;
         const torch::Tensor inside = mask.logical_and(away_from_edges(mask));
         const auto at = [&](const torch::Tensor& image, const torch::Tensor& pixels) {
-            return image.reshape({size * size, -1}).index_select(0, pixels).narrow(1, 0, 3);
+            return image.reshape({view_size * view_size, -1})
+                .index_select(0, pixels)
+                .narrow(1, 0, 3);
         };
         const auto chosen = [&, pixels = inside.flatten().nonzero().flatten()](
                                 const torch::Tensor& image) { return at(image, pixels); };

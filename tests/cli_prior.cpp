@@ -74,8 +74,8 @@ TEST_F(PriorProgram, ListNamesEveryPriorAndWhatIsWrongWithIt) {
     const Result listed = run("prior list --json", environment());
     ASSERT_EQ(listed.code, 0) << listed.error;
     std::map<std::string, std::string> remarks;
-    const nlohmann::json json = nlohmann::json::parse(listed.out);
-    for (const auto& prior : json["priors"])
+    const nlohmann::json found = nlohmann::json::parse(listed.out);
+    for (const auto& prior : found["priors"])
         remarks[prior["name"]] = prior["remark"];
     EXPECT_EQ(remarks.size(), 4u) << listed.out;
     EXPECT_NE(remarks["embedded"].find("told right"), std::string::npos);

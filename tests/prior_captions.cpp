@@ -182,11 +182,12 @@ TEST(PriorTokenizer, SavedFilesGiveTheSameTokens) {
 
 TEST(PriorVocabulary, NamesUnknownAndWeakWords) {
     const PriorVocabulary vocabulary(nlohmann::json::parse(R"({
-            "words": ["a", "mug", "red", "golden", "gold", "striped", "orange"],
+            "words": ["a", "mug", "red", "golden", "gold", "striped", "orange", "steel"],
             "vocabulary": {
                 "colors": [{"word": "red", "accuracy": 0.95, "base_color": [0.7, 0.02, 0.02]},
                            {"word": "orange", "accuracy": 0.9}],
-                "materials": [{"word": "gold", "spellings": ["gold", "golden"], "accuracy": 0.85}],
+                "materials": [{"word": "gold", "spellings": ["gold", "golden"], "accuracy": 0.85},
+                              {"word": "steel", "accuracy": 0.7, "most_confused_with": "chrome"}],
                 "patterns": [{"word": "striped", "accuracy": 0.3, "most_confused_with": "zigzag"}],
                 "objects": [{"word": "mug", "accuracy": 0.2}]}})"),
                                      "test");
@@ -198,10 +199,12 @@ TEST(PriorVocabulary, NamesUnknownAndWeakWords) {
     EXPECT_EQ(vocabulary.weak_words("a red striped mug", true), Words{"striped"});
     EXPECT_TRUE(vocabulary.warning("a red mug", true).empty());
     EXPECT_NE(vocabulary.warning("a striped teapot", false).find("\"teapot\""), std::string::npos);
-    EXPECT_EQ(
-        vocabulary.warning("a striped cube", true),
-        "the prior does not know \"cube\" and knows \"striped\" badly; it takes \"striped\" for "
-        "\"zigzag\" at times (item3d prior info lists its words)");
+    EXPECT_EQ(vocabulary.warning("a striped cube", true),
+              "the prior does not know \"cube\", knows \"striped\" badly and takes \"striped\" for "
+              "\"zigzag\" at times (item3d prior info lists its words)");
+    EXPECT_EQ(vocabulary.warning("a steel mug", true),
+              "the prior takes \"steel\" for \"chrome\" at times (item3d prior info lists its "
+              "words)");
     ASSERT_EQ(vocabulary.words_of("colors").size(), 2u);
     EXPECT_FLOAT_EQ(vocabulary.words_of("colors")[0].base_color->x, .7f);
     EXPECT_TRUE(PriorVocabulary().warning("anything at all", true).empty());

@@ -3,16 +3,16 @@
 namespace item3d {
 namespace {
 
-struct Scene {
+struct ShadedPoints {
     Surface surface;
     MaterialSample material;
     EnvironmentLight light;
 };
 
 /// Points with random normals that face random viewers.
-Scene random_scene(std::int64_t count, bool normal_map) {
+ShadedPoints random_points(std::int64_t count, bool normal_map) {
     torch::manual_seed(21);
-    Scene scene;
+    ShadedPoints scene;
     scene.surface.pixel = torch::arange(count);
     scene.surface.normal = testing::unit_rows(torch::randn({count, 3}));
     scene.surface.view = testing::unit_rows(scene.surface.normal * 1.2f +
@@ -34,7 +34,7 @@ EnvironmentLight constant_light(float radiance) {
 }
 
 TEST(Shade, WhiteMetalInAWhiteFurnaceIsWhiteAtAnyRoughness) {
-    Scene scene = random_scene(200, false);
+    ShadedPoints scene = random_points(200, false);
     scene.light = constant_light(0.5f);
     scene.material.base_color = torch::ones({200, 3});
     scene.material.orm.select(1, 0).fill_(1);
@@ -50,7 +50,7 @@ TEST(Shade, WhiteMetalInAWhiteFurnaceIsWhiteAtAnyRoughness) {
 }
 
 TEST(Shade, TermsOfTheEquation) {
-    Scene scene = random_scene(100, false);
+    ShadedPoints scene = random_points(100, false);
     scene.light = constant_light(1);
     scene.material.orm = torch::tensor({0.5f, 0.4f, 0.0f}).expand({100, 3});
     scene.material.emissive = torch::full({100, 3}, 0.25f);
@@ -69,7 +69,7 @@ TEST(Shade, TermsOfTheEquation) {
 }
 
 TEST(Shade, AFlatNormalMapChangesNothing) {
-    Scene scene = random_scene(100, false);
+    ShadedPoints scene = random_points(100, false);
     const torch::Tensor plain = shade(scene.surface, scene.material, scene.light);
     scene.material.normal = torch::tensor({0.0f, 0.0f, 1.0f}).expand({100, 3});
     const torch::Tensor mapped = shade(scene.surface, scene.material, scene.light);
@@ -81,7 +81,7 @@ TEST(Shade, AFlatNormalMapChangesNothing) {
 }
 
 TEST(Shade, NormalMapsLeanAlongTangentAndBitangent) {
-    Scene scene = random_scene(1, false);
+    ShadedPoints scene = random_points(1, false);
     scene.surface.normal = torch::tensor({0.0f, 0.0f, 1.0f}).reshape({1, 3});
     scene.surface.view = scene.surface.normal.clone();
     scene.surface.tangent = torch::tensor({1.0f, 0.0f, 0.0f, -1.0f}).reshape({1, 4});
@@ -90,7 +90,7 @@ TEST(Shade, NormalMapsLeanAlongTangentAndBitangent) {
         return shade(scene.surface, scene.material, scene.light);
     };
     const auto with_normal = [&](float x, float y) {
-        Scene bent = scene;
+        ShadedPoints bent = scene;
         bent.material.normal = torch::Tensor();
         bent.surface.normal = testing::unit_rows(torch::tensor({x, y, 0.8f}).reshape({1, 3}));
         return shade(bent.surface, bent.material, bent.light);
@@ -101,7 +101,7 @@ TEST(Shade, NormalMapsLeanAlongTangentAndBitangent) {
 }
 
 TEST(Shade, IsContinuousInRoughness) {
-    Scene scene = random_scene(1, false);
+    ShadedPoints scene = random_points(1, false);
     scene.material.orm[0][2] = 1;
     torch::Tensor previous;
     for (int i = 0; i <= 2000; ++i) {
@@ -117,7 +117,7 @@ TEST(Shade, IsContinuousInRoughness) {
 TEST(Shade, Gradients) {
     for (const bool multiple_scattering : {true, false}) {
         for (const bool normal_map : {false, true}) {
-            const Scene scene = random_scene(60, normal_map);
+            const ShadedPoints scene = random_points(60, normal_map);
             ShadeOptions options;
             options.multiple_scattering = multiple_scattering;
             const auto check = [&](const char* name, const torch::Tensor& x, auto set,
@@ -125,37 +125,39 @@ TEST(Shade, Gradients) {
                 SCOPED_TRACE(name);
                 testing::check_gradient(
                     [&](const torch::Tensor& value) {
-                        Scene changed = scene;
+                        ShadedPoints changed = scene;
                         set(changed, value);
                         return shade(changed.surface, changed.material, changed.light, options);
                     },
                     x, step, 0.02);
             };
             check("base colour", scene.material.base_color,
-                  [](Scene& s, const torch::Tensor& x) { s.material.base_color = x; });
+                  [](ShadedPoints& s, const torch::Tensor& x) { s.material.base_color = x; });
             check("orm", scene.material.orm,
-                  [](Scene& s, const torch::Tensor& x) { s.material.orm = x; });
+                  [](ShadedPoints& s, const torch::Tensor& x) { s.material.orm = x; });
             check("surface normal", scene.surface.normal,
-                  [](Scene& s, const torch::Tensor& x) { s.surface.normal = x; });
+                  [](ShadedPoints& s, const torch::Tensor& x) { s.surface.normal = x; });
             if (normal_map)
                 check("normal map", scene.material.normal,
-                      [](Scene& s, const torch::Tensor& x) { s.material.normal = x; });
+                      [](ShadedPoints& s, const torch::Tensor& x) { s.material.normal = x; });
             // Linear: a large step loses nothing but rounding.
             constexpr float light_step = 1e-2f;
             check(
                 "diffuse light", scene.light.diffuse,
-                [](Scene& s, const torch::Tensor& x) { s.light.diffuse = x; }, light_step);
+                [](ShadedPoints& s, const torch::Tensor& x) { s.light.diffuse = x; }, light_step);
             for (std::size_t level = 0; level < scene.light.specular.size(); ++level)
                 check(
                     "specular light", scene.light.specular[level],
-                    [level](Scene& s, const torch::Tensor& x) { s.light.specular[level] = x; },
+                    [level](ShadedPoints& s, const torch::Tensor& x) {
+                        s.light.specular[level] = x;
+                    },
                     light_step);
         }
     }
 }
 
 TEST(Shade, GradientReachesTheCube) {
-    Scene scene = random_scene(50, true);
+    ShadedPoints scene = random_points(50, true);
     testing::check_gradient(
         [&](const torch::Tensor& cube) {
             return shade(scene.surface, scene.material, prefilter(cube));
@@ -164,13 +166,13 @@ TEST(Shade, GradientReachesTheCube) {
 }
 
 TEST(Shade, NoPointsGiveNoRadiance) {
-    const Scene scene = random_scene(0, true);
+    const ShadedPoints scene = random_points(0, true);
     EXPECT_EQ(shade(scene.surface, scene.material, scene.light).sizes(),
               (std::vector<std::int64_t>{0, 3}));
 }
 
 TEST(Shade, NamesTheWantedShape) {
-    Scene scene = random_scene(5, false);
+    ShadedPoints scene = random_points(5, false);
     scene.material.orm = torch::rand({5, 2});
     try {
         shade(scene.surface, scene.material, scene.light);

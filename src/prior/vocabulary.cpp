@@ -9,6 +9,9 @@
 namespace item3d {
 namespace {
 
+/// A weak word that is told right less often than this is no longer a matter of "at times".
+constexpr double bad_accuracy = 0.5;
+
 void add_once(std::vector<std::string>& words, const std::string& word) {
     if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
 }
@@ -101,13 +104,20 @@ std::vector<std::string> PriorVocabulary::weak_words(const std::string& prompt,
 std::string PriorVocabulary::warning(const std::string& prompt, bool shape_is_given) const {
     const auto unknown = unknown_words(prompt), weak = weak_words(prompt, shape_is_given);
     if (unknown.empty() && weak.empty()) return "";
-    std::string text = "the prior ";
-    if (!unknown.empty()) text += "does not know " + listed(unknown);
-    if (!unknown.empty() && !weak.empty()) text += " and ";
-    if (!weak.empty()) text += "knows " + listed(weak) + " badly";
-    for (const std::string& word : weak)
-        if (const std::string& other = best_known(word, shape_is_given)->taken_for; !other.empty())
-            text += "; it takes \"" + word + "\" for \"" + other + "\" at times";
+    std::vector<std::string> bad, confusions, clauses;
+    for (const std::string& word : weak) {
+        const KnownWord& known = *best_known(word, shape_is_given);
+        if (known.accuracy < bad_accuracy || known.taken_for.empty()) bad.push_back(word);
+        if (!known.taken_for.empty())
+            confusions.push_back(listed({word}) + " for " + listed({known.taken_for}));
+    }
+    if (!unknown.empty()) clauses.push_back("does not know " + listed(unknown));
+    if (!bad.empty()) clauses.push_back("knows " + listed(bad) + " badly");
+    for (const std::string& confusion : confusions)
+        clauses.push_back("takes " + confusion + " at times");
+    std::string text = "the prior " + clauses.front();
+    for (std::size_t i = 1; i < clauses.size(); ++i)
+        text += (i + 1 < clauses.size() ? ", " : " and ") + clauses[i];
     return text + " (item3d prior info lists its words)";
 }
 
