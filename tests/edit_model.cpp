@@ -273,6 +273,8 @@ TEST(EditSettings, prior_defaults_and_overrides_are_merged_and_checked) {
     EXPECT_THROW(resolve_settings(folder, {{"timesteps", {0.9, 0.1}}}), InputError);
     EXPECT_THROW(resolve_settings(folder, {{"keep", {"colour"}}}), InputError);
     EXPECT_THROW(resolve_settings(folder, {{"batch", 0}}), InputError);
+    EXPECT_THROW(resolve_settings(folder, {{"evenness", -1}}), InputError);
+    EXPECT_THROW(resolve_settings(folder, {{"evenness", INFINITY}}), InputError);
     EXPECT_THROW(resolve_settings(folder, {{"detail", "some"}}), InputError);
     write_atomically(folder / "prior.json", std::string_view("[1"));
     EXPECT_THROW(resolve_settings(folder, {}), InputError);

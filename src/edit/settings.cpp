@@ -52,7 +52,8 @@ void check(const EditSettings& settings) {
     require(settings.resolution >= 16 && settings.resolution <= 2048, "--resolution",
             "must be between 16 and 2048 pixels");
     require(settings.learning_rate > 0, "--learning-rate", "must be above 0");
-    require(settings.evenness >= 0, "--evenness", "must be 0 or more");
+    require(settings.evenness >= 0 && settings.evenness <= 1e9f, "--evenness",
+            "must be between 0 (blotches stay) and 1e9");
     require(settings.optimize == "texture" || settings.optimize == "light" ||
                 settings.optimize == "both",
             "--optimize", "must be texture, light or both");
