@@ -1,17 +1,18 @@
-# item3d_library(NAME [TORCH] [UNITY] [DEPENDS lib...] [PACKAGES target...]): one folder of src/ as one
+# item3d_library(NAME [TORCH] [DEPENDS lib...] [PACKAGES target...]): one folder of src/ as one
 # static library. DEPENDS is the whole list of item3d folders that this folder may include; include
 # paths come only through it, so a wrong dependency does not compile. PACKAGES are imported targets
-# of other projects; TORCH links LibTorch and uses its precompiled header; UNITY compiles several
-# files at a time, because LibTorch's templates are most of each one's compilation. Names in their
-# anonymous namespaces must then differ.
+# of other projects; TORCH links LibTorch and uses its precompiled header. Several files are compiled
+# at a time, because the templates of LibTorch, JSON and the like are most of each one's compilation:
+# names in their anonymous namespaces must differ.
 function(item3d_library NAME)
-    cmake_parse_arguments(ARG "TORCH;UNITY" "" "DEPENDS;PACKAGES" ${ARGN})
+    cmake_parse_arguments(ARG "TORCH" "" "DEPENDS;PACKAGES" ${ARGN})
     file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cpp)
     set(TARGET item3d_${NAME})
     if(SOURCES)
         add_library(${TARGET} STATIC ${SOURCES})
         set(SCOPE PUBLIC)
         target_link_libraries(${TARGET} PRIVATE item3d_warnings)
+        item3d_compile_together(${TARGET})
     else()
         # A folder of headers alone.
         add_library(${TARGET} INTERFACE)
@@ -29,9 +30,6 @@ function(item3d_library NAME)
         target_link_libraries(${TARGET} ${SCOPE} item3d::${DEPENDENCY})
     endforeach()
     target_link_libraries(${TARGET} ${SCOPE} ${ARG_PACKAGES})
-    if(ARG_UNITY)
-        item3d_compile_together(${TARGET})
-    endif()
     if(ARG_TORCH)
         target_link_libraries(${TARGET} ${SCOPE} item3d_torch)
         if(SOURCES)

@@ -21,8 +21,8 @@ torch::Tensor random_rows(std::int64_t rows, std::int64_t columns, std::uint64_t
 
 /// What Evenness::backward() goes down: the sum of Geman and McClure's norm of each departure.
 double unevenness(const torch::Tensor& change, const torch::Tensor& color) {
-    const torch::Tensor parts = departures(change, color, scale);
-    const torch::Tensor squared = parts.narrow(1, 0, change.size(1)).square().sum(1);
+    const Departures found = departures(change, color, scale);
+    const torch::Tensor squared = found.values.square().sum(1);
     return (0.5 * squared / (1 + squared / (scale * scale))).sum().item<double>();
 }
 
@@ -44,9 +44,9 @@ TEST(Evenness, finds_nothing_in_a_recolouring) {
     const torch::Tensor change =
         0.2 + color.mm(torch::tensor({{-0.9, 0.1, 0.0}, {0.0, -0.5, 0.2}, {0.1, 0.0, 0.3}})
                            .to(torch::kFloat64));
-    const torch::Tensor parts = departures(change, color, scale);
-    EXPECT_LT(parts.narrow(1, 0, 3).abs().max().item<double>(), 0.05);  // the ridge's share
-    EXPECT_GT(parts.select(1, 3).min().item<double>(), 0.9);
+    const Departures found = departures(change, color, scale);
+    EXPECT_LT(found.values.abs().max().item<double>(), 0.05);  // the ridge's share
+    EXPECT_GT(found.weights.min().item<double>(), 0.9);
 }
 
 TEST(Evenness, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
@@ -54,19 +54,19 @@ TEST(Evenness, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
     torch::Tensor change = torch::full({1000, 3}, 0.3, torch::kFloat64);
     change.narrow(0, 0, 100) += 0.05;   // a blotch
     change.narrow(0, 100, 100) -= 0.7;  // a handle
-    const torch::Tensor parts = departures(change, color, scale);
-    EXPECT_NEAR(parts[0][0].item<double>(), 0.05, 0.01);
-    EXPECT_GT(parts[0][3].item<double>(), 0.8);
-    EXPECT_LT(parts[150][3].item<double>(), 0.01);
-    EXPECT_NEAR(parts[900][0].item<double>(), 0.0, 0.01);
+    const Departures found = departures(change, color, scale);
+    EXPECT_NEAR(found.values[0][0].item<double>(), 0.05, 0.01);
+    EXPECT_GT(found.weights[0][0].item<double>(), 0.8);
+    EXPECT_LT(found.weights[150][0].item<double>(), 0.01);
+    EXPECT_NEAR(found.values[900][0].item<double>(), 0.0, 0.01);
 }
 
 TEST(Evenness, its_gradient_is_that_of_the_robust_norm) {
     // Plain, so that the ridge has no share in it; small, so that the refits have converged.
     const torch::Tensor color = torch::full({64, 3}, 0.5, torch::kFloat64);
     const torch::Tensor change = 0.1 * random_rows(64, 3, 3);
-    const torch::Tensor parts = departures(change, color, scale);
-    const torch::Tensor gradient = parts.narrow(1, 0, 3) * parts.narrow(1, 3, 1);
+    const Departures found = departures(change, color, scale);
+    const torch::Tensor gradient = found.values * found.weights;
     for (const std::int64_t row : {0, 17, 63}) {
         constexpr double step = 1e-4;
         torch::Tensor moved = change.clone();

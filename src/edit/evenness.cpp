@@ -20,23 +20,23 @@ constexpr std::uint64_t point_stream = 9;  // of the edit's seed; others are in 
 
 }  // namespace
 
-torch::Tensor departures(const torch::Tensor& change, const torch::Tensor& color, float scale) {
+Departures departures(const torch::Tensor& change, const torch::Tensor& color, float scale) {
     const std::int64_t count = change.size(0);
     const torch::Tensor features =
         torch::cat({torch::ones_like(color.narrow(1, 0, 1)), color - color.mean(0)}, 1);
     const torch::Tensor ridge =
         least_variance * static_cast<float>(count) *
         torch::diag(torch::tensor({0.0f, 1.0f, 1.0f, 1.0f}, color.options()));
-    torch::Tensor weight = torch::ones({count, 1}, change.options());
-    torch::Tensor departure;
+    Departures found{change, torch::ones({count, 1}, change.options())};
     for (int i = 0; i < refits; ++i) {
-        const torch::Tensor weighted = (features * weight).t();
+        const torch::Tensor weighted = (features * found.weights).t();
         const torch::Tensor slopes =
             at::linalg_solve(weighted.mm(features) + ridge, weighted.mm(change));
-        departure = change - features.mm(slopes);
-        weight = (1 + departure.square().sum(1, true) / (scale * scale)).square().reciprocal();
+        found.values = change - features.mm(slopes);
+        const torch::Tensor squared = found.values.square().sum(1, true);
+        found.weights = (1 + squared / (scale * scale)).square().reciprocal();
     }
-    return torch::cat({departure, weight}, 1);
+    return found;
 }
 
 Evenness::Evenness(const EditScene& scene, const EditSettings& settings, const EditState& state) {
@@ -68,9 +68,9 @@ void Evenness::backward(EditState& state) const {
     torch::Tensor gradient;
     {
         const torch::NoGradGuard no_grad;
-        const torch::Tensor parts =
+        const Departures found =
             departures((now - before) * channels_, before.narrow(1, 0, 3), blotch);
-        gradient = parts.narrow(1, 0, 8) * parts.narrow(1, 8, 1) * (weight_ / points);
+        gradient = found.values * found.weights * (weight_ / points);
     }
     now.backward(gradient);
 }

@@ -28,9 +28,13 @@ class Evenness {
         channels_;  ///< [8] 1 for those of base colour, roughness and metallic that change
 };
 
-/// [P, C] `change` without its best affine function of `color` [P, 3], and in its last column the
-/// weight, 0 to 1, that each point had. Robust: points that depart by much more than
-/// `scale` hardly count. Exposed for tests.
-torch::Tensor departures(const torch::Tensor& change, const torch::Tensor& color, float scale);
+struct Departures {
+    torch::Tensor values;   ///< [P, C]
+    torch::Tensor weights;  ///< [P, 1] 0 to 1: what each point counted
+};
+
+/// `change` [P, C] without its best affine function of `color` [P, 3]. Points that depart by much
+/// more than `scale` hardly count. For Evenness and its tests.
+Departures departures(const torch::Tensor& change, const torch::Tensor& color, float scale);
 
 }  // namespace item3d
