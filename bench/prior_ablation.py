@@ -39,7 +39,7 @@ def train(options, name, arguments):
     work = folder / "work"
     if not work.exists() and folder != first and not any(word in arguments for word in OWN_DATA):
         work.mkdir(parents=True)
-        for file in ("settings.json", "autoencoder.json", "autoencoder.safetensors", "data.safetensors"):
+        for file in ("settings.json", "autoencoder.json", "data.safetensors"):
             shutil.copy(first / "work" / file, work)
         for part in ("tokenizer", "vae"):
             shutil.copytree(first / part, folder / part)

@@ -105,7 +105,7 @@ TEST(PriorCaptions, PatternsComeAsOftenAsAsked) {
     std::set<std::string> patterns;
     for (const MaterialWord& word : material_words())
         if (word.group == "patterns") patterns.insert(word.wish.kind);
-    for (const auto& [weight, share] : {std::pair{0.0f, 0.0}, {1.0f, .35}, {3.0f, .618}}) {
+    for (const auto& [weight, share] : {std::pair{0.0f, 0.0}, {1.0f, .387}, {3.0f, .654}}) {
         MaterialWish wish;
         wish.pattern_weight = weight;
         int found = 0;
@@ -118,15 +118,17 @@ TEST(PriorCaptions, PatternsComeAsOftenAsAsked) {
 }
 
 TEST(PriorCaptions, EveryMaterialSaysWhatItIs) {
-    for (const std::string& kind : material_kinds()) {
-        Random random(4, 2);
+    // Several draws of each: what is said of one depends on whether its colours are.
+    for (std::size_t i = 0; i < 6 * material_kinds().size(); ++i) {
+        const std::string& kind = material_kinds()[i / 6];
+        Random random(4, i);
         const ProceduralMaterial material = make_material(random, {kind, "", ""});
         EXPECT_EQ(material.kind, kind);
         ASSERT_FALSE(material.phrases.empty());
         EXPECT_TRUE(material.phrases[0].ends_with("{o}")) << kind;
         for (const std::string& phrase : material.phrases)
             EXPECT_NE(phrase.find("{o}"), std::string::npos) << phrase;
-        for (int i = 0; i < 200; ++i) {
+        for (int point = 0; point < 200; ++point) {
             const Vec3 p{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
             const Vec3 n = glm::normalize(Vec3{random.normal(), random.normal(), random.normal()});
             const MaterialValue value = material.at(p, n);

@@ -2,6 +2,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/models/safetensors.h"
+#include "item3d/prior/begin_with.h"
 #include "item3d/prior/replicas.h"
 #include "item3d/prior/tokenizer_training.h"
 #include "item3d/prior/train.h"
@@ -259,6 +260,35 @@ TEST_F(PriorTraining, WhatTheCheckpointIsNotOfIsRefused) {
     EXPECT_EQ(train_diffusion(data_, with(&TrainSettings::samples, std::int64_t{16}), networks_,
                               {})["samples"],
               16);
+}
+
+TEST_F(PriorTraining, BeginsWithTheWeightsOfAnotherPrior) {
+    const TrainSettings first = settings("first");
+    train_diffusion(data_, first, networks_, {});
+    TrainSettings second = settings("second");
+    second.begin_with = first.output;
+    second.seed = 2;
+    second.learning_rate = 1e-9f;
+    train_diffusion(data_, second, networks_, {});
+    for (const char* file :
+         {"unet/diffusion_pytorch_model.safetensors", "text_encoder/model.safetensors"}) {
+        const SafeTensors expected = SafeTensors::open(first.output / file);
+        const SafeTensors found = SafeTensors::open(second.output / file);
+        for (const auto& [name, tensor] : expected.tensors())
+            EXPECT_TRUE(torch::allclose(tensor.to(torch::kFloat32),
+                                        found.tensor(name).to(torch::kFloat32), 2e-3, 1e-6))
+                << name;
+    }
+    const nlohmann::json record = begin_with_record(first.output);
+    EXPECT_EQ(record["begun_with"]["samples"], 48);
+
+    networks_.unet.block_out_channels = {16, 32, 16};
+    networks_.unet.attention_head_dim = {1, 2, 1};
+    const std::string message = refusal([&] { train_diffusion(data_, second, networks_, {}); });
+    EXPECT_EQ(message.find((first.output / "unet").string() + ": "), 0u) << message;
+    EXPECT_NE(message.find("--widths"), std::string::npos) << message;
+    EXPECT_NE(refusal([&] { begin_with_autoencoder(first.output, picture_size); }).find("vae"),
+              std::string::npos);
 }
 
 TEST_F(PriorTraining, WhatItPredictsAndIsToldIsWrittenBesideTheWeights) {

@@ -130,7 +130,7 @@ void add_count_settings(CLI::App& command, TrainOptions& options) {
     add("--views", &TrainSettings::views_each, "Views of each shape")->check(CLI::Range(1, 1000));
     add("--lights", &TrainSettings::lights, "Different lights")->check(CLI::Range(1, 100000));
     add("--patterns", &TrainSettings::pattern_weight,
-        "How often patterns come, against all else: 1 is 35 % of the pictures")
+        "How often patterns come, against all else: 1 is 39 % of the pictures")
         ->check(CLI::Range(0.0, 100.0));
 }
 
@@ -155,6 +155,12 @@ void add_train(CLI::App& app) {
         ->capture_default_str();
     add_count_settings(*command, *options);
     add_network_settings(*command, *options);
+    CLI::Option* begin = command->add_option(
+        "--begin-with", options->settings.begin_with,
+        "Folder of a prior whose weights, words and autoencoder to begin with instead of nothing");
+    options->given.emplace_back([options = options.get(), begin](TrainSettings& to) {
+        if (begin->count() > 0) to.begin_with = options->settings.begin_with;
+    });
     add_setting(*command, *options, "--seed", &TrainSettings::seed, "Of everything random")
         ->capture_default_str();
     add_setting(*command, *options, "--word-pictures", &TrainSettings::word_pictures,

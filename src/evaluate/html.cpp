@@ -151,6 +151,13 @@ std::string html_parts(const std::vector<ReportPart>& parts) {
     return "<ol class=\"timings parts\">\n" + body + "</ol>\n";
 }
 
+std::string html_header(const std::string& program, const std::string& title,
+                        const std::string& more) {
+    return fmt::format(
+        "<header>\n<p class=\"kicker\">{}</p>\n<p class=\"sentences\">{}</p>\n{}</header>\n",
+        html_escape(program), html_escape(title), more);
+}
+
 std::string html_section(const std::string& title, const std::string& content) {
     if (content.empty()) return "";
     return fmt::format("<section><h2>{}</h2>\n{}</section>\n", html_escape(title), content);

@@ -61,6 +61,9 @@ struct ReportPart {
     std::string remark;
 };
 std::string html_parts(const std::vector<ReportPart>& parts);
+/// The top of a page: what wrote it, small, and below that what it is about. `more` is markup.
+std::string html_header(const std::string& program, const std::string& title,
+                        const std::string& more = "");
 /// A titled part of the page; nothing when `content` is empty.
 std::string html_section(const std::string& title, const std::string& content);
 /// The page around `body`, with its style and the few lines of script that it needs.

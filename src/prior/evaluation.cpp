@@ -146,9 +146,7 @@ TableRows summary_rows(const nlohmann::json& evaluation) {
 std::string evaluation_page(const nlohmann::json& evaluation,
                             const std::vector<std::pair<std::string, Bytes>>& sheets) {
     const auto prior = evaluation.at("prior").get<std::string>();
-    std::string body =
-        "<header>\n<p class=\"kicker\">item3d prior evaluate</p>\n<p class=\"sentences\">" +
-        html_escape(prior) + "</p>\n</header>\n";
+    std::string body = html_header("item3d prior evaluate", prior);
     body += html_section("In numbers", html_table(summary_rows(evaluation)));
     std::string pictures;
     for (const auto& [caption, bytes] : sheets)

@@ -5,6 +5,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/models/safetensors.h"
+#include "item3d/prior/begin_with.h"
 #include "item3d/prior/classifier.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/replicas.h"
@@ -118,8 +119,9 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
 /// What the data depends on: a work folder made with other settings is not gone on with. Replicas
 /// are those of all processes, so that a training may go on with them spread otherwise.
 nlohmann::json fingerprint(const TrainSettings& s) {
-    return {{"version", 4},
+    return {{"version", 5},
             {"seed", s.seed},
+            {"begin_with", s.begin_with.string()},
             {"resolution", s.resolution},
             {"data_samples", s.data_samples},
             {"autoencoder_samples", s.autoencoder_samples},
@@ -161,11 +163,9 @@ Prepared read_prepared(const TrainSettings& settings, const ClipTokenizer& token
     return prepared;
 }
 
-Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) {
-    const std::vector<TrainingLight> lights =
-        make_training_lights(seed_of(settings, light_stream), settings.lights, settings.replicas);
-    stop_if_interrupted(settings);
-    const ExampleSource source = make_source(settings, lights, false);
+TrainedAutoencoder draw_and_train_autoencoder(const ExampleSource& source,
+                                              const std::vector<TrainingLight>& lights,
+                                              const TrainSettings& settings) {
     const fs::path pictures_file = settings.work / "pictures.safetensors";
     if (!settings.resume || !fs::exists(pictures_file)) {
         const ExampleSource held_out = make_source(settings, lights, true);
@@ -178,17 +178,33 @@ Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) 
                                          {"held_out_covered", unseen.covered}});
     }
     const SafeTensors file = SafeTensors::open(pictures_file);
-    const TrainedAutoencoder autoencoder = train_autoencoder(
+    TrainedAutoencoder autoencoder = train_autoencoder(
         {file.tensor("images"), file.tensor("covered")},
         {file.tensor("held_out_images"), file.tensor("held_out_covered")}, settings);
     note(fmt::format(
         "autoencoder: held-out PSNR {:.2f} dB, on objects {:.2f} dB, scaling factor {:.4f}",
         autoencoder.psnr, autoencoder.object_psnr, autoencoder.model->scaling_factor()));
-    export_autoencoder(settings.output, *autoencoder.model, tokenizer);
+    return autoencoder;
+}
+
+Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) {
+    const std::vector<TrainingLight> lights =
+        make_training_lights(seed_of(settings, light_stream), settings.lights, settings.replicas);
+    stop_if_interrupted(settings);
+    const ExampleSource source = make_source(settings, lights, false);
     Prepared prepared;
-    prepared.record = {{"psnr", autoencoder.psnr}, {"object_psnr", autoencoder.object_psnr}};
+    std::shared_ptr<AutoencoderTiny> autoencoder;
+    if (settings.begin_with.empty()) {
+        const TrainedAutoencoder trained = draw_and_train_autoencoder(source, lights, settings);
+        autoencoder = trained.model;
+        prepared.record = {{"psnr", trained.psnr}, {"object_psnr", trained.object_psnr}};
+    } else {
+        autoencoder = begin_with_autoencoder(settings.begin_with, settings.resolution);
+        prepared.record = begin_with_record(settings.begin_with);
+    }
+    export_autoencoder(settings.output, *autoencoder, tokenizer);
     write_atomically(settings.work / "autoencoder.json", prepared.record.dump(2) + "\n");
-    prepared.data = draw_latents(source, *autoencoder.model, tokenizer, settings);
+    prepared.data = draw_latents(source, *autoencoder, tokenizer, settings);
     save_safetensors(settings.work / "data.safetensors", prepared.data.tensors());
     return prepared;
 }
@@ -210,12 +226,15 @@ Prepared prepare_or_read(const TrainSettings& settings) {
     open_work_folder(settings);
     const std::vector<WordCount> counted = prior_words(settings);
     const bool prepared_before = settings.resume && fs::exists(settings.work / "data.safetensors");
-    const ClipTokenizer tokenizer =
-        prepared_before ? read_tokenizer(settings) : train_tokenizer(counted, text_length);
+    const ClipTokenizer tokenizer = prepared_before ? read_tokenizer(settings)
+                                    : settings.begin_with.empty()
+                                        ? train_tokenizer(counted, text_length)
+                                        : ClipTokenizer::load(settings.begin_with / "tokenizer");
     if (!prepared_before) {
         std::set<std::string> words;
         for (const WordCount& word : counted)
             words.insert(word.word);
+        if (!settings.begin_with.empty()) words = trained_words(settings.begin_with, tokenizer);
         update_prior_json(settings.output, {{"words", words}, {"resolution", settings.resolution}});
     }
     Prepared prepared =

@@ -24,8 +24,10 @@ namespace item3d {
 struct LoopOptions;
 
 struct TrainSettings {
-    std::filesystem::path output;        ///< the diffusers folder
-    std::filesystem::path work;          ///< data, checkpoints; may be deleted afterwards
+    std::filesystem::path output;  ///< the diffusers folder
+    std::filesystem::path work;    ///< data, checkpoints; may be deleted afterwards
+    /// A prior whose weights, tokenizer and autoencoder this one begins with; empty: with nothing.
+    std::filesystem::path begin_with;
     std::int64_t samples = 400000;       ///< pictures that the U-Net sees, repetitions counted
     std::int64_t data_samples = 112000;  ///< different pictures
     std::int64_t autoencoder_samples = 64000;
@@ -38,7 +40,7 @@ struct TrainSettings {
     int views_each = 4;
     int lights = 480;
     int resolution = picture_size;  ///< of the pictures, 64 or 128; latents are 16 x 16 for both
-    /// How often patterns come, against all other materials: 1 is 35 % of the pictures.
+    /// How often patterns come, against all other materials: 1 is 39 % of the pictures.
     float pattern_weight = 1;
     /// Widths of the U-Net's levels, multiples of 16.
     std::vector<int> widths{48, 96, 144};

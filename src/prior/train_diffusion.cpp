@@ -1,6 +1,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
 #include "item3d/models/noise_schedule.h"
+#include "item3d/prior/begin_with.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/replicas.h"
 #include "item3d/prior/train.h"
@@ -136,7 +137,10 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
     const NoiseSchedule schedule(scheduler);
     std::vector<LoopReplica> replicas;
     for (int rank = 0; rank < settings.replicas; ++rank) {
-        const Networks networks = make_networks(settings, config);
+        Networks networks = make_networks(settings, config);
+        // The loop copies the first replica's values to all others.
+        if (rank == 0 && settings.processes.first() && !settings.begin_with.empty())
+            begin_with_weights(settings.begin_with, networks.unet, networks.text);
         const int stream = global_rank(settings, rank);
         replicas.push_back({networks.modules(), [&, networks, stream](const auto& rows, auto step) {
                                 return diffusion_loss(networks, data, schedule, rows, settings.seed,

@@ -125,16 +125,12 @@ std::string charts(const Reconstruction& result) {
 }  // namespace
 
 std::string report_html(const Reconstruction& result) {
+    std::string warnings;
+    for (const std::string& warning : result.warnings)
+        warnings += "<li>" + html_escape(warning) + "</li>";
+    if (!warnings.empty()) warnings = "<ul class=\"warnings\">" + warnings + "</ul>\n";
     std::string body =
-        "<header>\n<p class=\"kicker\">item3d reconstruct</p>\n<p class=\"sentences\">" +
-        html_escape(result.request.dataset.filename().string()) + "</p>\n";
-    if (!result.warnings.empty()) {
-        body += "<ul class=\"warnings\">";
-        for (const std::string& warning : result.warnings)
-            body += "<li>" + html_escape(warning) + "</li>";
-        body += "</ul>\n";
-    }
-    body += "</header>\n";
+        html_header("item3d reconstruct", result.request.dataset.filename().string(), warnings);
     body += html_section("Scores", scores_table(result));
     body += html_section("Held-out views", view_figures(result.test));
     body += html_section("Training views", view_figures(result.train));

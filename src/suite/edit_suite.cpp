@@ -159,7 +159,9 @@ std::string page_of(std::vector<json> results, const json& totals, const SuiteOp
                                total.contains("right") ? total["right"].dump() + " right of " : "",
                                total["edits"].get<int>(), total["seconds"].get<double>(),
                                total["seconds_most"].get<double>(), total["kept"].get<double>()));
-    std::string body = html_section("In numbers", html_table(rows));
+    std::string body = html_header("item3d edit", fmt::format("{} edits with {}", results.size(),
+                                                              options.prior.filename().string())) +
+                       html_section("In numbers", html_table(rows));
     for (const auto& [group, total] : totals["groups"].items()) {
         std::vector<std::string> figures;
         for (const json& result : results) {

@@ -43,17 +43,16 @@ ProceduralMaterial glaze(Random& random, const MaterialWish& wish) {
 
 /// As glass looks that hides what is behind it: dark clear tones, sharp lights, bubbles.
 ProceduralMaterial glass(Random& random, const MaterialWish& wish) {
-    static constexpr std::array<const char*, 5> tones{"green", "blue", "", "brown", "red"};
+    static constexpr std::array<const char*, 5> tones{"green", "blue", "", "brown", ""};
     const std::string tone =
         wish.color.empty() ? tones[static_cast<std::size_t>(random.index(5))] : wish.color;
     const Vec3 color = tone.empty() ? vary(random, {.5f, .6f, .62f}, .06)
                                     : vary(random, color_named(tone) * .55f + .02f);
     const CosineNoise depth(random, 2.2f, 2);
-    const std::string named = tone.empty() ? "clear glass" : tone + " glass";
-    return {"",
-            tone,
-            {"glass {o}", "glass {o}", "{o} made of glass", named + " {o}", "shiny glass {o}"},
-            [=](const Vec3& p, const Vec3& n) {
+    std::vector<std::string> phrases{"glass {o}", "glass {o}", "{o} made of glass",
+                                     "clear glass {o}", "shiny glass {o}"};
+    if (!tone.empty()) phrases = {tone + " glass {o}", "{o} made of " + tone + " glass"};
+    return {"", tone, phrases, [=](const Vec3& p, const Vec3& n) {
                 // Edges look darker and the middle lets light through.
                 const float through = smooth_step(depth(p) + .6f * n.y, -1.2f, 1.2f);
                 return MaterialValue{limit(color * (.35f + 1.1f * through)), .04f, .55f};
@@ -118,7 +117,7 @@ std::vector<MaterialKind> craft_materials() {
              glaze,
              {colored(word_of("materials", "glaze", "glazed", {"glazed", "glaze"}),
                       "a glazed {c} and {d} {o}")}},
-            {"glass", .02, glass, {material_word("glass", "glass")}},
+            {"glass", .03, glass, {material_word("glass", "glass")}},
             {"leather", .025, leather, {material_word("leather", "leather")}},
             {"cardboard", .015, cardboard, {material_word("cardboard", "cardboard")}},
             {"jade", .012, jade, {material_word("jade", "jade")}}};

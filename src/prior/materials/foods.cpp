@@ -59,10 +59,10 @@ ProceduralMaterial sprinkles(Random& random, const MaterialWish&) {
                                                                 {.95f, .75f, .05f},
                                                                 {.1f, .6f, .15f},
                                                                 {.85f, .85f, .85f}}};
-    const bool pink = random.chance(.6);
+    const bool pink = random.chance(.75);
     const Vec3 base =
         pink ? vary(random, {.86f, .36f, .48f}, .07) : vary(random, {.12f, .045f, .02f}, .07);
-    const float size = draw(random, 3.2, 4.2);
+    const float size = draw(random, 2.9, 3.4);
     return {"",
             "",
             {"sprinkle covered {o}", "{o} covered in sprinkles", "{o} with sprinkles"},
@@ -82,7 +82,7 @@ std::vector<MaterialKind> food_materials() {
         {"cheese", .015, cheese, {material_word("cheese", "cheese")}},
         {"candy", .015, candy, {material_word("candy", "candy", {"candy", "cane", "peppermint"})}},
         {"sprinkles",
-         .015,
+         .025,
          sprinkles,
          {word_of("patterns", "sprinkles", "sprinkles", {"sprinkles", "sprinkle"},
                   "a {o} covered in sprinkles")}}};

@@ -8,16 +8,19 @@ namespace {
 
 /// Flowers of five petals on leaves, one a cell of a loose lattice.
 ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
-    const auto [first, second] = two_colors(random, wish);
+    const bool named = !wish.color.empty() || random.chance(.6);
+    const auto [first, second] =
+        named ? two_colors(random, wish) : std::pair<std::string, std::string>("white", "pink");
     const Vec3 ground = vary(random, color_named(first)), petal = vary(random, color_named(second));
     const Vec3 core = second == "yellow" ? Vec3(.7f, .1f, .02f) : Vec3(.9f, .65f, .05f);
     const float frequency = draw(random, 1.5, 2.1);
+    std::vector<std::string> phrases{"floral {o}", "floral {o}", "{o} with a floral pattern",
+                                     "flowery {o}", "{o} with flowers"};
+    if (named)
+        phrases = {first + " and " + second + " floral {o}",
+                   first + " {o} with " + second + " flowers"};
     return {
-        "",
-        first,
-        {"floral {o}", "floral {o}", first + " {o} with " + second + " flowers",
-         "{o} with a floral pattern", "flowery {o}", "{o} with flowers"},
-        [=](const Vec3& p, const Vec3& n) {
+        "", first, phrases, [=](const Vec3& p, const Vec3& n) {
             const Vec2 uv = flat_coordinates(p, n) * frequency;
             const float row = std::floor(uv.y);
             const float u = uv.x + (odd(row) ? .5f : 0.0f), column = std::floor(u);
@@ -58,21 +61,20 @@ ProceduralMaterial camouflage(Random& random, const MaterialWish&) {
 
 /// Dark cracks between dry plates.
 ProceduralMaterial cracks(Random& random, const MaterialWish& wish) {
-    const std::string name = one_color(random, wish);
+    const bool named = !wish.color.empty() || random.chance(.6);
+    const std::string name = named ? one_color(random, wish) : "beige";
     const Vec3 color = vary(random, color_named(name));
     const Vec3 deep = name == "black" ? Vec3(.35f) : color * .06f;
-    const float size = draw(random, 1.9, 2.8);
+    const float size = draw(random, 1.7, 2.2);
     const CosineNoise warp(random, 6, 2);
+    std::vector<std::string> phrases{"cracked {o}", "{o} with cracks"};
+    if (named) phrases = {"cracked " + name + " {o}", name + " {o} with cracks"};
     return {
-        "",
-        name,
-        {"cracked {o}", "cracked " + name + " {o}", "{o} with cracks", "cracked {o}",
-         name + " {o} with cracks"},
-        [=](const Vec3& p, const Vec3&) {
+        "", name, phrases, [=](const Vec3& p, const Vec3&) {
             const NearPoints near = near_points(p * size + .12f * warp(p));
             const float gap = near.second - near.first;
-            const float w = smooth_step(gap, .05f, .11f);
-            return MaterialValue{limit(mix(deep, color * (.85f + .3f * near.value), w)), .75f, 0};
+            const float w = smooth_step(gap, .08f, .15f);
+            return MaterialValue{limit(mix(deep, color * (.9f + .2f * near.value), w)), .75f, 0};
         }};
 }
 
@@ -106,7 +108,7 @@ std::vector<MaterialKind> ornament_patterns() {
          camouflage,
          {pattern_word("camouflage", "camouflage", {"camouflage", "camo"})}},
         {"cracked",
-         .04,
+         .05,
          cracks,
          {colored(pattern_word("cracked", "cracked", {"cracked", "cracks"}), "a cracked {c} {o}")}},
         {"flames",

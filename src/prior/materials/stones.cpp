@@ -43,7 +43,7 @@ ProceduralMaterial granite(Random& random, const MaterialWish&) {
 }
 
 ProceduralMaterial stone(Random& random, const MaterialWish&) {
-    const Vec3 dark = vary(random, {.1f, .095f, .09f}), light = vary(random, {.36f, .34f, .31f});
+    const Vec3 dark = vary(random, {.17f, .165f, .155f}), light = vary(random, {.33f, .315f, .29f});
     return {"",
             "",
             {"stone {o}", "stone {o}", "{o} made of stone", "rock {o}", "{o} carved from rock"},
@@ -73,16 +73,16 @@ ProceduralMaterial concrete(Random& random, const MaterialWish&) {
 
 /// Round stones in mortar.
 ProceduralMaterial cobblestone(Random& random, const MaterialWish&) {
-    const float size = draw(random, 2.4, 3.4);
-    const Vec3 tone = vary(random, {.26f, .25f, .24f}), mortar = vary(random, {.09f, .085f, .08f});
+    const float size = draw(random, 2.1, 2.6);
+    const Vec3 tone = vary(random, {.3f, .29f, .27f}), mortar = vary(random, {.06f, .055f, .05f});
     return {"",
             "",
             {"cobblestone {o}", "cobblestone {o}", "{o} made of cobblestones"},
             [=](const Vec3& p, const Vec3&) {
                 const NearPoints near = near_points(p * size);
                 const float gap = near.second - near.first;
-                const float w = smooth_step(gap, .06f, .2f);
-                return MaterialValue{mix(mortar, tone * (.6f + .8f * near.value), w) *
+                const float w = smooth_step(gap, .1f, .25f);
+                return MaterialValue{mix(mortar, tone * (.8f + .4f * near.value), w) *
                                          (.7f + .3f * smooth_step(gap, .1f, .5f)),
                                      .85f, 0};
             }};
@@ -131,13 +131,13 @@ ProceduralMaterial terracotta(Random& random, const MaterialWish&) {
 std::vector<MaterialKind> stone_materials() {
     return {{"marble", .05, marble, {material_word("marble", "marble")}},
             {"granite", .02, granite, {material_word("granite", "granite")}},
-            {"stone", .025, stone, {material_word("stone", "stone", {"stone", "rock"})}},
+            {"stone", .035, stone, {material_word("stone", "stone", {"stone", "rock"})}},
             {"concrete",
              .015,
              concrete,
              {material_word("concrete", "concrete", {"concrete", "cement"})}},
             {"cobblestone",
-             .02,
+             .035,
              cobblestone,
              {material_word("cobblestone", "cobblestone", {"cobblestone", "cobblestones"})}},
             {"brick", .03, brick, {material_word("brick", "brick", {"brick", "bricks"})}},

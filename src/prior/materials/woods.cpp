@@ -17,9 +17,9 @@ constexpr std::array<WoodLook, 7> looks{
     {{"", .16, {.45f, .22f, .08f}, {.16f, .06f, .018f}, 0},
      {"", .16, {.58f, .36f, .16f}, {.27f, .12f, .035f}, 0},
      {"", .16, {.25f, .11f, .04f}, {.07f, .025f, .009f}, 0},
-     {"oak", .14, {.52f, .33f, .15f}, {.26f, .14f, .055f}, 0},
+     {"oak", .14, {.52f, .33f, .15f}, {.19f, .09f, .03f}, 0},
      {"walnut", .14, {.15f, .07f, .03f}, {.045f, .02f, .01f}, 0},
-     {"pine", .14, {.78f, .54f, .25f}, {.52f, .28f, .09f}, 1},
+     {"pine", .14, {.78f, .54f, .25f}, {.4f, .19f, .055f}, 1},
      {"ebony", .1, {.035f, .026f, .022f}, {.008f, .007f, .007f}, 0}}};
 
 ProceduralMaterial wood(Random& random, const MaterialWish& wish) {
@@ -31,13 +31,12 @@ ProceduralMaterial wood(Random& random, const MaterialWish& wish) {
             break;
         }
     }
-    Vec3 axis{random.normal(0, .25), random.normal(0, .25), random.normal(0, .25)};
-    axis[static_cast<int>(random.index(3))] += 1;
-    axis = glm::normalize(axis);
-    const Vec3 heart{random.normal(0, .5), random.normal(0, .5), random.normal(0, .5)};
+    // Trunks stand: grain runs up and down on most of what is made of them.
+    const Vec3 axis = glm::normalize(Vec3{random.normal(0, .12), 1, random.normal(0, .12)});
+    const Vec3 heart{.35 + random.normal(0, .15), 0, .25 + random.normal(0, .15)};
     const CosineNoise warp(random, 3, 2, {1, .4f, 1}), fiber(random, 30, 1, {1, .15f, 1});
-    // Rings of four to ten pixels: finer ones are lost in a picture of 64.
-    const float rings = draw(random, 2.4, 5);
+    // Rings of nine to fourteen pixels: finer ones are lost on latents of 16.
+    const float rings = draw(random, 2, 3);
     const Vec3 light = vary(random, {look->light[0], look->light[1], look->light[2]}),
                dark = vary(random, {look->dark[0], look->dark[1], look->dark[2]});
     const float roughness = draw(random, .4, .75), knots = look->knots;
@@ -91,7 +90,7 @@ std::vector<MaterialKind> wood_materials() {
         words.push_back(material_word("wood", name));
         words.back().wish.color = name;
     }
-    return {{"wood", .1, wood, words},
+    return {{"wood", .12, wood, words},
             {"bamboo", .015, bamboo, {material_word("bamboo", "bamboo")}}};
 }
 

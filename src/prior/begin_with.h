@@ -1,0 +1,29 @@
+// What a training takes over from a prior that is there already.
+#pragma once
+
+#include "item3d/models/autoencoder.h"
+#include "item3d/models/clip_text.h"
+#include "item3d/models/unet.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <memory>
+
+namespace item3d {
+
+/// The autoencoder of the prior in `folder`. Throws InputError where it is of another kind than
+/// prior_autoencoder_config(resolution).
+std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const std::filesystem::path& folder,
+                                                        int resolution);
+
+/// What its training wrote down about itself, for the new one's: {"psnr", "object_psnr",
+/// "begun_with": all of it}.
+nlohmann::json begin_with_record(const std::filesystem::path& folder);
+
+/// Copies the weights of the prior in `folder`. Throws InputError where its networks are of other
+/// sizes than these.
+void begin_with_weights(const std::filesystem::path& folder, UNet2DCondition& unet,
+                        ClipTextModel& text);
+
+}  // namespace item3d
