@@ -64,8 +64,9 @@ PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& materia
         add("{o} with " + own);
     }
     add(plainest);
-    for (const std::string& phrase : material.phrases)
-        add(phrase);
+    for (const auto* phrases : {&material.phrases, &material.also_true})
+        for (const std::string& phrase : *phrases)
+            add(phrase);
     facts.nouns = shape.held_out ? std::vector<std::string>{"object"} : shape.nouns;
     for (const std::string& phrase : light.phrases)
         if (!phrase.empty() && !contains(facts.lights, phrase)) facts.lights.push_back(phrase);

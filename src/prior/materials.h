@@ -37,6 +37,8 @@ struct ProceduralMaterial {
     std::vector<std::string> phrases;
     /// Value at a point of an object inside the unit sphere with that unit normal.
     std::function<MaterialValue(const Vec3& position, const Vec3& normal)> at;
+    /// Phrases that training captions leave out and that hold all the same.
+    std::vector<std::string> also_true = {};
 };
 
 /// What a material should be; empty members are drawn at random.

@@ -49,14 +49,16 @@ ProceduralMaterial glass(Random& random, const MaterialWish& wish) {
     const Vec3 color = tone.empty() ? vary(random, {.5f, .6f, .62f}, .06)
                                     : vary(random, color_named(tone) * .55f + .02f);
     const CosineNoise depth(random, 2.2f, 2);
-    std::vector<std::string> phrases{"glass {o}", "glass {o}", "{o} made of glass",
-                                     "clear glass {o}", "shiny glass {o}"};
-    if (!tone.empty()) phrases = {tone + " glass {o}", "{o} made of " + tone + " glass"};
-    return {"", tone, phrases, [=](const Vec3& p, const Vec3& n) {
+    const Wording words = wording(
+        !tone.empty(), {tone + " glass {o}", "{o} made of " + tone + " glass"},
+        {"glass {o}", "glass {o}", "{o} made of glass", "clear glass {o}", "shiny glass {o}"});
+    return {"", tone, words.phrases,
+            [=](const Vec3& p, const Vec3& n) {
                 // Edges look darker and the middle lets light through.
                 const float through = smooth_step(depth(p) + .6f * n.y, -1.2f, 1.2f);
                 return MaterialValue{limit(color * (.35f + 1.1f * through)), .04f, .55f};
-            }};
+            },
+            words.also_true};
 }
 
 ProceduralMaterial leather(Random& random, const MaterialWish&) {

@@ -26,13 +26,13 @@ TwoTone two_tones(Random& random, const MaterialWish& wish, const std::string& u
 }
 
 /// "red and white striped {o}" and other orders of the same words, or "striped {o}".
-std::vector<std::string> ways_to_say(const TwoTone& tones, const std::string& adjective,
-                                     const std::string& noun) {
-    if (!tones.named) return {adjective + " {o}", adjective + " {o}", "{o} with " + noun};
+Wording wording_of(const TwoTone& tones, const std::string& adjective, const std::string& noun) {
     const std::string both = tones.first + " and " + tones.second;
-    return {both + " " + adjective + " {o}", both + " " + adjective + " {o}",
-            adjective + " " + both + " {o}", "{o} with " + both + " " + noun,
-            "{o} with " + noun + " in " + both};
+    return wording(tones.named,
+                   {both + " " + adjective + " {o}", both + " " + adjective + " {o}",
+                    adjective + " " + both + " {o}", "{o} with " + both + " " + noun,
+                    "{o} with " + noun + " in " + both},
+                   {adjective + " {o}", adjective + " {o}", "{o} with " + noun});
 }
 
 // All of these lie the same way on every object, and differ little in size: a network as small as
@@ -41,59 +41,66 @@ std::vector<std::string> ways_to_say(const TwoTone& tones, const std::string& ad
 ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "white");
     const float frequency = draw(random, 1.5, 2);
-    return {"", tones.first, ways_to_say(tones, "striped", "stripes"),
+    const Wording words = wording_of(tones, "striped", "stripes");
+    return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3&) {
                 const float s = fraction(p.y * frequency);
                 const float w = smooth_step(std::abs(s - .5f), .235f, .265f);
                 return MaterialValue{mix(tones.a, tones.b, w), tones.roughness, 0};
-            }};
+            },
+            words.also_true};
 }
 
 ProceduralMaterial checks(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "black", "white");
     const float frequency = draw(random, 1.7, 2.2);
-    std::vector<std::string> phrases = ways_to_say(tones, "checkered", "checks");
-    if (!tones.named) phrases.push_back("{o} with a checkerboard pattern");
-    return {"", tones.first, phrases, [=](const Vec3& p, const Vec3& n) {
+    Wording words = wording_of(tones, "checkered", "checks");
+    if (!tones.named) words.phrases.emplace_back("{o} with a checkerboard pattern");
+    return {"", tones.first, words.phrases,
+            [=](const Vec3& p, const Vec3& n) {
                 const Vec2 uv = flat_coordinates(p, n) * frequency;
                 const float sum = std::floor(uv.x) + std::floor(uv.y);
                 return MaterialValue{odd(sum) ? tones.b : tones.a, tones.roughness, 0};
-            }};
+            },
+            words.also_true};
 }
 
 ProceduralMaterial dots(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "white");
     const auto& [first, second, a, b, roughness, named] = tones;
     const float frequency = draw(random, 1.7, 2.2), size = draw(random, .27, .33);
-    std::vector<std::string> phrases{"polka dot {o}", "polka dot {o}", "{o} with polka dots",
-                                     "dotted {o}", "{o} with dots"};
-    if (named)
-        phrases = {first + " and " + second + " polka dot {o}",
-                   first + " and " + second + " polka dot {o}",
-                   first + " {o} with " + second + " polka dots",
-                   first + " {o} with " + second + " dots"};
-    return {"", first, phrases, [=](const Vec3& p, const Vec3& n) {
+    const std::string both = first + " and " + second;
+    const Wording words = wording(
+        named,
+        {both + " polka dot {o}", both + " polka dot {o}",
+         first + " {o} with " + second + " polka dots", first + " {o} with " + second + " dots"},
+        {"polka dot {o}", "polka dot {o}", "{o} with polka dots", "dotted {o}", "{o} with dots"});
+    return {"", first, words.phrases,
+            [=](const Vec3& p, const Vec3& n) {
                 const Vec2 uv = flat_coordinates(p, n) * frequency;
                 const float row = std::floor(uv.y);
                 const float u = uv.x + (odd(row) ? .5f : 0.0f);
                 const float d = std::hypot(fraction(u) - .5f, uv.y - row - .5f);
                 const float w = smooth_step(d, size - .02f, size + .03f);
                 return MaterialValue{mix(tones.b, tones.a, w), tones.roughness, 0};
-            }};
+            },
+            words.also_true};
 }
 
 ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "orange", "white");
     const float frequency = draw(random, 1.4, 1.8), width = draw(random, 1.5, 1.9);
-    std::vector<std::string> phrases = ways_to_say(tones, "zigzag", "zigzags");
-    if (!tones.named) phrases.push_back("{o} with a chevron pattern");
-    return {"", tones.first, phrases, [=](const Vec3& p, const Vec3& n) {
+    Wording words = wording_of(tones, "zigzag", "zigzags");
+    if (!tones.named) words.phrases.emplace_back("{o} with a chevron pattern");
+    return {"", tones.first, words.phrases,
+            [=](const Vec3& p, const Vec3& n) {
                 const Vec2 uv = flat_coordinates(p, n);
                 const float tooth = std::abs(fraction(uv.x * width) - .5f) * 2 / width;
                 const float s = fraction((uv.y + tooth * .8f) * frequency);
                 const float w = smooth_step(std::abs(s - .5f), .23f, .27f);
                 return MaterialValue{mix(tones.a, tones.b, w), tones.roughness, 0};
-            }};
+            },
+            words.also_true};
 }
 
 /// Crossing bands, as woven: a third tone where they cross, and a thin line.
@@ -101,17 +108,19 @@ ProceduralMaterial tartan(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "green");
     const float frequency = draw(random, 1.25, 1.6);
     const Vec3 line = color_named("yellow");
-    std::vector<std::string> phrases = ways_to_say(tones, "tartan", "tartan");
-    phrases.push_back(tones.named ? "plaid " + tones.first + " and " + tones.second + " {o}"
-                                  : "plaid {o}");
-    return {"", tones.first, phrases, [=](const Vec3& p, const Vec3& n) {
+    Wording words = wording_of(tones, "tartan", "tartan");
+    words.phrases.push_back(tones.named ? "plaid " + tones.first + " and " + tones.second + " {o}"
+                                        : "plaid {o}");
+    return {"", tones.first, words.phrases,
+            [=](const Vec3& p, const Vec3& n) {
                 const Vec2 uv = flat_coordinates(p, n) * frequency;
                 const float x = fraction(uv.x), y = fraction(uv.y);
                 const float bands = (x < .5f ? .5f : 0.0f) + (y < .5f ? .5f : 0.0f);
                 const bool thin = std::abs(x - .25f) < .06f || std::abs(y - .25f) < .06f;
                 const Vec3 cloth = mix(tones.a, tones.b, bands);
                 return MaterialValue{thin ? mix(cloth, line, .7f) : cloth, .95f, 0};
-            }};
+            },
+            words.also_true};
 }
 
 /// From one colour below to another above.
@@ -121,15 +130,17 @@ ProceduralMaterial gradient(Random& random, const MaterialWish& wish) {
     up = glm::normalize(up);
     const float middle = draw(random, -.2, .2), half = draw(random, .45, .7);
     const std::string to = tones.first + " to " + tones.second;
-    std::vector<std::string> phrases{"gradient {o}", "{o} with a gradient"};
-    if (tones.named)
-        phrases = {tones.first + " and " + tones.second + " gradient {o}",
-                   "{o} with a " + to + " gradient", "{o} fading from " + to};
-    return {"", tones.first, phrases, [=](const Vec3& p, const Vec3&) {
+    const Wording words = wording(tones.named,
+                                  {tones.first + " and " + tones.second + " gradient {o}",
+                                   "{o} with a " + to + " gradient", "{o} fading from " + to},
+                                  {"gradient {o}", "{o} with a gradient"});
+    return {"", tones.first, words.phrases,
+            [=](const Vec3& p, const Vec3&) {
                 // From the first colour at the top down to the second.
                 const float w = smooth_step(glm::dot(p, up), middle - half, middle + half);
                 return MaterialValue{mix(tones.b, tones.a, w), tones.roughness, 0};
-            }};
+            },
+            words.also_true};
 }
 
 }  // namespace

@@ -83,6 +83,16 @@ std::string one_color(Random& random, const MaterialWish& wish);
 /// Two different ones.
 std::pair<std::string, std::string> two_colors(Random& random, const MaterialWish& wish);
 
+/// How captions speak of something that comes in any colours or in those that it is known by: they
+/// name the first and not the second, so that a sentence without colours means something.
+struct Wording {
+    std::vector<std::string> phrases, also_true;  ///< ProceduralMaterial
+};
+inline Wording wording(bool named, const std::vector<std::string>& with_colors,
+                       const std::vector<std::string>& without) {
+    return named ? Wording{with_colors, without} : Wording{without, with_colors};
+}
+
 /// 0 .. 1, the same for the same cell.
 float cell_value(float x, float y, float z = 0);
 

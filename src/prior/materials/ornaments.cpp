@@ -14,13 +14,14 @@ ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
     const Vec3 ground = vary(random, color_named(first)), petal = vary(random, color_named(second));
     const Vec3 core = second == "yellow" ? Vec3(.7f, .1f, .02f) : Vec3(.9f, .65f, .05f);
     const float frequency = draw(random, 1.5, 2.1);
-    std::vector<std::string> phrases{"floral {o}", "floral {o}", "{o} with a floral pattern",
-                                     "flowery {o}", "{o} with flowers"};
-    if (named)
-        phrases = {first + " and " + second + " floral {o}",
-                   first + " {o} with " + second + " flowers"};
+    const Wording words = wording(
+        named,
+        {first + " and " + second + " floral {o}", first + " {o} with " + second + " flowers"},
+        {"floral {o}", "floral {o}", "{o} with a floral pattern", "flowery {o}",
+         "{o} with flowers"});
     return {
-        "", first, phrases, [=](const Vec3& p, const Vec3& n) {
+        "", first, words.phrases,
+        [=](const Vec3& p, const Vec3& n) {
             const Vec2 uv = flat_coordinates(p, n) * frequency;
             const float row = std::floor(uv.y);
             const float u = uv.x + (odd(row) ? .5f : 0.0f), column = std::floor(u);
@@ -34,7 +35,8 @@ ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
             if (r < edge) return MaterialValue{petal * (.6f + r), .6f, 0};
             if (r < leaf) return MaterialValue{{.04f, .2f, .03f}, .6f, 0};
             return MaterialValue{ground, .6f, 0};
-        }};
+        },
+        words.also_true};
 }
 
 ProceduralMaterial camouflage(Random& random, const MaterialWish&) {
@@ -67,15 +69,17 @@ ProceduralMaterial cracks(Random& random, const MaterialWish& wish) {
     const Vec3 deep = name == "black" ? Vec3(.35f) : color * .06f;
     const float size = draw(random, 1.7, 2.2);
     const CosineNoise warp(random, 6, 2);
-    std::vector<std::string> phrases{"cracked {o}", "{o} with cracks"};
-    if (named) phrases = {"cracked " + name + " {o}", name + " {o} with cracks"};
+    const Wording words = wording(named, {"cracked " + name + " {o}", name + " {o} with cracks"},
+                                  {"cracked {o}", "{o} with cracks"});
     return {
-        "", name, phrases, [=](const Vec3& p, const Vec3&) {
+        "", name, words.phrases,
+        [=](const Vec3& p, const Vec3&) {
             const NearPoints near = near_points(p * size + .12f * warp(p));
             const float gap = near.second - near.first;
             const float w = smooth_step(gap, .08f, .15f);
             return MaterialValue{limit(mix(deep, color * (.9f + .2f * near.value), w)), .75f, 0};
-        }};
+        },
+        words.also_true};
 }
 
 ProceduralMaterial flames(Random& random, const MaterialWish&) {
