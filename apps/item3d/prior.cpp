@@ -245,6 +245,9 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
     fmt::print("{}\n", prior.value("name", subject));
     if (prior.contains("train")) {
         const auto& train = prior.at("train");
+        if (train.contains("begun_with"))
+            fmt::print("begun with a prior of {} pictures, then ",
+                       train["begun_with"].value("samples", 0));
         fmt::print("trained on {} pictures in {}, loss {:.3f}, autoencoder {:.1f} dB\n",
                    train.value("samples", 0), format_duration(train.value("seconds", 0.0)),
                    train.value("loss", 0.0), train.value("psnr", 0.0));
