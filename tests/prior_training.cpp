@@ -282,6 +282,13 @@ TEST_F(PriorTraining, BeginsWithTheWeightsOfAnotherPrior) {
     const nlohmann::json record = begin_with_record(first.output);
     EXPECT_EQ(record["begun_with"]["samples"], 48);
 
+    // What does not fit is said before any data is drawn.
+    const std::string early = refusal([&] { check_begin_with(second); });
+    EXPECT_EQ(early.find((first.output / "unet/config.json").string() + ": "), 0u) << early;
+    second.output = first.output;
+    EXPECT_NE(refusal([&] { check_begin_with(second); }).find("-o"), std::string::npos);
+    second.output = root_ / "second";
+
     networks_.unet.block_out_channels = {16, 32, 16};
     networks_.unet.attention_head_dim = {1, 2, 1};
     const std::string message = refusal([&] { train_diffusion(data_, second, networks_, {}); });

@@ -157,9 +157,9 @@ void add_train(CLI::App& app) {
     add_network_settings(*command, *options);
     CLI::Option* begin = command->add_option(
         "--begin-with", options->settings.begin_with,
-        "Folder of a prior whose weights, words and autoencoder to begin with instead of nothing");
+        "A prior, by folder or name, whose weights, words and autoencoder to begin with");
     options->given.emplace_back([options = options.get(), begin](TrainSettings& to) {
-        if (begin->count() > 0) to.begin_with = options->settings.begin_with;
+        if (begin->count() > 0) to.begin_with = find_prior(options->settings.begin_with);
     });
     add_setting(*command, *options, "--seed", &TrainSettings::seed, "Of everything random")
         ->capture_default_str();

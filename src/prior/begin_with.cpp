@@ -1,13 +1,18 @@
 #include "item3d/prior/begin_with.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/files.h"
+#include "item3d/models/config.h"
+#include "item3d/prior/export.h"
 #include "item3d/prior/train.h"
 
 namespace item3d {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* another_size = "is of a network of another size than this training's";
+constexpr const char* size_hint =
+    "give the --widths, --resolution and --no-depth that the prior was trained with";
 
 void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::nn::Module& to) {
     const torch::NoGradGuard no_grad;
@@ -18,14 +23,23 @@ void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::
         const torch::Tensor* value = given.find(item.key());
         fits = fits && value && value->sizes() == item.value().sizes();
     }
-    if (!fits)
-        throw InputError(folder.string(), "holds a network of another size than this training's",
-                         "give the --widths, --resolution and --no-depth that it was trained with");
+    if (!fits) throw InputError(folder.string(), another_size, size_hint);
     for (auto& item : wanted)
         item.value().copy_(given[item.key()]);
 }
 
 }  // namespace
+
+void check_begin_with(const TrainSettings& settings) {
+    if (fs::exists(settings.output) && fs::equivalent(settings.begin_with, settings.output))
+        throw InputError(settings.output.string(), "would be overwritten while it is begun with",
+                         "give another folder with -o");
+    const fs::path file = settings.begin_with / "unet" / "config.json";
+    const auto given = UNet2DConditionConfig::from_config(Config::read(file));
+    if (given.to_json() != prior_unet_config(settings).to_json())
+        throw InputError(file.string(), another_size, size_hint);
+    begin_with_autoencoder(settings.begin_with, settings.resolution);
+}
 
 std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const fs::path& folder, int resolution) {
     const auto model = std::dynamic_pointer_cast<AutoencoderTiny>(load_autoencoder(folder / "vae"));
@@ -39,14 +53,12 @@ std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const fs::path& folder, 
 }
 
 nlohmann::json begin_with_record(const fs::path& folder) {
-    const fs::path file = folder / "prior.json";
-    if (!fs::exists(file)) return nlohmann::json::object();
-    const auto json = nlohmann::json::parse(read_text(file), nullptr, false);
-    if (!json.is_object() || !json.contains("train") || !json["train"].is_object())
-        return nlohmann::json::object();
-    nlohmann::json record{{"begun_with", json["train"]}};
+    const nlohmann::json json = read_prior_json(folder);
+    const auto train = json.find("train");
+    if (train == json.end() || !train->is_object()) return nlohmann::json::object();
+    nlohmann::json record{{"begun_with", *train}};
     for (const char* name : {"psnr", "object_psnr"})
-        if (json["train"].contains(name)) record[name] = json["train"][name];
+        if (train->contains(name)) record[name] = train->at(name);
     return record;
 }
 

@@ -12,6 +12,11 @@
 
 namespace item3d {
 
+struct TrainSettings;
+
+/// Throws InputError where the prior in settings.begin_with does not fit: before the data is drawn.
+void check_begin_with(const TrainSettings& settings);
+
 /// The autoencoder of the prior in `folder`. Throws InputError where it is of another kind than
 /// prior_autoencoder_config(resolution).
 std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const std::filesystem::path& folder,

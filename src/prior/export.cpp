@@ -99,13 +99,17 @@ void export_diffusion(const fs::path& folder, const UNet2DCondition& unet,
                                {"generate", {{"steps", 30}, {"guidance_scale", 3.5}}}});
 }
 
-nlohmann::json update_prior_json(const fs::path& folder, const nlohmann::json& members) {
+nlohmann::json read_prior_json(const fs::path& folder) {
     const fs::path file = folder / "prior.json";
-    nlohmann::json prior = nlohmann::json::object();
-    if (fs::exists(file)) prior = nlohmann::json::parse(read_text(file), nullptr, false);
-    if (!prior.is_object()) prior = nlohmann::json::object();
+    if (!fs::exists(file)) return nlohmann::json::object();
+    nlohmann::json prior = nlohmann::json::parse(read_text(file), nullptr, false);
+    return prior.is_object() ? prior : nlohmann::json::object();
+}
+
+nlohmann::json update_prior_json(const fs::path& folder, const nlohmann::json& members) {
+    nlohmann::json prior = read_prior_json(folder);
     prior.update(members);
-    write_json(file, prior);
+    write_json(folder / "prior.json", prior);
     return prior;
 }
 

@@ -4,6 +4,7 @@
 #include "item3d/models/autoencoder.h"
 #include "item3d/models/clip_text.h"
 #include "item3d/models/clip_tokenizer.h"
+#include "item3d/models/scheduler_config.h"
 #include "item3d/models/unet.h"
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,9 @@ void export_autoencoder(const std::filesystem::path& folder, const AutoencoderTi
 void export_diffusion(const std::filesystem::path& folder, const UNet2DCondition& unet,
                       const ClipTextModel& text, const SchedulerConfig& scheduler, int resolution,
                       const nlohmann::json& train);
+
+/// The folder's prior.json; an empty object where there is none or no object in it.
+nlohmann::json read_prior_json(const std::filesystem::path& folder);
 
 /// Puts these members into the folder's prior.json, which is made if there is none; others are
 /// kept. Returns what it then holds.

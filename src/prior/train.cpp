@@ -222,6 +222,7 @@ ClipTokenizer read_tokenizer(const TrainSettings& settings) {
 
 /// What process 0 does before all train together.
 Prepared prepare_or_read(const TrainSettings& settings) {
+    if (!settings.begin_with.empty()) check_begin_with(settings);
     make_output_folder(settings.output);
     open_work_folder(settings);
     const std::vector<WordCount> counted = prior_words(settings);
@@ -352,13 +353,7 @@ void train_prior(const TrainSettings& settings) {
 }
 
 std::set<std::string> trained_words(const fs::path& folder, const ClipTokenizer& tokenizer) {
-    std::set<std::string> words;
-    const fs::path file = folder / "prior.json";
-    if (fs::exists(file)) {
-        const auto json = nlohmann::json::parse(read_text(file), nullptr, false);
-        if (json.is_object() && json.contains("words"))
-            words = json["words"].get<std::set<std::string>>();
-    }
+    auto words = read_prior_json(folder).value("words", std::set<std::string>{});
     if (!words.empty()) return words;
     for (const WordCount& word : caption_vocabulary(1))
         if (tokenizer.encode(word.word).size() == 3) words.insert(word.word);
