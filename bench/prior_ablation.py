@@ -15,7 +15,8 @@ import subprocess
 
 CONTENDERS = {
     "the recipe": [],
-    "no depth": ["--no-depth"],
+    "depth alone": ["--condition", "depth"],
+    "no shape": ["--condition", "none"],
     "epsilon": ["--prediction", "epsilon"],
     "adamw": ["--optimizer", "adamw"],
     "widths 32,64,96": ["--widths", "32,64,96"],

@@ -1,8 +1,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/models/controlnet.h"
-#include "item3d/models/depth_condition.h"
 #include "item3d/models/pipeline_extras.h"
+#include "item3d/models/shape_condition.h"
 #include "models_testing.h"
 
 namespace item3d {
@@ -34,20 +34,20 @@ TEST(ControlNet, ReproducesTheReference) {
 TEST(ControlNet, ChangesWhatThePipelinePredictsWhereItHasDepth) {
     const torch::NoGradGuard no_grad;
     Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-    EXPECT_FALSE(takes_depth(pipeline));
+    EXPECT_FALSE(takes_shape(pipeline));
     torch::manual_seed(5);
     const torch::Tensor latents = torch::randn({2, 4, 4, 3}), t = torch::tensor({300, 300});
     const TextEmbedding text = pipeline.encode_text({"a duck"});
     const torch::Tensor depth = torch::rand({2, 64, 48}) + 1;  // twice as fine as the pictures
-    EXPECT_FALSE(condition_of_depth(pipeline, depth, latents).defined());
+    EXPECT_FALSE(condition_of_shape(pipeline, {depth, {}, {}}, latents).defined());
     const torch::Tensor plain = pipeline.predict(latents, t, text);
 
     PipelineExtras extras;
     extras.controlnet = fixture("controlnet_depth").string();
     extras.controlnet_scale = 0.7f;
     apply_extras(pipeline, extras);
-    ASSERT_TRUE(takes_depth(pipeline));
-    const torch::Tensor picture = condition_of_depth(pipeline, depth, latents);
+    ASSERT_TRUE(takes_shape(pipeline));
+    const torch::Tensor picture = condition_of_shape(pipeline, {depth, {}, {}}, latents);
     EXPECT_EQ(picture.sizes(), (std::vector<std::int64_t>{2, 3, 32, 24}));
     EXPECT_TRUE(pipeline.predict(latents, t, text).equal(plain));
     const torch::Tensor context = text.expand(2).states;

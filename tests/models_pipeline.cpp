@@ -1,8 +1,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
-#include "item3d/models/depth_condition.h"
 #include "item3d/models/pipeline_extras.h"
+#include "item3d/models/shape_condition.h"
 #include "models_testing.h"
 
 #include <torch/csrc/autograd/autograd.h>
@@ -244,6 +244,33 @@ TEST(DepthCondition, ScalesDisparityAndAveragesCells) {
     torch::Tensor half = torch::zeros({1, 2, 2});
     half[0][0].fill_(3.0f);
     EXPECT_TRUE(torch::isfinite(depth_condition(half, 2)).all().item<bool>());
+}
+
+TEST(ShapeCondition, SaysWhereInSpaceTheSurfaceOfEachCellIs) {
+    // Two cells of 2 x 2 pixels: one half covered by a point at (.25, 0, -.5), one empty.
+    SeenShape shape{torch::zeros({1, 2, 4}), torch::full({1, 2, 4, 3}, 9.0f),
+                    torch::full({1, 2, 4, 3}, .5f)};
+    shape.depth[0].slice(1, 0, 1) = 2.0f;
+    shape.position[0].slice(1, 0, 1) = torch::tensor({.25f, 0.0f, -.5f});
+    const torch::Tensor cells = shape_cells(shape, 2);
+    EXPECT_EQ(cells.sizes(), (std::vector<std::int64_t>{1, 7, 1, 2}));
+    EXPECT_LT(largest_difference(cells[0].slice(0, 1, 4).select(2, 0).flatten(),
+                                 torch::tensor({.25f, 0.0f, -.5f})),
+              1e-6);
+    EXPECT_EQ(cells[0][0][0][1].item<float>(), -1);
+
+    EXPECT_FALSE(shape_condition(cells, 0).defined());
+    EXPECT_TRUE(shape_condition(cells, 1).equal(cells.slice(1, 0, 1)));
+    const torch::Tensor all = shape_condition(cells, surface_condition_channels);
+    EXPECT_EQ(all.size(1), surface_condition_channels);
+    // Half a cycle a unit: an eighth of a turn along x, none along y, a quarter back along z.
+    EXPECT_TRUE(all[0].slice(0, 1, 4).select(2, 0).equal(torch::full({3, 1}, .5f)));
+    const torch::Tensor first = all[0].slice(0, 4, 10).select(1, 0).select(1, 0);
+    const float diagonal = std::sqrt(.5f);
+    EXPECT_LT(
+        largest_difference(first, torch::tensor({diagonal, 0.0f, -1.0f, diagonal, 1.0f, 0.0f})),
+        1e-5);
+    EXPECT_TRUE(all[0].slice(0, 1).select(2, 1).equal(torch::zeros({27, 1})));
 }
 
 TEST(Pipeline, KnowsItsPromptsAfterTheEncodersAreFreed) {

@@ -157,8 +157,10 @@ TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
         const double part = static_cast<double>(high - low + 1) / view_size;
         EXPECT_GT(part, .5);
         EXPECT_LT(part, 1);
-        const torch::Tensor depth = view.depth.to(torch::kFloat32);
-        EXPECT_EQ(depth.sizes(), (std::vector<std::int64_t>{1, latent_size, latent_size}));
+        const torch::Tensor cells = view.cells.to(torch::kFloat32);
+        EXPECT_EQ(cells.sizes(),
+                  (std::vector<std::int64_t>{shape_cell_channels, latent_size, latent_size}));
+        const torch::Tensor depth = cells[0];
         EXPECT_NEAR(depth.max().item<float>(), 1, .15);
         EXPECT_EQ(depth.min().item<float>(), -1);
     }

@@ -134,7 +134,7 @@ class PriorTraining : public ::testing::Test {
     PriorTraining() {
         torch::manual_seed(1);
         data_.latents = torch::randn({24, latent_channels, 16, 16}).to(torch::kHalf);
-        data_.depth = torch::randn({24, 1, 16, 16}).to(torch::kHalf);
+        data_.cells = torch::randn({24, 7, 16, 16}).to(torch::kHalf);
         data_.tokens = torch::randint(0, 30, {24, text_length}).to(torch::kInt16);
         data_.empty_tokens = torch::full({text_length}, 31).to(torch::kInt16);
         networks_.unet = prior_unet_config();
@@ -298,11 +298,39 @@ TEST_F(PriorTraining, BeginsWithTheWeightsOfAnotherPrior) {
               std::string::npos);
 }
 
+TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {
+    TrainSettings first = settings("first");
+    first.condition = "depth";
+    networks_.unet.in_channels = prior_unet_config(first).in_channels;
+    train_diffusion(data_, first, networks_, {});
+    TrainSettings second = settings("second");
+    second.begin_with = first.output;
+    second.learning_rate = 1e-9f;
+    networks_.unet.in_channels = prior_unet_config(second).in_channels;
+    train_diffusion(data_, second, networks_, {});
+    const auto input_weight = [](const TrainSettings& of) {
+        return SafeTensors::open(of.output / "unet/diffusion_pytorch_model.safetensors")
+            .tensor("conv_in.weight")
+            .to(torch::kFloat32);
+    };
+    const torch::Tensor was = input_weight(first), is = input_weight(second);
+    EXPECT_EQ(was.size(1), latent_channels + 1);
+    EXPECT_EQ(is.size(1), latent_channels + surface_condition_channels);
+    EXPECT_TRUE(torch::allclose(is.slice(1, 0, was.size(1)), was, 2e-3, 1e-6));
+    EXPECT_LT(is.slice(1, was.size(1)).abs().max().item<float>(), 1e-6);
+    // The other way round there is no place for the weights.
+    first.begin_with = second.output;
+    first.output = root_ / "third";
+    networks_.unet.in_channels = latent_channels + 1;
+    EXPECT_NE(refusal([&] { train_diffusion(data_, first, networks_, {}); }).find("--condition"),
+              std::string::npos);
+}
+
 TEST_F(PriorTraining, WhatItPredictsAndIsToldIsWrittenBesideTheWeights) {
     TrainSettings noise = settings("noise");
     noise.samples = 8;
     noise.prediction_type = "epsilon";
-    noise.depth_condition = false;
+    noise.condition = "none";
     networks_.unet.in_channels = prior_unet_config(noise).in_channels;
     EXPECT_EQ(networks_.unet.in_channels, latent_channels);
     const double loss = train_diffusion(data_, noise, networks_, {})["loss"];

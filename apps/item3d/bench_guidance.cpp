@@ -49,9 +49,10 @@ void run(const BenchGuidanceCommand& options, torch::Device device) {
         options.size > 0 ? options.size : prior->unet->config().sample_size * prior->downscale();
     const torch::Tensor images =
         torch::rand({options.batch, 3, size, size}, device).set_requires_grad(true);
-    const torch::Tensor depth = torch::ones({options.batch, size, size}, device);
+    const torch::Tensor nowhere = torch::zeros({options.batch, size, size, 3}, device);
+    const SeenShape shape{torch::ones({options.batch, size, size}, device), nowhere, nowhere};
 
-    GuidanceInput input{images, depth};
+    GuidanceInput input{images, shape};
     if (guidance->needs_reference()) input.reference = torch::rand_like(images);
 
     std::vector<double> step, encode, unet;

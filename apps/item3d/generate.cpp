@@ -5,10 +5,11 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/edit/render_view.h"
 #include "item3d/evaluate/contact_sheet.h"
 #include "item3d/hub/find_prior.h"
-#include "item3d/models/depth_condition.h"
 #include "item3d/models/pipeline_extras.h"
+#include "item3d/models/shape_condition.h"
 #include "item3d/prior/generate_defaults.h"
 #include "item3d/prior/vocabulary.h"
 #include "item3d/render/rasterize.h"
@@ -50,18 +51,19 @@ void complete_options(const GenerateCommand& command, const fs::path& prior,
         command.guidance_scale > 0 ? command.guidance_scale : defaults.guidance_scale;
 }
 
-/// The depth of a model from the default view, as the pipeline takes it.
-torch::Tensor depth_of(const std::string& file, PictureSize size, const Pipeline& pipeline) {
+/// A model from the default view, as the pipeline takes it.
+torch::Tensor condition_of(const std::string& file, PictureSize size, const Pipeline& pipeline) {
     const Model model = load_model(file);
     const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
     const Camera camera = default_view(model, aspect);
-    const Raster raster = rasterize(Geometry::from_model(model, pipeline.device()), {camera},
-                                    size.width, size.height);
+    const Geometry geometry = Geometry::from_model(model, pipeline.device());
+    const Raster raster = rasterize(geometry, {camera}, size.width, size.height);
+    const Surface surface = interpolate_surface(geometry, raster, {camera});
     // Sizes that the model cannot make are rounded up here and refused by generate().
     const int cell = pipeline.downscale();
     const auto cells = [&](int pixels) { return (pixels + cell - 1) / cell; };
-    return condition_of_depth(
-        pipeline, raster.depth,
+    return condition_of_shape(
+        pipeline, seen_shape(raster, surface, bounding_sphere(model)),
         torch::empty({1, 1, cells(size.height), cells(size.width)}, pipeline.device()));
 }
 
@@ -124,7 +126,7 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
 
     torch::Tensor condition;
     const int channels = pipeline.condition_channels();
-    if (channels > 1) {
+    if (channels > 1 && channels != surface_condition_channels) {
         throw InputError(prior.string(),
                          fmt::format("its U-Net takes {} further channels, which generate cannot "
                                      "fill",
@@ -134,10 +136,10 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
     if (command.like.empty() && !extras.controlnet.empty())
         throw InputError("--controlnet", "has no depth to look at", "name a model with --like");
     if (!command.like.empty()) {
-        if (!takes_depth(pipeline))
+        if (!takes_shape(pipeline))
             throw InputError(prior.string(), "its U-Net takes no depth",
                              "leave out --like, or add a depth ControlNet with --controlnet");
-        condition = depth_of(command.like, size, pipeline);
+        condition = condition_of(command.like, size, pipeline);
     }
 
     nlohmann::json names = nlohmann::json::array();

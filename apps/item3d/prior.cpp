@@ -81,11 +81,11 @@ void add_network_settings(CLI::App& command, TrainOptions& options) {
                 "How matrices of weights are stepped: muon or adamw")
         ->check(CLI::IsMember({"adamw", "muon"}))
         ->capture_default_str();
-    CLI::Option* no_depth =
-        command.add_flag("!--no-depth", options.settings.depth_condition,
-                         "A U-Net that is not told the depth, as most of Stable Diffusion's");
-    options.given.emplace_back(
-        [no_depth](TrainSettings& to) { to.depth_condition = no_depth->count() == 0; });
+    add_setting(
+        command, options, "--condition", &TrainSettings::condition,
+        "What the U-Net is told of a shape: surface (depth, position, normal), depth or none")
+        ->check(CLI::IsMember({"surface", "depth", "none"}))
+        ->capture_default_str();
     add_setting(command, options, "--batch", &TrainSettings::batch,
                 "Pictures a step and replica that the U-Net learns from")
         ->check(CLI::Range(1, 4096))

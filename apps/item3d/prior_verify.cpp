@@ -49,6 +49,7 @@ void print_report(const PriorReport& report) {
     if (report.resolution > 0) fmt::print(", {0} x {0} pixels", report.resolution);
     if (!report.prediction_type.empty()) fmt::print(", predicts {}", report.prediction_type);
     if (report.condition_channels == 1) fmt::print(", takes depth");
+    if (report.condition_channels > 1) fmt::print(", takes depth, position and normal");
     fmt::print("\n\n");
     for (const PartReport& part : report.parts) {
         fmt::print("  {:16} {:28}", part.name, part.class_name);

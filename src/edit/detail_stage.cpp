@@ -5,7 +5,7 @@
 #include "item3d/edit/painting_plan.h"
 #include "item3d/edit/render_view.h"
 #include "item3d/edit/safekeeping.h"
-#include "item3d/models/depth_condition.h"
+#include "item3d/models/shape_condition.h"
 
 #include <torch/nn/functional/pooling.h>
 
@@ -13,9 +13,9 @@ namespace item3d {
 namespace {
 
 constexpr int sampling_steps = 24;
-/// How much of a picture noise replaces: nearly all where the prior is told the shape by its depth.
+/// How much of a picture noise replaces: nearly all where the prior is told the shape.
 constexpr double whole_strength = 0.95;
-constexpr double whole_strength_without_depth = 0.7;
+constexpr double whole_strength_without_shape = 0.7;
 constexpr double close_up_strength = 0.5;
 constexpr float guidance_scale = 5.0f;
 /// A small autoencoder flattens what it decodes; so much of what is fine is added once more.
@@ -100,14 +100,14 @@ torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
     options.image = latents;
     options.keep = planned.known;
     options.strength = planned.is_close_up  ? close_up_strength
-                       : takes_depth(prior) ? whole_strength
-                                            : whole_strength_without_depth;
+                       : takes_shape(prior) ? whole_strength
+                                            : whole_strength_without_shape;
     options.scheduler = "ddim";
     options.eta = 1;
     options.seed = mix_bits(settings_.seed) + index;
     options.show_progress = false;
-    const torch::Tensor depth = condition_of_depth(prior, view.depth, latents);
-    const torch::Tensor sampled = generate_latents(prior, options, depth);
+    const torch::Tensor condition = condition_of_shape(prior, view.shape, latents);
+    const torch::Tensor sampled = generate_latents(prior, options, condition);
     const torch::Tensor decoded = prior.decode_image(sampled) / 2;
     // The difference of two decoded pictures: what the autoencoder loses cancels out.
     const torch::Tensor change = decoded - prior.decode_image(latents) / 2;

@@ -66,7 +66,7 @@ GuidanceInput look(const EditScene& scene, const EditSettings& settings, EditSta
         options.light = &light;
     }
     const EditView view = render_view(scene, settings, state.field, options);
-    GuidanceInput input{view.images, view.depth};
+    GuidanceInput input{view.images, view.shape};
     if (state.guidance->needs_reference()) {
         const torch::NoGradGuard no_grad;
         if (state.light) options.light = &state.first_light;

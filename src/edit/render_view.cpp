@@ -26,6 +26,18 @@ torch::Tensor offsets(const torch::Tensor& positions, const EditScene& scene,
 
 }  // namespace
 
+SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere) {
+    const torch::NoGradGuard no_grad;
+    const auto options = surface.position.options();
+    const torch::Tensor center =
+        torch::tensor({sphere.center.x, sphere.center.y, sphere.center.z}, options);
+    const auto pixels = [&](const torch::Tensor& values) {
+        return scatter(values, surface, raster, torch::zeros({3}, options));
+    };
+    return {raster.depth, pixels((surface.position - center) / sphere.radius),
+            pixels(surface.normal)};
+}
+
 EditView render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
                      const ViewOptions& options) {
     const int scale = supersampling(settings.resolution);
@@ -39,7 +51,7 @@ EditView render_view(const EditScene& scene, const EditSettings& settings, Neura
     const Raster raster = rasterize(scene.geometry, cameras, size, size);
     const Surface surface = interpolate_surface(scene.geometry, raster, cameras);
     EditView view;
-    view.depth = raster.depth;
+    view.shape = seen_shape(raster, surface, scene.sphere);
     view.surface = surface;
     if (options.spread > 0) {
         view.surface.position =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/edit/scene.h"
+#include "item3d/models/shape_condition.h"
 
 #include <torch/types.h>
 
@@ -11,7 +12,7 @@ namespace item3d {
 
 struct EditView {
     torch::Tensor images;     ///< [N, 3, R, R] sRGB, differentiable in the field
-    torch::Tensor depth;      ///< [N, R', R'] z-depth, 0: background; R' is R or finer
+    SeenShape shape;          ///< [N, R', R'], R' is R or finer
     torch::Tensor coverage;   ///< [N, 1, R, R] 0 .. 1, how much of each pixel the model covers
     MaterialSample material;  ///< at the surface points of the picture
     Surface surface;          ///< those points, where the material was looked up
@@ -27,6 +28,9 @@ struct ViewOptions {
     std::uint64_t spread_draw = 0;            ///< another draw of those offsets
     const EnvironmentLight* light = nullptr;  ///< null: what the scene's lights have for it
 };
+
+/// What these views show of the model in `sphere`.
+SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere);
 
 EditView render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
                      const ViewOptions& options);

@@ -4,6 +4,7 @@
 #include "item3d/guidance/text_direction.h"
 #include "item3d/models/pipeline.h"
 #include "item3d/models/safetensors.h"
+#include "item3d/models/shape_condition.h"
 
 #include <torch/types.h>
 
@@ -42,7 +43,7 @@ struct GuidanceOptions {
 /// Renders of one iteration.
 struct GuidanceInput {
     torch::Tensor images;  ///< [N, 3, H, W] sRGB in [0, 1]; what the gradient is with respect to
-    torch::Tensor depth;   ///< [N, H, W] z-depth, 0: background; read where the prior takes depth
+    SeenShape shape;       ///< read where the prior takes it
     /// [N, 3, H, W] the unedited model from the same cameras in the same light; undefined unless
     /// Guidance::needs_reference().
     torch::Tensor reference = {};

@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
 #include "item3d/guidance/timestep_schedule.h"
-#include "item3d/models/depth_condition.h"
+#include "item3d/models/shape_condition.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 
@@ -99,7 +99,7 @@ NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input
     result.weight = timestep_weight(options.weighting, result.alphas_cumprod);
     result.noisy = result.alphas_cumprod.sqrt() * result.latents.detach() +
                    (1 - result.alphas_cumprod).sqrt() * result.noise;
-    result.condition = condition_of_depth(pipeline, input.depth, result.latents);
+    result.condition = condition_of_shape(pipeline, input.shape, result.latents);
     return result;
 }
 

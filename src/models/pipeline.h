@@ -59,7 +59,7 @@ class Pipeline {
     torch::Tensor decode_image(const torch::Tensor& latents) const;
     /// U-Net's noise prediction eps (v-prediction is converted), float32. `condition`: extra input
     /// channels [N, c, h, w] (or one row for all), concatenated to the latents where the U-Net
-    /// takes them; left out, they are zero, which the embedded prior knows as "no depth". text: N
+    /// takes them; left out, they are zero, which the embedded prior knows as "no shape". text: N
     /// rows or one for all. SDXL is told that the picture is neither scaled nor cropped.
     /// Differentiable in whatever asks for it. With a ControlNet, `condition` is its picture [N, 3,
     /// H, W]; left out, the ControlNet is not asked.
@@ -74,7 +74,7 @@ class Pipeline {
     /// True with a second text encoder.
     bool is_sdxl() const { return !text_encoder_2.is_empty(); }
     int latent_channels() const;
-    int condition_channels() const;  ///< in_channels - latent_channels (1: depth)
+    int condition_channels() const;  ///< in_channels - latent_channels (models/shape_condition.h)
     int downscale() const;           ///< image pixels a latent cell (4 or 8)
     torch::Device device() const;
 

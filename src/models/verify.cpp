@@ -10,6 +10,7 @@
 #include "item3d/models/noise_schedule.h"
 #include "item3d/models/packable_linear.h"
 #include "item3d/models/safetensors.h"
+#include "item3d/models/shape_condition.h"
 #include "item3d/models/unet.h"
 #include "item3d/models/weights.h"
 
@@ -254,7 +255,8 @@ class Verification {
                              fmt::format("vocab_size is {}, but the tokenizer has an id {}",
                                          text_.front().vocab_size, tokenizer_->largest_id()),
                              hint);
-        if (report_.condition_channels > 1)
+        if (report_.condition_channels > 1 &&
+            report_.condition_channels != surface_condition_channels)
             throw InputError(file,
                              fmt::format("its {} further input channels (inpainting or picture "
                                          "editing) cannot be filled",

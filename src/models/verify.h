@@ -40,8 +40,8 @@ struct PriorReport {
     std::vector<PartReport> parts;
     std::vector<MemoryReport> memory;  ///< empty when there are problems
     int resolution = 0;                ///< pixels of a side that the U-Net was trained on
-    int condition_channels = 0;        ///< U-Net inputs beyond the latents (1: depth)
-    std::string prediction_type;       ///< "epsilon", "v_prediction", "sample"
+    int condition_channels = 0;   ///< U-Net inputs beyond the latents (models/shape_condition.h)
+    std::string prediction_type;  ///< "epsilon", "v_prediction", "sample"
     /// One line each, naming the file: what is missing, misshapen or unsupported.
     std::vector<std::string> problems;
 

@@ -12,12 +12,20 @@ namespace fs = std::filesystem;
 
 constexpr const char* another_size = "is of a network of another size than this training's";
 constexpr const char* size_hint =
-    "give the --widths, --resolution and --no-depth that the prior was trained with";
+    "give the --widths, --resolution and --condition that the prior was trained with";
+
+/// A U-Net that was told less than `to` gets weights of 0 for the rest: it begins as it was.
+torch::Tensor with_more_inputs(const torch::Tensor& weight, const torch::Tensor& to) {
+    const std::int64_t more = to.size(1) - weight.size(1);
+    return more > 0 ? torch::constant_pad_nd(weight, {0, 0, 0, 0, 0, more}) : weight;
+}
 
 void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::nn::Module& to) {
     const torch::NoGradGuard no_grad;
-    const auto given = from.named_parameters();
+    auto given = from.named_parameters();
     auto wanted = to.named_parameters();
+    if (torch::Tensor* input = given.find("conv_in.weight"))
+        *input = with_more_inputs(*input, wanted["conv_in.weight"]);
     bool fits = given.size() == wanted.size();
     for (const auto& item : wanted) {
         const torch::Tensor* value = given.find(item.key());
@@ -35,8 +43,10 @@ void check_begin_with(const TrainSettings& settings) {
         throw InputError(settings.output.string(), "would be overwritten while it is begun with",
                          "give another folder with -o");
     const fs::path file = settings.begin_with / "unet" / "config.json";
-    const auto given = UNet2DConditionConfig::from_config(Config::read(file));
-    if (given.to_json() != prior_unet_config(settings).to_json())
+    auto given = UNet2DConditionConfig::from_config(Config::read(file));
+    const UNet2DConditionConfig wanted = prior_unet_config(settings);
+    if (given.in_channels < wanted.in_channels) given.in_channels = wanted.in_channels;
+    if (given.to_json() != wanted.to_json())
         throw InputError(file.string(), another_size, size_hint);
     begin_with_autoencoder(settings.begin_with, settings.resolution);
 }

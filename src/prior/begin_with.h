@@ -26,8 +26,8 @@ std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const std::filesystem::p
 /// "begun_with": all of it}.
 nlohmann::json begin_with_record(const std::filesystem::path& folder);
 
-/// Copies the weights of the prior in `folder`. Throws InputError where its networks are of other
-/// sizes than these.
+/// Copies the weights of the prior in `folder`. Where its U-Net is told less of the shape than this
+/// one, weights for the rest are 0. Throws InputError where its networks are of other sizes.
 void begin_with_weights(const std::filesystem::path& folder, UNet2DCondition& unet,
                         ClipTextModel& text);
 

@@ -4,6 +4,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/words.h"
+#include "item3d/models/shape_condition.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/shapes.h"
 #include "item3d/prior/workers.h"
@@ -226,8 +227,9 @@ class Measurement {
         const TextEmbedding text = pipeline_.encode_text(captions);
         torch::Tensor condition;
         // With the depth the noun hardly matters: objects are told by the picture alone.
-        if (pipeline_.condition_channels() == 1) {
-            condition = example.depth.to(torch::kFloat32).unsqueeze(0);
+        if (pipeline_.condition_channels() > 0) {
+            condition = shape_condition(example.cells.to(torch::kFloat32).unsqueeze(0),
+                                        pipeline_.condition_channels());
             if (!entry.shape_class.empty()) condition = torch::zeros_like(condition);
         }
         torch::Tensor loss = torch::zeros({rows});

@@ -187,7 +187,7 @@ Example draw_example(Random& random, const ShapeView& view,
     if (wish.plain_background) background = {Vec3(.8f), Vec3(.8f)};
     Example example;
     example.image = to_image(view, encoded, background, mirrored, example.covered);
-    example.depth = mirrored ? view.depth.flip(2) : view.depth;
+    example.cells = mirrored ? view.cells.flip(2) : view.cells;
     const ShapeClass& shape = shape_classes()[static_cast<std::size_t>(view.shape_class)];
     PictureWords words{shape.nouns, material.phrases, light.phrases, {}};
     if (part) words.part = PartWords{part->noun, part->material.phrases};

@@ -17,7 +17,7 @@ namespace item3d {
 /// A picture with its caption and what is on it.
 struct Example {
     torch::Tensor image;    ///< [S, S, 3] float32, sRGB in [0, 1]
-    torch::Tensor depth;    ///< [1, latent_size, latent_size] fp16
+    torch::Tensor cells;    ///< as ShapeView::cells
     torch::Tensor covered;  ///< [S, S] float32, part of the pixel that is object
     std::string caption;
     PictureFacts facts;

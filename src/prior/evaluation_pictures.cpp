@@ -1,5 +1,6 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/models/shape_condition.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/dataset.h"
 #include "item3d/prior/evaluation.h"
@@ -75,10 +76,12 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const Pipeline& pipe
     SampleGrid grid;
     grid.objects = sample_objects(words, side);
     grid.materials = sample_materials(words, side);
-    std::vector<torch::Tensor> depths;
+    std::vector<torch::Tensor> conditions;
     if (with_shape)
         for (const std::string& object : grid.objects)
-            depths.push_back(whole_view(object, seed).depth.to(torch::kFloat32).unsqueeze(0));
+            conditions.push_back(
+                shape_condition(whole_view(object, seed).cells.to(torch::kFloat32).unsqueeze(0),
+                                pipeline.condition_channels()));
     GenerateOptions options = generate_defaults(prior, pipeline);
     options.show_progress = false;
     Progress progress(with_shape ? "samples in given shapes" : "samples",
@@ -90,7 +93,7 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const Pipeline& pipe
             options.prompt = mend_articles(prompt);
             options.seed = seed + grid.prompts.size();
             const torch::Tensor picture =
-                generate(pipeline, options, with_shape ? depths[column] : torch::Tensor());
+                generate(pipeline, options, with_shape ? conditions[column] : torch::Tensor());
             grid.prompts.push_back(options.prompt);
             grid.pictures.push_back(to_image(picture[0]));
             progress.update(static_cast<std::int64_t>(grid.prompts.size()));

@@ -5,6 +5,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/models/safetensors.h"
+#include "item3d/models/shape_condition.h"
 #include "item3d/prior/begin_with.h"
 #include "item3d/prior/classifier.h"
 #include "item3d/prior/export.h"
@@ -80,19 +81,19 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
     const std::int64_t count = settings.data_samples / at_once * at_once;
     LatentData data;
     data.latents = torch::empty({count, latent_channels, latent_size, latent_size}, torch::kHalf);
-    data.depth = torch::empty({count, 1, latent_size, latent_size}, torch::kHalf);
+    data.cells = torch::empty({count, shape_cell_channels, latent_size, latent_size}, torch::kHalf);
     data.tokens = torch::empty({count, text_length}, torch::kInt16);
     data.empty_tokens = tokenizer.encode_batch({""}, text_length)[0].to(torch::kInt16);
     Progress progress("examples", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
     run_workers(count / at_once, settings.replicas, [&](std::int64_t job) {
-        std::vector<torch::Tensor> images, depths;
+        std::vector<torch::Tensor> images, cells;
         std::vector<std::string> captions;
         for (std::int64_t i = job * at_once; i < (job + 1) * at_once; ++i) {
             Example example = source.draw(i);
             images.push_back(std::move(example.image));
-            depths.push_back(std::move(example.depth));
+            cells.push_back(std::move(example.cells));
             captions.push_back(std::move(example.caption));
         }
         // [N, H, W, 3] seen as [N, 3, H, W] is channels-last already.
@@ -107,7 +108,7 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
             return all.slice(0, job * at_once, (job + 1) * at_once);
         };
         rows(data.latents).copy_(latents);
-        rows(data.depth).copy_(torch::stack(depths));
+        rows(data.cells).copy_(torch::stack(cells));
         rows(data.tokens).copy_(tokenizer.encode_batch(captions, text_length));
         const std::lock_guard lock(mutex);
         progress.update(done += at_once);
@@ -119,7 +120,7 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
 /// What the data depends on: a work folder made with other settings is not gone on with. Replicas
 /// are those of all processes, so that a training may go on with them spread otherwise.
 nlohmann::json fingerprint(const TrainSettings& s) {
-    return {{"version", 5},
+    return {{"version", 6},
             {"seed", s.seed},
             {"begin_with", s.begin_with.string()},
             {"resolution", s.resolution},
@@ -265,7 +266,7 @@ Prepared hand_on(const ProcessGroup& processes, Prepared prepared) {
 
 NamedTensors LatentData::tensors() const {
     return {
-        {"latents", latents}, {"depth", depth}, {"tokens", tokens}, {"empty_tokens", empty_tokens}};
+        {"latents", latents}, {"cells", cells}, {"tokens", tokens}, {"empty_tokens", empty_tokens}};
 }
 
 LatentData LatentData::from_tensors(const NamedTensors& tensors, std::size_t vocabulary,
@@ -276,14 +277,14 @@ LatentData LatentData::from_tensors(const NamedTensors& tensors, std::size_t voc
             if (name == wanted && tensor.scalar_type() == dtype) return tensor;
         throw InputError(file.string(), fmt::format("has no '{}' of the right type", wanted), hint);
     };
-    const LatentData data{take("latents", torch::kHalf), take("depth", torch::kHalf),
+    const LatentData data{take("latents", torch::kHalf), take("cells", torch::kHalf),
                           take("tokens", torch::kInt16), take("empty_tokens", torch::kInt16)};
     const std::int64_t rows = data.latents.dim() > 0 ? data.latents.size(0) : 0;
     const auto has = [](const torch::Tensor& tensor, const std::vector<std::int64_t>& shape) {
         return tensor.sizes().vec() == shape;
     };
     if (rows == 0 || !has(data.latents, {rows, latent_channels, latent_size, latent_size}) ||
-        !has(data.depth, {rows, 1, latent_size, latent_size}) ||
+        !has(data.cells, {rows, shape_cell_channels, latent_size, latent_size}) ||
         !has(data.tokens, {rows, text_length}) || !has(data.empty_tokens, {text_length}))
         throw InputError(file.string(), "its tensors do not have the shapes of this program's data",
                          hint);
@@ -311,7 +312,7 @@ nlohmann::json settings_json(const TrainSettings& settings) {
                 {"labeled_samples", settings.labeled_samples},
                 {"labeled_variants", settings.labeled_variants},
                 {"widths", settings.widths},
-                {"depth_condition", settings.depth_condition},
+                {"condition", settings.condition},
                 {"prediction_type", settings.prediction_type},
                 {"optimizer", settings.optimizer},
                 {"learning_rate", as_written(settings.learning_rate)},

@@ -44,7 +44,7 @@ struct TrainSettings {
     float pattern_weight = 1;
     /// Widths of the U-Net's levels, multiples of 16.
     std::vector<int> widths{48, 96, 144};
-    bool depth_condition = true;                   ///< one more input channel
+    std::string condition = "surface";             ///< what it is told: or "depth", or "none"
     std::string prediction_type = "v_prediction";  ///< or "epsilon"
     std::string optimizer = "muon";                ///< of all but the autoencoder; or "adamw"
     int replicas = 2;                              ///< of each process
@@ -87,7 +87,7 @@ struct LatentData {
                                    const std::filesystem::path& file);
 
     torch::Tensor latents;       ///< [N, latent_channels, 16, 16] fp16, scaled
-    torch::Tensor depth;         ///< [N, 1, 16, 16] fp16
+    torch::Tensor cells;         ///< [N, 7, 16, 16] fp16, shape_cells()
     torch::Tensor tokens;        ///< [N, text_length] int16
     torch::Tensor empty_tokens;  ///< [text_length] int16, the empty prompt
 };

@@ -1,6 +1,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
 #include "item3d/models/noise_schedule.h"
+#include "item3d/models/shape_condition.h"
 #include "item3d/prior/begin_with.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/replicas.h"
@@ -54,22 +55,24 @@ torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
                   static_cast<std::uint64_t>(step) * 4096);
     const torch::Tensor index = torch::tensor(rows);
     const torch::Tensor latents = data.latents.index_select(0, index).to(torch::kFloat32);
-    torch::Tensor depth = data.depth.index_select(0, index).to(torch::kFloat32);
-    const torch::Tensor weights = object_weights(depth);
+    const torch::Tensor cells = data.cells.index_select(0, index).to(torch::kFloat32);
+    const torch::Tensor weights = object_weights(cells.slice(1, 0, 1));
+    const auto more = static_cast<int>(networks.unet->config().in_channels - latents.size(1));
+    torch::Tensor condition = shape_condition(cells, more);
     torch::Tensor tokens = data.tokens.index_select(0, index).to(torch::kInt64);
     std::vector<std::int64_t> times;
     for (std::int64_t i = 0; i < count; ++i) {
         // Stratified: each batch covers the whole range of timesteps evenly.
         const double t = (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
         times.push_back(std::min<std::int64_t>(999, static_cast<std::int64_t>(t * 1000)));
-        if (random.chance(.15)) depth[i].zero_();
+        if (random.chance(.15) && more > 0) condition[i].zero_();
         if (random.chance(.10)) tokens[i].copy_(data.empty_tokens);
     }
     const torch::Tensor timesteps = torch::tensor(times);
     auto generator = at::detail::createCPUGenerator(random.bits());
     const torch::Tensor noise = torch::randn(latents.sizes(), generator);
     torch::Tensor input = schedule.add_noise(latents, noise, timesteps);
-    if (networks.unet->config().in_channels > input.size(1)) input = torch::cat({input, depth}, 1);
+    if (more > 0) input = torch::cat({input, condition}, 1);
     input = input.contiguous(torch::MemoryFormat::ChannelsLast);
     torch::Tensor prediction;
     {
@@ -94,13 +97,20 @@ int heads_of(int width) {
     return 1;
 }
 
+int condition_channels_of(const std::string& condition) {
+    if (condition == "none") return 0;
+    if (condition == "depth") return 1;
+    ITEM3D_CHECK(condition == "surface", "a U-Net is told surface, depth or none");
+    return surface_condition_channels;
+}
+
 }  // namespace
 
 UNet2DConditionConfig prior_unet_config(const TrainSettings& settings) {
     const std::vector<int>& widths = settings.widths;
     UNet2DConditionConfig config;
     config.sample_size = latent_size;
-    config.in_channels = latent_channels + (settings.depth_condition ? 1 : 0);
+    config.in_channels = latent_channels + condition_channels_of(settings.condition);
     config.out_channels = latent_channels;
     const std::size_t levels = widths.size();
     config.block_out_channels = widths;

@@ -2,12 +2,13 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/models/depth_condition.h"
+#include "item3d/models/shape_condition.h"
 #include "item3d/prior/polygonize.h"
 #include "item3d/prior/shapes.h"
 #include "item3d/prior/sky_visibility.h"
 #include "item3d/prior/workers.h"
 #include "item3d/render/rasterize.h"
+#include "item3d/render/shade.h"
 #include "item3d/scene/camera.h"
 
 #include <algorithm>
@@ -96,7 +97,11 @@ std::vector<ShapeView> make_views(const std::string& shape_class, int variant, i
     }
     const Raster raster = rasterize(geometry, cameras, size, size);
     const Surface surface = interpolate_surface(geometry, raster, cameras);
-    const torch::Tensor depth = depth_condition(raster.depth, size / latent_size);  // [N, 1, h, w]
+    const auto image_of = [&](const torch::Tensor& values) {
+        return scatter(values, surface, raster, torch::zeros({3}));
+    };
+    const SeenShape seen{raster.depth, image_of(surface.position), image_of(surface.normal)};
+    const torch::Tensor cells = shape_cells(seen, size / latent_size);  // [N, 7, h, w]
 
     for (std::size_t i = 0; i < views.size(); ++i) {
         views[i].shape_class = index;
@@ -105,7 +110,7 @@ std::vector<ShapeView> make_views(const std::string& shape_class, int variant, i
         views[i].camera = cameras[i].position();
         for (const ShapePart& part : shape.parts)
             views[i].parts.push_back(part.noun);
-        views[i].depth = depth[static_cast<std::int64_t>(i)].to(torch::kHalf).contiguous();
+        views[i].cells = cells[static_cast<std::int64_t>(i)].to(torch::kHalf).contiguous();
     }
     SkyVisibility sky(geometry);
     const torch::Tensor pixels = surface.pixel.contiguous();

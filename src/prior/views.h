@@ -35,8 +35,9 @@ struct ShapeView {
     std::vector<std::int16_t> normal;    ///< [P * 3] likewise, unit, towards the viewer
     std::vector<std::uint8_t> part;      ///< [P] index into parts
     std::vector<std::uint32_t> sky;      ///< [P] what it sees of the sky (sky_visibility.h)
-    torch::Tensor
-        depth;  ///< [1, latent_size, latent_size] fp16, depth_condition of models/pipeline.h
+    /// [shape_cell_channels, latent_size, latent_size] fp16, shape_cells() of
+    /// models/shape_condition.h
+    torch::Tensor cells;
 
     std::size_t count() const { return pixel.size(); }
     Vec3 position_at(std::size_t i) const {

@@ -4,9 +4,18 @@
 namespace item3d::paint {
 namespace {
 
-std::vector<std::string> dyed(const std::string& color, const std::string& fabric) {
-    return {color + " " + fabric + " {o}", color + " " + fabric + " {o}", fabric + " {o}",
-            "{o} made of " + color + " " + fabric};
+/// What is dyed in a colour that captions say, or in that which it is known by.
+struct Dye {
+    std::string color;
+    Wording words;
+};
+
+Dye dye(Random& random, const MaterialWish& wish, const std::string& fabric,
+        const std::string& usual) {
+    const bool named = !wish.color.empty() || random.chance(.65);
+    const std::string color = named ? one_color(random, wish) : usual, both = color + " " + fabric;
+    return {color, wording(named, {both + " {o}", both + " {o}", "{o} made of " + both},
+                           {fabric + " {o}", fabric + " {o}", "{o} made of " + fabric})};
 }
 
 ProceduralMaterial denim(Random& random, const MaterialWish&) {
@@ -27,14 +36,16 @@ ProceduralMaterial denim(Random& random, const MaterialWish&) {
 
 /// Pile that lies one way or the other: patches of two shades, brightest at grazing light.
 ProceduralMaterial velvet(Random& random, const MaterialWish& wish) {
-    const std::string name = one_color(random, wish);
+    const auto [name, words] = dye(random, wish, "velvet", "maroon");
     const Vec3 color = vary(random, color_named(name), .07);
     const CosineNoise brushed(random, draw(random, 3.5, 5), 1);
-    return {"", name, dyed(name, "velvet"), [=](const Vec3& p, const Vec3&) {
+    return {"", name, words.phrases,
+            [=](const Vec3& p, const Vec3&) {
                 Vec3 gradient(0.0f);
                 const float lay = smooth_step(brushed.with_gradient(p, gradient), -.25f, .25f);
                 return MaterialValue{limit(color * (.35f + .95f * lay)), 1, 0, gradient * .06f};
-            }};
+            },
+            words.also_true};
 }
 
 /// Rows of V-shaped stitches.
@@ -60,16 +71,18 @@ ProceduralMaterial knit(Random& random, const MaterialWish& wish) {
 }
 
 ProceduralMaterial silk(Random& random, const MaterialWish& wish) {
-    const std::string name = one_color(random, wish);
+    auto [name, words] = dye(random, wish, "silk", "pink");
     const Vec3 color = vary(random, color_named(name), .07);
     const CosineNoise folds(random, draw(random, 4, 6), 1, {1, .45f, 1});
-    std::vector<std::string> phrases = dyed(name, "silk");
-    phrases.push_back(name + " satin {o}");
-    return {"", name, phrases, [=](const Vec3& p, const Vec3&) {
-                Vec3 gradient(0.0f);
-                folds.with_gradient(p, gradient);
-                return MaterialValue{color, .24f, .35f, gradient * .12f};
-            }};
+    words.phrases.emplace_back("satin {o}");
+    return {
+        "", name, words.phrases,
+        [=](const Vec3& p, const Vec3&) {
+            Vec3 gradient(0.0f);
+            const float height = smooth_step(folds.with_gradient(p, gradient), -1, 1);
+            return MaterialValue{limit(color * (.6f + .55f * height)), .24f, .35f, gradient * .12f};
+        },
+        words.also_true};
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ ProceduralMaterial candy(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Sprinkles on icing.
+/// Rods of icing sugar, lying four ways.
 ProceduralMaterial sprinkles(Random& random, const MaterialWish&) {
     static constexpr std::array<std::array<float, 3>, 5> tones{{{.8f, .05f, .05f},
                                                                 {.05f, .3f, .8f},
@@ -62,14 +62,19 @@ ProceduralMaterial sprinkles(Random& random, const MaterialWish&) {
     const bool pink = random.chance(.75);
     const Vec3 base =
         pink ? vary(random, {.86f, .36f, .48f}, .07) : vary(random, {.12f, .045f, .02f}, .07);
-    const float size = draw(random, 2.9, 3.4);
     return {"",
             "",
             {"sprinkle covered {o}", "{o} covered in sprinkles", "{o} with sprinkles"},
-            [=](const Vec3& p, const Vec3&) {
-                const NearPoints near = near_points(p * size);
-                const auto& tone = tones[static_cast<std::size_t>(near.value * 4.999f)];
-                const bool on = near.first < .36f;
+            [=](const Vec3& p, const Vec3& n) {
+                const Vec2 uv = flat_coordinates(p, n) * 3.0f;
+                const Vec2 cell = glm::floor(uv), q = uv - cell - .5f;
+                const auto number = [&](int which) { return cell_value(cell.x, cell.y, which); };
+                const float angle = std::floor(number(0) * 4) * pi / 4;
+                const Vec2 along(std::cos(angle), std::sin(angle));
+                const float beyond = std::max(std::abs(glm::dot(q, along)) - .22f, 0.0f);
+                const float aside = q.x * along.y - q.y * along.x;
+                const bool on = std::hypot(beyond, aside) < .2f;
+                const auto& tone = tones[static_cast<std::size_t>(number(1) * 4.999f)];
                 return MaterialValue{on ? Vec3(tone[0], tone[1], tone[2]) : base, .3f, 0};
             }};
 }

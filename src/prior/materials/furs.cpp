@@ -52,15 +52,13 @@ ProceduralMaterial tiger(Random& random, const MaterialWish&) {
 
 /// Brown patches between pale lines.
 ProceduralMaterial giraffe(Random& random, const MaterialWish&) {
-    const float size = draw(random, 2, 2.8);
-    const CosineNoise warp(random, 5);
     const Vec3 patch = vary(random, {.36f, .14f, .04f}, .1),
                line = vary(random, {.78f, .6f, .36f}, .06);
     return {"",
             "",
             {"giraffe {o}", "{o} with giraffe spots", "giraffe print {o}", "giraffe patterned {o}"},
             [=](const Vec3& p, const Vec3&) {
-                const NearPoints near = near_points(p * size + .08f * warp(p));
+                const NearPoints near = near_points(p * 2.0f);
                 const float w = smooth_step(near.second - near.first, .1f, .18f);
                 return MaterialValue{mix(line, patch * (.75f + .5f * near.value), w), .8f, 0};
             }};
@@ -68,17 +66,15 @@ ProceduralMaterial giraffe(Random& random, const MaterialWish&) {
 
 /// White with black spots of all sizes.
 ProceduralMaterial dalmatian(Random& random, const MaterialWish&) {
-    const float size = draw(random, 2.2, 3);
-    const CosineNoise warp(random, 7);
+    const Vec3 coat = vary(random, {.84f, .82f, .78f}, .03);
     return {"",
             "",
             {"dalmatian {o}", "{o} with dalmatian spots", "dalmatian print {o}"},
             [=](const Vec3& p, const Vec3&) {
-                const NearPoints near = near_points(p * size);
+                const NearPoints near = near_points(p * 2.0f);
                 const float radius = .2f + .22f * near.value;
-                const float w =
-                    smooth_step(near.first + .05f * warp(p), radius - .03f, radius + .03f);
-                return MaterialValue{mix({.015f, .014f, .014f}, {.84f, .82f, .78f}, w), .75f, 0};
+                const float w = smooth_step(near.first, radius - .03f, radius + .03f);
+                return MaterialValue{mix({.015f, .014f, .014f}, coat, w), .75f, 0};
             }};
 }
 

@@ -35,16 +35,17 @@ Wording wording_of(const TwoTone& tones, const std::string& adjective, const std
                    {adjective + " {o}", adjective + " {o}", "{o} with " + noun});
 }
 
-// All of these lie the same way on every object, and differ little in size: a network as small as
-// the embedded prior's draws blots where the place of each stripe is chance.
+// All of these lie in the same place of the same space on every object, and the network is told
+// where that is (models/shape_condition.h): as small as it is, it draws blots where the place of
+// each stripe is chance. Cells are half a unit wide, 13 pixels.
+constexpr float cells_a_unit = 2;
 
 ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "white");
-    const float frequency = draw(random, 1.5, 2);
     const Wording words = wording_of(tones, "striped", "stripes");
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3&) {
-                const float s = fraction(p.y * frequency);
+                const float s = fraction(p.y * cells_a_unit);
                 const float w = smooth_step(std::abs(s - .5f), .235f, .265f);
                 return MaterialValue{mix(tones.a, tones.b, w), tones.roughness, 0};
             },
@@ -53,12 +54,11 @@ ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {
 
 ProceduralMaterial checks(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "black", "white");
-    const float frequency = draw(random, 1.7, 2.2);
     Wording words = wording_of(tones, "checkered", "checks");
     if (!tones.named) words.phrases.emplace_back("{o} with a checkerboard pattern");
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n) * frequency;
+                const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
                 const float sum = std::floor(uv.x) + std::floor(uv.y);
                 return MaterialValue{odd(sum) ? tones.b : tones.a, tones.roughness, 0};
             },
@@ -68,7 +68,7 @@ ProceduralMaterial checks(Random& random, const MaterialWish& wish) {
 ProceduralMaterial dots(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "white");
     const auto& [first, second, a, b, roughness, named] = tones;
-    const float frequency = draw(random, 1.7, 2.2), size = draw(random, .27, .33);
+    constexpr float size = .3f;
     const std::string both = first + " and " + second;
     const Wording words = wording(
         named,
@@ -77,7 +77,7 @@ ProceduralMaterial dots(Random& random, const MaterialWish& wish) {
         {"polka dot {o}", "polka dot {o}", "{o} with polka dots", "dotted {o}", "{o} with dots"});
     return {"", first, words.phrases,
             [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n) * frequency;
+                const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
                 const float row = std::floor(uv.y);
                 const float u = uv.x + (odd(row) ? .5f : 0.0f);
                 const float d = std::hypot(fraction(u) - .5f, uv.y - row - .5f);
@@ -89,14 +89,13 @@ ProceduralMaterial dots(Random& random, const MaterialWish& wish) {
 
 ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "orange", "white");
-    const float frequency = draw(random, 1.4, 1.8), width = draw(random, 1.5, 1.9);
     Wording words = wording_of(tones, "zigzag", "zigzags");
     if (!tones.named) words.phrases.emplace_back("{o} with a chevron pattern");
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n);
-                const float tooth = std::abs(fraction(uv.x * width) - .5f) * 2 / width;
-                const float s = fraction((uv.y + tooth * .8f) * frequency);
+                const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
+                const float tooth = std::abs(fraction(uv.x) - .5f) * 1.2f;
+                const float s = fraction(uv.y + tooth);
                 const float w = smooth_step(std::abs(s - .5f), .23f, .27f);
                 return MaterialValue{mix(tones.a, tones.b, w), tones.roughness, 0};
             },
@@ -106,17 +105,16 @@ ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
 /// Crossing bands, as woven: a third tone where they cross, and a thin line.
 ProceduralMaterial tartan(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "green");
-    const float frequency = draw(random, 1.25, 1.6);
     const Vec3 line = color_named("yellow");
     Wording words = wording_of(tones, "tartan", "tartan");
     words.phrases.push_back(tones.named ? "plaid " + tones.first + " and " + tones.second + " {o}"
                                         : "plaid {o}");
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n) * frequency;
+                const Vec2 uv = flat_coordinates(p, n);
                 const float x = fraction(uv.x), y = fraction(uv.y);
                 const float bands = (x < .5f ? .5f : 0.0f) + (y < .5f ? .5f : 0.0f);
-                const bool thin = std::abs(x - .25f) < .06f || std::abs(y - .25f) < .06f;
+                const bool thin = std::abs(x - .25f) < .08f || std::abs(y - .25f) < .08f;
                 const Vec3 cloth = mix(tones.a, tones.b, bands);
                 return MaterialValue{thin ? mix(cloth, line, .7f) : cloth, .95f, 0};
             },

@@ -13,7 +13,6 @@ ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
         named ? two_colors(random, wish) : std::pair<std::string, std::string>("white", "pink");
     const Vec3 ground = vary(random, color_named(first)), petal = vary(random, color_named(second));
     const Vec3 core = second == "yellow" ? Vec3(.7f, .1f, .02f) : Vec3(.9f, .65f, .05f);
-    const float frequency = draw(random, 1.5, 2.1);
     const Wording words = wording(
         named,
         {first + " and " + second + " floral {o}", first + " {o} with " + second + " flowers"},
@@ -22,7 +21,7 @@ ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
     return {
         "", first, words.phrases,
         [=](const Vec3& p, const Vec3& n) {
-            const Vec2 uv = flat_coordinates(p, n) * frequency;
+            const Vec2 uv = flat_coordinates(p, n) * 2.0f;
             const float row = std::floor(uv.y);
             const float u = uv.x + (odd(row) ? .5f : 0.0f), column = std::floor(u);
             const Vec2 jitter(cell_value(column, row, 1) - .5f, cell_value(column, row, 2) - .5f);
@@ -67,16 +66,16 @@ ProceduralMaterial cracks(Random& random, const MaterialWish& wish) {
     const std::string name = named ? one_color(random, wish) : "beige";
     const Vec3 color = vary(random, color_named(name));
     const Vec3 deep = name == "black" ? Vec3(.35f) : color * .06f;
-    const float size = draw(random, 1.7, 2.2);
-    const CosineNoise warp(random, 6, 2);
+    Random plates(1);
+    const CosineNoise warp(plates, 6, 2);
     const Wording words = wording(named, {"cracked " + name + " {o}", name + " {o} with cracks"},
                                   {"cracked {o}", "{o} with cracks"});
     return {
         "", name, words.phrases,
         [=](const Vec3& p, const Vec3&) {
-            const NearPoints near = near_points(p * size + .12f * warp(p));
+            const NearPoints near = near_points(p * 2.0f + .08f * warp(p));
             const float gap = near.second - near.first;
-            const float w = smooth_step(gap, .08f, .15f);
+            const float w = smooth_step(gap, .1f, .2f);
             return MaterialValue{limit(mix(deep, color * (.9f + .2f * near.value), w)), .75f, 0};
         },
         words.also_true};

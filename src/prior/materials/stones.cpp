@@ -71,25 +71,27 @@ ProceduralMaterial concrete(Random& random, const MaterialWish&) {
             }};
 }
 
-/// Round stones in mortar.
+/// Round stones in mortar, in rows.
 ProceduralMaterial cobblestone(Random& random, const MaterialWish&) {
-    const float size = draw(random, 2.1, 2.6);
     const Vec3 tone = vary(random, {.3f, .29f, .27f}), mortar = vary(random, {.06f, .055f, .05f});
     return {"",
             "",
             {"cobblestone {o}", "cobblestone {o}", "{o} made of cobblestones"},
-            [=](const Vec3& p, const Vec3&) {
-                const NearPoints near = near_points(p * size);
-                const float gap = near.second - near.first;
-                const float w = smooth_step(gap, .1f, .25f);
-                return MaterialValue{mix(mortar, tone * (.8f + .4f * near.value), w) *
-                                         (.7f + .3f * smooth_step(gap, .1f, .5f)),
-                                     .85f, 0};
+            [=](const Vec3& p, const Vec3& n) {
+                const Vec2 uv = flat_coordinates(p, n) * 2.0f;
+                const float row = std::floor(uv.y);
+                const float u = uv.x + (odd(row) ? .5f : 0.0f);
+                const Vec2 q(fraction(u) * 2 - 1, (uv.y - row) * 2 - 1);
+                const float r = q.x * q.x * q.x * q.x + q.y * q.y * q.y * q.y;
+                const float w = 1 - smooth_step(r, .15f, .45f);
+                const float value = cell_value(std::floor(u), row);
+                return MaterialValue{mix(mortar, tone * (.7f + .6f * value), w), .85f, 0,
+                                     flat_slope(q * (.7f * w), n)};
             }};
 }
 
 ProceduralMaterial brick(Random& random, const MaterialWish&) {
-    const float size = draw(random, 2.2, 3.6);
+    constexpr float size = 1.5f;
     const Vec3 light = vary(random, {.42f, .1f, .05f}), dark = vary(random, {.25f, .06f, .035f});
     const Vec3 mortar = vary(random, {.5f, .48f, .44f}, .08);
     return {"",
@@ -100,12 +102,12 @@ ProceduralMaterial brick(Random& random, const MaterialWish&) {
                 const float row = std::floor(uv.y * 2);
                 const float u = uv.x + (odd(row) ? .5f : 0.0f);
                 const float across = fraction(u), up = uv.y * 2 - row;
-                const bool joint = across < .085f || up < .17f;
+                const bool joint = across < .12f || up < .24f;
                 // Rounded edges beside the joints.
-                const Vec2 slope(across < .16f   ? -.5f
+                const Vec2 slope(across < .2f    ? -.5f
                                  : across > .93f ? .5f
                                                  : 0.0f,
-                                 up < .3f    ? -.5f
+                                 up < .36f   ? -.5f
                                  : up > .88f ? .5f
                                              : 0.0f);
                 return MaterialValue{

@@ -31,12 +31,12 @@ ProceduralMaterial wood(Random& random, const MaterialWish& wish) {
             break;
         }
     }
-    // Trunks stand: grain runs up and down on most of what is made of them.
-    const Vec3 axis = glm::normalize(Vec3{random.normal(0, .12), 1, random.normal(0, .12)});
-    const Vec3 heart{.35 + random.normal(0, .15), 0, .25 + random.normal(0, .15)};
-    const CosineNoise warp(random, 3, 2, {1, .4f, 1}), fiber(random, 30, 1, {1, .15f, 1});
-    // Rings of nine to fourteen pixels: finer ones are lost on latents of 16.
-    const float rings = draw(random, 2, 3);
+    // Trunks stand: grain runs up and down on most of what is made of them. All are the same trunk,
+    // with rings of nine pixels, so that the network can know where they are.
+    Random trunk(1);
+    const Vec3 heart{.9f, 0, .7f};
+    const CosineNoise warp(trunk, 3, 2, {1, .4f, 1}), fiber(random, 30, 1, {1, .15f, 1});
+    constexpr float rings = 3;
     const Vec3 light = vary(random, {look->light[0], look->light[1], look->light[2]}),
                dark = vary(random, {look->dark[0], look->dark[1], look->dark[2]});
     const float roughness = draw(random, .4, .75), knots = look->knots;
@@ -47,16 +47,15 @@ ProceduralMaterial wood(Random& random, const MaterialWish& wish) {
         phrases = {name + " {o}", name + " {o}", name + " wood {o}", "{o} made of " + name,
                    "wooden {o}"};
     return {"", name, phrases, [=](const Vec3& p, const Vec3&) {
-                const float along = glm::dot(p, axis);
-                const Vec3 q = p - along * axis + heart;
-                float ring = fraction((glm::length(q) + .1f * warp(p)) * rings);
+                const float distance = glm::length(Vec2(p.x + heart.x, p.z + heart.z));
+                float ring = fraction((distance + .05f * warp(p)) * rings);
                 float knot = 0;
                 if (knots > 0) {
                     const NearPoints near = near_points(p * 1.6f);
                     knot = 1 - smooth_step(near.first, .1f, .2f);
                 }
                 ring = smooth_step(ring, 0, .85f) * (1 - smooth_step(ring, .85f, 1));
-                const float w = std::clamp(.75f * ring + .15f * fiber(p) + .8f * knot, 0.0f, 1.0f);
+                const float w = std::clamp(.85f * ring + .15f * fiber(p) + .8f * knot, 0.0f, 1.0f);
                 return MaterialValue{mix(light, dark, w), roughness, 0};
             }};
 }
