@@ -270,7 +270,13 @@ TEST(ShapeCondition, SaysWhereInSpaceTheSurfaceOfEachCellIs) {
     EXPECT_LT(
         largest_difference(first, torch::tensor({diagonal, 0.0f, -1.0f, diagonal, 1.0f, 0.0f})),
         1e-5);
-    EXPECT_TRUE(all[0].slice(0, 1).select(2, 1).equal(torch::zeros({27, 1})));
+    // Its normal faces all axes alike, so x first: the plane's coordinates are (z, y).
+    const torch::Tensor plane = all[0].slice(0, 4 + 6 * space_waves, 8 + 6 * space_waves);
+    EXPECT_LT(
+        largest_difference(plane.select(2, 0).flatten(), torch::tensor({0.0f, -1.0f, 0.0f, 1.0f})),
+        1e-5);
+    EXPECT_TRUE(
+        all[0].slice(0, 1).select(2, 1).equal(torch::zeros({surface_condition_channels - 1, 1})));
 }
 
 TEST(Pipeline, KnowsItsPromptsAfterTheEncodersAreFreed) {

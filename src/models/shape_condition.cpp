@@ -5,13 +5,27 @@
 
 #include <array>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace item3d {
 namespace {
 
 /// Of a shape some 12 latent cells wide, that is two units, the finest wave has two cells.
-constexpr std::array<double, position_waves> cycles_a_unit{0.5, 1, 2, 3};
+constexpr std::array<float, space_waves> cycles_a_unit{0.5f, 1, 2, 3};
+/// Along both axes.
+constexpr std::array<std::array<float, 2>, plane_waves> plane_cycles{{{1, 0},
+                                                                      {0, 1},
+                                                                      {1, 1},
+                                                                      {1, -1},
+                                                                      {2, 0},
+                                                                      {0, 2},
+                                                                      {2, 1},
+                                                                      {2, -1},
+                                                                      {2, 2},
+                                                                      {2, -2},
+                                                                      {3, 0},
+                                                                      {0, 3}}};
 
 /// [N, 1, H, W] disparity, scaled an image to 0.2 (far) .. 1 (near).
 torch::Tensor relative_disparity(const torch::Tensor& depth, double background) {
@@ -24,6 +38,18 @@ torch::Tensor relative_disparity(const torch::Tensor& depth, double background) 
         disparity.masked_fill(covered.logical_not(), infinity).amin({1, 2}, true);
     const torch::Tensor relative = (disparity - far) / (near - far).clamp_min(1e-6);
     return torch::where(covered, 0.2 + 0.8 * relative, background).unsqueeze(1);
+}
+
+/// [N, 1, h, w] each: those of the position [N, 3, h, w] on the plane that the normal faces most.
+std::pair<torch::Tensor, torch::Tensor> plane_coordinates(const torch::Tensor& position,
+                                                          const torch::Tensor& normal) {
+    const auto channel = [](const torch::Tensor& of, int c) { return of.slice(1, c, c + 1); };
+    const torch::Tensor facing = normal.abs();
+    const torch::Tensor x = channel(facing, 0), y = channel(facing, 1), z = channel(facing, 2);
+    const torch::Tensor faces_x = (x >= y).logical_and(x >= z);
+    const torch::Tensor faces_y = faces_x.logical_not().logical_and(y >= z);
+    return {torch::where(faces_x, channel(position, 2), channel(position, 0)),
+            torch::where(faces_y, channel(position, 2), channel(position, 1))};
 }
 
 }  // namespace
@@ -62,11 +88,15 @@ torch::Tensor shape_condition(const torch::Tensor& cells, int channels) {
     ITEM3D_CHECK(channels == surface_condition_channels, "no condition has so many channels");
     const torch::Tensor covered = depth > -1;
     std::vector<torch::Tensor> all{depth, cells.slice(1, 4)};
-    for (const double cycles : cycles_a_unit) {
-        const torch::Tensor phase = cells.slice(1, 1, 4) * (2 * pi * cycles);
-        all.push_back(phase.sin() * covered);
-        all.push_back(phase.cos() * covered);
-    }
+    const auto add_wave = [&](const torch::Tensor& cycles) {
+        all.push_back((2 * pi * cycles).sin() * covered);
+        all.push_back((2 * pi * cycles).cos() * covered);
+    };
+    for (const float cycles : cycles_a_unit)
+        add_wave(cells.slice(1, 1, 4) * cycles);
+    const auto [u, v] = plane_coordinates(cells.slice(1, 1, 4), cells.slice(1, 4));
+    for (const auto& [along_u, along_v] : plane_cycles)
+        add_wave(u * along_u + v * along_v);
     return torch::cat(all, 1);
 }
 

@@ -28,11 +28,13 @@ torch::Tensor depth_picture(const torch::Tensor& depth, std::int64_t height, std
 inline constexpr int shape_cell_channels = 7;
 torch::Tensor shape_cells(const SeenShape& shape, int downscale);
 
-/// Further input channels of a U-Net that is told the surface: depth, normal and, for each of
-/// `position_waves` wavelengths, the sine and cosine of each coordinate (as Mildenhall et al. 2020,
-/// "NeRF", section 5.1), so that a pattern can lie in the same place in every view.
-inline constexpr int position_waves = 4;
-inline constexpr int surface_condition_channels = 4 + 6 * position_waves;
+/// Further input channels of a U-Net that is told the surface, so that a pattern can lie in the
+/// same place in every view: depth, normal, and sines and cosines of the position (as Mildenhall et
+/// al. 2020, "NeRF", section 5.1), first of each coordinate in `space_waves` wavelengths, then of
+/// `plane_waves` waves on the plane that the normal faces most: their sums make checks and dots.
+inline constexpr int space_waves = 4;
+inline constexpr int plane_waves = 12;
+inline constexpr int surface_condition_channels = 4 + 6 * space_waves + 2 * plane_waves;
 
 /// shape_cells() as the further input channels of a U-Net that has so many: none (undefined), 1
 /// (depth, as Stable Diffusion 2's) or surface_condition_channels.

@@ -94,7 +94,7 @@ ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3& n) {
                 const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
-                const float tooth = std::abs(fraction(uv.x) - .5f) * 1.2f;
+                const float tooth = std::abs(fraction(uv.x) - .5f);
                 const float s = fraction(uv.y + tooth);
                 const float w = smooth_step(std::abs(s - .5f), .23f, .27f);
                 return MaterialValue{mix(tones.a, tones.b, w), tones.roughness, 0};

@@ -1,4 +1,4 @@
-// Woods: rings around an axis, cut by the object's surface.
+// Woods: rings of a trunk, cut into boards.
 #include "item3d/prior/materials/makers.h"
 
 #include <array>
@@ -31,10 +31,9 @@ ProceduralMaterial wood(Random& random, const MaterialWish& wish) {
             break;
         }
     }
-    // Trunks stand: grain runs up and down on most of what is made of them. All are the same trunk,
-    // with rings of nine pixels, so that the network can know where they are.
+    // Trunks stand: grain runs up and down on most of what is made of them. All boards are sawn
+    // alike, with rings of nine pixels, so that the network can know where they are.
     Random trunk(1);
-    const Vec3 heart{.9f, 0, .7f};
     const CosineNoise warp(trunk, 3, 2, {1, .4f, 1}), fiber(random, 30, 1, {1, .15f, 1});
     constexpr float rings = 3;
     const Vec3 light = vary(random, {look->light[0], look->light[1], look->light[2]}),
@@ -46,9 +45,8 @@ ProceduralMaterial wood(Random& random, const MaterialWish& wish) {
     if (!name.empty())
         phrases = {name + " {o}", name + " {o}", name + " wood {o}", "{o} made of " + name,
                    "wooden {o}"};
-    return {"", name, phrases, [=](const Vec3& p, const Vec3&) {
-                const float distance = glm::length(Vec2(p.x + heart.x, p.z + heart.z));
-                float ring = fraction((distance + .05f * warp(p)) * rings);
+    return {"", name, phrases, [=](const Vec3& p, const Vec3& n) {
+                float ring = fraction((flat_coordinates(p, n).x + .05f * warp(p)) * rings);
                 float knot = 0;
                 if (knots > 0) {
                     const NearPoints near = near_points(p * 1.6f);
