@@ -1,5 +1,7 @@
 // Procedural shapes: distances, triangles and views.
+#include "item3d/models/shape_condition.h"
 #include "item3d/prior/lathe.h"
+#include "item3d/prior/materials/makers.h"
 #include "item3d/prior/polygonize.h"
 #include "item3d/prior/shapes.h"
 #include "item3d/prior/sky_visibility.h"
@@ -163,6 +165,21 @@ TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
         const torch::Tensor depth = cells[0];
         EXPECT_NEAR(depth.max().item<float>(), 1, .15);
         EXPECT_EQ(depth.min().item<float>(), -1);
+    }
+}
+
+TEST(Shapes, PatternsLieOnThePlaneThatTheNetworkIsTold) {
+    torch::manual_seed(3);
+    const torch::Tensor cells = torch::rand({1, shape_cell_channels, 6, 6}) * 2 - 1;
+    const torch::Tensor told = shape_condition(cells, surface_condition_channels);
+    const torch::Tensor sine = told[0][4 + 6 * space_waves], sine_up = told[0][6 + 6 * space_waves];
+    for (int y = 0; y < 6; ++y) {
+        for (int x = 0; x < 6; ++x) {
+            const auto at = [&](int channel) { return cells[0][channel][y][x].item<float>(); };
+            const Vec2 flat = paint::flat_coordinates({at(1), at(2), at(3)}, {at(4), at(5), at(6)});
+            EXPECT_NEAR(sine[y][x].item<float>(), std::sin(2 * pi * flat.x), 1e-5);
+            EXPECT_NEAR(sine_up[y][x].item<float>(), std::sin(2 * pi * flat.y), 1e-5);
+        }
     }
 }
 

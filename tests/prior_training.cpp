@@ -2,6 +2,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/models/safetensors.h"
+#include "item3d/models/shape_condition.h"
 #include "item3d/prior/begin_with.h"
 #include "item3d/prior/replicas.h"
 #include "item3d/prior/tokenizer_training.h"
