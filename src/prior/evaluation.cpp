@@ -65,6 +65,19 @@ nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>
     return measured;
 }
 
+/// For prior.json: what it has of the readers' training, with what they reach now.
+nlohmann::json readers_record(const fs::path& folder, const nlohmann::json& readers) {
+    const nlohmann::json prior = read_prior_json(folder);
+    nlohmann::json record = nlohmann::json::object();
+    for (const auto& [part, reached] :
+         {std::pair{"clip", "retrieval"}, std::pair{"captioner", "captions"}}) {
+        if (!readers.contains(reached)) continue;
+        record[part] = prior.value(part, nlohmann::json::object());
+        record[part][reached] = readers[reached];
+    }
+    return record;
+}
+
 /// What the prior's own file says of its words.
 nlohmann::json earlier_measurement(const fs::path& folder) {
     const fs::path file = folder / "prior.json";
@@ -194,6 +207,7 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
     evaluation.update(measured);
 
     measured["words"] = measure.words;
+    measured.update(readers_record(folder, evaluation["readers"]));
     update_prior_json(folder, measured);
     static const std::map<std::string, std::string> captions{
         {"samples", "Drawn from the prompts alone"},
