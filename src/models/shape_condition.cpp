@@ -101,7 +101,9 @@ torch::Tensor shape_condition(const torch::Tensor& cells, int channels) {
 }
 
 bool takes_shape(const Pipeline& pipeline) {
-    return !pipeline.controlnet.is_empty() || pipeline.condition_channels() > 0;
+    const int channels = pipeline.condition_channels();
+    return !pipeline.controlnet.is_empty() || channels == 1 ||
+           channels == surface_condition_channels;
 }
 
 torch::Tensor condition_of_shape(const Pipeline& pipeline, const SeenShape& shape,
@@ -114,6 +116,8 @@ torch::Tensor condition_of_shape(const Pipeline& pipeline, const SeenShape& shap
         return depth_picture(shape.depth, height * pixels, width * pixels).to(latents.device());
     }
     const auto downscale = static_cast<int>(shape.depth.size(1) / height);
+    if (pipeline.condition_channels() == 1)
+        return depth_condition(shape.depth, downscale).to(latents.device());
     return shape_condition(shape_cells(shape, downscale), pipeline.condition_channels())
         .to(latents.device());
 }

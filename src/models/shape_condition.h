@@ -9,7 +9,8 @@ namespace item3d {
 
 /// What pictures show of a shape, at any resolution that is at least theirs.
 struct SeenShape {
-    torch::Tensor depth;     ///< [N, H, W] z-depth, 0: background
+    torch::Tensor depth;  ///< [N, H, W] z-depth, 0: background
+    /// What follows may be undefined for a ControlNet and for U-Nets that take depth alone.
     torch::Tensor position;  ///< [N, H, W, 3] in the model's bounding sphere as the unit sphere
     torch::Tensor normal;    ///< [N, H, W, 3] unit, in the same axes
 };

@@ -227,7 +227,7 @@ class Measurement {
         const TextEmbedding text = pipeline_.encode_text(captions);
         torch::Tensor condition;
         // With the depth the noun hardly matters: objects are told by the picture alone.
-        if (pipeline_.condition_channels() > 0) {
+        if (takes_shape(pipeline_)) {
             condition = shape_condition(example.cells.to(torch::kFloat32).unsqueeze(0),
                                         pipeline_.condition_channels());
             if (!entry.shape_class.empty()) condition = torch::zeros_like(condition);

@@ -8,6 +8,7 @@
 #include "item3d/evaluate/contact_sheet.h"
 #include "item3d/evaluate/html.h"
 #include "item3d/evaluate/picture.h"
+#include "item3d/models/shape_condition.h"
 #include "item3d/prior/classifier.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/train.h"
@@ -191,7 +192,7 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
     std::vector<std::pair<std::string, Image>> sheets;
     nlohmann::json evaluation{{"prior", folder.string()}, {"seed", options.seed}};
     for (const bool with_shape : {false, true}) {
-        if (with_shape && pipeline.condition_channels() == 0) continue;
+        if (with_shape && !takes_shape(pipeline)) continue;
         const SampleGrid grid =
             draw_samples(folder, pipeline, measure.words, 8, with_shape, options.seed);
         const std::string name = with_shape ? "samples_in_shape" : "samples";
