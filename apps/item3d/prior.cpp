@@ -237,6 +237,13 @@ struct FolderOptions : CommonOptions {
     std::string folder;
 };
 
+/// By a training and those that it was begun with.
+std::int64_t pictures_seen(const nlohmann::json& train) {
+    const std::int64_t before =
+        train.contains("begun_with") ? pictures_seen(train["begun_with"]) : 0;
+    return before + train.value("samples", std::int64_t{0});
+}
+
 void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
     const PriorVocabulary vocabulary(prior, subject);
     std::vector<std::string> kinds;
@@ -247,7 +254,7 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
         const auto& train = prior.at("train");
         if (train.contains("begun_with"))
             fmt::print("begun with a prior of {} pictures, then ",
-                       train["begun_with"].value("samples", 0));
+                       pictures_seen(train["begun_with"]));
         fmt::print("trained on {} pictures in {}, loss {:.3f}, autoencoder {:.1f} dB\n",
                    train.value("samples", 0), format_duration(train.value("seconds", 0.0)),
                    train.value("loss", 0.0), train.value("psnr", 0.0));
