@@ -58,7 +58,7 @@ ProceduralMaterial giraffe(Random& random, const MaterialWish&) {
             "",
             {"giraffe {o}", "{o} with giraffe spots", "giraffe print {o}", "giraffe patterned {o}"},
             [=](const Vec3& p, const Vec3&) {
-                const NearPoints near = near_points(p * 2.0f);
+                const NearPoints near = near_points(p * cells_a_unit);
                 const float w = smooth_step(near.second - near.first, .1f, .18f);
                 return MaterialValue{mix(line, patch * (.75f + .5f * near.value), w), .8f, 0};
             }};
@@ -71,7 +71,7 @@ ProceduralMaterial dalmatian(Random& random, const MaterialWish&) {
             "",
             {"dalmatian {o}", "{o} with dalmatian spots", "dalmatian print {o}"},
             [=](const Vec3& p, const Vec3&) {
-                const NearPoints near = near_points(p * 2.0f);
+                const NearPoints near = near_points(p * cells_a_unit);
                 const float radius = .2f + .22f * near.value;
                 const float w = smooth_step(near.first, radius - .03f, radius + .03f);
                 return MaterialValue{mix({.015f, .014f, .014f}, coat, w), .75f, 0};

@@ -37,8 +37,7 @@ Wording wording_of(const TwoTone& tones, const std::string& adjective, const std
 
 // All of these lie in the same place of the same space on every object, and the network is told
 // where that is (models/shape_condition.h): as small as it is, it draws blots where the place of
-// each stripe is chance. Cells are half a unit wide, 13 pixels.
-constexpr float cells_a_unit = 2;
+// each stripe is chance.
 
 ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {
     const TwoTone tones = two_tones(random, wish, "red", "white");

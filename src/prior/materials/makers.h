@@ -104,6 +104,10 @@ struct NearPoints {
 };
 NearPoints near_points(const Vec3& p);
 
+/// Of patterns that lie in one place on every object, so that the network can know it: half a unit
+/// each, 13 pixels.
+inline constexpr float cells_a_unit = 2;
+
 /// Coordinates on the plane that the normal faces most: for bricks and other flat patterns.
 inline Vec2 flat_coordinates(const Vec3& p, const Vec3& n) {
     const Vec3 a = glm::abs(n);

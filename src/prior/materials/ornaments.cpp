@@ -21,7 +21,7 @@ ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
     return {
         "", first, words.phrases,
         [=](const Vec3& p, const Vec3& n) {
-            const Vec2 uv = flat_coordinates(p, n) * 2.0f;
+            const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
             const float row = std::floor(uv.y);
             const float u = uv.x + (odd(row) ? .5f : 0.0f), column = std::floor(u);
             const Vec2 jitter(cell_value(column, row, 1) - .5f, cell_value(column, row, 2) - .5f);
@@ -73,7 +73,7 @@ ProceduralMaterial cracks(Random& random, const MaterialWish& wish) {
     return {
         "", name, words.phrases,
         [=](const Vec3& p, const Vec3&) {
-            const NearPoints near = near_points(p * 2.0f + .08f * warp(p));
+            const NearPoints near = near_points(p * cells_a_unit + .08f * warp(p));
             const float gap = near.second - near.first;
             const float w = smooth_step(gap, .1f, .2f);
             return MaterialValue{limit(mix(deep, color * (.9f + .2f * near.value), w)), .75f, 0};

@@ -78,7 +78,7 @@ ProceduralMaterial cobblestone(Random& random, const MaterialWish&) {
             "",
             {"cobblestone {o}", "cobblestone {o}", "{o} made of cobblestones"},
             [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n) * 2.0f;
+                const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
                 const float row = std::floor(uv.y);
                 const float u = uv.x + (odd(row) ? .5f : 0.0f);
                 const Vec2 q(fraction(u) * 2 - 1, (uv.y - row) * 2 - 1);
