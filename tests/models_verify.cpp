@@ -1,6 +1,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/models/pipeline.h"
+#include "item3d/models/safetensors.h"
+#include "item3d/models/shape_condition.h"
 #include "item3d/models/verify.h"
 #include "models_testing.h"
 
@@ -102,6 +104,17 @@ TEST_F(Verify, WhatIsMisshapenIsNamed) {
 TEST_F(Verify, WhatIsUnsupportedIsNamed) {
     change("model_index.json", "AutoencoderKL", "AutoencoderDC");
     expect_problem("AutoencoderDC is not supported");
+}
+
+TEST_F(Verify, AnInpaintingNetworkIsTakenForNoneThatIsToldAShape) {
+    change("unet/config.json", "\"in_channels\": 4", "\"in_channels\": 9");
+    NamedTensors tensors = SafeTensors::open(prior() / unet).tensors();
+    for (auto& [name, value] : tensors)
+        if (name == "conv_in.weight")
+            value = torch::cat({value, torch::zeros({value.size(0), 5, 3, 3})}, 1);
+    save_safetensors(prior() / unet, tensors);
+    EXPECT_FALSE(takes_shape(Pipeline::load(prior())));
+    expect_problem("5 further input channels (inpainting");
 }
 
 TEST_F(Verify, ANeededPartThatTheIndexDoesNotNameIsSaid) {
