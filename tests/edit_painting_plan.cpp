@@ -29,14 +29,17 @@ TEST_F(EditTest, later_painting_views_leave_what_earlier_ones_painted) {
     EXPECT_EQ(plan[0].known[0][0][0][0].item<float>(), 1);
     EXPECT_GT(fresh_share(plan[0]), 0.2);
     double last = 0;
-    for (std::size_t i = 9; i < 12; ++i)
+    for (std::size_t i = 5; i < 8; ++i)
         last += fresh_share(plan[i]) / 3;
     EXPECT_LT(last, 0.3 * fresh_share(plan[0]));
-    EXPECT_FALSE(plan[11].is_close_up);
-    // Close-ups begin anew.
-    EXPECT_TRUE(plan[12].is_close_up);
-    EXPECT_EQ(plan[12].first_of_kind, 12);
-    EXPECT_GT(fresh_share(plan[12]), 0.2);
+    EXPECT_EQ(plan[7].round, PaintingRound::begin);
+    // Each round paints everything.
+    EXPECT_EQ(plan[8].round, PaintingRound::again);
+    EXPECT_EQ(plan[13].first_of_round, 8);
+    EXPECT_GT(fresh_share(plan[8]), 0.2);
+    EXPECT_EQ(plan[14].round, PaintingRound::close_up);
+    EXPECT_EQ(plan[14].first_of_round, 14);
+    EXPECT_GT(fresh_share(plan[14]), 0.2);
     EXPECT_TRUE(plan_painting(scene, edit.settings)[19].known.equal(plan[19].known));
 }
 

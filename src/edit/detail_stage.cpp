@@ -9,21 +9,26 @@
 
 #include <torch/nn/functional/pooling.h>
 
+#include <algorithm>
+
 namespace item3d {
 namespace {
 
 constexpr int sampling_steps = 24;
 /// How much of a picture noise replaces: nearly all where the prior is told the shape.
-constexpr double whole_strength = 0.95;
-constexpr double whole_strength_without_shape = 0.7;
+constexpr double begin_strength = 0.95;
+constexpr double begin_strength_without_shape = 0.7;
+constexpr double again_strength = 0.7;
 constexpr double close_up_strength = 0.5;
 constexpr float guidance_scale = 5.0f;
+constexpr float refining_guidance_scale = 3.0f;  ///< of later rounds, which would colour twice
 /// A small autoencoder flattens what it decodes; so much of what is fine is added once more.
 constexpr float sharpening = 0.3f;
 /// Fine is what two box filters of this part of the picture's edge take away.
 constexpr int filter_share = 8;
 constexpr float known_weight = 0.3f;  ///< of what earlier views painted, where a view is fitted
 constexpr int fits = 24;              ///< steps of the optimiser for each view
+constexpr int last_fits = 200;        ///< and for all pictures together at the end
 constexpr double learning_rate = 0.01;
 constexpr double network_learning_rate = 0.0025;
 constexpr float spread = 0.5f;              ///< pixels, see ViewOptions
@@ -62,9 +67,11 @@ class Painter {
   private:
     EditView render(std::size_t index, float spread_pixels = 0, std::uint64_t draw = 0) const;
     torch::Tensor known_pixels(std::size_t index) const;
+    double strength(const PaintingView& planned) const;
     torch::Tensor target(std::size_t index, const EditView& view) const;
     torch::Tensor drift(const EditView& view) const;
     void fit_step(std::size_t chosen, std::uint64_t draw);
+    void fit_all();
 
     const EditScene& scene_;
     const EditSettings& settings_;
@@ -87,6 +94,18 @@ torch::Tensor Painter::known_pixels(std::size_t index) const {
                                       /*align_corners=*/false);
 }
 
+double Painter::strength(const PaintingView& planned) const {
+    switch (planned.round) {
+        case PaintingRound::again:
+            return again_strength;
+        case PaintingRound::close_up:
+            return close_up_strength;
+        case PaintingRound::begin:
+            break;
+    }
+    return takes_shape(*scene_.prior()) ? begin_strength : begin_strength_without_shape;
+}
+
 /// What the prior would rather see from here.
 torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
     const Pipeline& prior = *scene_.prior();
@@ -96,12 +115,11 @@ torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
     options.prompt = settings_.to;
     options.negative_prompt = settings_.negative_prompt;
     options.steps = sampling_steps;
-    options.guidance_scale = guidance_scale;
+    const bool begins = planned.round == PaintingRound::begin;
+    options.guidance_scale = begins ? guidance_scale : refining_guidance_scale;
     options.image = latents;
     options.keep = planned.known;
-    options.strength = planned.is_close_up  ? close_up_strength
-                       : takes_shape(prior) ? whole_strength
-                                            : whole_strength_without_shape;
+    options.strength = strength(planned);
     options.scheduler = "ddim";
     options.eta = 1;
     options.seed = mix_bits(settings_.seed) + index;
@@ -112,11 +130,10 @@ torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
     // The difference of two decoded pictures: what the autoencoder loses cancels out.
     const torch::Tensor change = decoded - prior.decode_image(latents) / 2;
     const torch::Tensor fresh = 1 - known_pixels(index);
-    // Where a view paints anew nothing shall be left of what was there; a close-up adds to it.
-    const torch::Tensor painted = planned.is_close_up
-                                      ? view.images + change
-                                      : view.images + fresh * (decoded + 0.5f - view.images);
-    const torch::Tensor fine = fine_part(planned.is_close_up ? change : decoded, view.coverage);
+    // Where the stage begins nothing shall be left of what was there; later rounds add to it.
+    const torch::Tensor painted =
+        view.images + (begins ? fresh * (decoded + 0.5f - view.images) : change);
+    const torch::Tensor fine = fine_part(begins ? decoded : change, view.coverage);
     return (painted + sharpening * fresh * fine).clamp(0, 1);
 }
 
@@ -152,13 +169,30 @@ void Painter::paint(std::size_t index) {
     for (std::size_t i = 0; i < fits; ++i) {
         const std::uint64_t draw = index * fits + i;
         Random random(settings_.seed, choice_stream, draw);
-        // Every other step looks back, so that one view does not undo another; not from close-ups
-        // to the pictures that they have refined.
-        const auto first = static_cast<std::size_t>(plan_[index].first_of_kind);
+        // Every other step looks back, so that one view does not undo another; not to the pictures
+        // of earlier rounds, which this one refines.
+        const auto first = static_cast<std::size_t>(plan_[index].first_of_round);
         const auto back = random.index(static_cast<std::int64_t>(index - first) + 1);
         fit_step(i % 2 == 0 ? index : index - static_cast<std::size_t>(back), draw);
     }
+    if (index + 1 == plan_.size()) fit_all();
     ++state_.iteration;
+}
+
+/// To all pictures but those that the stage began with. What a view got right may have suffered
+/// from the views that came after it.
+void Painter::fit_all() {
+    const auto first = std::find_if(plan_.begin(), plan_.end(), [](const PaintingView& view) {
+        return view.round != PaintingRound::begin;
+    });
+    const std::int64_t skipped = first - plan_.begin();
+    const std::int64_t count = plan_.end() - first;
+    if (count == 0) return;
+    for (std::size_t i = 0; i < last_fits; ++i) {
+        const std::uint64_t draw = plan_.size() * fits + i;
+        Random random(settings_.seed, choice_stream, draw);
+        fit_step(static_cast<std::size_t>(skipped + random.index(count)), draw);
+    }
 }
 
 }  // namespace

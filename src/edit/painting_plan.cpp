@@ -13,13 +13,20 @@ namespace {
 constexpr std::uint64_t camera_stream = 8;  // of the edit's seed; others are in views.cpp
 constexpr float golden_angle = 2.39996323f;
 constexpr float degrees = pi / 180.0f;
-constexpr double close_up_share = 0.4;
-constexpr int samples = 2;              ///< along a pixel's edge
+constexpr double begin_share = 0.4, again_share = 0.3;  ///< of the views
+constexpr int samples = 2;                              ///< along a pixel's edge
 constexpr float flattest = 0.2f;        ///< cosine below which a view does not count
 constexpr float clearly_better = 0.7f;  ///< of a view's own cosine an earlier one must have reached
 constexpr float known_share = 0.75f;    ///< of a latent cell
 /// Parts of the radius by which a point may lie behind what a view sees and still be seen.
 constexpr float depth_tolerance = 0.03f;
+
+PaintingRound round_of(int index, int views) {
+    const auto end_of = [&](double share) { return std::max(1l, std::lround(share * views)); };
+    return index < end_of(begin_share)                 ? PaintingRound::begin
+           : index < end_of(begin_share + again_share) ? PaintingRound::again
+                                                       : PaintingRound::close_up;
+}
 
 Camera paint_camera(const BoundingSphere& sphere, int index, bool close_up, std::uint64_t seed) {
     Random random(mix_bits(seed) + static_cast<std::uint64_t>(index), camera_stream);
@@ -96,17 +103,17 @@ torch::Tensor known_cells(const torch::Tensor& fresh, std::int64_t pixels_each) 
 
 std::vector<PaintingView> plan_painting(const EditScene& scene, const EditSettings& settings) {
     const torch::NoGradGuard no_grad;
-    const int close_ups = static_cast<int>(close_up_share * settings.detail_views);
-    const int whole = settings.detail_views - close_ups;
     const std::int64_t pixels_each = scene.prior()->downscale();
     std::vector<PaintingView> plan;
     std::vector<Sight> earlier;
     for (int i = 0; i < settings.detail_views; ++i) {
-        if (i == whole) earlier.clear();
         PaintingView view;
-        view.is_close_up = i >= whole;
-        view.first_of_kind = view.is_close_up ? whole : 0;
-        view.camera = paint_camera(scene.sphere, i, view.is_close_up, settings.seed);
+        view.round = round_of(i, settings.detail_views);
+        const bool begins_round = plan.empty() || plan.back().round != view.round;
+        if (begins_round) earlier.clear();
+        view.first_of_round = begins_round ? i : plan.back().first_of_round;
+        view.camera =
+            paint_camera(scene.sphere, i, view.round == PaintingRound::close_up, settings.seed);
         const Sight sight(scene.geometry, view.camera, settings.resolution * samples);
         const torch::Tensor own = as_pixels(sight, sight.cosine);
         view.facing = (own > flattest).to(torch::kFloat32);

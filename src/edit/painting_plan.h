@@ -9,20 +9,27 @@
 
 namespace item3d {
 
+/// What a view is for. The plan has them in this order.
+enum class PaintingRound {
+    begin,     ///< the whole model, painted from nothing, or nearly
+    again,     ///< the whole model once more, from what the round before left
+    close_up,  ///< a part of it, likewise
+};
+
 struct PaintingView {
     Camera camera;
-    bool is_close_up = false;
-    int first_of_kind = 0;  ///< where its kind begins in the plan
-    /// [1, 1, h, w] on the grid of the prior's latents. 1: what earlier views of its kind painted
+    PaintingRound round = PaintingRound::begin;
+    int first_of_round = 0;  ///< where its round begins in the plan
+    /// [1, 1, h, w] on the grid of the prior's latents. 1: what earlier views of its round painted
     /// (or the background) stays as it is; 0: painted anew.
     torch::Tensor known;
     torch::Tensor facing;  ///< [1, 1, R, R] 0 or 1: not seen at too flat an angle
 };
 
-/// First views of the whole model, around it by the golden angle, so that each shows something new
-/// however many there are: a point belongs to the first view that sees it from well in front
-/// (TEXTure, Richardson et al. 2023). Then close-ups, two fifths of all, in the same manner. A
-/// function of the scene and the settings alone.
+/// Two fifths of the views begin, three tenths paint again, the others are close-ups. The views go
+/// around the model by the golden angle, so that each shows something new however many there are:
+/// in each round a point belongs to the first view that sees it from well in front (TEXTure,
+/// Richardson et al. 2023). A function of the scene and the settings alone.
 std::vector<PaintingView> plan_painting(const EditScene& scene, const EditSettings& settings);
 
 }  // namespace item3d
