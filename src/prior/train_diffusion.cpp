@@ -65,7 +65,7 @@ torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
         // Stratified: each batch covers the whole range of timesteps evenly.
         const double t = (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
         times.push_back(std::min<std::int64_t>(999, static_cast<std::int64_t>(t * 1000)));
-        if (random.chance(.15) && more > 0) condition[i].zero_();
+        if (random.chance(.30) && more > 0) condition[i].zero_();
         if (random.chance(.10)) tokens[i].copy_(data.empty_tokens);
     }
     const torch::Tensor timesteps = torch::tensor(times);
