@@ -21,7 +21,6 @@ constexpr double begin_strength_without_shape = 0.7;
 constexpr double again_strength = 0.7;
 constexpr double close_up_strength = 0.5;
 constexpr float guidance_scale = 5.0f;
-constexpr float refining_guidance_scale = 3.0f;  ///< of later rounds, which would colour twice
 /// A small autoencoder flattens what it decodes; so much of what is fine is added once more.
 constexpr float sharpening = 0.3f;
 /// Fine is what two box filters of this part of the picture's edge take away.
@@ -115,8 +114,7 @@ torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
     options.prompt = settings_.to;
     options.negative_prompt = settings_.negative_prompt;
     options.steps = sampling_steps;
-    const bool begins = planned.round == PaintingRound::begin;
-    options.guidance_scale = begins ? guidance_scale : refining_guidance_scale;
+    options.guidance_scale = guidance_scale;
     options.image = latents;
     options.keep = planned.known;
     options.strength = strength(planned);
@@ -131,6 +129,7 @@ torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
     const torch::Tensor change = decoded - prior.decode_image(latents) / 2;
     const torch::Tensor fresh = 1 - known_pixels(index);
     // Where the stage begins nothing shall be left of what was there; later rounds add to it.
+    const bool begins = planned.round == PaintingRound::begin;
     const torch::Tensor painted =
         view.images + (begins ? fresh * (decoded + 0.5f - view.images) : change);
     const torch::Tensor fine = fine_part(begins ? decoded : change, view.coverage);
