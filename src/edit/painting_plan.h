@@ -11,7 +11,7 @@ namespace item3d {
 
 /// What a view is for. The plan has them in this order.
 enum class PaintingRound {
-    begin,     ///< the whole model, painted from nothing, or nearly
+    begin,     ///< the whole model, painted anew
     again,     ///< the whole model once more, from what the round before left
     close_up,  ///< a part of it, likewise
 };
