@@ -1,6 +1,8 @@
 // The edits that a prior is judged by, and what is made of their results.
 #include "item3d/core/error.h"
+#include "item3d/scene/io/load.h"
 #include "item3d/suite/edit_suite.h"
+#include "item3d/suite/held_out_meshes.h"
 
 #include <gtest/gtest.h>
 
@@ -63,6 +65,21 @@ TEST(PriorSuite, TotalsCountWhatIsRight) {
     EXPECT_DOUBLE_EQ(totals["groups"]["colors"]["seconds_most"].get<double>(), 3);
     EXPECT_FALSE(totals["groups"]["stripes"].contains("right"));
     EXPECT_DOUBLE_EQ(totals["peak_memory_bytes"].get<double>(), 3e9);
+}
+
+TEST(PriorSuite, HeldOutMeshesFillTheUnitSphere) {
+    const auto folder = std::filesystem::path(::testing::TempDir()) / "held_out_meshes";
+    const auto files = save_held_out_meshes(folder);
+    EXPECT_EQ(files.size(), 6u);
+    for (const auto& [noun, file] : files) {
+        const Model model = load_model(file);
+        EXPECT_GT(model.triangle_count(), 2000u) << noun;
+        float farthest = 0;
+        for (const Vec3& position : model.primitives.at(0).positions)
+            farthest = std::max(farthest, glm::length(position));
+        EXPECT_NEAR(farthest, 1, 1e-4) << noun;
+    }
+    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

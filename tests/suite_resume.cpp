@@ -55,5 +55,20 @@ TEST_F(SuiteResume, WhatIsDoneIsKeptAndTheRestIsRun) {
     EXPECT_THROW(run_edit_suite({to_blue_}, options_), InputError);
 }
 
+TEST_F(SuiteResume, WhatOtherWeightsMadeIsMadeAgain) {
+    const json first = run_edit_suite({to_blue_}, options_);
+    const fs::path done = options_.output / first["edits"][0]["folder"].get<std::string>();
+    const auto written = fs::last_write_time(done / "model.glb");
+
+    // One bit of the last weight, so that the file can still be read.
+    const fs::path weights = options_.prior / "vae" / "diffusion_pytorch_model.safetensors";
+    Bytes bytes = read_bytes(weights);
+    bytes.back() ^= 1;
+    write_atomically(weights, bytes);
+    options_.resume = true;
+    run_edit_suite({to_blue_}, options_);
+    EXPECT_NE(fs::last_write_time(done / "model.glb"), written);
+}
+
 }  // namespace
 }  // namespace item3d

@@ -8,6 +8,7 @@
 #include "item3d/prior/evaluation.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/suite/edit_suite.h"
+#include "item3d/suite/held_out_meshes.h"
 #include "item3d/suite/models.h"
 #include "prior_commands.h"
 
@@ -28,6 +29,7 @@ struct EvaluateOptions : CommonOptions {
     std::string prior;
     std::string output;
     std::vector<std::string> meshes;
+    bool edits = false;
     bool resume = false;
     EvaluationOptions evaluation;
 };
@@ -38,6 +40,7 @@ nlohmann::json run_edits(const EvaluateOptions& options) {
     suite.prior = find_prior(options.prior);
     suite.output = fs::path(options.output) / "edits";
     suite.meshes = named_meshes(options.meshes);
+    if (options.edits) suite.meshes.merge(save_held_out_meshes(suite.output / "meshes"));
     suite.resume = options.resume;
     std::vector<std::string> nouns;
     for (const auto& [noun, path] : suite.meshes)
@@ -51,7 +54,7 @@ nlohmann::json run_edits(const EvaluateOptions& options) {
 void run_evaluate(const EvaluateOptions& options) {
     EvaluationOptions evaluation = options.evaluation;
     evaluation.threads = at::get_num_threads();
-    if (!options.meshes.empty()) {
+    if (options.edits || !options.meshes.empty()) {
         for (const auto& [noun, path] : named_meshes(options.meshes))
             load_model(path);  // what is wrong with them is said before the measuring
         evaluation.edits = [&] { return run_edits(options); };
@@ -173,9 +176,11 @@ void add_prior_evaluate(CLI::App& prior) {
         ->add_option("-o,--output", options->output,
                      "Folder for evaluate.html, evaluate.json and sheets of samples")
         ->required();
+    command->add_flag("--edits", options->edits,
+                      "Ten edits of each of six held-out shapes by the prior's words, with a page "
+                      "of their own, edits/suite.html");
     command->add_option("--mesh", options->meshes,
-                        "NOUN=FILE, again for each mesh: ten edits of it by the prior's words, "
-                        "with a page of their own, edits/suite.html");
+                        "NOUN=FILE, again for each mesh: ten edits of it as well");
     command->add_flag("--resume", options->resume,
                       "Keep the edits that an interrupted run left in the output folder");
     EvaluationOptions& evaluation = options->evaluation;

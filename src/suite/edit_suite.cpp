@@ -7,6 +7,7 @@
 #include "item3d/edit/edit.h"
 #include "item3d/evaluate/html.h"
 #include "item3d/evaluate/model_pictures.h"
+#include "item3d/hub/digest.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/render/shade.h"
 #include "item3d/scene/io/load.h"
@@ -32,14 +33,31 @@ struct Judge {
     PriorVocabulary vocabulary;
     std::vector<NamedColor> colors;
     std::unique_ptr<Clip> clip;  ///< none where the prior has none
+    std::string weights;         ///< checksum of what the edits are guided by
 };
 
-EditRequest request_of(const SuiteEdit& edit, const SuiteOptions& options, const fs::path& folder) {
+/// SHA-256 of the prior's weights but for those that only judge.
+std::string digest_of_weights(const fs::path& prior) {
+    Digest digest(DigestKind::sha256, 0);
+    for (const char* part : {"unet", "text_encoder", "vae"}) {
+        std::vector<fs::path> files;
+        std::error_code ignored;  // of a prior that lacks one of them the edit says so
+        for (const auto& entry : fs::directory_iterator(prior / part, ignored))
+            if (entry.path().extension() == ".safetensors") files.push_back(entry.path());
+        std::sort(files.begin(), files.end());
+        for (const fs::path& file : files)
+            digest.update(read_bytes(file));
+    }
+    return digest.finish();
+}
+
+EditRequest request_of(const SuiteEdit& edit, const SuiteOptions& options, const fs::path& folder,
+                       bool resume) {
     EditRequest request;
     request.model = folder / "source.glb";
     request.prior = options.prior;
     request.output = folder;
-    request.resume = options.resume;
+    request.resume = resume;
     json overrides = {{"from", prompt_of(edit.test.source, edit.test.mesh)},
                       {"to", prompt_of(edit.test.target, edit.test.mesh)},
                       {"seed", options.seed}};
@@ -84,10 +102,9 @@ json verdict_of(const SuiteCase& test, const json& summary, const EditRequest& r
 }
 
 json run_edit(const SuiteEdit& edit, const SuiteOptions& options, const Judge& judge,
-              const fs::path& folder) {
+              const fs::path& folder, bool resume) {
     const SuiteCase& test = edit.test;
-    make_output_folder(folder);
-    const EditRequest request = request_of(edit, options, folder);
+    const EditRequest request = request_of(edit, options, folder, resume);
     save_model(request.model,
                source_model(test, load_model(options.meshes.at(test.mesh)), judge.vocabulary));
     const json summary = edit_model(request);
@@ -106,33 +123,41 @@ json run_edit(const SuiteEdit& edit, const SuiteOptions& options, const Judge& j
 constexpr const char* verdict_name = "verdict.json";
 
 /// What a verdict depends on.
-json asked(const SuiteEdit& edit, const SuiteOptions& options) {
+json asked(const SuiteEdit& edit, const SuiteOptions& options, const Judge& judge) {
     const SuiteCase& test = edit.test;
     return {{"model", options.meshes.at(test.mesh).string()},
             {"from", prompt_of(test.source, test.mesh)},
             {"to", prompt_of(test.target, test.mesh)},
             {"method", edit.method},
-            {"prior", options.prior.string()},
+            {"weights", judge.weights},
             {"seed", options.seed}};
 }
 
-/// The verdict that an interrupted run left in `folder` on the same question, or null.
-json verdict_before(const fs::path& folder, const json& question) {
+/// What an earlier run left in `folder`: {"asked", "result"?}, or nothing.
+json verdict_before(const fs::path& folder) {
     const fs::path file = folder / verdict_name;
-    if (!fs::exists(file)) return nullptr;
+    if (!fs::exists(file)) return json::object();
     const json verdict = json::parse(read_text(file), nullptr, false);
-    const bool same = verdict.is_object() && verdict.value("asked", json()) == question;
-    return same ? verdict.value("result", json()) : json();
+    return verdict.is_object() ? verdict : json::object();
 }
 
 json run_or_keep(const SuiteEdit& edit, const SuiteOptions& options, const Judge& judge,
                  const fs::path& folder) {
-    const json question = asked(edit, options);
-    if (json kept = options.resume ? verdict_before(folder, question) : json(); !kept.is_null())
-        return kept;
-    json result = run_edit(edit, options, judge, folder);
-    write_atomically(folder / verdict_name,
-                     json{{"asked", question}, {"result", result}}.dump(2) + "\n");
+    const json question = asked(edit, options, judge);
+    const json before = options.resume ? verdict_before(folder) : json::object();
+    const json asked_before = before.value("asked", json::object());
+    if (asked_before == question && before.contains("result")) return before["result"];
+
+    // An edit's own checkpoint does not tell the weights that it was made with. So what is begun
+    // is written first.
+    const bool resume = asked_before.value("weights", "") == judge.weights;
+    make_output_folder(folder);
+    const auto write = [&](const json& verdict) {
+        write_atomically(folder / verdict_name, verdict.dump(2) + "\n");
+    };
+    if (!resume) write({{"asked", question}});
+    const json result = run_edit(edit, options, judge, folder, resume);
+    write({{"asked", question}, {"result", result}});
     return result;
 }
 
@@ -205,7 +230,8 @@ json suite_totals(const std::vector<json>& results) {
 }
 
 json run_edit_suite(const std::vector<SuiteEdit>& edits, const SuiteOptions& options) {
-    Judge judge{PriorVocabulary::load(options.prior), {}, nullptr};
+    Judge judge{
+        PriorVocabulary::load(options.prior), {}, nullptr, digest_of_weights(options.prior)};
     judge.colors = named_colors(judge.vocabulary);
     const fs::path clip = find_in_prior(options.prior, "clip");
     if (!clip.empty()) judge.clip = std::make_unique<Clip>(Clip::load(clip));
