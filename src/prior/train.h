@@ -28,7 +28,7 @@ struct TrainSettings {
     std::filesystem::path work;    ///< data, checkpoints; may be deleted afterwards
     /// A prior whose weights, tokenizer and autoencoder this one begins with; empty: with nothing.
     std::filesystem::path begin_with;
-    std::int64_t samples = 480000;       ///< pictures that the U-Net sees, repetitions counted
+    std::int64_t samples = 360000;       ///< pictures that the U-Net sees, repetitions counted
     std::int64_t data_samples = 112000;  ///< different pictures
     std::int64_t autoencoder_samples = 64000;
     std::int64_t autoencoder_pictures = 12000;
