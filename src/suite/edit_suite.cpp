@@ -138,7 +138,8 @@ json verdict_before(const fs::path& folder) {
     const fs::path file = folder / verdict_name;
     if (!fs::exists(file)) return json::object();
     const json verdict = json::parse(read_text(file), nullptr, false);
-    return verdict.is_object() ? verdict : json::object();
+    const bool readable = verdict.is_object() && verdict.value("asked", json()).is_object();
+    return readable ? verdict : json::object();
 }
 
 json run_or_keep(const SuiteEdit& edit, const SuiteOptions& options, const Judge& judge,
@@ -150,7 +151,7 @@ json run_or_keep(const SuiteEdit& edit, const SuiteOptions& options, const Judge
 
     // An edit's own checkpoint does not tell the weights that it was made with. So what is begun
     // is written first.
-    const bool resume = asked_before.value("weights", "") == judge.weights;
+    const bool resume = asked_before.value("weights", json()) == judge.weights;
     make_output_folder(folder);
     const auto write = [&](const json& verdict) {
         write_atomically(folder / verdict_name, verdict.dump(2) + "\n");
