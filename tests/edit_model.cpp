@@ -116,6 +116,26 @@ TEST_F(EditTest, a_checkpoint_of_other_settings_is_refused) {
     EXPECT_THROW(edit_model(edit), InputError);
 }
 
+TEST_F(EditTest, a_checkpoint_of_other_weights_is_refused) {
+    EditRequest edit = request("out", 2);
+    const fs::path prior = folder_ / "prior";
+    fs::copy(edit.prior, prior, fs::copy_options::recursive);
+    edit.prior = prior;
+    edit.stop_after = 1;
+    EXPECT_THROW(edit_model(edit), Interrupted);
+
+    edit.resume = true;
+    edit.stop_after = 0;
+    const fs::path file = prior / "unet" / "diffusion_pytorch_model.safetensors";
+    const Bytes good = read_bytes(file);
+    Bytes bad = good;
+    bad.back() ^= 1;
+    write_atomically(file, bad);
+    EXPECT_THROW(edit_model(edit), InputError);
+    write_atomically(file, good);
+    EXPECT_NO_THROW(edit_model(edit));
+}
+
 TEST_F(EditTest, what_is_added_to_the_prior_changes_the_edit_and_is_kept_in_mind) {
     const std::string lora = (folder_ / "style.safetensors").string();
     const std::string layer = "lora_unet_mid_block_attentions_0_proj_in";

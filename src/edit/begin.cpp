@@ -98,6 +98,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     const auto begin_guidance = [&] {
         state.guidance =
             make_guidance(scene.prior(), settings.from, settings.to, guidance_options(settings));
+        state.prior_weights = scene.hashing_weights.get();
     };
 
     if (request.resume) {

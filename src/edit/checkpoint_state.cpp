@@ -9,9 +9,10 @@ std::filesystem::path checkpoint_path(const EditRequest& request) {
     return request.output / "checkpoint.safetensors";
 }
 
-nlohmann::json identity_of(const EditRequest& request) {
+nlohmann::json identity_of(const EditRequest& request, const EditState& state) {
     nlohmann::json identity = request.settings;
     identity["model"] = hash_of_file(request.model);
+    identity["prior_weights"] = state.prior_weights;
     identity["precision"] = request.precision;
     if (wants_captions(request.settings)) identity["captioner"] = request.captioner.string();
     return identity;
@@ -56,7 +57,7 @@ std::vector<float> to_floats(const torch::Tensor& tensor) {
 
 void save_state(const EditRequest& request, const EditState& state) {
     Checkpoint checkpoint;
-    checkpoint.identity = identity_of(request);
+    checkpoint.identity = identity_of(request, state);
     checkpoint.iteration = state.iteration;
     append_parameters(checkpoint.tensors, "fitted.", *state.fitted);
     append_parameters(checkpoint.tensors, "field.", *state.field);
@@ -88,8 +89,10 @@ void save_state(const EditRequest& request, const EditState& state) {
 bool load_state(const EditRequest& request, EditState& state) {
     const auto checkpoint = load_checkpoint(checkpoint_path(request));
     if (!checkpoint) return false;
-    require_same_identity(checkpoint_path(request), checkpoint->identity, identity_of(request),
-                          {{"model", "belongs to another model file"}});
+    require_same_identity(checkpoint_path(request), checkpoint->identity,
+                          identity_of(request, state),
+                          {{"model", "belongs to another model file"},
+                           {"prior_weights", "belongs to a prior of other weights"}});
 
     const CheckpointReader reader(checkpoint_path(request).string(), checkpoint->tensors);
     reader.parameters("fitted.", *state.fitted);

@@ -34,6 +34,7 @@ struct EditState {
     std::unique_ptr<Guidance> guidance;
     DetailState detail;
     AdjustmentState adjustment;
+    std::string prior_weights;  ///< hash_of_weights() of what guides it
     /// Iterations done, views of the detail stage included; iterations that a settled edit was
     /// spared count as done.
     std::int64_t iteration = 0;

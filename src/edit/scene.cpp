@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/memory.h"
+#include "item3d/models/checkpoint.h"
 #include "item3d/models/precision.h"
 #include "item3d/scene/io/load.h"
 
@@ -70,6 +71,7 @@ EditScene load_scene(const EditRequest& request) {
         std::async(std::launch::async, load_prior, request,
                    PriorNeeds{device, scene.precision, scene.captioner != nullptr, low_memory})
             .share();
+    scene.hashing_weights = std::async(std::launch::async, hash_of_weights, request.prior).share();
     scene.model = load_model(request.model);
     scene.materials = select_materials(scene.model, settings.material);
     for (const int index : scene.materials) {

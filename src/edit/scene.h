@@ -13,6 +13,7 @@
 
 #include <future>
 #include <memory>
+#include <string>
 
 namespace item3d {
 
@@ -30,7 +31,8 @@ struct EditScene {
     /// Ready some time after the rest: who asks earlier waits, or hears why it cannot be loaded.
     std::shared_future<std::shared_ptr<Pipeline>> loading_prior;
     const std::shared_ptr<Pipeline>& prior() const { return loading_prior.get(); }
-    std::shared_ptr<const Captioner> captioner;  ///< none unless wants_captions()
+    std::shared_future<std::string> hashing_weights;  ///< hash_of_weights() of the prior
+    std::shared_ptr<const Captioner> captioner;       ///< none unless wants_captions()
     torch::Dtype precision = torch::kFloat32;
     torch::Device device = torch::kCPU;  ///< where all tensors of the edit are
 };

@@ -5,6 +5,10 @@
 #include "item3d/core/format.h"
 #include "item3d/core/random.h"
 
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+
 namespace item3d {
 
 namespace {
@@ -80,6 +84,30 @@ std::string hash_of_file(const std::filesystem::path& path) {
     std::uint64_t hash = 0;
     for (const std::uint8_t byte : read_bytes(path))
         hash = mix_bits(hash ^ byte);
+    return fmt::format("{:016x}", hash);
+}
+
+std::string hash_of_weights(const std::filesystem::path& prior) {
+    std::vector<std::filesystem::path> files;
+    for (const char* part : {"unet", "text_encoder", "text_encoder_2", "vae"}) {
+        std::error_code ignored;  // of a prior that lacks one of them its loading says so
+        for (const auto& entry : std::filesystem::directory_iterator(prior / part, ignored))
+            if (entry.path().extension() == ".safetensors") files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    std::uint64_t hash = 0;
+    std::vector<std::uint64_t> words(1 << 17);
+    for (const auto& file : files) {
+        std::ifstream stream(file, std::ios::binary);
+        while (stream) {
+            std::fill(words.begin(), words.end(), 0);
+            stream.read(reinterpret_cast<char*>(words.data()),
+                        static_cast<std::streamsize>(words.size() * sizeof(words[0])));
+            const auto read = static_cast<std::size_t>(stream.gcount());
+            for (std::size_t i = 0; i * sizeof(words[0]) < read; ++i)
+                hash = mix_bits(hash ^ words[i]);
+        }
+    }
     return fmt::format("{:016x}", hash);
 }
 

@@ -31,6 +31,9 @@ std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path);
 
 /// A file's content as 16 hexadecimal digits, for an identity.
 std::string hash_of_file(const std::filesystem::path& path);
+/// The content of a prior's networks in the same way, unless they only judge; files that are not
+/// there have none. Reads all of them, a second for each gigabyte or two.
+std::string hash_of_weights(const std::filesystem::path& prior);
 
 /// Throws InputError that names `path` and the first key of `now` whose value `saved` has not.
 /// inputs: what to say of keys that are hashes ("model": "belongs to another model file").

@@ -7,8 +7,8 @@
 #include "item3d/edit/edit.h"
 #include "item3d/evaluate/html.h"
 #include "item3d/evaluate/model_pictures.h"
-#include "item3d/hub/digest.h"
 #include "item3d/hub/find_prior.h"
+#include "item3d/models/checkpoint.h"
 #include "item3d/render/shade.h"
 #include "item3d/scene/io/load.h"
 #include "item3d/scene/io/save.h"
@@ -35,21 +35,6 @@ struct Judge {
     std::unique_ptr<Clip> clip;  ///< none where the prior has none
     std::string weights;         ///< checksum of what the edits are guided by
 };
-
-/// SHA-256 of the prior's weights but for those that only judge.
-std::string digest_of_weights(const fs::path& prior) {
-    Digest digest(DigestKind::sha256, 0);
-    for (const char* part : {"unet", "text_encoder", "vae"}) {
-        std::vector<fs::path> files;
-        std::error_code ignored;  // of a prior that lacks one of them the edit says so
-        for (const auto& entry : fs::directory_iterator(prior / part, ignored))
-            if (entry.path().extension() == ".safetensors") files.push_back(entry.path());
-        std::sort(files.begin(), files.end());
-        for (const fs::path& file : files)
-            digest.update(read_bytes(file));
-    }
-    return digest.finish();
-}
 
 EditRequest request_of(const SuiteEdit& edit, const SuiteOptions& options, const fs::path& folder,
                        bool resume) {
@@ -231,8 +216,7 @@ json suite_totals(const std::vector<json>& results) {
 }
 
 json run_edit_suite(const std::vector<SuiteEdit>& edits, const SuiteOptions& options) {
-    Judge judge{
-        PriorVocabulary::load(options.prior), {}, nullptr, digest_of_weights(options.prior)};
+    Judge judge{PriorVocabulary::load(options.prior), {}, nullptr, hash_of_weights(options.prior)};
     judge.colors = named_colors(judge.vocabulary);
     const fs::path clip = find_in_prior(options.prior, "clip");
     if (!clip.empty()) judge.clip = std::make_unique<Clip>(Clip::load(clip));
