@@ -78,6 +78,31 @@ TEST(PictureFacts, CaptionsAreJudgedWordForWord) {
     EXPECT_TRUE(hatted.object && hatted.material);
 }
 
+TEST(PictureFacts, AMaterialHasItsNameWhateverItsColors) {
+    const auto names = [](const std::string& caption, const PictureFacts& facts) {
+        const CaptionVerdict verdict = judge_caption(caption, facts);
+        EXPECT_FALSE(verdict.material) << caption;
+        return verdict.material_name;
+    };
+    const PictureFacts velvet = facts({"maroon velvet {o}", "velvet {o}"}, "cup");
+    EXPECT_TRUE(names("a pink velvet cup", velvet));
+    EXPECT_FALSE(names("a maroon cup", velvet));
+    EXPECT_FALSE(names("a maroon silk cup", velvet));
+    EXPECT_FALSE(names("a cup", velvet));
+    const PictureFacts striped = facts({"red and white striped {o}"}, "cup");
+    EXPECT_TRUE(names("a red and pink striped cup", striped));
+    EXPECT_FALSE(names("a red and white checkered cup", striped));
+    EXPECT_TRUE(names("a bronze cup", facts({"hammered bronze {o}"}, "cup")));
+    // What has no material but a colour goes by its colour.
+    EXPECT_FALSE(names("a salmon cup", facts({"red {o}", "glossy red {o}"}, "cup")));
+    EXPECT_TRUE(judge_caption("a red cup", facts({"red {o}"}, "cup")).material_name);
+    // A part's material is not the whole's.
+    const PictureFacts two =
+        facts({"wooden {o} with a red handle", "{o} with a red handle", "wooden {o}"}, "cup");
+    EXPECT_FALSE(names("a red cup", two));
+    EXPECT_TRUE(judge_caption("a wooden cup", two).material_name);
+}
+
 TEST(SharedVision, ClipSeesWhatTheCaptionerSees) {
     const std::int64_t side = read_size;
     BlipConfig blip = prior_captioner_config(20);

@@ -270,9 +270,8 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
     if (prior.contains("captioner") && prior["captioner"].contains("captions")) {
         const auto& named = prior["captioner"]["captions"];
         fmt::print(
-            "captioner: names the object of {:.0f} %, the material of {:.0f} %, one of them "
-            "of {:.0f} %\n",
-            part(named, "object"), part(named, "material"), part(named, "object_or_material"));
+            "captioner: names the object of {:.0f} %, the material of {:.0f} %, both of {:.0f} %\n",
+            part(named, "object"), part(named, "material"), part(named, "both"));
     }
     if (kinds.empty()) fmt::print("not measured: see `item3d prior evaluate`\n");
     for (const std::string& kind : kinds) {

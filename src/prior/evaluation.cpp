@@ -142,7 +142,9 @@ TableRows summary_rows(const nlohmann::json& evaluation) {
         const nlohmann::json& named = readers["captions"];
         rows.emplace_back("captioner", "names the object of " + percent(named.at("object")) +
                                            ", the material of " + percent(named.at("material")) +
-                                           ", both of " + percent(named.at("both")));
+                                           ", both of " + percent(named.at("both")) +
+                                           "; object and the material's name of " +
+                                           percent(named.at("object_and_name")));
     }
     if (!evaluation.contains("edits")) return rows;
     for (const auto& [group, total] : evaluation["edits"].at("groups").items())

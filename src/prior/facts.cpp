@@ -47,6 +47,20 @@ std::string without_frame(const std::string& caption) {
     return caption;
 }
 
+/// Kinds of the materials and patterns that a phrase names, or else its plain colours.
+std::set<std::string> names_in(const std::string& phrase) {
+    std::set<std::string> words, kinds, colors;
+    std::istringstream stream(phrase);
+    for (std::string word; stream >> word;)
+        words.insert(word);
+    for (const MaterialWord& known : material_words())
+        for (const std::string& spelling : known.spellings)
+            if (words.count(spelling)) kinds.insert(known.word);
+    for (const PlainColor& color : plain_colors())
+        if (words.count(color.name)) colors.insert(color.name);
+    return kinds.empty() ? colors : kinds;
+}
+
 }  // namespace
 
 PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& material,
@@ -136,6 +150,15 @@ CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& fac
             if (word != "a") bare += (bare.empty() ? "" : " ") + word;
         verdict.material = verdict.material || bare == phrase;
     }
+    const std::set<std::string> names = names_in(phrase);
+    // A part's material comes before what is said of the whole.
+    const auto whole =
+        std::find(facts.phrases.begin(), facts.phrases.end(), whole_claim(facts).phrase);
+    verdict.material_name =
+        verdict.material ||
+        (!names.empty() && std::any_of(whole, facts.phrases.end(), [&](const std::string& each) {
+            return names_in(each) == names;
+        }));
     return verdict;
 }
 

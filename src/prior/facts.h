@@ -60,9 +60,12 @@ const std::string& draw_frame(Random& random);
 struct CaptionVerdict {
     bool object = false;
     bool material = false;
+    bool material_name = false;
 };
 /// Reads "a golden mug", with or without a frame. The object is right where the caption's first
-/// noun is one of its nouns; the material where all the rest is one of its phrases, word for word.
+/// noun is one of its nouns; the material where all the rest is one of its phrases, word for word;
+/// its name where only that is right: velvet or stripes of whatever colours, bronze of whatever
+/// finish, and the colour of what is of one colour and nothing else.
 CaptionVerdict judge_caption(const std::string& caption, const PictureFacts& facts);
 
 void to_json(nlohmann::json& json, const PictureFacts& facts);

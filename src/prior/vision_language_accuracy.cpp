@@ -92,11 +92,13 @@ CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledPictur
         result.material += verdict.material;
         result.object_or_material += verdict.object || verdict.material;
         result.both += verdict.object && verdict.material;
+        result.material_name += verdict.material_name;
+        result.object_and_name += verdict.object && verdict.material_name;
         progress.update(++done);
     });
     if (interrupted()) throw Interrupted("the captions were not finished");
-    for (double* part :
-         {&result.object, &result.material, &result.object_or_material, &result.both})
+    for (double* part : {&result.object, &result.material, &result.object_or_material, &result.both,
+                         &result.material_name, &result.object_and_name})
         *part /= static_cast<double>(std::max<std::int64_t>(result.pictures, 1));
     return result;
 }
@@ -113,7 +115,9 @@ void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy) {
             {"object", rounded(accuracy.object)},
             {"material", rounded(accuracy.material)},
             {"object_or_material", rounded(accuracy.object_or_material)},
-            {"both", rounded(accuracy.both)}};
+            {"both", rounded(accuracy.both)},
+            {"material_name", rounded(accuracy.material_name)},
+            {"object_and_name", rounded(accuracy.object_and_name)}};
 }
 
 }  // namespace item3d

@@ -38,6 +38,8 @@ struct CaptionAccuracy {
     double material = 0;
     double object_or_material = 0;
     double both = 0;
+    double material_name = 0;
+    double object_and_name = 0;
 };
 void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy);
 
