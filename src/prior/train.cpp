@@ -120,7 +120,7 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
 /// What the data depends on: a work folder made with other settings is not gone on with. Replicas
 /// are those of all processes, so that a training may go on with them spread otherwise.
 nlohmann::json fingerprint(const TrainSettings& s) {
-    return {{"version", 8},
+    return {{"version", 9},
             {"seed", s.seed},
             {"begin_with", s.begin_with.string()},
             {"resolution", s.resolution},

@@ -70,17 +70,19 @@ ProceduralMaterial knit(Random& random, const MaterialWish& wish) {
             }};
 }
 
+/// Hanging folds that shine.
 ProceduralMaterial silk(Random& random, const MaterialWish& wish) {
     auto [name, words] = dye(random, wish, "silk", "pink");
     const Vec3 color = vary(random, color_named(name), .07);
-    const CosineNoise folds(random, draw(random, 4, 6), 1, {1, .45f, 1});
+    Random drape(3);
+    const CosineNoise folds(drape, 7, 1, {1, .25f, 1});
     words.phrases.emplace_back("satin {o}");
     return {
         "", name, words.phrases,
         [=](const Vec3& p, const Vec3&) {
             Vec3 gradient(0.0f);
-            const float height = smooth_step(folds.with_gradient(p, gradient), -1, 1);
-            return MaterialValue{limit(color * (.6f + .55f * height)), .24f, .35f, gradient * .12f};
+            const float height = smooth_step(folds.with_gradient(p, gradient), -.9f, .9f);
+            return MaterialValue{limit(color * (.4f + .75f * height)), .24f, .35f, gradient * .14f};
         },
         words.also_true};
 }

@@ -66,14 +66,14 @@ ProceduralMaterial sprinkles(Random& random, const MaterialWish&) {
             "",
             {"sprinkle covered {o}", "{o} covered in sprinkles", "{o} with sprinkles"},
             [=](const Vec3& p, const Vec3& n) {
-                const Vec2 uv = flat_coordinates(p, n) * 3.0f;
+                const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
                 const Vec2 cell = glm::floor(uv), q = uv - cell - .5f;
                 const auto number = [&](int which) { return cell_value(cell.x, cell.y, which); };
                 const float angle = std::floor(number(0) * 4) * pi / 4;
                 const Vec2 along(std::cos(angle), std::sin(angle));
-                const float beyond = std::max(std::abs(glm::dot(q, along)) - .22f, 0.0f);
+                const float beyond = std::max(std::abs(glm::dot(q, along)) - .2f, 0.0f);
                 const float aside = q.x * along.y - q.y * along.x;
-                const bool on = std::hypot(beyond, aside) < .2f;
+                const bool on = std::hypot(beyond, aside) < .17f;
                 const auto& tone = tones[static_cast<std::size_t>(number(1) * 4.999f)];
                 return MaterialValue{on ? Vec3(tone[0], tone[1], tone[2]) : base, .3f, 0};
             }};

@@ -52,15 +52,15 @@ ProceduralMaterial tiger(Random& random, const MaterialWish&) {
 
 /// Brown patches between pale lines.
 ProceduralMaterial giraffe(Random& random, const MaterialWish&) {
-    const Vec3 patch = vary(random, {.36f, .14f, .04f}, .1),
-               line = vary(random, {.78f, .6f, .36f}, .06);
+    const Vec3 patch = vary(random, {.26f, .085f, .02f}, .1),
+               line = vary(random, {.84f, .7f, .46f}, .05);
     return {"",
             "",
             {"giraffe {o}", "{o} with giraffe spots", "giraffe print {o}", "giraffe patterned {o}"},
             [=](const Vec3& p, const Vec3&) {
                 const NearPoints near = near_points(p * cells_a_unit);
-                const float w = smooth_step(near.second - near.first, .1f, .18f);
-                return MaterialValue{mix(line, patch * (.75f + .5f * near.value), w), .8f, 0};
+                const float w = smooth_step(near.second - near.first, .16f, .26f);
+                return MaterialValue{mix(line, patch * (.8f + .4f * near.value), w), .8f, 0};
             }};
 }
 
@@ -87,7 +87,7 @@ std::vector<MaterialKind> fur_patterns() {
              leopard,
              {word_of("patterns", "leopard", "leopard", {"leopard"}, "a leopard print {o}")}},
             {"tiger", .02, tiger, {pattern_word("tiger", "tiger")}},
-            {"giraffe", .02, giraffe, {pattern_word("giraffe", "giraffe")}},
+            {"giraffe", .03, giraffe, {pattern_word("giraffe", "giraffe")}},
             {"dalmatian", .02, dalmatian, {pattern_word("dalmatian", "dalmatian")}}};
 }
 

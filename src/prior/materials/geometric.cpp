@@ -93,7 +93,8 @@ ProceduralMaterial zigzags(Random& random, const MaterialWish& wish) {
     return {"", tones.first, words.phrases,
             [=](const Vec3& p, const Vec3& n) {
                 const Vec2 uv = flat_coordinates(p, n) * cells_a_unit;
-                const float tooth = std::abs(fraction(uv.x) - .5f);
+                // Teeth as wide as two checks: half as many corners for a small network to round.
+                const float tooth = 2 * std::abs(fraction(uv.x * .5f) - .5f);
                 const float s = fraction(uv.y + tooth);
                 const float w = smooth_step(std::abs(s - .5f), .23f, .27f);
                 return MaterialValue{mix(tones.a, tones.b, w), tones.roughness, 0};
@@ -113,9 +114,9 @@ ProceduralMaterial tartan(Random& random, const MaterialWish& wish) {
                 const Vec2 uv = flat_coordinates(p, n);
                 const float x = fraction(uv.x), y = fraction(uv.y);
                 const float bands = (x < .5f ? .5f : 0.0f) + (y < .5f ? .5f : 0.0f);
-                const bool thin = std::abs(x - .25f) < .08f || std::abs(y - .25f) < .08f;
+                const bool thin = std::abs(x - .25f) < .09f || std::abs(y - .25f) < .09f;
                 const Vec3 cloth = mix(tones.a, tones.b, bands);
-                return MaterialValue{thin ? mix(cloth, line, .7f) : cloth, .95f, 0};
+                return MaterialValue{thin ? mix(cloth, line, .85f) : cloth, .95f, 0};
             },
             words.also_true};
 }

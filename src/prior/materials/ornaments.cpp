@@ -1,8 +1,6 @@
 // Irregular patterns: flowers, camouflage, cracks, flames.
 #include "item3d/prior/materials/makers.h"
 
-#include <array>
-
 namespace item3d::paint {
 namespace {
 
@@ -38,26 +36,25 @@ ProceduralMaterial floral(Random& random, const MaterialWish& wish) {
         words.also_true};
 }
 
+/// Blots of four tones, in one place as everything that has borders.
 ProceduralMaterial camouflage(Random& random, const MaterialWish&) {
-    static constexpr std::array<std::array<float, 3>, 3> forest{
-        {{.05f, .075f, .025f}, {.15f, .17f, .06f}, {.1f, .06f, .03f}}};
-    static constexpr std::array<std::array<float, 3>, 3> desert{
-        {{.55f, .42f, .25f}, {.35f, .24f, .12f}, {.18f, .11f, .055f}}};
-    const auto& tones = random.chance(.7) ? forest : desert;
-    std::array<Vec3, 4> colors{Vec3(.015f, .016f, .014f), Vec3(0.0f), Vec3(0.0f), Vec3(0.0f)};
-    for (std::size_t i = 0; i < 3; ++i)
-        colors[i + 1] = vary(random, {tones[i][0], tones[i][1], tones[i][2]}, .08);
-    const CosineNoise one(random, 4.5f, 2), two(random, 4.5f, 2);
-    return {
-        "",
-        "",
-        {"camouflage {o}", "camouflage {o}", "{o} with a camouflage pattern", "camo {o}",
-         "{o} in camouflage"},
-        [=](const Vec3& p, const Vec3&) {
-            const float a = one(p), b = two(p);
-            const std::size_t which = a > .75f ? 0 : a > 0 ? (b > .2f ? 1 : 2) : b > -.3f ? 2 : 3;
-            return MaterialValue{colors[which], .9f, 0};
-        }};
+    const Vec3 black = vary(random, {.012f, .013f, .011f}, .08),
+               green = vary(random, {.05f, .13f, .025f}, .08),
+               brown = vary(random, {.15f, .065f, .025f}, .08),
+               khaki = vary(random, {.46f, .38f, .19f}, .08);
+    Random blots(2);
+    const CosineNoise one(blots, 5, 1), two(blots, 5, 1);
+    return {"",
+            "",
+            {"camouflage {o}", "camouflage {o}", "{o} with a camouflage pattern", "camo {o}",
+             "{o} in camouflage"},
+            [=](const Vec3& p, const Vec3&) {
+                const float a = one(p), b = two(p);
+                Vec3 tone = a > 0 ? green : khaki;
+                if (b > .45f) tone = brown;
+                if (b < -.85f) tone = black;
+                return MaterialValue{tone, .9f, 0};
+            }};
 }
 
 /// Dark cracks between dry plates.
@@ -75,7 +72,7 @@ ProceduralMaterial cracks(Random& random, const MaterialWish& wish) {
         [=](const Vec3& p, const Vec3&) {
             const NearPoints near = near_points(p * cells_a_unit + .08f * warp(p));
             const float gap = near.second - near.first;
-            const float w = smooth_step(gap, .1f, .2f);
+            const float w = smooth_step(gap, .12f, .24f);
             return MaterialValue{limit(mix(deep, color * (.9f + .2f * near.value), w)), .75f, 0};
         },
         words.also_true};
@@ -107,7 +104,7 @@ std::vector<MaterialKind> ornament_patterns() {
          {colored(pattern_word("floral", "floral", {"floral", "flowers", "flowery"}),
                   "a {c} {o} with {d} flowers")}},
         {"camouflage",
-         .025,
+         .03,
          camouflage,
          {pattern_word("camouflage", "camouflage", {"camouflage", "camo"})}},
         {"cracked",
