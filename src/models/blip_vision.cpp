@@ -82,47 +82,16 @@ torch::Tensor BlipVisionModelImpl::forward(const torch::Tensor& pixel_values) {
 BlipVisionConfig BlipVisionConfig::from_config(const Config& config,
                                                const BlipVisionConfig& defaults) {
     BlipVisionConfig result = defaults;
-    result.hidden_size = config.size("hidden_size", result.hidden_size);
-    result.intermediate_size = config.size("intermediate_size", result.intermediate_size);
-    result.num_hidden_layers = config.size("num_hidden_layers", result.num_hidden_layers);
-    result.num_attention_heads = config.size("num_attention_heads", result.num_attention_heads);
-    result.image_size = config.size("image_size", result.image_size);
-    result.patch_size = config.size("patch_size", result.patch_size);
-    result.layer_norm_eps = config.number("layer_norm_eps", result.layer_norm_eps);
+    result.read(config);
     config.expect("hidden_act", "gelu");
     config.expect("qkv_bias", true);
-    if (result.hidden_size % result.num_attention_heads != 0)
-        config.fail("num_attention_heads", "a divisor of hidden_size");
-    if (result.num_hidden_layers > 256) config.fail("num_hidden_layers", "at most 256");
-    if (result.image_size > 4096) config.fail("image_size", "at most 4096");
-    if (result.patch_size > result.image_size) config.fail("patch_size", "at most image_size");
     return result;
 }
 
 nlohmann::json BlipVisionConfig::to_json() const {
-    return {
-        {"attention_dropout", 0.0},
-        {"hidden_act", "gelu"},
-        {"hidden_size", hidden_size},
-        {"image_size", image_size},
-        {"intermediate_size", intermediate_size},
-        {"layer_norm_eps", layer_norm_eps},
-        {"model_type", "blip_vision_model"},
-        {"num_attention_heads", num_attention_heads},
-        {"num_hidden_layers", num_hidden_layers},
-        {"patch_size", patch_size},
-    };
-}
-
-int BlipVisionConfig::tokens() const {
-    const int side = image_size / patch_size;
-    return side * side + 1;
-}
-
-double BlipVisionConfig::least_parameters() const {
-    const double width = hidden_size;
-    return width * (tokens() + 3.0 * patch_size * patch_size) +
-           num_hidden_layers * (4 * width * width + 2 * width * intermediate_size);
+    nlohmann::json json = VisionShape::to_json();
+    json.update({{"hidden_act", "gelu"}, {"model_type", "blip_vision_model"}});
+    return json;
 }
 
 }  // namespace item3d

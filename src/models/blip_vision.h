@@ -2,7 +2,7 @@
 // BlipVisionModel and Blip2VisionModel lay it out.
 #pragma once
 
-#include "item3d/models/config.h"
+#include "item3d/models/vision_shape.h"
 
 #include <torch/nn/module.h>
 #include <torch/nn/modules/conv.h>
@@ -14,20 +14,12 @@
 
 namespace item3d {
 
-struct BlipVisionConfig {
-    int hidden_size = 768;
-    int intermediate_size = 3072;
-    int num_hidden_layers = 12;
-    int num_attention_heads = 12;
-    int image_size = 384;  ///< pixels a side
-    int patch_size = 16;
-    double layer_norm_eps = 1e-5;
+struct BlipVisionConfig : VisionShape {
+    BlipVisionConfig() : VisionShape{.image_size = 384, .patch_size = 16} {}
 
     /// Keys that are missing keep the values of `defaults`. Throws InputError.
     static BlipVisionConfig from_config(const Config& config, const BlipVisionConfig& defaults);
     nlohmann::json to_json() const;
-    int tokens() const;  ///< patches and the class token
-    double least_parameters() const;
 };
 
 class BlipVisionModelImpl : public torch::nn::Module {

@@ -74,52 +74,22 @@ ClipVisionWithProjectionImpl::ClipVisionWithProjectionImpl(const ClipVisionConfi
 
 ClipVisionConfig ClipVisionConfig::from_config(const Config& config) {
     ClipVisionConfig result;
-    result.hidden_size = config.size("hidden_size", result.hidden_size);
-    result.intermediate_size = config.size("intermediate_size", result.intermediate_size);
-    result.num_hidden_layers = config.size("num_hidden_layers", result.num_hidden_layers);
-    result.num_attention_heads = config.size("num_attention_heads", result.num_attention_heads);
-    result.image_size = config.size("image_size", result.image_size);
-    result.patch_size = config.size("patch_size", result.patch_size);
+    result.read(config);
     result.hidden_act = config.text("hidden_act", result.hidden_act);
-    result.layer_norm_eps = config.number("layer_norm_eps", result.layer_norm_eps);
     result.projection_dim = config.size("projection_dim", result.projection_dim);
     config.expect("num_channels", 3);
     if (result.hidden_act != "quick_gelu" && result.hidden_act != "gelu")
         config.fail("hidden_act", "quick_gelu or gelu");
-    if (result.hidden_size % result.num_attention_heads != 0)
-        config.fail("num_attention_heads", "a divisor of hidden_size");
-    if (result.num_hidden_layers > 256) config.fail("num_hidden_layers", "at most 256");
-    if (result.image_size > 4096) config.fail("image_size", "at most 4096");
-    if (result.patch_size > result.image_size) config.fail("patch_size", "at most image_size");
     return result;
 }
 
 nlohmann::json ClipVisionConfig::to_json() const {
-    return {
-        {"attention_dropout", 0.0},
-        {"hidden_act", hidden_act},
-        {"hidden_size", hidden_size},
-        {"image_size", image_size},
-        {"intermediate_size", intermediate_size},
-        {"layer_norm_eps", layer_norm_eps},
-        {"model_type", "clip_vision_model"},
-        {"num_attention_heads", num_attention_heads},
-        {"num_channels", num_channels},
-        {"num_hidden_layers", num_hidden_layers},
-        {"patch_size", patch_size},
-        {"projection_dim", projection_dim},
-    };
-}
-
-int ClipVisionConfig::tokens() const {
-    const int side = image_size / patch_size;
-    return side * side + 1;
-}
-
-double ClipVisionConfig::least_parameters() const {
-    const double width = hidden_size;
-    return width * (tokens() + 3.0 * patch_size * patch_size) +
-           num_hidden_layers * (4 * width * width + 2 * width * intermediate_size);
+    nlohmann::json json = VisionShape::to_json();
+    json.update({{"hidden_act", hidden_act},
+                 {"model_type", "clip_vision_model"},
+                 {"num_channels", num_channels},
+                 {"projection_dim", projection_dim}});
+    return json;
 }
 
 ClipVisionWithProjection load_clip_vision(const std::filesystem::path& folder, torch::Device device,

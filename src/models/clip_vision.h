@@ -4,7 +4,7 @@
 #pragma once
 
 #include "item3d/models/clip_layer.h"
-#include "item3d/models/config.h"
+#include "item3d/models/vision_shape.h"
 
 #include <torch/nn/modules/conv.h>
 #include <torch/nn/modules/embedding.h>
@@ -16,22 +16,13 @@
 
 namespace item3d {
 
-struct ClipVisionConfig {
-    int hidden_size = 768;
-    int intermediate_size = 3072;
-    int num_hidden_layers = 12;
-    int num_attention_heads = 12;
+struct ClipVisionConfig : VisionShape {
     int num_channels = 3;
-    int image_size = 224;  ///< pixels a side
-    int patch_size = 32;
     std::string hidden_act = "quick_gelu";  ///< or "gelu"
-    double layer_norm_eps = 1e-5;
     int projection_dim = 512;
 
     static ClipVisionConfig from_config(const Config& config);
     nlohmann::json to_json() const;
-    int tokens() const;  ///< patches and the class token
-    double least_parameters() const;
 };
 
 /// S = tokens(), D = hidden_size.

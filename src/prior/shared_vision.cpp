@@ -3,20 +3,11 @@
 #include <string>
 
 namespace item3d {
-namespace {
-
-bool same_shape(const BlipVisionConfig& a, const ClipVisionConfig& b) {
-    return a.hidden_size == b.hidden_size && a.intermediate_size == b.intermediate_size &&
-           a.num_hidden_layers == b.num_hidden_layers &&
-           a.num_attention_heads == b.num_attention_heads && a.image_size == b.image_size &&
-           a.patch_size == b.patch_size && b.hidden_act == "gelu";
-}
-
-}  // namespace
 
 bool copy_vision(const BlipModel& from, const ClipModel& to, const torch::Tensor& pixel_values) {
     const ClipVisionConfig config = to->config().vision;
-    if (!same_shape(from->config().vision, config)) return false;
+    const VisionShape& shape = config;
+    if (shape != from->config().vision || config.hidden_act != "gelu") return false;
 
     const torch::NoGradGuard no_grad;
     const std::string vision = "vision_model.";

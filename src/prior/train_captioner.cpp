@@ -106,12 +106,7 @@ torch::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
 
 BlipConfig prior_captioner_config(int words) {
     BlipConfig config;
-    config.vision.hidden_size = 128;
-    config.vision.intermediate_size = 512;
-    config.vision.num_hidden_layers = 5;
-    config.vision.num_attention_heads = 4;
-    config.vision.image_size = read_size;
-    config.vision.patch_size = read_patch;
+    static_cast<VisionShape&>(config.vision) = prior_vision_shape;
     config.vocab_size = words + static_cast<int>(std::size(special_tokens));
     config.hidden_size = 128;
     config.intermediate_size = 512;

@@ -116,13 +116,8 @@ ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text)
     config.text.num_hidden_layers = 2;
     config.text.num_attention_heads = 4;
     config.text.projection_dim = 128;
-    config.vision.hidden_size = 128;
-    config.vision.intermediate_size = 512;
-    config.vision.num_hidden_layers = 5;
-    config.vision.num_attention_heads = 4;
+    static_cast<VisionShape&>(config.vision) = prior_vision_shape;
     config.vision.hidden_act = "gelu";  // the captioner's
-    config.vision.image_size = read_size;
-    config.vision.patch_size = read_patch;
     config.vision.projection_dim = 128;
     return config;
 }

@@ -16,10 +16,16 @@ namespace item3d {
 inline constexpr const char* clip_folder = "clip";
 inline constexpr const char* captioner_folder = "captioner";
 
-/// Pixels a side that both networks read, in patches of read_patch. Coarse patches are fewer:
-/// 25 instead of the 64 of 8 pixels.
+/// Pixels a side that both networks read. Coarse patches are fewer: 25 instead of the 64 of 8
+/// pixels.
 inline constexpr int read_size = 60;
-inline constexpr int read_patch = 12;
+/// The vision transformer of both, so that CLIP's can begin as the captioner's.
+inline constexpr VisionShape prior_vision_shape{.hidden_size = 128,
+                                                .intermediate_size = 512,
+                                                .num_hidden_layers = 5,
+                                                .num_attention_heads = 4,
+                                                .image_size = read_size,
+                                                .patch_size = 12};
 
 ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text);
 BlipConfig prior_captioner_config(int vocabulary);
