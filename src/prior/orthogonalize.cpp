@@ -1,6 +1,7 @@
 #include "item3d/prior/orthogonalize.h"
 
 #include "item3d/core/error.h"
+#include "item3d/models/precision.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,8 @@ torch::Tensor orthogonalized(const torch::Tensor& matrix) {
     const torch::NoGradGuard no_grad;
     const bool tall = matrix.size(0) > matrix.size(1);
     const torch::Tensor wide = tall ? matrix.t() : matrix;
-    torch::Tensor x = (wide / (wide.norm() + 1e-7)).to(torch::kBFloat16).contiguous();
+    torch::Tensor x =
+        (wide / (wide.norm() + 1e-7)).to(choose_precision("auto", torch::kCPU)).contiguous();
     for (int i = 0; i < 5; ++i) {
         const torch::Tensor square = x.mm(x.t());
         const torch::Tensor mixed = square * -4.7750 + square.mm(square) * 2.0315;

@@ -7,8 +7,8 @@
 namespace item3d {
 
 /// The nearest matrix with orthonormal rows or columns, roughly: singular values between 0.7 and
-/// 1.2, by five Newton-Schulz iterations of fifth order in bfloat16. matrix: [rows, columns]
-/// float32; a matrix of zeros stays one.
+/// 1.2, by five Newton-Schulz iterations of fifth order, in bfloat16 where the CPU computes in it.
+/// matrix: [rows, columns] float32; a matrix of zeros stays one.
 torch::Tensor orthogonalized(const torch::Tensor& matrix);
 
 /// By how much such a step is multiplied to be as large as one of Adam's, so that one learning rate

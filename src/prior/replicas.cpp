@@ -1,6 +1,7 @@
 #include "item3d/prior/replicas.h"
 
 #include "item3d/core/error.h"
+#include "item3d/models/precision.h"
 #include "item3d/prior/orthogonalize.h"
 
 #include <ATen/autocast_mode.h>
@@ -226,7 +227,8 @@ void ReplicaGroup::load_state(const std::vector<std::pair<std::string, torch::Te
 Autocast::Autocast()
     : enabled_before_(at::autocast::is_autocast_enabled(at::kCPU)),
       cache_before_(at::autocast::is_autocast_cache_enabled()) {
-    at::autocast::set_autocast_enabled(at::kCPU, true);
+    const torch::Dtype precision = choose_precision("auto", torch::kCPU);
+    at::autocast::set_autocast_enabled(at::kCPU, precision != torch::kFloat32);
     at::autocast::set_autocast_dtype(at::kCPU, at::kBFloat16);
     // The cache of converted weights is shared by all threads; each weight is used once anyway.
     at::autocast::set_autocast_cache_enabled(false);

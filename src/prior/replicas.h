@@ -109,7 +109,8 @@ class ReplicaGroup {
     std::barrier<> barrier_;
 };
 
-/// bfloat16 autocast on this thread for as long as it lives (CPU operations).
+/// bfloat16 autocast on this thread for as long as it lives (CPU operations), on a CPU that
+/// computes in it; others would only convert there and back.
 class Autocast {
   public:
     Autocast();
