@@ -3,7 +3,7 @@
 
 #include "ablation_contenders.h"
 #include "item3d/models/clip_model.h"
-#include "item3d/prior/vocabulary.h"
+#include "item3d/models/vocabulary.h"
 #include "item3d/suite/cases.h"
 
 #include <nlohmann/json.hpp>

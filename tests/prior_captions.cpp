@@ -1,9 +1,9 @@
 // Words, captions and tokens.
+#include "item3d/models/vocabulary.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/lights.h"
 #include "item3d/prior/shapes.h"
 #include "item3d/prior/tokenizer_training.h"
-#include "item3d/prior/vocabulary.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -210,6 +210,31 @@ TEST(PriorVocabulary, NamesUnknownAndWeakWords) {
     ASSERT_EQ(vocabulary.words_of("colors").size(), 2u);
     EXPECT_FLOAT_EQ(vocabulary.words_of("colors")[0].base_color->x, .7f);
     EXPECT_TRUE(PriorVocabulary().warning("anything at all", true).empty());
+}
+
+TEST(PriorVocabulary, ReadsAThingThatItHasNoWordForAsAnObject) {
+    const PriorVocabulary vocabulary(nlohmann::json::parse(R"({
+            "words": ["a", "an", "and", "covered", "cup", "golden", "hat", "in", "moss", "mug", "object", "of",
+                      "photo", "red", "shiny", "white", "with"],
+            "vocabulary": {"objects": [{"word": "mug", "spellings": ["mug", "cup"], "accuracy": 0.9},
+                                       {"word": "hat", "accuracy": 0.9}]}})"),
+                                     "test");
+    for (const auto& [prompt, reading] :
+         {std::pair{"A red and white Rabbit", "a red and white object"},
+          {"a rabbit", "an object"},
+          {"a photo of a shiny rabbit covered in moss",
+           "a photo of a shiny object covered in moss"},
+          {"a rabbit with a red hat", "an object with a red hat"},
+          {"a mossgrown golden rabbit", "a mossgrown golden object"},
+          {"a mossgrown cup", "a mossgrown cup"},
+          {"a Golden mug, with a zipper", "a Golden mug, with a zipper"},
+          {"a golden object", "a golden object"}})
+        EXPECT_EQ(vocabulary.reading(prompt), reading);
+    EXPECT_EQ(
+        vocabulary.warning("a furry rabbit", true),
+        "the prior reads \"rabbit\" as \"object\" and does not know \"furry\" (item3d prior info "
+        "lists its words)");
+    EXPECT_EQ(PriorVocabulary().reading("a rabbit"), "a rabbit");
 }
 
 }  // namespace

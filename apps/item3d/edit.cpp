@@ -9,7 +9,7 @@
 #include "item3d/edit/reconstructed_light.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/models/precision.h"
-#include "item3d/prior/vocabulary.h"
+#include "item3d/models/vocabulary.h"
 #include "relight_words.h"
 
 #include <cstdio>

@@ -10,8 +10,8 @@
 #include "item3d/hub/find_prior.h"
 #include "item3d/models/pipeline_extras.h"
 #include "item3d/models/shape_condition.h"
+#include "item3d/models/vocabulary.h"
 #include "item3d/prior/generate_defaults.h"
-#include "item3d/prior/vocabulary.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/render/shade.h"
 #include "item3d/scene/io/load.h"
@@ -111,12 +111,13 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
     Pipeline pipeline = Pipeline::load(prior, device);
     const auto extras = command.extras.get<PipelineExtras>();
     apply_extras(pipeline, extras);
-    const std::string warning =
-        PriorVocabulary::load(prior).warning(command.generate.prompt, !command.like.empty());
+    const PriorVocabulary vocabulary = PriorVocabulary::load(prior);
+    const std::string warning = vocabulary.warning(command.generate.prompt, !command.like.empty());
     if (!warning.empty()) warn(warning);
     warn_of_lost_words(*pipeline.tokenizer, "PROMPT", command.generate.prompt);
 
     GenerateOptions options = command.generate;
+    options.prompt = vocabulary.reading(options.prompt);
     complete_options(command, prior, pipeline, options);
     const int native = pipeline.unet->config().sample_size * pipeline.downscale();
     const PictureSize size =

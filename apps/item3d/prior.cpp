@@ -5,11 +5,11 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/find_prior.h"
+#include "item3d/models/vocabulary.h"
 #include "item3d/prior/shapes.h"
 #include "item3d/prior/sheets.h"
 #include "item3d/prior/train.h"
 #include "item3d/prior/vision_language.h"
-#include "item3d/prior/vocabulary.h"
 #include "item3d/scene/io/save.h"
 #include "prior_commands.h"
 

@@ -10,7 +10,7 @@
 #include "item3d/hub/find_prior.h"
 #include "item3d/light/light_model.h"
 #include "item3d/models/precision.h"
-#include "item3d/prior/vocabulary.h"
+#include "item3d/models/vocabulary.h"
 #include "item3d/scene/environment.h"
 #include "item3d/scene/light_adjust.h"
 #include "item3d/scene/light_layout.h"

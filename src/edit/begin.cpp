@@ -97,7 +97,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     state.fitted = snapshot(state.field);
     const auto begin_guidance = [&] {
         state.guidance =
-            make_guidance(scene.prior(), settings.from, settings.to, guidance_options(settings));
+            make_guidance(scene.prior(), scene.from, scene.to, guidance_options(settings));
         state.prior_weights = scene.hashing_weights.get();
     };
 

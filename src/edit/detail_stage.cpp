@@ -111,7 +111,7 @@ torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
     const PaintingView& planned = plan_[index];
     const torch::Tensor latents = prior.encode_image(view.images * 2 - 1);
     GenerateOptions options;
-    options.prompt = settings_.to;
+    options.prompt = scene_.to;
     options.negative_prompt = settings_.negative_prompt;
     options.steps = sampling_steps;
     options.guidance_scale = guidance_scale;

@@ -5,6 +5,7 @@
 #include "item3d/edit/memory.h"
 #include "item3d/models/checkpoint.h"
 #include "item3d/models/precision.h"
+#include "item3d/models/vocabulary.h"
 #include "item3d/scene/io/load.h"
 
 namespace item3d {
@@ -63,6 +64,9 @@ EditScene load_scene(const EditRequest& request) {
     const EditSettings& settings = request.settings;
 
     EditScene scene;
+    const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
+    scene.from = vocabulary.reading(settings.from);
+    scene.to = vocabulary.reading(settings.to);
     scene.device = device;
     scene.precision = choose_precision(request.precision, device);
     const bool low_memory = wants_low_memory(request, scene.precision, device);

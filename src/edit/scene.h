@@ -18,6 +18,7 @@
 namespace item3d {
 
 struct EditScene {
+    std::string from, to;  ///< the sentences as the prior reads them, PriorVocabulary::reading()
     Model model;
     Geometry geometry;
     BoundingSphere sphere;

@@ -71,6 +71,7 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
                     {"model", request.model.string()},
                     {"from", settings.from},
                     {"to", settings.to},
+                    {"read_as", {{"from", scene.from}, {"to", scene.to}}},
                     {"prior", request.prior.string()},
                     {"guidance", settings.guidance},
                     {"seed", settings.seed},

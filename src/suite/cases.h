@@ -2,7 +2,7 @@
 #pragma once
 
 #include "item3d/evaluate/color.h"
-#include "item3d/prior/vocabulary.h"
+#include "item3d/models/vocabulary.h"
 #include "item3d/scene/model.h"
 
 #include <string>

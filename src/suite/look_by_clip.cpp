@@ -11,7 +11,7 @@ std::string look_by_clip(const torch::Tensor& pictures, const std::string& noun,
     for (const std::string& kind : kinds) {
         for (const KnownWord& known : vocabulary.words_of(kind)) {
             words.push_back(known.word);
-            sentences.push_back(prompt_of(known.caption, noun));
+            sentences.push_back(vocabulary.reading(prompt_of(known.caption, noun)));
         }
     }
     ITEM3D_CHECK(!words.empty(), "nothing to be seen");

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "item3d/models/clip_model.h"
-#include "item3d/prior/vocabulary.h"
+#include "item3d/models/vocabulary.h"
 
 #include <torch/types.h>
 

@@ -1,19 +1,33 @@
-#include "item3d/prior/vocabulary.h"
+#include "item3d/models/vocabulary.h"
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/format.h"
 #include "item3d/core/words.h"
 
 #include <algorithm>
+#include <set>
 
 namespace item3d {
 namespace {
+
+/// What every thing may be called.
+constexpr const char* any_object = "object";
 
 /// A weak word that is told right less often than this is no longer a matter of "at times".
 constexpr double bad_accuracy = 0.5;
 
 void add_once(std::vector<std::string>& words, const std::string& word) {
     if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+}
+
+/// After these a prompt talks of something else: of the picture's subject, then of its parts, of
+/// what it is made of, of its light.
+bool begins_another_phrase(const std::string& word) {
+    static const std::set<std::string> words{"a",   "an", "at",    "by",  "covered", "from",
+                                             "has", "in", "made",  "of",  "on",      "that",
+                                             "the", "to", "under", "with"};
+    return words.count(word) > 0;
 }
 
 std::string listed(const std::vector<std::string>& words) {
@@ -71,11 +85,44 @@ std::vector<KnownWord> PriorVocabulary::words_of(const std::string& kind) const 
     return result;
 }
 
+bool PriorVocabulary::knows(const std::string& word) const {
+    return open() || std::binary_search(all_words_.begin(), all_words_.end(), word);
+}
+
+bool PriorVocabulary::names_object(const std::string& word) const {
+    return word == any_object ||
+           std::any_of(words_.begin(), words_.end(), [&](const KnownWord& known) {
+               return known.kind == "objects" &&
+                      std::find(known.spellings.begin(), known.spellings.end(), word) !=
+                          known.spellings.end();
+           });
+}
+
+std::optional<std::size_t> PriorVocabulary::unknown_noun(
+    const std::vector<std::string>& words) const {
+    if (!knows(any_object)) return std::nullopt;
+    std::optional<std::size_t> last;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (last && begins_another_phrase(words[i])) break;
+        if (names_object(words[i])) return std::nullopt;
+        if (!knows(words[i])) last = i;
+    }
+    return last;
+}
+
+std::string PriorVocabulary::reading(const std::string& prompt) const {
+    std::vector<std::string> words = prompt_words(prompt);
+    const std::optional<std::size_t> noun = unknown_noun(words);
+    if (!noun) return prompt;
+    words[*noun] = any_object;
+    if (*noun > 0 && words[*noun - 1] == "a") words[*noun - 1] = "an";
+    return fmt::format("{}", fmt::join(words, " "));
+}
+
 std::vector<std::string> PriorVocabulary::unknown_words(const std::string& prompt) const {
     std::vector<std::string> result;
-    if (open()) return result;
     for (const std::string& word : prompt_words(prompt))
-        if (!std::binary_search(all_words_.begin(), all_words_.end(), word)) add_once(result, word);
+        if (!knows(word)) add_once(result, word);
     return result;
 }
 
@@ -102,9 +149,15 @@ std::vector<std::string> PriorVocabulary::weak_words(const std::string& prompt,
 }
 
 std::string PriorVocabulary::warning(const std::string& prompt, bool shape_is_given) const {
-    const auto unknown = unknown_words(prompt), weak = weak_words(prompt, shape_is_given);
+    std::vector<std::string> unknown = unknown_words(prompt);
+    const std::vector<std::string> weak = weak_words(prompt, shape_is_given);
     if (unknown.empty() && weak.empty()) return "";
     std::vector<std::string> bad, confusions, clauses;
+    const std::vector<std::string> words = prompt_words(prompt);
+    if (const auto noun = unknown_noun(words)) {
+        clauses.push_back("reads " + listed({words[*noun]}) + " as " + listed({any_object}));
+        std::erase(unknown, words[*noun]);
+    }
     for (const std::string& word : weak) {
         const KnownWord& known = *best_known(word, shape_is_given);
         if (known.accuracy < bad_accuracy || known.taken_for.empty()) bad.push_back(word);

@@ -45,10 +45,18 @@ class PriorVocabulary {
     /// Words that it was trained on but tells from others too seldom (below weak_accuracy). Where
     /// the shape is given by a depth, names of objects carry no weight and are left out.
     std::vector<std::string> weak_words(const std::string& prompt, bool shape_is_given) const;
-    /// One line for the user that names both, or nothing.
+    /// The prompt as the prior can take it in. It was never shown the pieces of a word that it does
+    /// not know, and they blur what the others say: where the thing that is talked about has such a
+    /// name ("a zigzag rabbit"), the word becomes "object", in so far as the prior knows that.
+    std::string reading(const std::string& prompt) const;
+    /// One line for the user that names all of that, or nothing.
     std::string warning(const std::string& prompt, bool shape_is_given) const;
 
   private:
+    bool knows(const std::string& word) const;
+    bool names_object(const std::string& word) const;
+    /// Which of a prompt's words is read as "object".
+    std::optional<std::size_t> unknown_noun(const std::vector<std::string>& words) const;
     /// The meaning of a prompt's word that is known best; null where none is measured.
     const KnownWord* best_known(const std::string& spelling, bool shape_is_given) const;
 
