@@ -108,6 +108,27 @@ TEST_F(EditTest, detail_changes_the_base_color_and_little_else) {
     EXPECT_GT(changed / static_cast<double>(was.pixels.size()), 0.01);
 }
 
+TEST_F(EditTest, a_thing_without_a_word_is_edited_as_an_object) {
+    EditRequest edit = request("cube", 2);
+    const fs::path prior = folder_ / "prior";
+    fs::copy(edit.prior, prior, fs::copy_options::recursive);
+    write_atomically(prior / "prior.json",
+                     std::string(R"({"words": ["a", "red", "blue", "object"]})"));
+    edit.prior = prior;
+    edit.settings.detail = "always";
+    edit.settings.detail_views = 2;
+    const nlohmann::json summary = edit_model(edit);
+    EXPECT_EQ(summary["to"], "a blue cube");
+    EXPECT_EQ(summary["read_as"]["to"], "a blue object");
+    EditRequest named = edit;
+    named.output = folder_ / "object";
+    named.settings.from = "a red object";
+    named.settings.to = "a blue object";
+    edit_model(named);
+    EXPECT_EQ(base_color_of(edit.output / "model.glb").pixels,
+              base_color_of(named.output / "model.glb").pixels);
+}
+
 TEST_F(EditTest, a_checkpoint_of_other_settings_is_refused) {
     EditRequest edit = request("out", 2);
     edit_model(edit);

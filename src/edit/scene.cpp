@@ -31,6 +31,7 @@ struct PriorNeeds {
     torch::Dtype precision = torch::kFloat32;
     bool any_sentence = false;  ///< some are not known yet: a captioner will say them
     bool low_memory = false;
+    std::string from, to;  ///< as the prior reads them
 };
 
 Pipeline load_networks(const EditRequest& request, const PriorNeeds& prior_needs) {
@@ -41,7 +42,7 @@ Pipeline load_networks(const EditRequest& request, const PriorNeeds& prior_needs
         return prior;
     }
     RunNeeds needs;
-    needs.prompts = {settings.from, settings.to, settings.negative_prompt,
+    needs.prompts = {prior_needs.from, prior_needs.to, settings.negative_prompt,
                      default_negative_prompt()};
     needs.decoder = wants_detail(settings);
     return load_to_run(request.prior, prior_needs.device, prior_needs.precision, settings, needs);
@@ -71,10 +72,10 @@ EditScene load_scene(const EditRequest& request) {
     scene.precision = choose_precision(request.precision, device);
     const bool low_memory = wants_low_memory(request, scene.precision, device);
     scene.captioner = load_wanted_captioner(request, scene.precision);
-    scene.loading_prior =
-        std::async(std::launch::async, load_prior, request,
-                   PriorNeeds{device, scene.precision, scene.captioner != nullptr, low_memory})
-            .share();
+    scene.loading_prior = std::async(std::launch::async, load_prior, request,
+                                     PriorNeeds{device, scene.precision, scene.captioner != nullptr,
+                                                low_memory, scene.from, scene.to})
+                              .share();
     scene.hashing_weights = std::async(std::launch::async, hash_of_weights, request.prior).share();
     scene.model = load_model(request.model);
     scene.materials = select_materials(scene.model, settings.material);
