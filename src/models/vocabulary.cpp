@@ -24,9 +24,9 @@ void add_once(std::vector<std::string>& words, const std::string& word) {
 /// After these a prompt talks of something else: of the picture's subject, then of its parts, of
 /// what it is made of, of its light.
 bool begins_another_phrase(const std::string& word) {
-    static const std::set<std::string> words{"a",   "an", "at",    "by",  "covered", "from",
-                                             "has", "in", "made",  "of",  "on",      "that",
-                                             "the", "to", "under", "with"};
+    static const std::set<std::string> words{"a",   "an", "at",    "by",      "covered", "from",
+                                             "has", "in", "made",  "of",      "on",      "that",
+                                             "the", "to", "under", "wearing", "with"};
     return words.count(word) > 0;
 }
 

@@ -4,6 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/models/precision.h"
 #include "item3d/models/safetensors.h"
 #include "item3d/models/shape_condition.h"
 #include "item3d/prior/begin_with.h"
@@ -316,6 +317,8 @@ nlohmann::json settings_json(const TrainSettings& settings) {
                 {"prediction_type", settings.prediction_type},
                 {"optimizer", settings.optimizer},
                 {"learning_rate", as_written(settings.learning_rate)},
+                // Each process steps its own copy of the weights: rounded otherwise, they part.
+                {"precision", precision_name(choose_precision("auto", torch::kCPU))},
                 {"resume", settings.resume},
                 {"stop_after", settings.stop_after}});
     return all;

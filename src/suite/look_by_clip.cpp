@@ -11,6 +11,7 @@ std::string look_by_clip(const torch::Tensor& pictures, const std::string& noun,
     for (const std::string& kind : kinds) {
         for (const KnownWord& known : vocabulary.words_of(kind)) {
             words.push_back(known.word);
+            // A prior's CLIP has learnt the same words.
             sentences.push_back(vocabulary.reading(prompt_of(known.caption, noun)));
         }
     }
