@@ -32,8 +32,8 @@ struct TrainSettings {
     std::int64_t data_samples = 112000;  ///< different pictures
     std::int64_t autoencoder_samples = 64000;
     std::int64_t autoencoder_pictures = 12000;
-    std::int64_t clip_samples = 200000;       ///< that CLIP sees, repetitions counted
-    std::int64_t captioner_samples = 720000;  ///< and the captioner
+    std::int64_t clip_samples = 120000;       ///< that CLIP sees, repetitions counted
+    std::int64_t captioner_samples = 800000;  ///< and the captioner
     std::int64_t labeled_samples = 240000;    ///< different pictures for these two
     int labeled_variants = 60;                ///< shapes of each class on those
     int shape_variants = 30;

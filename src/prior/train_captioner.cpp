@@ -15,7 +15,9 @@
 namespace item3d {
 namespace {
 
-constexpr int captioner_batch = 32;
+constexpr int captioner_batch = 64;
+/// Times that of the U-Net: with so many pictures a step it gets further in as many.
+constexpr float captioner_rate = 2;
 /// What a vocabulary begins with; their places are their ids.
 constexpr const char* special_tokens[] = {"[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]"};
 constexpr int pad_id = 0, begin_id = 2, end_id = 3;
@@ -108,10 +110,10 @@ BlipConfig prior_captioner_config(int words) {
     BlipConfig config;
     static_cast<VisionShape&>(config.vision) = prior_vision_shape;
     config.vocab_size = words + static_cast<int>(std::size(special_tokens));
-    config.hidden_size = 128;
-    config.intermediate_size = 512;
+    config.hidden_size = 192;
+    config.intermediate_size = 768;
     config.num_hidden_layers = 2;
-    config.num_attention_heads = 4;
+    config.num_attention_heads = 6;
     config.max_position_embeddings = 64;
     config.bos_token_id = begin_id;
     config.sep_token_id = end_id;
@@ -143,6 +145,7 @@ nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings&
     LoopOptions options =
         vision_language_loop("captioner", settings, settings.captioner_samples, data);
     options.batch = captioner_batch;
+    options.learning_rate *= captioner_rate;
     TrainingLoop loop(options, std::move(replicas));
 
     const BlipModel exported = make_captioner(settings, config);

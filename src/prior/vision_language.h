@@ -20,10 +20,10 @@ inline constexpr const char* captioner_folder = "captioner";
 /// pixels.
 inline constexpr int read_size = 60;
 /// The vision transformer of both, so that CLIP's can begin as the captioner's.
-inline constexpr VisionShape prior_vision_shape{.hidden_size = 128,
-                                                .intermediate_size = 512,
-                                                .num_hidden_layers = 5,
-                                                .num_attention_heads = 4,
+inline constexpr VisionShape prior_vision_shape{.hidden_size = 192,
+                                                .intermediate_size = 768,
+                                                .num_hidden_layers = 6,
+                                                .num_attention_heads = 6,
                                                 .image_size = read_size,
                                                 .patch_size = 12};
 
