@@ -95,7 +95,7 @@ void add_network_settings(CLI::App& command, TrainOptions& options) {
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
     add_setting(command, options, "--learning-rate", &TrainSettings::learning_rate,
-                "Highest learning rate")
+                "Highest learning rate; the captioner's is twice that")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
 }

@@ -16,7 +16,7 @@ namespace item3d {
 namespace {
 
 constexpr int captioner_batch = 64;
-/// Times that of the U-Net: with so many pictures a step it gets further in as many.
+/// Times the U-Net's highest learning rate: a step is of twice as many pictures.
 constexpr float captioner_rate = 2;
 /// What a vocabulary begins with; their places are their ids.
 constexpr const char* special_tokens[] = {"[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]"};
