@@ -81,5 +81,41 @@ TEST(Decoding, EachRowOfABatchIsDecodedByItself) {
     }
 }
 
+/// Two readers of the same text: rows of the first half go by one language, of the second by
+/// another.
+class TwoReaders : public LanguageModelState {
+  public:
+    TwoReaders(const torch::Tensor& first, const torch::Tensor& second)
+        : first_(first), second_(second) {}
+    torch::Tensor read(const torch::Tensor& tokens) override {
+        const auto halves = tokens.chunk(2, 0);
+        EXPECT_TRUE(halves[0].equal(halves[1]));
+        return torch::cat({first_.read(halves[0]), second_.read(halves[1])});
+    }
+    void select(const torch::Tensor& rows) override {
+        const auto halves = rows.chunk(2, 0);
+        first_.select(halves[0]);
+        second_.select(halves[1] - (halves[1] - halves[0])[0]);
+    }
+
+  private:
+    Chain first_, second_;
+};
+
+TEST(Decoding, TogetherRowsWriteTheTextThatIsLikeliestForAll) {
+    torch::manual_seed(3);
+    const torch::Tensor one = torch::rand({6, 6}).softmax(-1), other = torch::rand({6, 6}).pow(3);
+    const torch::Tensor mean = (one.log() / 2 + (other / other.sum(1, true)).log() / 2).exp();
+    for (const int width : {1, 3}) {
+        DecodingOptions wanted = search(width, 6);
+        Chain both(mean);
+        const torch::Tensor expected = decode(both, torch::tensor({{0}}), wanted).tokens;
+        TwoReaders readers(one, other);
+        wanted.together = true;
+        EXPECT_TRUE(decode(readers, torch::tensor({{0}, {0}}), wanted).tokens.equal(expected))
+            << width;
+    }
+}
+
 }  // namespace
 }  // namespace item3d

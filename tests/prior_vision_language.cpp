@@ -2,6 +2,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/models/safetensors.h"
+#include "item3d/prior/begin_with.h"
 #include "item3d/prior/shared_vision.h"
 #include "item3d/prior/tokenizer_training.h"
 #include "item3d/prior/vision_language.h"
@@ -204,7 +205,7 @@ TEST_F(VisionLanguage, CaptionerLearnsColorsAndResumes) {
     train_captioner(data_, whole, words_, small_captioner());
     const auto captioner = load_captioner(whole.output / captioner_folder);
     const CaptionAccuracy accuracy = measure_captions(*captioner, data_, 2);
-    EXPECT_EQ(accuracy.pictures, 120);
+    EXPECT_EQ(accuracy.captions, 120);
     EXPECT_GT(accuracy.object, .9);
     EXPECT_GT(accuracy.material, .6);
 
@@ -221,6 +222,66 @@ TEST_F(VisionLanguage, CaptionerLearnsColorsAndResumes) {
         if (expected[i].first == "record") continue;  // holds seconds
         EXPECT_TRUE(torch::equal(expected[i].second, found[i].second)) << expected[i].first;
     }
+}
+
+TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
+    const TrainSettings first = settings("first", 640);
+    train_captioner(data_, first, words_, small_captioner());
+    const ClipTokenizer tokenizer = train_tokenizer(words_, text_length);
+    train_clip(data_, first, tokenizer, small_clip(tokenizer));
+    TrainSettings second = settings("second", 128);
+    second.begin_with = first.output;
+    second.learning_rate = 1e-9f;
+    second.seed = 2;
+    // Its words may come in another order; the vocabulary of the weights is kept.
+    std::vector<WordCount> turned(words_.rbegin(), words_.rend());
+    train_captioner(data_, second, turned, small_captioner());
+    train_clip(data_, second, ClipTokenizer::load(first.output / clip_folder),
+               small_clip(tokenizer));
+    const fs::path vocabulary = fs::path(captioner_folder) / "vocab.txt";
+    EXPECT_EQ(read_text(first.output / vocabulary), read_text(second.output / vocabulary));
+    for (const char* part : {captioner_folder, clip_folder}) {
+        const fs::path file = fs::path(part) / "model.safetensors";
+        const SafeTensors found = SafeTensors::open(second.output / file);
+        for (const auto& [name, tensor] : SafeTensors::open(first.output / file).tensors())
+            EXPECT_TRUE(torch::allclose(tensor.to(torch::kFloat32),
+                                        found.tensor(name).to(torch::kFloat32), 2e-3, 1e-5))
+                << part << " " << name;
+    }
+    // What does not fit is said before any picture is drawn.
+    const auto refusal = [](const TrainSettings& settings, bool clip, bool captioner) {
+        try {
+            check_begin_with_readers(settings, clip, captioner);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    for (const bool clip : {false, true}) {
+        const char* part = clip ? clip_folder : captioner_folder;
+        EXPECT_EQ(refusal(second, clip, !clip)
+                      .find((first.output / part / "config.json").string() + ": "),
+                  0u);
+        EXPECT_TRUE(begin_with_part(second, part) == first.output / part);
+    }
+    fs::remove_all(first.output / captioner_folder);
+    EXPECT_TRUE(begin_with_part(second, captioner_folder).empty());
+    EXPECT_EQ(refusal(second, false, true), "");
+    second.output = first.output;
+    EXPECT_NE(refusal(second, true, true).find("-o"), std::string::npos);
+}
+
+TEST(HeldOutModels, AreOneThingFromSeveralSides) {
+    const LabeledModels models = draw_held_out_models(3, 4, 2, 2);
+    ASSERT_EQ(models.views.size(), 4u);
+    ASSERT_EQ(models.facts.size(), 4u);
+    for (std::size_t i = 0; i < models.views.size(); ++i) {
+        ASSERT_EQ(models.views[i].size(), 2u);
+        EXPECT_FALSE(models.views[i][0].equal(models.views[i][1]));
+        EXPECT_FALSE(models.facts[i].phrases.empty());
+    }
+    const LabeledModels again = draw_held_out_models(3, 4, 2, 1);
+    EXPECT_TRUE(again.views[3][1].equal(models.views[3][1]));
 }
 
 TEST_F(VisionLanguage, PicturesAndFactsAreKeptTogether) {

@@ -1,4 +1,4 @@
-// item3d caption: sentences for a picture, or for a model seen from all around.
+// item3d caption: a sentence for a picture, or for a model seen from all around.
 #include "command.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
@@ -28,7 +28,7 @@ struct CaptionCommand : CommonOptions {
     std::string precision = "auto";
     std::string light = "studio";
     int views = 4;
-    CaptionOptions caption;
+    CaptionOptions caption{.prefix = {}, .beams = caption_beams};
 };
 
 constexpr int view_pixels = 512;
@@ -67,24 +67,22 @@ void run_caption(const CaptionCommand& options, torch::Device device) {
     const std::vector<torch::Tensor> pictures = load_pictures(options, device);
 
     const auto begin = std::chrono::steady_clock::now();
-    nlohmann::json captions = nlohmann::json::array();
-    Progress progress("caption", static_cast<std::int64_t>(pictures.size()));
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-        captions.push_back(captioner->caption(pictures[i], options.caption));
-        progress.update(static_cast<std::int64_t>(i + 1));
-    }
-    progress.finish();
+    const std::string caption = captioner->caption_together(pictures, options.caption);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     if (options.json) {
+        // What each view says alone shows where the views disagree.
+        nlohmann::json of_views = nlohmann::json::array();
+        for (const torch::Tensor& picture : pictures)
+            of_views.push_back(captioner->caption(picture, options.caption));
         print_json({{"file", options.input},
                     {"captioner", options.captioner},
                     {"prefix", options.caption.prefix},
                     {"beams", options.caption.beams},
-                    {"captions", captions},
+                    {"caption", caption},
+                    {"of_views", of_views},
                     {"seconds", took.count()}});
     } else {
-        for (const auto& caption : captions)
-            fmt::print("{}\n", caption.get<std::string>());
+        fmt::print("{}\n", caption);
     }
 }
 
@@ -112,8 +110,10 @@ void add_caption_command(CLI::App& app) {
                      "Longest caption, in tokens behind the prefix")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    command->add_option("--views", options->views, "Around a model: one caption for each")
-        ->check(CLI::Range(1, 1000))
+    command
+        ->add_option("--views", options->views,
+                     "Around a model, which the caption is made from together")
+        ->check(CLI::Range(1, 64))
         ->capture_default_str();
     command
         ->add_option("--light", options->light,

@@ -14,6 +14,7 @@
 #include "prior_commands.h"
 
 #include <functional>
+#include <utility>
 
 namespace item3d {
 namespace {
@@ -157,7 +158,8 @@ void add_train(CLI::App& app) {
     add_network_settings(*command, *options);
     CLI::Option* begin = command->add_option(
         "--begin-with", options->settings.begin_with,
-        "A prior, by folder or name, whose weights, words and autoencoder to begin with");
+        "A prior, by folder or name, whose weights, words and autoencoder to begin with, and its "
+        "captioner and CLIP where they are trained");
     options->given.emplace_back([options = options.get(), begin](TrainSettings& to) {
         if (begin->count() > 0) to.begin_with = find_prior(options->settings.begin_with);
     });
@@ -267,11 +269,14 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
         fmt::print("clip: finds the right one of {} captions for {:.0f} % of held-out pictures\n",
                    found.value("candidates", 0), part(found, "picture_to_caption"));
     }
-    if (prior.contains("captioner") && prior["captioner"].contains("captions")) {
-        const auto& named = prior["captioner"]["captions"];
+    for (const auto& [member, what] : {std::pair{"captions", "a picture in any light"},
+                                       std::pair{"model_captions", "a model from four sides"}}) {
+        if (!prior.contains("captioner") || !prior["captioner"].contains(member)) continue;
+        const auto& named = prior["captioner"][member];
         fmt::print(
-            "captioner: names the object of {:.0f} %, the material of {:.0f} %, both of {:.0f} %\n",
-            part(named, "object"), part(named, "material"), part(named, "both"));
+            "captioner: of {}, names the object of {:.0f} %, the material of {:.0f} %, both "
+            "of {:.0f} %\n",
+            what, part(named, "object"), part(named, "material"), part(named, "both"));
     }
     if (kinds.empty()) fmt::print("not measured: see `item3d prior evaluate`\n");
     for (const std::string& kind : kinds) {

@@ -195,6 +195,11 @@ void add_prior_evaluate(CLI::App& prior) {
     command->add_option("--labeled-pictures", evaluation.labeled_pictures, "For CLIP and captioner")
         ->check(CLI::Range(256, 100000))
         ->capture_default_str();
+    command
+        ->add_option("--labeled-models", evaluation.labeled_models,
+                     "For the captioner, which sees each from four sides")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
     command->add_option("--seed", evaluation.seed)->capture_default_str();
     command->callback([options] {
         start_command(*options);

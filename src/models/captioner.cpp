@@ -26,6 +26,7 @@ DecodingOptions decoding_options(const CaptionOptions& options) {
     DecodingOptions result;
     result.beams = options.beams;
     result.max_new_tokens = options.max_new_tokens;
+    result.together = options.together;
     return result;
 }
 

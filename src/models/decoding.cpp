@@ -130,6 +130,31 @@ class BeamSearch {
     bool goes_on_ = true;
 };
 
+/// Texts that are written for `readers` rows of another state each, one behind the other: row
+/// r * N + i of that state is what reader r makes of text i.
+class JointState : public LanguageModelState {
+  public:
+    JointState(LanguageModelState& state, std::int64_t readers)
+        : state_(state), readers_(readers) {}
+    torch::Tensor read(const torch::Tensor& tokens) override {
+        texts_ = tokens.size(0);
+        return state_.read(tokens.repeat({readers_, 1}))
+            .log_softmax(-1)
+            .view({readers_, texts_, -1})
+            .mean(0);
+    }
+    void select(const torch::Tensor& rows) override {
+        const torch::Tensor begins = torch::arange(readers_).unsqueeze(1) * texts_;
+        state_.select((begins + rows).flatten());
+        texts_ = rows.size(0);
+    }
+
+  private:
+    LanguageModelState& state_;
+    std::int64_t readers_;
+    std::int64_t texts_ = 0;
+};
+
 Decoded beam_search(LanguageModelState& state, const torch::Tensor& prompt,
                     const DecodingOptions& options) {
     BeamSearch search(prompt, options);
@@ -154,8 +179,10 @@ Decoded decode(LanguageModelState& state, const torch::Tensor& prompt,
                  "a prompt must be int64 [N, S] with S > 0");
     ITEM3D_CHECK(options.max_new_tokens > 0 && options.beams > 0, "nothing is asked for");
     const torch::NoGradGuard no_grad;
-    return options.beams == 1 ? greedy_search(state, prompt, options)
-                              : beam_search(state, prompt, options);
+    const auto search = options.beams == 1 ? greedy_search : beam_search;
+    if (!options.together) return search(state, prompt, options);
+    JointState joint(state, prompt.size(0));
+    return search(joint, prompt.narrow(0, 0, 1), options);
 }
 
 }  // namespace item3d

@@ -23,12 +23,15 @@ struct DecodingOptions {
     int end_token = 0;
     int pad_token = 0;
     double length_penalty = 1;  ///< of beams: scores are divided by length^penalty
+    /// One text for all rows: each token is chosen by the mean of the rows' log-probabilities, as a
+    /// product of experts. The rows must begin with the same tokens.
+    bool together = false;
 };
 
 struct Decoded {
-    /// [N, S + T] int64: the prompt and what follows. Rows that ended sooner are filled with
-    /// pad_token; by beam search with end_token where pad_token is 0 (transformers takes that for
-    /// "none").
+    /// [N, S + T] int64 (of one row where they are written together): the prompt and what follows.
+    /// Rows that ended sooner are filled with pad_token; by beam search with end_token where
+    /// pad_token is 0 (transformers takes that for "none").
     torch::Tensor tokens;
     torch::Tensor scores;  ///< [N] of beams: mean log-probability a new token; else undefined
 };

@@ -4,6 +4,7 @@
 #include "item3d/models/config.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/train.h"
+#include "item3d/prior/vision_language.h"
 
 namespace item3d {
 namespace {
@@ -13,6 +14,7 @@ namespace fs = std::filesystem;
 constexpr const char* another_size = "is of a network of another size than this training's";
 constexpr const char* size_hint =
     "give the --widths, --resolution and --condition that the prior was trained with";
+constexpr const char* reader_hint = "train this part without --begin-with";
 
 /// A U-Net that was told less than `to` gets weights of 0 for the rest: it begins as it was.
 torch::Tensor with_more_inputs(const torch::Tensor& weight, const torch::Tensor& to) {
@@ -20,7 +22,8 @@ torch::Tensor with_more_inputs(const torch::Tensor& weight, const torch::Tensor&
     return more > 0 ? torch::constant_pad_nd(weight, {0, 0, 0, 0, 0, more}) : weight;
 }
 
-void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::nn::Module& to) {
+void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::nn::Module& to,
+                  const char* hint = size_hint) {
     const torch::NoGradGuard no_grad;
     auto given = from.named_parameters();
     auto wanted = to.named_parameters();
@@ -31,17 +34,21 @@ void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::
         const torch::Tensor* value = given.find(item.key());
         fits = fits && value && value->sizes() == item.value().sizes();
     }
-    if (!fits) throw InputError(folder.string(), another_size, size_hint);
+    if (!fits) throw InputError(folder.string(), another_size, hint);
     for (auto& item : wanted)
         item.value().copy_(given[item.key()]);
+}
+
+void check_not_overwritten(const TrainSettings& settings) {
+    if (fs::exists(settings.output) && fs::equivalent(settings.begin_with, settings.output))
+        throw InputError(settings.output.string(), "would be overwritten while it is begun with",
+                         "give another folder with -o");
 }
 
 }  // namespace
 
 void check_begin_with(const TrainSettings& settings) {
-    if (fs::exists(settings.output) && fs::equivalent(settings.begin_with, settings.output))
-        throw InputError(settings.output.string(), "would be overwritten while it is begun with",
-                         "give another folder with -o");
+    check_not_overwritten(settings);
     const fs::path file = settings.begin_with / "unet" / "config.json";
     auto given = UNet2DConditionConfig::from_config(Config::read(file));
     const UNet2DConditionConfig wanted = prior_unet_config(settings);
@@ -75,6 +82,42 @@ nlohmann::json begin_with_record(const fs::path& folder) {
 void begin_with_weights(const fs::path& folder, UNet2DCondition& unet, ClipTextModel& text) {
     copy_weights(folder / "unet", *load_unet(folder / "unet"), *unet);
     copy_weights(folder / "text_encoder", *load_clip_text(folder / "text_encoder"), *text);
+}
+
+fs::path begin_with_part(const TrainSettings& settings, const char* part) {
+    if (settings.begin_with.empty()) return {};
+    const fs::path folder = settings.begin_with / part;
+    return fs::exists(folder / "config.json") ? folder : fs::path{};
+}
+
+void check_begin_with_readers(const TrainSettings& settings, bool clip, bool captioner) {
+    if (settings.begin_with.empty()) return;
+    check_not_overwritten(settings);
+    const auto check = [](const fs::path& folder, const auto& given, const auto& wanted) {
+        if (given.to_json() != wanted.to_json())
+            throw InputError((folder / "config.json").string(), another_size, reader_hint);
+    };
+    if (const fs::path folder = begin_with_part(settings, captioner_folder);
+        captioner && !folder.empty()) {
+        const auto given = BlipConfig::from_config(Config::read(folder / "config.json"));
+        BlipConfig wanted = prior_captioner_config(0);
+        wanted.vocab_size = given.vocab_size;
+        check(folder, given, wanted);
+    }
+    if (const fs::path folder = begin_with_part(settings, clip_folder); clip && !folder.empty()) {
+        const auto given = ClipConfig::from_config(Config::read(folder / "config.json"));
+        check(folder, given,
+              prior_clip_config(given.text.vocab_size, given.text.bos_token_id,
+                                given.text.eos_token_id));
+    }
+}
+
+void begin_with_captioner(const fs::path& folder, BlipModel& model) {
+    copy_weights(folder, *load_blip(folder), *model, reader_hint);
+}
+
+void begin_with_clip(const fs::path& folder, ClipModel& model) {
+    copy_weights(folder, *load_clip_model(folder), *model, reader_hint);
 }
 
 }  // namespace item3d

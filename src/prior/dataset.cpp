@@ -11,9 +11,6 @@
 namespace item3d {
 namespace {
 
-/// Of the pictures of shapes that have parts, so many show one in a material of its own.
-constexpr double two_part_share = .4;
-
 /// sRGB colours behind the object at the top and the bottom of the picture.
 struct Background {
     Vec3 top, bottom;
@@ -67,18 +64,6 @@ torch::Tensor to_image(const ShapeView& view, const torch::Tensor& encoded,
         }
     }
     return image;
-}
-
-/// Parts that can be seen well enough to be talked about.
-std::vector<std::size_t> visible_parts(const ShapeView& view) {
-    std::vector<std::size_t> counts(view.parts.size(), 0);
-    for (const std::uint8_t part : view.part)
-        ++counts[part];
-    std::vector<std::size_t> visible;
-    for (std::size_t i = 1; i < counts.size(); ++i)
-        if (counts[i] * 50 > view.count() && counts[i] * 10 < view.count() * 9)
-            visible.push_back(i);
-    return visible;
 }
 
 /// A part with another material than the rest, or nothing. `index` becomes its place in view.parts.
@@ -144,6 +129,17 @@ void fill_points(const ShapeView& view, const ProceduralMaterial& rest, const Pa
 }
 
 }  // namespace
+
+std::vector<std::size_t> visible_parts(const ShapeView& view) {
+    std::vector<std::size_t> counts(view.parts.size(), 0);
+    for (const std::uint8_t part : view.part)
+        ++counts[part];
+    std::vector<std::size_t> visible;
+    for (std::size_t i = 1; i < counts.size(); ++i)
+        if (counts[i] * 50 > view.count() && counts[i] * 10 < view.count() * 9)
+            visible.push_back(i);
+    return visible;
+}
 
 ExampleSource::ExampleSource(std::vector<ShapeView> views, std::vector<TrainingLight> lights,
                              std::uint64_t seed, float pattern_weight)

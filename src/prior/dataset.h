@@ -14,6 +14,9 @@
 
 namespace item3d {
 
+/// Of the pictures of shapes that have parts, so many show one in a material of its own.
+inline constexpr double two_part_share = .4;
+
 /// A picture with its caption and what is on it.
 struct Example {
     torch::Tensor image;    ///< [S, S, 3] float32, sRGB in [0, 1]
@@ -34,6 +37,9 @@ struct ExampleWish {
     std::string part;
     MaterialWish part_material;
 };
+
+/// Indices into view.parts of those that can be seen well enough to be talked about.
+std::vector<std::size_t> visible_parts(const ShapeView& view);
 
 /// Draws an example of that view: its material and, unless the wish names one, its light.
 Example draw_example(Random& random, const ShapeView& view,

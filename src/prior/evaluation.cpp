@@ -26,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int shown_edge = 128;
+constexpr int model_views = 4;  ///< that a model's caption is made from, as `item3d caption` does
 
 Image sample_sheet(const SampleGrid& grid) {
     std::vector<Tile> tiles;
@@ -60,9 +61,16 @@ nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>
         draw_held_out(mix_bits(options.seed + 5), options.labeled_pictures, 4, 64, options.threads);
     stop_if_asked();
     if (clip) measured["retrieval"] = measure_retrieval(*clip, pictures);
-    if (captioner)
-        measured["captions"] =
-            measure_captions(*load_captioner(folder / captioner_folder), pictures, options.threads);
+    if (captioner) {
+        const auto model = load_captioner(folder / captioner_folder);
+        measured["captions"] = measure_captions(*model, pictures, options.threads);
+        measured["model_captions"] = measure_model_captions(
+            *model,
+            draw_held_out_models(mix_bits(options.seed + 6), options.labeled_models, model_views,
+                                 options.threads),
+            options.threads);
+        measured["model_captions"]["views"] = model_views;
+    }
     return measured;
 }
 
@@ -71,9 +79,10 @@ nlohmann::json readers_record(const fs::path& folder, const nlohmann::json& read
     const nlohmann::json prior = read_prior_json(folder);
     nlohmann::json record = nlohmann::json::object();
     for (const auto& [part, reached] :
-         {std::pair{"clip", "retrieval"}, std::pair{"captioner", "captions"}}) {
+         {std::pair{"clip", "retrieval"}, std::pair{"captioner", "captions"},
+          std::pair{"captioner", "model_captions"}}) {
         if (!readers.contains(reached)) continue;
-        record[part] = prior.value(part, nlohmann::json::object());
+        if (!record.contains(part)) record[part] = prior.value(part, nlohmann::json::object());
         record[part][reached] = readers[reached];
     }
     return record;
@@ -138,13 +147,16 @@ TableRows summary_rows(const nlohmann::json& evaluation) {
         rows.emplace_back(
             "CLIP", "finds the right one of " + readers["retrieval"].at("candidates").dump() +
                         " captions for " + percent(readers["retrieval"].at("picture_to_caption")));
-    if (readers.contains("captions")) {
-        const nlohmann::json& named = readers["captions"];
-        rows.emplace_back("captioner", "names the object of " + percent(named.at("object")) +
-                                           ", the material of " + percent(named.at("material")) +
-                                           ", both of " + percent(named.at("both")) +
-                                           "; object and the material's name of " +
-                                           percent(named.at("object_and_name")));
+    for (const auto& [member, what] :
+         {std::pair{"captions", "captioner, a picture in any light"},
+          std::pair{"model_captions", "captioner, a model from four sides in a studio"}}) {
+        if (!readers.contains(member)) continue;
+        const nlohmann::json& named = readers[member];
+        rows.emplace_back(what, "names the object of " + percent(named.at("object")) +
+                                    ", the material of " + percent(named.at("material")) +
+                                    ", both of " + percent(named.at("both")) +
+                                    "; object and the material's name of " +
+                                    percent(named.at("object_and_name")));
     }
     if (!evaluation.contains("edits")) return rows;
     for (const auto& [group, total] : evaluation["edits"].at("groups").items())

@@ -23,6 +23,7 @@ struct EvaluationOptions {
     int word_pictures = 12;       ///< that each word is asked about; 0: what prior.json says stays
     int pictures = 256;           ///< that the autoencoder is measured on
     int labeled_pictures = 2000;  ///< that CLIP and captioner are measured on
+    int labeled_models = 1000;    ///< that the captioner is, each from four sides
     std::uint64_t seed = 7;
     int threads = 2;
     /// Runs the edits that the prior is judged by, when its prior.json has the words that were

@@ -1,6 +1,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/random.h"
 #include "item3d/models/caption_tokenizer.h"
+#include "item3d/prior/begin_with.h"
 #include "item3d/prior/captions.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/replicas.h"
@@ -22,14 +23,19 @@ constexpr float captioner_rate = 2;
 constexpr const char* special_tokens[] = {"[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]"};
 constexpr int pad_id = 0, begin_id = 2, end_id = 3;
 
-void write_tokenizer(const std::filesystem::path& folder, const std::vector<WordCount>& words) {
+/// A token a line.
+std::string vocabulary_of(const std::vector<WordCount>& words) {
     std::string lines;
     for (const char* token : special_tokens)
         lines += std::string(token) + "\n";
     // The words are as CLIP's tokenizer splits them, to which "3d" is two; d alone never comes.
     for (const WordCount& word : words)
         lines += (word.word == "d" ? "3d" : word.word) + "\n";
-    write_atomically(folder / "vocab.txt", lines);
+    return lines;
+}
+
+void write_tokenizer(const std::filesystem::path& folder, const std::string& vocabulary) {
+    write_atomically(folder / "vocab.txt", vocabulary);
     const nlohmann::json config{{"tokenizer_class", "BertTokenizer"},
                                 {"do_lower_case", true},
                                 {"model_max_length", text_length},
@@ -42,11 +48,11 @@ void write_tokenizer(const std::filesystem::path& folder, const std::vector<Word
 }
 
 /// As load() gives it after write_tokenizer(), for a process that may not write to the output.
-BertTokenizer tokenizer_without_folder(const std::vector<WordCount>& words) {
+BertTokenizer tokenizer_without_folder(const std::string& vocabulary) {
     const auto folder =
         std::filesystem::temp_directory_path() / ("item3d_tokenizer_" + std::to_string(::getpid()));
     make_output_folder(folder);
-    write_tokenizer(folder, words);
+    write_tokenizer(folder, vocabulary);
     BertTokenizer tokenizer = BertTokenizer::load(folder);
     std::filesystem::remove_all(folder);
     return tokenizer;
@@ -122,19 +128,26 @@ BlipConfig prior_captioner_config(int words) {
 }
 
 nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings& settings,
-                               const std::vector<WordCount>& words, const BlipConfig& config) {
+                               const std::vector<WordCount>& words, BlipConfig config) {
     const auto folder = settings.output / captioner_folder;
+    const auto begin = begin_with_part(settings, captioner_folder);
+    // Token numbers are rows of the embeddings: who begins with weights keeps their vocabulary.
+    const std::string vocabulary =
+        begin.empty() ? vocabulary_of(words) : read_text(begin / "vocab.txt");
+    config.vocab_size = static_cast<int>(std::count(vocabulary.begin(), vocabulary.end(), '\n'));
     if (settings.processes.first()) {
         make_output_folder(folder);
-        write_tokenizer(folder, words);
+        write_tokenizer(folder, vocabulary);
         write_preprocessor(folder, "BlipImageProcessor");
     }
-    const BertTokenizer tokenizer =
-        settings.processes.first() ? BertTokenizer::load(folder) : tokenizer_without_folder(words);
+    const BertTokenizer tokenizer = settings.processes.first()
+                                        ? BertTokenizer::load(folder)
+                                        : tokenizer_without_folder(vocabulary);
 
     std::vector<LoopReplica> replicas;
     for (int rank = 0; rank < settings.replicas; ++rank) {
-        const BlipModel model = make_captioner(settings, config);
+        BlipModel model = make_captioner(settings, config);
+        if (!begin.empty()) begin_with_captioner(begin, model);
         const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));
         replicas.push_back({{model.ptr()}, [&, model, stream](const auto& rows, auto step) {
                                 const Random random(settings.seed, 0xb11900 + stream,

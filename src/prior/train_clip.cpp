@@ -1,6 +1,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
+#include "item3d/prior/begin_with.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/replicas.h"
 #include "item3d/prior/shared_vision.h"
@@ -124,16 +125,18 @@ ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text)
 
 nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& settings,
                           const ClipTokenizer& tokenizer, const ClipConfig& config) {
+    const auto begin = begin_with_part(settings, clip_folder);
     BlipModel captioner{nullptr};
     // The others get their first values from process 0.
-    if (settings.processes.first() &&
+    if (begin.empty() && settings.processes.first() &&
         fs::exists(settings.output / captioner_folder / "config.json"))
         captioner = load_blip(settings.output / captioner_folder);
     const torch::Tensor sample = first_pictures(data, settings.seed);
     bool warm = false;
     std::vector<LoopReplica> replicas;
     for (int rank = 0; rank < settings.replicas; ++rank) {
-        const ClipModel model = make_clip(settings, config);
+        ClipModel model = make_clip(settings, config);
+        if (!begin.empty()) begin_with_clip(begin, model);
         if (captioner) warm = copy_vision(captioner, model, sample);
         const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));
         replicas.push_back({{model.ptr()}, [&, model, stream](const auto& rows, auto step) {

@@ -4,6 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/prior/begin_with.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/settings_check.h"
 #include "item3d/prior/tokenizer_training.h"
@@ -78,6 +79,14 @@ LabeledPictures hand_on_labeled(const ProcessGroup& processes, LabeledPictures d
     return data;
 }
 
+/// A network that began with another's weights has learnt what that one has, too.
+void note_begin(const TrainSettings& settings, const char* folder, const char* member,
+                nlohmann::json& record) {
+    if (begin_with_part(settings, folder).empty()) return;
+    const nlohmann::json begun_with = read_prior_json(settings.begin_with);
+    if (begun_with.contains(member)) record["begun_with"] = begun_with[member];
+}
+
 }  // namespace
 
 torch::Tensor augment(const torch::Tensor& pixel_values, Random& random) {
@@ -137,6 +146,7 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
     check_same_settings(processes, settings_json(settings));
     LabeledPictures data, held_out;
     if (processes.first()) {
+        check_begin_with_readers(settings, clip, captioner);
         make_output_folder(settings.output);
         prepare_labeled(settings);
         data = load_labeled(settings.work, seen_name);
@@ -149,6 +159,7 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
         nlohmann::json record = train_captioner(
             data, settings, words, prior_captioner_config(static_cast<int>(words.size())));
         if (processes.first()) {
+            note_begin(settings, captioner_folder, "captioner", record);
             record["captions"] = measure_captions(
                 *load_captioner(settings.output / captioner_folder), held_out, settings.replicas);
             note("captioner: " + record["captions"].dump());
@@ -157,12 +168,15 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
         processes.wait_for_first();
     }
     if (clip) {
-        const ClipTokenizer tokenizer = train_tokenizer(words, text_length);
+        const auto begin = begin_with_part(settings, clip_folder);
+        const ClipTokenizer tokenizer =
+            begin.empty() ? train_tokenizer(words, text_length) : ClipTokenizer::load(begin);
         nlohmann::json record =
             train_clip(data, settings, tokenizer,
                        prior_clip_config(static_cast<int>(tokenizer.size()), tokenizer.bos_id(),
                                          tokenizer.eos_id()));
         if (processes.first()) {
+            note_begin(settings, clip_folder, "clip", record);
             record["retrieval"] =
                 measure_retrieval(Clip::load(settings.output / clip_folder), held_out);
             note("clip: " + record["retrieval"].dump());

@@ -32,13 +32,14 @@ BlipConfig prior_captioner_config(int vocabulary);
 
 /// Trains a network on the pictures and writes it now and then, with all its other files, into its
 /// sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
-/// writing a checkpoint. CLIP's vision transformer starts as that of the captioner in
-/// settings.output, where there is one of the same shape (shared_vision.h); `words` become the
-/// captioner's vocabulary.
+/// writing a checkpoint. Where settings.begin_with has such a network, its weights are begun with:
+/// `tokenizer` must then be its, and the captioner takes its vocabulary. Else `words` become the
+/// captioner's vocabulary, and CLIP's vision transformer starts as that of the captioner in
+/// settings.output, where there is one of the same shape (shared_vision.h).
 nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& settings,
                           const ClipTokenizer& tokenizer, const ClipConfig& config);
 nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings& settings,
-                               const std::vector<WordCount>& words, const BlipConfig& config);
+                               const std::vector<WordCount>& words, BlipConfig config);
 
 /// The whole training of both, or of one of them: pictures, networks, measurement. Fills the
 /// sub-folders, and "clip" and "captioner" of the folder's prior.json.

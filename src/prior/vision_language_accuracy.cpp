@@ -7,7 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <mutex>
+#include <string>
+#include <utility>
 
 namespace item3d {
 namespace {
@@ -31,6 +34,33 @@ std::vector<std::int64_t> distinct_pictures(const LabeledPictures& pictures, std
         if (!clashes) rows.push_back(next);
     }
     return rows;
+}
+
+/// What is right in captions of all these things; `caption` says one's, on any thread.
+CaptionAccuracy judge_all(const std::vector<PictureFacts>& facts, int threads,
+                          const std::function<std::string(std::size_t)>& caption) {
+    CaptionAccuracy result;
+    result.captions = static_cast<std::int64_t>(facts.size());
+    std::mutex mutex;
+    std::int64_t done = 0;
+    Progress progress("captions", result.captions);
+    run_workers(result.captions, threads, [&](std::int64_t i) {
+        const auto at = static_cast<std::size_t>(i);
+        const CaptionVerdict verdict = judge_caption(caption(at), facts[at]);
+        const std::lock_guard lock(mutex);
+        result.object += verdict.object;
+        result.material += verdict.material;
+        result.object_or_material += verdict.object || verdict.material;
+        result.both += verdict.object && verdict.material;
+        result.material_name += verdict.material_name;
+        result.object_and_name += verdict.object && verdict.material_name;
+        progress.update(++done);
+    });
+    if (interrupted()) throw Interrupted("the captions were not finished");
+    for (double* part : {&result.object, &result.material, &result.object_or_material, &result.both,
+                         &result.material_name, &result.object_and_name})
+        *part /= static_cast<double>(std::max<std::int64_t>(result.captions, 1));
+    return result;
 }
 
 }  // namespace
@@ -79,28 +109,69 @@ RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledPictures& pic
 
 CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledPictures& pictures,
                                  int threads) {
-    CaptionAccuracy result;
-    result.pictures = pictures.count();
-    std::mutex mutex;
+    return judge_all(pictures.facts, threads, [&](std::size_t i) {
+        return captioner.caption(pictures.images[static_cast<std::int64_t>(i)], {});
+    });
+}
+
+LabeledModels draw_held_out_models(std::uint64_t seed, std::int64_t count, int views, int threads) {
+    const std::int64_t light_count = std::clamp<std::int64_t>(count / 4, 1, 16);
+    std::vector<TrainingLight> lights;
+    Random light_random(mix_bits(seed + 1), 0);
+    for (std::int64_t i = 0; i < light_count; ++i)
+        lights.push_back(make_training_light(light_random, "studio"));
+    std::vector<std::pair<std::string, int>> shapes;
+    for (const ShapeClass& each : shape_classes())
+        for (const int variant : shape_variants_of(each, true, shape_variants - training_variants))
+            shapes.emplace_back(each.name, variant);
+
+    LabeledModels models;
+    models.views.resize(static_cast<std::size_t>(count));
+    models.facts.resize(static_cast<std::size_t>(count));
+    Progress progress("held-out models", count);
     std::int64_t done = 0;
-    Progress progress("captions", result.pictures);
-    run_workers(result.pictures, threads, [&](std::int64_t i) {
-        const CaptionVerdict verdict = judge_caption(captioner.caption(pictures.images[i], {}),
-                                                     pictures.facts[static_cast<std::size_t>(i)]);
+    std::mutex mutex;
+    run_workers(count, threads, [&](std::int64_t i) {
+        Random random(mix_bits(seed + 2), static_cast<std::uint64_t>(i));
+        const auto any_of = [&random](const auto& list) -> const auto& {
+            return list[static_cast<std::size_t>(
+                random.index(static_cast<std::int64_t>(list.size())))];
+        };
+        const auto& [shape_class, variant] = any_of(shapes);
+        std::vector<ShapeView> sides =
+            make_views(shape_class, variant, 2 * views, mix_bits(seed + 3 + i));
+        // A close-up shows a part alone; that all but a few are close-ups is rare.
+        std::stable_partition(sides.begin(), sides.end(),
+                              [](const ShapeView& side) { return !side.close_up; });
+        sides.resize(static_cast<std::size_t>(views));
+        ExampleWish wish;
+        wish.light = &any_of(lights);
+        wish.plain_background = true;
+        wish.part = "none";
+        if (const auto parts = visible_parts(sides.front());
+            !parts.empty() && random.chance(two_part_share))
+            wish.part = sides.front().parts[any_of(parts)];
+        const auto model = static_cast<std::size_t>(i);
+        for (const ShapeView& side : sides) {
+            Random same = random;  // the same materials from all sides
+            Example example = draw_example(same, side, {}, wish);
+            models.views[model].push_back((example.image * 255).round().to(torch::kUInt8));
+            models.facts[model] = std::move(example.facts);
+        }
         const std::lock_guard lock(mutex);
-        result.object += verdict.object;
-        result.material += verdict.material;
-        result.object_or_material += verdict.object || verdict.material;
-        result.both += verdict.object && verdict.material;
-        result.material_name += verdict.material_name;
-        result.object_and_name += verdict.object && verdict.material_name;
         progress.update(++done);
     });
-    if (interrupted()) throw Interrupted("the captions were not finished");
-    for (double* part : {&result.object, &result.material, &result.object_or_material, &result.both,
-                         &result.material_name, &result.object_and_name})
-        *part /= static_cast<double>(std::max<std::int64_t>(result.pictures, 1));
-    return result;
+    if (interrupted()) throw Interrupted("the held-out models were not finished");
+    return models;
+}
+
+CaptionAccuracy measure_model_captions(const Captioner& captioner, const LabeledModels& models,
+                                       int threads) {
+    CaptionOptions options;
+    options.beams = caption_beams;
+    return judge_all(models.facts, threads, [&](std::size_t i) {
+        return captioner.caption_together(models.views[i], options);
+    });
 }
 
 void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy) {
@@ -111,7 +182,7 @@ void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy) {
 }
 
 void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy) {
-    json = {{"pictures", accuracy.pictures},
+    json = {{"captions", accuracy.captions},
             {"object", rounded(accuracy.object)},
             {"material", rounded(accuracy.material)},
             {"object_or_material", rounded(accuracy.object_or_material)},

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
+#include <vector>
 
 namespace item3d {
 
@@ -31,9 +32,9 @@ void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy);
 RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledPictures& pictures,
                                     int candidates = 100);
 
-/// Parts of the pictures whose caption names the right ... (facts.h, judge_caption).
+/// Parts of the pictures, or models, whose caption names the right ... (facts.h, judge_caption).
 struct CaptionAccuracy {
-    std::int64_t pictures = 0;
+    std::int64_t captions = 0;
     double object = 0;
     double material = 0;
     double object_or_material = 0;
@@ -45,5 +46,19 @@ void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy);
 
 CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledPictures& pictures,
                                  int threads);
+
+/// Models as `item3d caption` looks at one: views of the same thing, and what is true of it.
+struct LabeledModels {
+    std::vector<std::vector<torch::Tensor>> views;  ///< [N][V] of [S, S, 3] uint8 sRGB
+    std::vector<PictureFacts> facts;                ///< [N]
+};
+
+/// `count` shapes that are never trained on, in random materials by the proportions of the
+/// training, each in `views` pictures from random sides, before an even grey in a studio's light.
+LabeledModels draw_held_out_models(std::uint64_t seed, std::int64_t count, int views, int threads);
+
+/// The same of the one caption of all views of a model.
+CaptionAccuracy measure_model_captions(const Captioner& captioner, const LabeledModels& models,
+                                       int threads);
 
 }  // namespace item3d
