@@ -8,7 +8,7 @@ build=${BUILD:-build}
 command -v clang-tidy >/dev/null || { echo "lint: error: install clang-tidy and libomp-dev" >&2; exit 1; }
 [[ -f $build/compile_commands.json ]] || { echo "lint: error: $build is not configured" >&2; exit 1; }
 files=("$@")
-((${#files[@]})) || mapfile -t files < <(find apps bench src tests -name '*.cpp' | sort)
+((${#files[@]})) || mapfile -t files < <(find apps bench src tests tools -name '*.cpp' | sort)
 
 # The precompiled header is g++'s; sources include what they need, so clang goes without it.
 commands=$(mktemp -d)

@@ -34,7 +34,7 @@ EnvironmentLight prefilter(const torch::Tensor& cube);
 EnvironmentLight prefilter(const Image& equirectangular, int size = 256,
                            torch::Device device = torch::kCPU);
 
-/// The 2D BSDF table, computed by us once a process: [256, 256, 2] float32, row = roughness, column
+/// The 2D BSDF table, which the build computes: [256, 256, 2] float32, row = roughness, column
 /// = n.v, texel centres at (k + 0.5) / 256; specular albedo = F0 * A + B for GGX (alpha =
 /// roughness^2) with height-correlated Smith masking.
 const torch::Tensor& bsdf_table();

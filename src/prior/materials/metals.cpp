@@ -66,7 +66,8 @@ ProceduralMaterial metal(Random& random, const MaterialWish& wish) {
     const Vec3 stain = name == "copper" || name == "bronze" || name == "brass"
                            ? Vec3(.12f, .3f, .22f)
                            : color * .25f;
-    return {"", name, metal_phrases(name, finish), [=](const Vec3& p, const Vec3&) {
+    return {"", name, metal_phrases(name, finish),
+            [=](const Vec3& p, const Vec3&) {
                 MaterialValue value{color, roughness, 1};
                 if (finish == MetalFinish::brushed) {
                     const float line = scratches.with_gradient(p, value.slope);
@@ -90,7 +91,10 @@ ProceduralMaterial metal(Random& random, const MaterialWish& wish) {
                     value = {mix(color * .7f, stain, w), .35f + .4f * w, 1 - .7f * w};
                 }
                 return value;
-            }};
+            },
+            // A polished golden mug is a golden mug.
+            finish == MetalFinish::smooth ? std::vector<std::string>{}
+                                          : std::vector<std::string>{adjective_of(name) + " {o}"}};
 }
 
 ProceduralMaterial rust(Random& random, const MaterialWish&) {
