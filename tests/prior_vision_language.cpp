@@ -205,7 +205,7 @@ TEST_F(VisionLanguage, CaptionerLearnsColorsAndResumes) {
     train_captioner(data_, whole, words_, small_captioner());
     const auto captioner = load_captioner(whole.output / captioner_folder);
     const CaptionAccuracy accuracy = measure_captions(*captioner, data_, 2);
-    EXPECT_EQ(accuracy.captions, 120);
+    EXPECT_EQ(accuracy.count, 120);
     EXPECT_GT(accuracy.object, .9);
     EXPECT_GT(accuracy.material, .6);
 

@@ -40,11 +40,11 @@ std::vector<std::int64_t> distinct_pictures(const LabeledPictures& pictures, std
 CaptionAccuracy judge_all(const std::vector<PictureFacts>& facts, int threads,
                           const std::function<std::string(std::size_t)>& caption) {
     CaptionAccuracy result;
-    result.captions = static_cast<std::int64_t>(facts.size());
+    result.count = static_cast<std::int64_t>(facts.size());
     std::mutex mutex;
     std::int64_t done = 0;
-    Progress progress("captions", result.captions);
-    run_workers(result.captions, threads, [&](std::int64_t i) {
+    Progress progress("captions", result.count);
+    run_workers(result.count, threads, [&](std::int64_t i) {
         const auto at = static_cast<std::size_t>(i);
         const CaptionVerdict verdict = judge_caption(caption(at), facts[at]);
         const std::lock_guard lock(mutex);
@@ -59,7 +59,7 @@ CaptionAccuracy judge_all(const std::vector<PictureFacts>& facts, int threads,
     if (interrupted()) throw Interrupted("the captions were not finished");
     for (double* part : {&result.object, &result.material, &result.object_or_material, &result.both,
                          &result.material_name, &result.object_and_name})
-        *part /= static_cast<double>(std::max<std::int64_t>(result.captions, 1));
+        *part /= static_cast<double>(std::max<std::int64_t>(result.count, 1));
     return result;
 }
 
@@ -182,7 +182,7 @@ void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy) {
 }
 
 void to_json(nlohmann::json& json, const CaptionAccuracy& accuracy) {
-    json = {{"captions", accuracy.captions},
+    json = {{"count", accuracy.count},
             {"object", rounded(accuracy.object)},
             {"material", rounded(accuracy.material)},
             {"object_or_material", rounded(accuracy.object_or_material)},

@@ -34,7 +34,7 @@ RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledPictures& pic
 
 /// Parts of the pictures, or models, whose caption names the right ... (facts.h, judge_caption).
 struct CaptionAccuracy {
-    std::int64_t captions = 0;
+    std::int64_t count = 0;  ///< of captions
     double object = 0;
     double material = 0;
     double object_or_material = 0;
