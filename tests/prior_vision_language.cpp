@@ -264,6 +264,9 @@ TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
                   0u);
         EXPECT_TRUE(begin_with_part(second, part) == first.output / part);
     }
+    fs::remove(first.output / vocabulary);
+    save_blip(first.output / captioner_folder, BlipModel(prior_captioner_config(8)));
+    EXPECT_NE(refusal(second, false, true).find("vocab.txt"), std::string::npos);
     fs::remove_all(first.output / captioner_folder);
     EXPECT_TRUE(begin_with_part(second, captioner_folder).empty());
     EXPECT_EQ(refusal(second, false, true), "");

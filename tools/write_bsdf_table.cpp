@@ -41,7 +41,7 @@ Rule gauss_legendre() {
     return rule;
 }
 
-/// Both numbers of every place, as text that a C++ array begins with.
+/// Both numbers of every place, as the values of a C++ array.
 bool write_table(std::FILE* file) {
     const Rule rule = gauss_legendre();
     std::array<float, azimuths> cosines{};

@@ -2,7 +2,6 @@
 #include "command.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
-#include "item3d/core/progress.h"
 #include "item3d/evaluate/model_pictures.h"
 #include "item3d/evaluate/picture.h"
 #include "item3d/models/captioner.h"
@@ -72,8 +71,12 @@ void run_caption(const CaptionCommand& options, torch::Device device) {
     if (options.json) {
         // What each view says alone shows where the views disagree.
         nlohmann::json of_views = nlohmann::json::array();
-        for (const torch::Tensor& picture : pictures)
-            of_views.push_back(captioner->caption(picture, options.caption));
+        if (pictures.size() == 1) {
+            of_views.push_back(caption);
+        } else {
+            for (const Caption& alone : captioner->captions(pictures, options.caption))
+                of_views.push_back(alone.text);
+        }
         print_json({{"file", options.input},
                     {"captioner", options.captioner},
                     {"prefix", options.caption.prefix},

@@ -29,8 +29,8 @@ class Captioner {
   public:
     virtual ~Captioner() = default;
     /// One for each picture (or one in all, if together), bytes [H, W, C] as ImageProcessor takes
-    /// them, all in one pass. Throws
-    /// InputError for a prefix that is too long, Interrupted after Ctrl-C.
+    /// them, all in one pass. Throws InputError for a prefix that is too long, Interrupted after
+    /// Ctrl-C.
     virtual std::vector<Caption> captions(const std::vector<torch::Tensor>& pictures,
                                           const CaptionOptions& options) const = 0;
     std::string caption(const torch::Tensor& picture, const CaptionOptions& options) const {

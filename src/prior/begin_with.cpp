@@ -1,6 +1,8 @@
 #include "item3d/prior/begin_with.h"
 
 #include "item3d/core/error.h"
+#include "item3d/models/caption_tokenizer.h"
+#include "item3d/models/clip_tokenizer.h"
 #include "item3d/models/config.h"
 #include "item3d/prior/export.h"
 #include "item3d/prior/train.h"
@@ -90,6 +92,7 @@ fs::path begin_with_part(const TrainSettings& settings, const char* part) {
     return fs::exists(folder / "config.json") ? folder : fs::path{};
 }
 
+// Everything is read once, so that no file turns out to be broken after the pictures are drawn.
 void check_begin_with_readers(const TrainSettings& settings, bool clip, bool captioner) {
     if (settings.begin_with.empty()) return;
     check_not_overwritten(settings);
@@ -99,16 +102,18 @@ void check_begin_with_readers(const TrainSettings& settings, bool clip, bool cap
     };
     if (const fs::path folder = begin_with_part(settings, captioner_folder);
         captioner && !folder.empty()) {
-        const auto given = BlipConfig::from_config(Config::read(folder / "config.json"));
+        const BlipModel given = load_blip(folder);
         BlipConfig wanted = prior_captioner_config(0);
-        wanted.vocab_size = given.vocab_size;
-        check(folder, given, wanted);
+        wanted.vocab_size = given->config().vocab_size;
+        check(folder, given->config(), wanted);
+        BertTokenizer::load(folder);
     }
     if (const fs::path folder = begin_with_part(settings, clip_folder); clip && !folder.empty()) {
-        const auto given = ClipConfig::from_config(Config::read(folder / "config.json"));
-        check(folder, given,
-              prior_clip_config(given.text.vocab_size, given.text.bos_token_id,
-                                given.text.eos_token_id));
+        const ClipModel given = load_clip_model(folder);
+        const ClipTextConfig& text = given->config().text;
+        check(folder, given->config(),
+              prior_clip_config(text.vocab_size, text.bos_token_id, text.eos_token_id));
+        ClipTokenizer::load(folder);
     }
 }
 

@@ -134,7 +134,8 @@ nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings&
     // Token numbers are rows of the embeddings: who begins with weights keeps their vocabulary.
     const std::string vocabulary =
         begin.empty() ? vocabulary_of(words) : read_text(begin / "vocab.txt");
-    config.vocab_size = static_cast<int>(std::count(vocabulary.begin(), vocabulary.end(), '\n'));
+    if (!begin.empty())
+        config.vocab_size = BlipConfig::from_config(Config::read(begin / "config.json")).vocab_size;
     if (settings.processes.first()) {
         make_output_folder(folder);
         write_tokenizer(folder, vocabulary);

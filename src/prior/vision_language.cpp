@@ -27,7 +27,7 @@ constexpr const char* held_out_name = "labeled_held_out";
 
 /// What the pictures depend on: those made with other settings are not gone on with.
 nlohmann::json labeled_fingerprint(const TrainSettings& s) {
-    return {{"version", 5},
+    return {{"version", 6},
             {"seed", s.seed},
             {"labeled_samples", s.labeled_samples},
             {"shape_variants", s.labeled_variants},
