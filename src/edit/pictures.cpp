@@ -51,7 +51,8 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     const torch::Tensor before = draw_pictures(scene.model, light, cameras, view_pixels);
     const EnvironmentLight new_light =
         edited.light ? prefilter(*edited.light, 256, scene.device) : light;
-    const torch::Tensor after = draw_pictures(edited.model, new_light, cameras, view_pixels);
+    const ModelDrawing drawing(edited.model, new_light);
+    const torch::Tensor after = drawing.draw(cameras, view_pixels);
 
     Pictures pictures;
     const auto before_pictures = to_pictures(before);
@@ -63,8 +64,7 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
 
     std::vector<Image> frames;
     for (const Camera& camera : picture_cameras(scene.model, turntable_frames)) {
-        const torch::Tensor frame =
-            draw_pictures(edited.model, new_light, {camera}, view_pixels * 3 / 4);
+        const torch::Tensor frame = drawing.draw({camera}, view_pixels * 3 / 4);
         frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
     }
     pictures.turntable = {request.settings.to, encode_animation(frames)};

@@ -19,19 +19,25 @@ std::vector<Camera> picture_cameras(const Model& model, int count) {
     return turntable(model.bounds(), count, elevation, field_of_view);
 }
 
-torch::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
-                            const std::vector<Camera>& cameras, int pixels) {
+ModelDrawing::ModelDrawing(const Model& model, EnvironmentLight light)
+    : light_(std::move(light)),
+      geometry_(Geometry::from_model(model, light_.diffuse.device())),
+      materials_(model, light_.diffuse.device()) {}
+
+torch::Tensor ModelDrawing::draw(const std::vector<Camera>& cameras, int pixels) const {
     const torch::NoGradGuard no_grad;
     RenderOptions options;
     options.width = pixels;
     options.height = pixels;
-    const torch::Device device = light.diffuse.device();
-    const Geometry geometry = Geometry::from_model(model, device);
-    const TexturedMaterials materials(model, device);
     std::vector<torch::Tensor> pictures;
     for (const Camera& camera : cameras)
-        pictures.push_back(render(geometry, materials, light, {camera}, options));
+        pictures.push_back(render(geometry_, materials_, light_, {camera}, options));
     return torch::cat(pictures);
+}
+
+torch::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
+                            const std::vector<Camera>& cameras, int pixels) {
+    return ModelDrawing(model, light).draw(cameras, pixels);
 }
 
 torch::Tensor over_white(const torch::Tensor& linear) {

@@ -14,8 +14,22 @@ namespace item3d {
 /// `count` cameras around the model, a little above it.
 std::vector<Camera> picture_cameras(const Model& model, int count);
 
-/// [N, pixels, pixels, 4] linear radiance, premultiplied, on the light's device; one view at a time
-/// to keep memory low.
+/// A model made ready to be drawn, for who draws it again and again.
+class ModelDrawing {
+  public:
+    ModelDrawing(const Model& model, EnvironmentLight light);
+
+    /// [N, pixels, pixels, 4] linear radiance, premultiplied, on the light's device; one view at a
+    /// time to keep memory low.
+    torch::Tensor draw(const std::vector<Camera>& cameras, int pixels) const;
+
+  private:
+    EnvironmentLight light_;
+    Geometry geometry_;
+    TexturedMaterials materials_;
+};
+
+/// ModelDrawing::draw() once.
 torch::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
                             const std::vector<Camera>& cameras, int pixels);
 
