@@ -21,6 +21,13 @@ int say(const char* text) {
     return said ? done : no_resource;
 }
 
+/// Threads of OpenMP wait for each other by spinning, for so long by default that beside a program
+/// that keeps the processor busy an edit takes many times as long: the one that is waited for does
+/// not run meanwhile. On a quiet machine a short spin is no slower.
+void wait_briefly() {
+    if (std::getenv("OMP_WAIT_POLICY") == nullptr) setenv("GOMP_SPINCOUNT", "1000", 0);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -32,6 +39,7 @@ int main(int argc, char** argv) {
     std::error_code code;
     const auto here = std::filesystem::read_symlink("/proc/self/exe", code);
     const auto commands = here.parent_path() / "item3d-commands";
+    wait_briefly();
     execv(commands.c_str(), argv);
     std::fprintf(stderr, "item3d: error: %s: %s; install item3d again\n", commands.c_str(),
                  std::strerror(errno));
