@@ -2,6 +2,8 @@
 
 #include "item3d/evaluate/detail.h"
 
+#include <utility>
+
 namespace item3d {
 namespace {
 
