@@ -1,12 +1,15 @@
-# item3d_library(NAME [TORCH] [DEPENDS lib...] [PACKAGES target...]): one folder of src/ as one
-# static library. DEPENDS is the whole list of item3d folders that this folder may include; include
+# item3d_library(NAME [TORCH] [DEPENDS lib...] [PACKAGES target...] [COMPILED_APART file...]): one
+# folder of src/ as one static library, but for the files that the caller compiles. DEPENDS is the whole list of item3d folders that this folder may include; include
 # paths come only through it, so a wrong dependency does not compile. PACKAGES are imported targets
 # of other projects; TORCH links LibTorch and uses its precompiled header. Several files are compiled
 # at a time, because the templates of LibTorch, JSON and the like are most of each one's compilation:
 # names in their anonymous namespaces must differ.
 function(item3d_library NAME)
-    cmake_parse_arguments(ARG "TORCH" "" "DEPENDS;PACKAGES" ${ARGN})
+    cmake_parse_arguments(ARG "TORCH" "" "DEPENDS;PACKAGES;COMPILED_APART" ${ARGN})
     file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cpp)
+    if(ARG_COMPILED_APART)
+        list(REMOVE_ITEM SOURCES ${ARG_COMPILED_APART})
+    endif()
     set(TARGET item3d_${NAME})
     if(SOURCES)
         add_library(${TARGET} STATIC ${SOURCES})

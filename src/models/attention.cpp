@@ -13,6 +13,12 @@ namespace item3d {
 namespace {
 
 template <typename Number>
+const auto& kernel() {
+    return kernel_for_this_processor<Number>(
+        []<Instructions instructions> { return attention_kernel<instructions, Number>(); });
+}
+
+template <typename Number>
 torch::Tensor attend_all(const torch::Tensor& query, const torch::Tensor& key,
                          const torch::Tensor& value, int heads) {
     const torch::Tensor q = query.contiguous(), k = key.contiguous(), v = value.contiguous();
@@ -23,15 +29,15 @@ torch::Tensor attend_all(const torch::Tensor& query, const torch::Tensor& key,
     const std::int64_t ranges = (shape.queries + queries - 1) / queries;
     at::parallel_for(0, shape.rows * heads * ranges, 1, [&](std::int64_t begin, std::int64_t end) {
         const torch::Tensor scratch =
-            torch::empty({attention_scratch<Number>(shape)}, torch::kUInt8);
+            torch::empty({kernel<Number>()->scratch(shape)}, torch::kUInt8);
         for (std::int64_t i = begin; i < end; ++i) {
             const std::int64_t head = i / ranges, first = i % ranges * queries;
             const AttentionPart part{head / heads, head % heads, first,
                                      std::min(first + queries, shape.queries)};
-            attend(shape, static_cast<const Number*>(q.data_ptr()),
-                   static_cast<const Number*>(k.data_ptr()),
-                   static_cast<const Number*>(v.data_ptr()), part,
-                   static_cast<Number*>(result.data_ptr()), scratch.data_ptr());
+            kernel<Number>()->attend(shape, static_cast<const Number*>(q.data_ptr()),
+                                     static_cast<const Number*>(k.data_ptr()),
+                                     static_cast<const Number*>(v.data_ptr()), part,
+                                     static_cast<Number*>(result.data_ptr()), scratch.data_ptr());
         }
     });
     return result;
@@ -40,12 +46,11 @@ torch::Tensor attend_all(const torch::Tensor& query, const torch::Tensor& key,
 /// Whether attend_all() can do it.
 bool ours(const torch::Tensor& query, const torch::Tensor& key, const torch::Tensor& value,
           int heads) {
-    static const bool float_runs = matrix_kernel_runs<float>();
-    static const bool bfloat_runs = matrix_kernel_runs<BrainFloat>();
     const auto dtype = query.scalar_type();
-    return query.is_cpu() && dtype == key.scalar_type() && dtype == value.scalar_type() &&
-           ((dtype == torch::kFloat32 && float_runs) ||
-            (dtype == torch::kBFloat16 && bfloat_runs)) &&
+    // On matrix units the library multiplies bfloat16 faster.
+    const bool runs = (dtype == torch::kFloat32 && kernel<float>()) ||
+                      (dtype == torch::kBFloat16 && kernel<BrainFloat>() && !matrix_units_run());
+    return query.is_cpu() && dtype == key.scalar_type() && dtype == value.scalar_type() && runs &&
            query.size(2) / heads % 2 == 0 && key.size(0) == query.size(0) &&
            value.sizes() == key.sizes() && !at::autocast::is_autocast_enabled(at::kCPU);
 }

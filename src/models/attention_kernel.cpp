@@ -1,36 +1,27 @@
 #include "item3d/models/attention_kernel.h"
 
-#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512VL__) && \
-    defined(__AVX512BF16__)
-#define ITEM3D_ATTENTION 1
 #include "item3d/models/matrix_tile.h"
-#endif
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace item3d {
-
-using std::int64_t;
-
-#ifdef ITEM3D_ATTENTION
-
+namespace ITEM3D_INSTRUCTIONS {
 namespace {
 
-using avx512::lanes;
-using avx512::rows;
+using std::int64_t;
 
 int64_t round_up(int64_t value, int64_t step) {
     return (value + step - 1) / step * step;
 }
 
-/// Columns of `count`, the last of them as narrow as whole registers allow: calls f(first column,
-/// registers).
+/// Columns of `count`, the last of them as narrow as whole registers allow: calls f(first,
+/// columns).
 template <typename Function>
 void for_each_column(int64_t count, const Function& f) {
     for (int64_t first = 0; first < count; first += packed_columns)
-        f(first, std::min<int64_t>(4, (count - first + lanes - 1) / lanes));
+        f(first, std::min(packed_columns, round_up(count - first, lanes)));
 }
 
 /// What one head needs beside its inputs. Places and widths are rounded up to whole registers.
@@ -60,9 +51,8 @@ struct Scratch {
 template <typename Number>
 void pack_transposed(const Number* from, int64_t stride, int64_t count, int64_t places,
                      int64_t width, Number* to) {
-    constexpr int group = avx512::Arithmetic<Number>::group;
-    for_each_column(places, [&](int64_t first, int64_t registers) {
-        const int64_t columns = registers * lanes;
+    constexpr int group = Arithmetic<Number>::group;
+    for_each_column(places, [&](int64_t first, int64_t columns) {
         Number* packed = to + first * width;
         for (int64_t j = 0; j < columns; ++j) {
             const Number* place = from + (first + j) * stride;
@@ -77,9 +67,8 @@ void pack_transposed(const Number* from, int64_t stride, int64_t count, int64_t 
 template <typename Number>
 void pack_straight(const Number* from, int64_t stride, int64_t count, int64_t places, int64_t width,
                    Number* to) {
-    constexpr int group = avx512::Arithmetic<Number>::group;
-    for_each_column(width, [&](int64_t first, int64_t registers) {
-        const int64_t columns = registers * lanes;
+    constexpr int group = Arithmetic<Number>::group;
+    for_each_column(width, [&](int64_t first, int64_t columns) {
         Number* packed = to + first * places;
         for (int64_t i = 0; i < places; ++i)
             for (int64_t j = 0; j < columns; ++j)
@@ -89,48 +78,44 @@ void pack_straight(const Number* from, int64_t stride, int64_t count, int64_t pl
 }
 
 /// 2^x to float's precision: 2^n 2^r with |r| <= 1/2, 2^r by its Taylor series. 0 far below.
-__m512 power_of_two(__m512 x) {
-    const __m512 n = _mm512_roundscale_ps(x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
-    const __m512 r = x - n;
-    __m512 series = _mm512_set1_ps(1.5403530e-4f);
+ITEM3D_INLINE Lanes power_of_two(Lanes x) {
+    const Lanes n = nearest(x);
+    const Lanes r = x - n;
+    Lanes series = all(1.5403530e-4f);
     for (const float term :
          {1.3333558e-3f, 9.6181291e-3f, 5.5504109e-2f, 2.4022651e-1f, 6.9314718e-1f, 1.0f})
-        series = _mm512_fmadd_ps(series, r, _mm512_set1_ps(term));
-    return _mm512_scalef_ps(series, n);
+        series = multiply_add(series, r, all(term));
+    return scaled(series, n);
 }
 
 /// weights = e^(scale (score - the largest)), zero beyond `count`; returns their sum.
 template <typename Number>
 float soften(const float* scores, int64_t count, int64_t places, float scale, Number* weights) {
-    const int64_t whole = count / lanes * lanes;
-    const __mmask16 last = avx512::first_lanes(count - whole);
-    __m512 most = _mm512_set1_ps(std::numeric_limits<float>::lowest());
+    const int64_t whole = count / lanes * lanes, rest = count - whole;
+    const Mask last = first_lanes(rest);
+    Lanes most = all(std::numeric_limits<float>::lowest());
     for (int64_t i = 0; i < whole; i += lanes)
-        most = _mm512_max_ps(most, avx512::load(scores + i));
-    most = _mm512_mask_max_ps(most, last, most, _mm512_maskz_loadu_ps(last, scores + whole));
+        most = larger(most, load(scores + i));
+    most = choose(last, larger(most, load_first(scores + whole, rest)), most);
     const float factor = scale * 1.44269504f;
-    const __m512 slope = _mm512_set1_ps(factor);
-    const __m512 largest = _mm512_set1_ps(factor * _mm512_reduce_max_ps(most));
-    __m512 sum = _mm512_setzero_ps();
+    const Lanes slope = all(factor), top = all(factor * largest(most));
+    Lanes sum = zero();
     for (int64_t i = 0; i < whole; i += lanes) {
-        const __m512 value =
-            power_of_two(_mm512_fmsub_ps(slope, avx512::load(scores + i), largest));
+        const Lanes value = power_of_two(multiply_subtract(slope, load(scores + i), top));
         sum += value;
-        avx512::store(weights + i, value);
+        store(weights + i, value);
     }
-    if (last != 0) {
-        const __m512 score = _mm512_maskz_loadu_ps(last, scores + whole);
-        const __m512 value =
-            _mm512_maskz_mov_ps(last, power_of_two(_mm512_fmsub_ps(slope, score, largest)));
+    if (rest != 0) {
+        const Lanes score = load_first(scores + whole, rest);
+        const Lanes value =
+            choose(last, power_of_two(multiply_subtract(slope, score, top)), zero());
         sum += value;
-        avx512::store(weights + whole, value);
+        store(weights + whole, value);
     }
-    for (int64_t i = whole + (last != 0 ? lanes : 0); i < places; i += lanes)
-        avx512::store(weights + i, _mm512_setzero_ps());
-    return _mm512_reduce_add_ps(sum);
+    for (int64_t i = round_up(count, lanes); i < places; i += lanes)
+        store(weights + i, zero());
+    return sum_of(sum);
 }
-
-}  // namespace
 
 template <typename Number>
 int64_t attention_scratch(const AttentionShape& shape) {
@@ -155,47 +140,43 @@ void attend(const AttentionShape& shape, const Number* query, const Number* key,
             queries[i] = query + begin + std::min<int64_t>(i, count - 1) * stride;
             weights[i] = scratch.weights + i * keys;
         }
-        for_each_column(keys, [&](int64_t place, int64_t registers) {
-            avx512::multiply(registers, queries, width, scratch.keys_packed + place * width,
-                             scratch.scores + place, keys, false);
+        for_each_column(keys, [&](int64_t place, int64_t columns) {
+            multiply(columns, queries, width, scratch.keys_packed + place * width,
+                     scratch.scores + place, keys, false);
         });
         float total[rows];
         for (int i = 0; i < rows; ++i)
             total[i] = soften(scratch.scores + i * keys, shape.keys, keys, scale,
                               scratch.weights + i * keys);
-        for_each_column(width, [&](int64_t channel, int64_t registers) {
-            avx512::multiply(registers, weights, keys, scratch.values_packed + channel * keys,
-                             scratch.sums, packed_columns, false);
+        for_each_column(width, [&](int64_t channel, int64_t columns) {
+            multiply(columns, weights, keys, scratch.values_packed + channel * keys, scratch.sums,
+                     packed_columns, false);
             for (int64_t i = 0; i < count; ++i) {
-                const __m512 share = _mm512_set1_ps(1 / total[i]);
-                for (int64_t c = 0; c < registers * lanes && channel + c < width; c += lanes)
-                    avx512::store_some(result + begin + i * stride + channel + c,
-                                       avx512::first_lanes(width - channel - c),
-                                       share * avx512::load(scratch.sums + i * packed_columns + c));
+                const Lanes share = all(1 / total[i]);
+                for (int64_t c = 0; c < columns && channel + c < width; c += lanes)
+                    store_first(result + begin + i * stride + channel + c, width - channel - c,
+                                share * load(scratch.sums + i * packed_columns + c));
             }
         });
     }
 }
 
-#else
-
 template <typename Number>
-int64_t attention_scratch(const AttentionShape&) {
-    return 0;
+constexpr AttentionKernel<Number> attention_functions{attention_scratch<Number>, attend<Number>};
+
+}  // namespace
+}  // namespace ITEM3D_INSTRUCTIONS
+
+template <>
+AttentionKernel<float> attention_kernel<Instructions::ITEM3D_INSTRUCTIONS, float>() {
+    return ITEM3D_INSTRUCTIONS::attention_functions<float>;
 }
 
-template <typename Number>
-void attend(const AttentionShape&, const Number*, const Number*, const Number*,
-            const AttentionPart&, Number*, void*) {}
-
+#ifdef __AVX512BF16__
+template <>
+AttentionKernel<BrainFloat> attention_kernel<Instructions::avx512, BrainFloat>() {
+    return avx512::attention_functions<BrainFloat>;
+}
 #endif
-
-#define ITEM3D_INSTANTIATE(Number)                                                           \
-    template int64_t attention_scratch<Number>(const AttentionShape&);                       \
-    template void attend(const AttentionShape&, const Number*, const Number*, const Number*, \
-                         const AttentionPart&, Number*, void*);
-ITEM3D_INSTANTIATE(float)
-ITEM3D_INSTANTIATE(BrainFloat)
-#undef ITEM3D_INSTANTIATE
 
 }  // namespace item3d

@@ -1,7 +1,7 @@
-// Attention on plain memory: AVX-512, compiled for it alone (src/CMakeLists.txt), so nothing here
-// may be called where matrix_kernel_runs() says no.
+// Attention on plain memory.
 #pragma once
 
+#include "item3d/models/instructions.h"
 #include "item3d/models/matrix_kernel.h"
 
 #include <cstdint>
@@ -13,19 +13,28 @@ struct AttentionShape {
     std::int64_t rows, heads, queries, keys, width;
 };
 
-/// Bytes of scratch memory (64-byte aligned) for a part.
-template <typename Number>
-std::int64_t attention_scratch(const AttentionShape& shape);
-
 /// One head of one row, and a range of its queries.
 struct AttentionPart {
     std::int64_t row, head, first_query, last_query;
 };
 
-/// Writes softmax(q k^T / sqrt(width)) v of a part. Scores and sums are float, the
-/// softmax's values are rounded to Number before they are multiplied.
 template <typename Number>
-void attend(const AttentionShape& shape, const Number* query, const Number* key,
-            const Number* value, const AttentionPart& part, Number* result, void* scratch);
+struct AttentionKernel {
+    /// Bytes of scratch memory (64-byte aligned) for a part.
+    std::int64_t (*scratch)(const AttentionShape& shape);
+    /// Writes softmax(q k^T / sqrt(width)) v of a part. Scores and sums are float, the softmax's
+    /// values are rounded to Number before they are multiplied.
+    void (*attend)(const AttentionShape& shape, const Number* query, const Number* key,
+                   const Number* value, const AttentionPart& part, Number* result, void* scratch);
+};
+
+template <Instructions instructions, typename Number>
+AttentionKernel<Number> attention_kernel();
+template <>
+AttentionKernel<float> attention_kernel<Instructions::avx2, float>();
+template <>
+AttentionKernel<float> attention_kernel<Instructions::avx512, float>();
+template <>
+AttentionKernel<BrainFloat> attention_kernel<Instructions::avx512, BrainFloat>();
 
 }  // namespace item3d

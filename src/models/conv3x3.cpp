@@ -54,26 +54,31 @@ void Conv3x3Impl::take_from_file(torch::Dtype dtype) {
     std::exchange(forget_, nullptr)();
 }
 
-torch::Tensor Conv3x3Impl::forward(const torch::Tensor& x) {
-    if (!weight_given_up_) {
-        const bool frozen = !weight.requires_grad() && !(bias.defined() && bias.requires_grad()) &&
-                            !at::autocast::is_autocast_enabled(x.device().type());
-        if (!frozen) return Conv2dImpl::forward(x);
-        const bool packs = runs_from_file() || x.scalar_type() == weight.scalar_type();
-        if (!fast_ || !fast_->is_of(weight))
-            fast_ = packs ? FrozenConvolution::make(x, weight, forget_) : nullptr;
-        if (!fast_) {
-            take_from_file(x.scalar_type());
-            return Conv2dImpl::forward(x);
-        }
-        if (only_runs_ && !runs_from_file() && fast_->forget_weight()) {
-            weight.set_data(torch::empty({0}, weight.options()));
-            weight_given_up_ = true;
-        }
+std::shared_ptr<FrozenConvolution> Conv3x3Impl::faster_way(const torch::Tensor& x) {
+    const std::lock_guard lock(mutex_);
+    if (weight_given_up_) return fast_;
+    const bool frozen = !weight.requires_grad() && !(bias.defined() && bias.requires_grad()) &&
+                        !at::autocast::is_autocast_enabled(x.device().type());
+    if (!frozen) return nullptr;
+    const bool packs = runs_from_file() || x.scalar_type() == weight.scalar_type();
+    if (!fast_ || !fast_->is_of(weight))
+        fast_ = packs ? FrozenConvolution::make(x, weight, forget_) : nullptr;
+    if (!fast_) {
+        take_from_file(x.scalar_type());
+        return nullptr;
     }
-    if (torch::GradMode::is_enabled() && x.requires_grad())
-        return FrozenStep::apply(x, fast_, bias);
-    return fast_->forward(x, bias);
+    if (only_runs_ && !runs_from_file() && fast_->forget_weight()) {
+        weight.set_data(torch::empty({0}, weight.options()));
+        weight_given_up_ = true;
+    }
+    return fast_;
+}
+
+torch::Tensor Conv3x3Impl::forward(const torch::Tensor& x) {
+    const std::shared_ptr<FrozenConvolution> fast = faster_way(x);
+    if (!fast) return Conv2dImpl::forward(x);
+    if (torch::GradMode::is_enabled() && x.requires_grad()) return FrozenStep::apply(x, fast, bias);
+    return fast->forward(x, bias);
 }
 
 }  // namespace item3d

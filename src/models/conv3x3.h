@@ -8,13 +8,14 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 
 namespace item3d {
 
 /// nn.Conv2d with kernel 3, stride 1, padding 1. Where neither weights nor bias ask for a gradient
 /// it takes a faster way (frozen_convolution.h), if there is one, and its backward pass, which goes
 /// to the input alone, keeps no activations. Weights may be changed at any time before
-/// give_up_weights() or run_from().
+/// give_up_weights() or run_from(), but not while another thread runs the layer; several may.
 class Conv3x3Impl : public torch::nn::Conv2dImpl {
   public:
     Conv3x3Impl(int in_channels, int out_channels, bool with_bias = true);
@@ -32,9 +33,12 @@ class Conv3x3Impl : public torch::nn::Conv2dImpl {
     bool runs_from_file() const { return static_cast<bool>(forget_); }
 
   private:
+    /// What convolves x, made when it is first asked for; null where that is the library.
+    std::shared_ptr<FrozenConvolution> faster_way(const torch::Tensor& x);
     /// Nothing is faster than the library for these weights: they are made ready for it.
     void take_from_file(torch::Dtype dtype);
 
+    std::mutex mutex_;  ///< of all that faster_way() changes
     std::function<void()> forget_;
     std::shared_ptr<FrozenConvolution> fast_;
     bool only_runs_ = false;

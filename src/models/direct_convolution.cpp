@@ -1,6 +1,7 @@
 #include "item3d/models/direct_convolution.h"
 
 #include "item3d/models/direct_kernel.h"
+#include "item3d/models/unit_kernel.h"
 
 #include <ATen/Parallel.h>
 
@@ -12,6 +13,12 @@ namespace {
 using std::int64_t;
 
 template <typename Weight>
+const auto& kernel() {
+    return kernel_for_this_processor<Multiplied<Weight>>(
+        []<Instructions instructions> { return direct_kernel<instructions, Weight>(); });
+}
+
+template <typename Weight>
 void convolve_any(const ConvolutionShape& shape, const torch::Tensor& x,
                   const torch::Tensor& packed, const float* bias, const torch::Tensor& y) {
     using Number = Multiplied<Weight>;
@@ -20,19 +27,20 @@ void convolve_any(const ConvolutionShape& shape, const torch::Tensor& x,
     const int64_t pixels = shape.pictures * shape.height * shape.width;
     const int64_t ranges = (pixels + most_pixels - 1) / most_pixels;
     const int64_t each = (pixels + ranges - 1) / ranges;
-    const int64_t columns = shape.out_channels / packed_columns;
+    const int64_t columns = columns_of(shape.out_channels);
     at::parallel_for(0, ranges * columns, 1, [&](int64_t first, int64_t last) {
         const torch::Tensor scratch =
-            torch::empty({taps_scratch<Number>(each, shape.in_channels)}, torch::kUInt8);
+            torch::empty({kernel<Weight>()->scratch(each, shape.in_channels)}, torch::kUInt8);
         for (int64_t task = first; task < last; ++task) {
             PixelPart part;
             part.first_pixel = task % ranges * each;
             part.last_pixel = std::min(pixels, part.first_pixel + each);
             part.first_channel = task / ranges * packed_columns;
-            part.last_channel = part.first_channel + packed_columns;
-            convolve_taps(shape, static_cast<const Number*>(x.data_ptr()),
-                          static_cast<const Weight*>(packed.data_ptr()), bias,
-                          static_cast<Number*>(y.data_ptr()), part, scratch.data_ptr());
+            part.last_channel = std::min(shape.out_channels, part.first_channel + packed_columns);
+            kernel<Weight>()->convolve(shape, static_cast<const Number*>(x.data_ptr()),
+                                       static_cast<const Weight*>(packed.data_ptr()), bias,
+                                       static_cast<Number*>(y.data_ptr()), part,
+                                       scratch.data_ptr());
         }
     });
 }
@@ -86,8 +94,8 @@ torch::Dtype type_of_packed(const torch::Tensor& weight, torch::Dtype maps) {
 template <typename Weight>
 void pack_any(const void* weights, int64_t out_channels, int64_t in_channels, int64_t column,
               void* packed) {
-    pack_taps(static_cast<const Weight*>(weights), out_channels, in_channels, column,
-              static_cast<Weight*>(packed));
+    kernel<Weight>()->pack(static_cast<const Weight*>(weights), out_channels, in_channels, column,
+                           static_cast<Weight*>(packed));
 }
 
 }  // namespace

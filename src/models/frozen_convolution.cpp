@@ -9,33 +9,40 @@
 
 #include <ATen/Parallel.h>
 
+#include <algorithm>
+
 namespace item3d {
 namespace {
 
 constexpr std::int64_t taps = 9;
 
-bool kernel_runs(torch::Dtype dtype) {
-    static const bool float_runs = matrix_kernel_runs<float>();
-    static const bool bfloat_runs = matrix_kernel_runs<BrainFloat>() || matrix_units_run();
-    return (dtype == torch::kFloat32 && float_runs) || (dtype == torch::kBFloat16 && bfloat_runs);
+/// What channels must be a multiple of for maps of this type; 0 where no kernel runs.
+std::int64_t channel_step(torch::Dtype dtype) {
+    if (dtype == torch::kFloat32 && instructions_for<float>() != Instructions::none)
+        return register_numbers;
+    if (dtype == torch::kBFloat16 && instructions_for<BrainFloat>() != Instructions::none)
+        return packed_columns;
+    return 0;
 }
 
 bool can_be_packed(torch::Dtype stored) {
     return stored == torch::kFloat32 || stored == torch::kBFloat16 || stored == torch::kFloat16;
 }
 
-/// Output channels [column, column + 64) of contiguous `weight` in the order that packing reads.
-template <typename Stored>
-void order_column(const torch::Tensor& weight, std::int64_t column, const torch::Tensor& ordered) {
-    const std::int64_t in = weight.size(1);
-    const auto* from = static_cast<const Stored*>(weight.data_ptr()) + column * in * taps;
-    void* to = ordered.data_ptr();
-    if (ordered.scalar_type() == torch::kBFloat16)
-        order_taps(from, packed_columns, in, static_cast<BrainFloat*>(to));
-    else if (ordered.scalar_type() == torch::kFloat16)
-        order_taps(from, packed_columns, in, static_cast<HalfFloat*>(to));
+template <typename Number>
+void order_rows(const torch::Tensor& weight, std::int64_t first, std::int64_t rows,
+                const torch::Tensor& ordered) {
+    const auto& kernel = kernel_for_this_processor<Multiplied<Number>>(
+        []<Instructions instructions> { return weight_kernel<instructions, Number>(); });
+    const std::int64_t in = weight.size(1), start = first * in * taps;
+    auto* to = static_cast<Number*>(ordered.data_ptr());
+    const void* from = weight.const_data_ptr();
+    if (weight.scalar_type() == torch::kFloat16)
+        kernel->order_halves(static_cast<const HalfFloat*>(from) + start, rows, in, to);
+    else if (weight.scalar_type() == torch::kBFloat16)
+        kernel->order_brain_floats(static_cast<const BrainFloat*>(from) + start, rows, in, to);
     else
-        order_taps(from, packed_columns, in, static_cast<float*>(to));
+        kernel->order_floats(static_cast<const float*>(from) + start, rows, in, to);
 }
 
 /// 64 input and 64 output channels of one point: [in, out] -> [out, in].
@@ -72,8 +79,9 @@ std::shared_ptr<FrozenConvolution> FrozenConvolution::make(const torch::Tensor& 
 }
 
 bool FrozenConvolution::fits(const torch::Tensor& x, const torch::Tensor& weight) {
-    return x.is_cpu() && kernel_runs(x.scalar_type()) && can_be_packed(weight.scalar_type()) &&
-           weight.size(0) % packed_columns == 0 && weight.size(1) % packed_columns == 0;
+    const std::int64_t step = channel_step(x.scalar_type());
+    return x.is_cpu() && step > 0 && can_be_packed(weight.scalar_type()) &&
+           weight.size(0) % step == 0 && weight.size(1) % step == 0;
 }
 
 FrozenConvolution::FrozenConvolution(const torch::Tensor& weight, torch::Dtype dtype,
@@ -97,9 +105,14 @@ bool FrozenConvolution::is_of(const torch::Tensor& weight) const {
 }
 
 bool FrozenConvolution::forget_weight() {
-    if (turned_points().empty()) return false;
+    if (turned_round().empty()) return false;
     weight_ = torch::Tensor();
     return true;
+}
+
+std::vector<std::int64_t> FrozenConvolution::turned_round() const {
+    const bool whole = out_channels_ % packed_columns == 0 && in_channels_ % packed_columns == 0;
+    return whole ? turned_points() : std::vector<std::int64_t>();
 }
 
 torch::Tensor FrozenConvolution::pack(const torch::Tensor& weight) const {
@@ -107,21 +120,21 @@ torch::Tensor FrozenConvolution::pack(const torch::Tensor& weight) const {
     const bool ordered = weight.scalar_type() == packed_dtype_ &&
                          weight.is_contiguous(torch::MemoryFormat::ChannelsLast);
     const torch::Tensor source = ordered ? weight : weight.contiguous();
-    const auto order = source.scalar_type() == torch::kFloat16    ? order_column<HalfFloat>
-                       : source.scalar_type() == torch::kBFloat16 ? order_column<BrainFloat>
-                                                                  : order_column<float>;
+    const auto order = packed_dtype_ == torch::kFloat16    ? order_rows<HalfFloat>
+                       : packed_dtype_ == torch::kBFloat16 ? order_rows<BrainFloat>
+                                                           : order_rows<float>;
     const torch::Tensor packed = empty_weight({points() * out * in}, packed_dtype_);
-    at::parallel_for(0, out / packed_columns, 1, [&](std::int64_t first, std::int64_t last) {
+    at::parallel_for(0, columns_of(out), 1, [&](std::int64_t first, std::int64_t last) {
         torch::Tensor scratch;
         if (!ordered) scratch = torch::empty({packed_columns * taps * in}, packed_dtype_);
-        for (std::int64_t column = first * packed_columns; column < last * packed_columns;
-             column += packed_columns) {
+        const std::int64_t end = std::min(out, last * packed_columns);
+        for (std::int64_t column = first * packed_columns; column < end; column += packed_columns) {
             const char* rows = nullptr;
             if (ordered) {
                 rows = static_cast<const char*>(source.data_ptr()) +
                        static_cast<std::size_t>(column * taps * in) * source.element_size();
             } else {
-                order(source, column, scratch);
+                order(source, column, std::min(packed_columns, end - column), scratch);
                 rows = static_cast<const char*>(scratch.data_ptr());
             }
             pack_column(rows, out, in, column, packed.data_ptr());
@@ -176,17 +189,21 @@ torch::Tensor FrozenConvolution::forward(const torch::Tensor& x, const torch::Te
 }
 
 torch::Tensor FrozenConvolution::backward(const torch::Tensor& gradient) {
+    return run(gradient.to(dtype_), packed_for_backward(), in_channels_, {});
+}
+
+torch::Tensor FrozenConvolution::packed_for_backward() {
+    const std::lock_guard lock(mutex_);
+    if (packed_backward_.defined()) return packed_backward_;
     // The way back is the convolution with the weights turned round and their channels swapped.
-    torch::Tensor packed = packed_backward_;
-    if (!packed.defined()) {
-        const torch::NoGradGuard no_grad;
-        const std::vector<std::int64_t> points = turned_points();
-        packed = points.empty() ? pack(weight_.flip({2, 3}).transpose(0, 1)) : turn_round(points);
-        // To turn large ones takes little beside the convolution, and to keep them much memory.
-        constexpr std::size_t most_kept = 5 << 20;
-        if (points.empty() || packed.nbytes() <= most_kept) packed_backward_ = packed;
-    }
-    return run(gradient.to(dtype_), packed, in_channels_, {});
+    const torch::NoGradGuard no_grad;
+    const std::vector<std::int64_t> points = turned_round();
+    const torch::Tensor packed =
+        points.empty() ? pack(weight_.flip({2, 3}).transpose(0, 1)) : turn_round(points);
+    // To turn large ones takes little beside the convolution, and to keep them much memory.
+    constexpr std::size_t most_kept = 5 << 20;
+    if (points.empty() || packed.nbytes() <= most_kept) packed_backward_ = packed;
+    return packed;
 }
 
 }  // namespace item3d

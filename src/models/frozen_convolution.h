@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace item3d {
@@ -21,8 +22,8 @@ class FrozenConvolution {
 
     /// The kind that is fastest for this map, or none where the library's own is: on another
     /// device or a CPU without the instructions, for other types than float32 and bfloat16, and for
-    /// channels that are no multiples of 64. What it gives convolves maps of all sizes in x's type.
-    /// x: [N, C, H, W], weight: [O, C, 3, 3] of float32, bfloat16 or float16.
+    /// channels that are no multiples of 16 (bfloat16: of 64). What it gives convolves maps of all
+    /// sizes in x's type. x: [N, C, H, W], weight: [O, C, 3, 3] of float32, bfloat16 or float16.
     static std::shared_ptr<FrozenConvolution> make(const torch::Tensor& x,
                                                    const torch::Tensor& weight,
                                                    const Forget& forget = {});
@@ -65,18 +66,21 @@ class FrozenConvolution {
     /// By point of the packed weights of the way back, the one of the way there that it equals;
     /// empty where they differ.
     virtual std::vector<std::int64_t> turned_points() const = 0;
-    /// Weights [64, 3, 3, in] of packed_dtype() and of the output channels from `column` on, to
-    /// their places in `packed`: [points, out / 64, in / group, 64, group], group of a bfloat16
-    /// being 2, of the others 1.
+    /// Weights [64, 3, 3, in] of packed_dtype() and of the output channels from `column` on (fewer
+    /// in the last column), to their places in `packed`: [points, out / 64, in / group, 64, group],
+    /// group of a bfloat16 being 2, of the others 1.
     virtual void pack_column(const void* weights, std::int64_t out_channels,
                              std::int64_t in_channels, std::int64_t column, void* packed) const = 0;
     /// x and the result are channels-last; bias is float32 or undefined.
     virtual torch::Tensor convolve(const torch::Tensor& x, const torch::Tensor& packed,
                                    std::int64_t out_channels, const torch::Tensor& bias) const = 0;
 
+    /// turned_points() where turn_round() can be used: columns that are all whole.
+    std::vector<std::int64_t> turned_round() const;
     torch::Tensor pack(const torch::Tensor& weight) const;
     /// The packed weights of the way back from those of the way there.
     torch::Tensor turn_round(const std::vector<std::int64_t>& points) const;
+    torch::Tensor packed_for_backward();
     torch::Tensor run(const torch::Tensor& x, const torch::Tensor& packed,
                       std::int64_t out_channels, const torch::Tensor& bias) const;
 
@@ -86,6 +90,7 @@ class FrozenConvolution {
     std::uint32_t version_;
     Forget forget_;
     torch::Tensor packed_;
+    std::mutex mutex_;               ///< of what follows
     torch::Tensor packed_backward_;  ///< made by the first backward(), where it is kept
 };
 

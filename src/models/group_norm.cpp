@@ -72,6 +72,12 @@ struct NormValues {
 };
 
 template <typename Number>
+const auto& kernel_of() {
+    return kernel_for_this_processor<Number>(
+        []<Instructions instructions> { return norm_kernel<instructions, Number>(); });
+}
+
+template <typename Number>
 const Number* numbers_of(const torch::Tensor& tensor) {
     return static_cast<const Number*>(tensor.data_ptr());
 }
@@ -88,15 +94,15 @@ NormValues measure(const NormMap& map, const Number* x, const float* weight, con
         std::vector<double> unused(static_cast<std::size_t>(channels));
         for (std::int64_t n = 0; n < map.pictures; ++n) {
             std::vector<double> first(static_cast<std::size_t>(channels));
-            add_channel_sums(x + n * map.pixels * channels, 1, channels, zero.data(), first.data(),
-                             unused.data());
+            kernel_of<Number>()->add_channel_sums(x + n * map.pixels * channels, 1, channels,
+                                                  zero.data(), first.data(), unused.data());
             std::copy(first.begin(), first.end(), shift.begin() + n * channels);
         }
     }
     const std::vector<double> sums =
         map.sums([&](std::int64_t n, std::int64_t first, std::int64_t count, double* to) {
-            add_channel_sums(x + first, count, channels, shift.data() + n * channels, to,
-                             to + channels);
+            kernel_of<Number>()->add_channel_sums(x + first, count, channels,
+                                                  shift.data() + n * channels, to, to + channels);
         });
     const NormValues values(map);
     float *scale = values.scale(), *offset = values.offset(), *group_mean = values.mean(),
@@ -137,8 +143,8 @@ NormValues normalize(const NormMap& map, const torch::Tensor& x, const torch::Te
         measure(map, from, weight.data_ptr<float>(), bias.data_ptr<float>(), epsilon);
     const float *scale = values.scale(), *offset = values.offset();
     map.for_each_piece([&](std::int64_t, std::int64_t n, std::int64_t first, std::int64_t count) {
-        apply_norm(from + first, count, map.channels, scale + n * map.channels,
-                   offset + n * map.channels, silu, to + first);
+        kernel_of<Number>()->apply(from + first, count, map.channels, scale + n * map.channels,
+                                   offset + n * map.channels, silu, to + first);
     });
     return values;
 }
@@ -151,12 +157,12 @@ void back(const NormMap& map, const torch::Tensor& input, const torch::Tensor& g
     auto* dx = static_cast<Number*>(result.data_ptr());
     const float *scale = values.scale(), *offset = values.offset(), *mean = values.mean(),
                 *deviation = values.deviation();
-    const std::vector<double> sums =
-        map.sums([&](std::int64_t n, std::int64_t first, std::int64_t count, double* to) {
-            const std::int64_t at = n * channels;
-            add_gradient_sums(x + first, dy + first, count, channels, scale + at, offset + at,
-                              mean + at, silu, to, to + channels);
-        });
+    const std::vector<double> sums = map.sums([&](std::int64_t n, std::int64_t first,
+                                                  std::int64_t count, double* to) {
+        const std::int64_t at = n * channels;
+        kernel_of<Number>()->add_gradient_sums(x + first, dy + first, count, channels, scale + at,
+                                               offset + at, mean + at, silu, to, to + channels);
+    });
     // With h the normalized x, its gradient d: dx = deviation (d - mean(d) - h mean(d h)).
     std::vector<float> constant(static_cast<std::size_t>(map.pictures * channels)),
         slope(constant.size());
@@ -184,8 +190,9 @@ void back(const NormMap& map, const torch::Tensor& input, const torch::Tensor& g
     }
     map.for_each_piece([&](std::int64_t, std::int64_t n, std::int64_t first, std::int64_t count) {
         const std::int64_t at = n * channels;
-        apply_norm_gradient(x + first, dy + first, count, channels, scale + at, offset + at,
-                            constant.data() + at, slope.data() + at, silu, dx + first);
+        kernel_of<Number>()->apply_gradient(x + first, dy + first, count, channels, scale + at,
+                                            offset + at, constant.data() + at, slope.data() + at,
+                                            silu, dx + first);
     });
 }
 
@@ -219,9 +226,8 @@ struct FusedNorm : torch::autograd::Function<FusedNorm> {
 };
 
 bool runs(torch::Dtype dtype) {
-    static const bool float_runs = norm_kernel_runs<float>();
-    static const bool bfloat_runs = norm_kernel_runs<BrainFloat>();
-    return (dtype == torch::kFloat32 && float_runs) || (dtype == torch::kBFloat16 && bfloat_runs);
+    return (dtype == torch::kFloat32 && kernel_of<float>()) ||
+           (dtype == torch::kBFloat16 && kernel_of<BrainFloat>());
 }
 
 }  // namespace

@@ -1,23 +1,17 @@
-// Products of rows with a frozen matrix on plain memory: AVX-512, compiled for it alone
-// (src/CMakeLists.txt), so nothing here may be called where matrix_kernel_runs() says no.
+// Products of rows with a frozen matrix on plain memory.
 #pragma once
 
+#include "item3d/models/instructions.h"
 #include "item3d/models/linear_activation.h"
 #include "item3d/models/matrix_kernel.h"
 
 namespace item3d {
 
-/// Numbers of a packed matrix [columns, depth]; its columns are filled up to whole ones of 64.
+/// Numbers of a packed matrix [columns, depth]: its last 16 columns may be fewer, and are filled
+/// up.
 inline std::int64_t packed_size(std::int64_t columns, std::int64_t depth) {
-    return (columns + packed_columns - 1) / packed_columns * packed_columns * depth;
+    return whole_registers(columns) * depth;
 }
-
-/// weights [columns, depth] -> [columns / 64, depth / group, 64, group], a group being the numbers
-/// of depth that one instruction multiplies (2 of BrainFloat, 1 of the others); for columns [first,
-/// last), first being a multiple of 64. depth: a multiple of 16.
-template <typename Weight>
-void pack_columns(const Weight* weights, std::int64_t depth, std::int64_t first, std::int64_t last,
-                  Weight* packed);
 
 /// Rows, and columns beginning at a multiple of 64.
 struct MatrixPart {
@@ -31,10 +25,34 @@ struct ProductEnd {
     const float* added = nullptr;  ///< [rows, columns] or null
 };
 
-/// y [rows, columns] of the product x [rows, depth] weights^T, for one part; sums in float. Result:
-/// float or Weight.
-template <typename Weight, typename Result>
-void multiply_part(const Multiplied<Weight>* x, std::int64_t depth, const Weight* packed,
-                   const ProductEnd& end, std::int64_t columns, const MatrixPart& part, Result* y);
+template <typename Weight>
+struct LinearKernel {
+    /// weights [columns, depth] -> [columns / 64, depth / group, 64, group], the last of them as
+    /// narrow as whole registers of 16 allow; a group being the numbers of depth that one
+    /// instruction multiplies (2 of BrainFloat, 1 of the others). For columns [first, last), first
+    /// being a multiple of 64, and last too or the end. depth: a multiple of 16.
+    void (*pack)(const Weight* weights, std::int64_t depth, std::int64_t first, std::int64_t last,
+                 Weight* packed);
+    /// y [rows, columns] of the product x [rows, depth] weights^T, for one part; sums in float.
+    void (*multiply)(const Multiplied<Weight>* x, std::int64_t depth, const Weight* packed,
+                     const ProductEnd& end, std::int64_t columns, const MatrixPart& part, float* y);
+    /// The same, rounded to what the weights are multiplied by.
+    void (*multiply_rounded)(const Multiplied<Weight>* x, std::int64_t depth, const Weight* packed,
+                             const ProductEnd& end, std::int64_t columns, const MatrixPart& part,
+                             Multiplied<Weight>* y);
+};
+
+template <Instructions instructions, typename Weight>
+LinearKernel<Weight> linear_kernel();
+template <>
+LinearKernel<float> linear_kernel<Instructions::avx2, float>();
+template <>
+LinearKernel<HalfFloat> linear_kernel<Instructions::avx2, HalfFloat>();
+template <>
+LinearKernel<float> linear_kernel<Instructions::avx512, float>();
+template <>
+LinearKernel<HalfFloat> linear_kernel<Instructions::avx512, HalfFloat>();
+template <>
+LinearKernel<BrainFloat> linear_kernel<Instructions::avx512, BrainFloat>();
 
 }  // namespace item3d

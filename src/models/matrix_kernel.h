@@ -7,14 +7,6 @@
 
 namespace item3d {
 
-/// Whether this processor has what the kernels for float or BrainFloat need, and gains by them: one
-/// with matrix units multiplies bfloat16 faster on those.
-template <typename Number>
-bool matrix_kernel_runs();
-
-/// Whether it has matrix units for bfloat16 (AMX) and the system lets programs use them.
-bool matrix_units_run();
-
 /// What weights of a type are multiplied by: numbers of the same type, but float where they are
 /// kept as files have them.
 template <typename Weight>
@@ -28,9 +20,20 @@ struct MultipliedBy<HalfFloat> {
 template <typename Weight>
 using Multiplied = typename MultipliedBy<Weight>::Number;
 
-/// Output channels of a convolution are packed in columns of this many; input channels must be a
-/// multiple of it too.
+/// Numbers that kernels take at a time.
+constexpr std::int64_t register_numbers = 16;
+
+inline std::int64_t whole_registers(std::int64_t count) {
+    return (count + register_numbers - 1) / register_numbers * register_numbers;
+}
+
+/// Output channels are packed in columns of this many, the last of them as narrow as whole
+/// registers allow.
 constexpr std::int64_t packed_columns = 64;
+
+inline std::int64_t columns_of(std::int64_t channels) {
+    return (channels + packed_columns - 1) / packed_columns;
+}
 
 /// A 3x3 convolution of stride 1 and padding 1 over maps in memory as [pictures, height, width,
 /// channels].

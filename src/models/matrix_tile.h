@@ -1,19 +1,17 @@
 // The product that the kernels of this folder spend their time in: a few rows times a packed
-// matrix, sums in registers. For the files that are compiled for AVX-512 alone.
+// matrix, sums in registers. For the files that are compiled for each set of instructions.
 #pragma once
 
-#include "item3d/models/avx512_numbers.h"
+#include "item3d/models/lanes.h"
 #include "item3d/models/matrix_kernel.h"
 
 #include <immintrin.h>
 
 #include <cstdint>
 
-namespace item3d {
+namespace item3d::ITEM3D_INSTRUCTIONS {
 
-namespace avx512 {
-
-/// Rows multiplied at a time: with four registers of columns each, 24 sums stay in registers.
+/// Rows multiplied at a time: their sums stay in registers, 24 of AVX-512's 32 or 12 of AVX2's 16.
 constexpr int rows = 6;
 
 inline std::int64_t whole_rows(std::int64_t count) {
@@ -25,6 +23,7 @@ inline std::int64_t whole_rows(std::int64_t count) {
 template <typename Weight>
 struct Arithmetic;
 
+#ifdef __AVX512F__
 template <>
 struct Arithmetic<BrainFloat> {
     static constexpr int group = 2;
@@ -37,94 +36,98 @@ struct Arithmetic<BrainFloat> {
     static __m512 multiply_add(__m512i a, __m512i b, __m512 sum) {
         return _mm512_dpbf16_ps(sum, reinterpret_cast<__m512bh>(a), reinterpret_cast<__m512bh>(b));
     }
-    /// Sixteen input channels of one output channel, each pair `packed_columns` pairs on.
-    static void scatter(BrainFloat* to, __m512 value) {
-        const __m256i places =
-            _mm256_mullo_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
-                               _mm256_set1_epi32(static_cast<int>(packed_columns)));
+    /// Sixteen input channels of one output channel, each pair `columns` pairs on.
+    static void scatter(BrainFloat* to, int columns, Lanes value) {
+        const __m256i places = _mm256_mullo_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
+                                                  _mm256_set1_epi32(columns));
         _mm256_i32scatter_epi32(to, places, narrow(value), 4);
     }
 };
+#endif
 
 template <>
 struct Arithmetic<float> {
     static constexpr int group = 1;
-    static __m512 broadcast(const float* from) { return _mm512_set1_ps(*from); }
-    static __m512 operand(const float* from) { return _mm512_loadu_ps(from); }
-    static __m512 multiply_add(__m512 a, __m512 b, __m512 sum) {
-        return _mm512_fmadd_ps(a, b, sum);
+    static Lanes broadcast(const float* from) { return all(*from); }
+    static Lanes operand(const float* from) { return load(from); }
+    static Lanes multiply_add(Lanes a, Lanes b, Lanes sum) {
+        return ITEM3D_INSTRUCTIONS::multiply_add(a, b, sum);
     }
-    static void scatter(float* to, __m512 value) {
-        const __m512i places = _mm512_mullo_epi32(
-            _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
-            _mm512_set1_epi32(static_cast<int>(packed_columns)));
-        _mm512_i32scatter_ps(to, places, value, 4);
+    static void scatter(float* to, int columns, Lanes value) {
+        ITEM3D_INSTRUCTIONS::scatter(to, columns, value);
     }
 };
 
 /// Weights as files have them, multiplied as floats: no bit is lost, and half the memory read.
 template <>
 struct Arithmetic<HalfFloat> : Arithmetic<float> {
-    static __m512 operand(const HalfFloat* from) { return load(from); }
-    static void scatter(HalfFloat* to, __m512 value) {
+    static Lanes operand(const HalfFloat* from) { return load(from); }
+    static void scatter(HalfFloat* to, int columns, Lanes value) {
         HalfFloat numbers[lanes];
         store(numbers, value);
         for (int i = 0; i < lanes; ++i)
-            to[i * packed_columns] = numbers[i];
+            to[i * columns] = numbers[i];
     }
 };
 
 /// sums [rows, 16 registers], each row `stride` numbers after the one before, = (or +=, with `add`)
-/// a [rows, depth], given by its rows, times b [depth / group, 16 registers, group].
+/// a [rows, depth], given by its rows, times the first columns of b [depth / group, columns,
+/// group].
 template <typename Weight, int registers>
-void multiply(const Multiplied<Weight>* const* a, std::int64_t depth, const Weight* b, float* sums,
-              std::int64_t stride, bool add) {
+void multiply_registers(const Multiplied<Weight>* const* a, std::int64_t depth, const Weight* b,
+                        std::int64_t columns, float* sums, std::int64_t stride, bool add) {
     using Maths = Arithmetic<Weight>;
     using Number = Multiplied<Weight>;
     static_assert(rows == 6);
     const Number *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4], *a5 = a[5];
-    __m512 sum[rows][registers];
+    Lanes sum[rows][registers];
 #pragma GCC unroll 6
     for (int i = 0; i < rows; ++i)
 #pragma GCC unroll 4
         for (int j = 0; j < registers; ++j)
-            sum[i][j] = add ? _mm512_loadu_ps(sums + i * stride + j * lanes) : _mm512_setzero_ps();
+            sum[i][j] = add ? load(sums + i * stride + j * lanes) : zero();
     for (std::int64_t k = 0; k < depth; k += Maths::group) {
-        decltype(Maths::operand(b)) columns[registers];
+        decltype(Maths::operand(b)) operands[registers];
 #pragma GCC unroll 4
         for (int j = 0; j < registers; ++j)
-            columns[j] = Maths::operand(b + (k * registers + j * Maths::group) * lanes);
+            operands[j] = Maths::operand(b + k * columns + j * Maths::group * lanes);
         const Number* const at[rows] = {a0 + k, a1 + k, a2 + k, a3 + k, a4 + k, a5 + k};
 #pragma GCC unroll 6
         for (int i = 0; i < rows; ++i) {
             const auto factor = Maths::broadcast(at[i]);
 #pragma GCC unroll 4
             for (int j = 0; j < registers; ++j)
-                sum[i][j] = Maths::multiply_add(factor, columns[j], sum[i][j]);
+                sum[i][j] = Maths::multiply_add(factor, operands[j], sum[i][j]);
         }
     }
 #pragma GCC unroll 6
     for (int i = 0; i < rows; ++i)
 #pragma GCC unroll 4
         for (int j = 0; j < registers; ++j)
-            _mm512_storeu_ps(sums + i * stride + j * lanes, sum[i][j]);
+            store(sums + i * stride + j * lanes, sum[i][j]);
 }
 
-/// The same for 1 to 4 registers, told at run time.
+/// The same for all columns of b, a multiple of 16 and no more than packed_columns.
 template <typename Weight>
-void multiply(std::int64_t registers, const Multiplied<Weight>* const* a, std::int64_t depth,
+void multiply(std::int64_t columns, const Multiplied<Weight>* const* a, std::int64_t depth,
               const Weight* b, float* sums, std::int64_t stride, bool add) {
-    switch (registers) {
+#ifdef __AVX512F__
+    switch (columns / lanes) {
         case 1:
-            return multiply<Weight, 1>(a, depth, b, sums, stride, add);
+            return multiply_registers<Weight, 1>(a, depth, b, 1 * lanes, sums, stride, add);
         case 2:
-            return multiply<Weight, 2>(a, depth, b, sums, stride, add);
+            return multiply_registers<Weight, 2>(a, depth, b, 2 * lanes, sums, stride, add);
         case 3:
-            return multiply<Weight, 3>(a, depth, b, sums, stride, add);
+            return multiply_registers<Weight, 3>(a, depth, b, 3 * lanes, sums, stride, add);
         default:
-            return multiply<Weight, 4>(a, depth, b, sums, stride, add);
+            return multiply_registers<Weight, 4>(a, depth, b, 4 * lanes, sums, stride, add);
     }
+#else
+    constexpr int group = Arithmetic<Weight>::group;
+    for (std::int64_t first = 0; first < columns; first += lanes)
+        multiply_registers<Weight, 1>(a, depth, b + first * group, columns, sums + first, stride,
+                                      add);
+#endif
 }
 
-}  // namespace avx512
-}  // namespace item3d
+}  // namespace item3d::ITEM3D_INSTRUCTIONS

@@ -16,54 +16,71 @@ namespace {
 
 using std::int64_t;
 
+template <typename Weight>
+const auto& kernel() {
+    return kernel_for_this_processor<Multiplied<Weight>>(
+        []<Instructions instructions> { return linear_kernel<instructions, Weight>(); });
+}
+
 template <typename Number>
 void pack_all(const torch::Tensor& weight, const torch::Tensor& packed) {
     const int64_t columns = weight.size(0), depth = weight.size(1);
     const auto* from = static_cast<const Number*>(weight.data_ptr());
     auto* to = static_cast<Number*>(packed.data_ptr());
-    const int64_t blocks = (columns + packed_columns - 1) / packed_columns;
+    const int64_t blocks = columns_of(columns);
     at::parallel_for(0, blocks, 1, [&](int64_t first, int64_t last) {
-        pack_columns(from, depth, first * packed_columns, std::min(columns, last * packed_columns),
-                     to);
+        kernel<Number>()->pack(from, depth, first * packed_columns,
+                               std::min(columns, last * packed_columns), to);
     });
 }
 
-template <typename Weight, typename Result>
-void multiply_all(const torch::Tensor& x, const torch::Tensor& packed, const ProductEnd& end,
-                  const torch::Tensor& y) {
-    using Number = Multiplied<Weight>;
+/// f(part) for all of a product, on all threads.
+template <typename Function>
+void for_each_part(int64_t rows, int64_t columns, int64_t row_bytes, const Function& f) {
     // Rows of so many bytes stay in a core's cache beside the columns that they are multiplied by.
     constexpr int64_t most_bytes = 512 << 10;
-    const int64_t rows = x.size(0), depth = x.size(1), columns = y.size(1);
-    const int64_t most_rows =
-        std::max<int64_t>(6, most_bytes / (depth * static_cast<int64_t>(sizeof(Number))) / 6 * 6);
-    const int64_t ranges = (rows + most_rows - 1) / most_rows;
-    const int64_t blocks = (columns + packed_columns - 1) / packed_columns;
+    const int64_t most_rows = std::max<int64_t>(6, most_bytes / row_bytes / 6 * 6);
+    const int64_t ranges = (rows + most_rows - 1) / most_rows, blocks = columns_of(columns);
     at::parallel_for(0, ranges * blocks, 1, [&](int64_t first, int64_t last) {
         for (int64_t task = first; task < last; ++task) {
             const int64_t row = task / blocks * most_rows, column = task % blocks * packed_columns;
-            const MatrixPart part{row, std::min(rows, row + most_rows), column,
-                                  std::min(columns, column + packed_columns)};
-            multiply_part<Weight>(static_cast<const Number*>(x.data_ptr()), depth,
-                                  static_cast<const Weight*>(packed.data_ptr()), end, columns, part,
-                                  static_cast<Result*>(y.data_ptr()));
+            f(MatrixPart{row, std::min(rows, row + most_rows), column,
+                         std::min(columns, column + packed_columns)});
         }
     });
+}
+
+template <typename Weight>
+void multiply_all(const torch::Tensor& x, const torch::Tensor& packed, const ProductEnd& end,
+                  const torch::Tensor& y) {
+    using Number = Multiplied<Weight>;
+    const int64_t depth = x.size(1), columns = y.size(1);
+    const auto* rows = static_cast<const Number*>(x.data_ptr());
+    const auto* weights = static_cast<const Weight*>(packed.data_ptr());
+    const auto run = [&](auto multiply, auto* to) {
+        for_each_part(x.size(0), columns, depth * static_cast<int64_t>(sizeof(Number)),
+                      [&](const MatrixPart& part) {
+                          multiply(rows, depth, weights, end, columns, part, to);
+                      });
+    };
+    if (y.scalar_type() == torch::kFloat32)
+        run(kernel<Weight>()->multiply, static_cast<float*>(y.data_ptr()));
+    else
+        run(kernel<Weight>()->multiply_rounded, static_cast<Number*>(y.data_ptr()));
 }
 
 }  // namespace
 
 bool PackedMatrix::runs(torch::Device device, torch::Dtype dtype) {
-    static const bool float_runs = matrix_kernel_runs<float>();
-    static const bool bfloat_runs = matrix_kernel_runs<BrainFloat>();
     const bool as_float = dtype == torch::kFloat32 || dtype == torch::kFloat16;
+    // On matrix units the library multiplies bfloat16 faster.
     return device.is_cpu() &&
-           ((as_float && float_runs) || (dtype == torch::kBFloat16 && bfloat_runs));
+           ((as_float && kernel<float>()) ||
+            (dtype == torch::kBFloat16 && kernel<BrainFloat>() && !matrix_units_run()));
 }
 
 bool PackedMatrix::fits(const torch::Tensor& weight) {
-    constexpr int64_t lanes = 16;  // that packing reads at a time
-    return weight.dim() == 2 && weight.size(1) % lanes == 0 && weight.numel() > 0;
+    return weight.dim() == 2 && weight.size(1) % register_numbers == 0 && weight.numel() > 0;
 }
 
 PackedMatrix::PackedMatrix(const torch::Tensor& weight, torch::Dtype dtype)
@@ -98,20 +115,27 @@ torch::Tensor PackedMatrix::multiply(const torch::Tensor& x, const torch::Tensor
     const torch::Tensor added = end.added.defined() ? end.added.contiguous() : end.added;
     ITEM3D_CHECK(!added.defined() || added.sizes() == y.sizes(), "added must be [..., O]");
     const ProductEnd finish{floats(bias), end.activation, floats(added)};
-    const auto run = packed_.scalar_type() == torch::kFloat32   ? multiply_all<float, float>
-                     : packed_.scalar_type() == torch::kFloat16 ? multiply_all<HalfFloat, float>
-                     : end.rounded ? multiply_all<BrainFloat, BrainFloat>
-                                   : multiply_all<BrainFloat, float>;
+    const auto run = packed_.scalar_type() == torch::kBFloat16  ? multiply_all<BrainFloat>
+                     : packed_.scalar_type() == torch::kFloat16 ? multiply_all<HalfFloat>
+                                                                : multiply_all<float>;
     run(rows, packed_, finish, y.view({-1, columns_}));
     return y;
 }
 
 torch::Tensor PackedMatrix::unpacked() const {
     const int64_t group = packed_.scalar_type() == torch::kBFloat16 ? 2 : 1;
-    return packed_.view({-1, depth_ / group, packed_columns, group})
-        .permute({0, 2, 1, 3})
-        .reshape({-1, depth_})
-        .narrow(0, 0, columns_);
+    const int64_t whole = columns_ / packed_columns * packed_columns;
+    const auto unpack = [&](int64_t first, int64_t last, int64_t width) {  // columns of that width
+        return packed_.narrow(0, first * depth_, (last - first) * depth_)
+            .view({-1, depth_ / group, width, group})
+            .permute({0, 2, 1, 3})
+            .reshape({-1, depth_});
+    };
+    const int64_t all = whole_registers(columns_);
+    std::vector<torch::Tensor> parts;
+    if (whole > 0) parts.push_back(unpack(0, whole, packed_columns));
+    if (all > whole) parts.push_back(unpack(whole, all, all - whole));
+    return torch::cat(parts).narrow(0, 0, columns_);
 }
 
 bool PackableLinearImpl::multiplies_packed(const torch::Tensor& x) const {

@@ -3,8 +3,10 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/models/row_groups.h"
 #include "item3d/models/weights.h"
 
+#include <ATen/autocast_mode.h>
 #include <malloc.h>
 
 #include <algorithm>
@@ -297,6 +299,21 @@ torch::Tensor Pipeline::decode_image(const torch::Tensor& latents) const {
     return vae->decode(unscaled.contiguous(torch::MemoryFormat::ChannelsLast)).to(torch::kFloat32);
 }
 
+namespace {
+
+/// Networks on the CPU that only run, and whose operations are short.
+bool runs_in_row_groups(const UNet2DConditionImpl& unet) {
+    constexpr std::int64_t most_weights = 50'000'000;
+    std::int64_t weights = 0;
+    for (const torch::Tensor& parameter : unet.parameters()) {
+        if (!parameter.is_cpu() || parameter.requires_grad()) return false;
+        weights += parameter.numel();
+    }
+    return weights <= most_weights && !at::autocast::is_autocast_enabled(at::kCPU);
+}
+
+}  // namespace
+
 torch::Tensor Pipeline::predict(const torch::Tensor& noisy_latents, const torch::Tensor& timesteps,
                                 const TextEmbedding& text, const torch::Tensor& condition) const {
     const auto rows = noisy_latents.size(0);
@@ -320,9 +337,20 @@ torch::Tensor Pipeline::predict(const torch::Tensor& noisy_latents, const torch:
         sample = torch::cat({sample, extra.to(sample.options()).expand({rows, -1, -1, -1})}, 1);
     }
     UNet2DCondition network = unet;
-    return network(sample.contiguous(torch::MemoryFormat::ChannelsLast), timesteps, each.states,
-                   added, residuals)
-        .to(torch::kFloat32);
+    const auto run = [&](const torch::Tensor& samples, const torch::Tensor& times,
+                         const torch::Tensor& states) {
+        return network
+            ->forward(samples.contiguous(torch::MemoryFormat::ChannelsLast), times, states, added,
+                      residuals)
+            .to(torch::kFloat32);
+    };
+    const bool alone = added.text_embeds.defined() || residuals.mid.defined() ||
+                       sample.requires_grad() || !runs_in_row_groups(*unet);
+    if (rows == 1 || alone) return run(sample, timesteps, each.states);
+    const torch::Tensor times = timesteps.expand({rows});
+    return in_row_groups(each.states, [&](auto first, auto count, const torch::Tensor& states) {
+        return run(sample.narrow(0, first, count), times.narrow(0, first, count), states);
+    });
 }
 
 torch::Tensor Pipeline::sizes_of(const torch::Tensor& latents) const {

@@ -149,16 +149,16 @@ std::size_t converted_bytes(const Places& places, const Weights& weights, torch:
 
 /// from, contiguous, as numbers of another type.
 void convert(const torch::Tensor& from, const torch::Tensor& to) {
-    static const bool kernel_runs = matrix_kernel_runs<BrainFloat>() || matrix_units_run();
-    if (!kernel_runs || from.scalar_type() != torch::kFloat16 ||
-        to.scalar_type() != torch::kBFloat16) {
+    const auto& kernel = kernel_for_this_processor<BrainFloat>(
+        []<Instructions instructions> { return weight_kernel<instructions, BrainFloat>(); });
+    if (!kernel || from.scalar_type() != torch::kFloat16 || to.scalar_type() != torch::kBFloat16) {
         to.copy_(from);
         return;
     }
     constexpr std::int64_t fewest = 1 << 16;  // for a thread
     at::parallel_for(0, from.numel(), fewest, [&](std::int64_t first, std::int64_t last) {
-        convert_numbers(static_cast<const HalfFloat*>(from.data_ptr()) + first, last - first,
-                        static_cast<BrainFloat*>(to.data_ptr()) + first);
+        kernel->convert_halves(static_cast<const HalfFloat*>(from.data_ptr()) + first, last - first,
+                               static_cast<BrainFloat*>(to.data_ptr()) + first);
     });
 }
 

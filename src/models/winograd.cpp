@@ -24,6 +24,12 @@ Number* numbers(const torch::Tensor& tensor) {
     return static_cast<Number*>(tensor.data_ptr());
 }
 
+template <typename Number>
+const auto& kernel() {
+    return kernel_for_this_processor<Number>(
+        []<Instructions instructions> { return winograd_kernel<instructions, Number>(); });
+}
+
 /// How the work is cut: every task has its tiles, and of those some output channels.
 struct Division {
     int64_t tiles;     ///< of a task
@@ -39,14 +45,14 @@ Division divide(const ConvolutionShape& shape) {
     // Fewer would read the weights from the memory too often.
     constexpr int64_t fewest = 96;
     const int64_t threads = at::get_num_threads(), tiles = shape.tiles(winograd_tile<Number>);
-    const int64_t bytes_a_tile = winograd_scratch<Number>(fewest, shape.in_channels) / fewest;
+    const int64_t bytes_a_tile = kernel<Number>()->scratch(fewest, shape.in_channels) / fewest;
     const int64_t fitting = std::max(fewest, cache / bytes_a_tile);
     int64_t ranges = (tiles + fitting - 1) / fitting, groups = 1;
     if (ranges < threads)
         groups = (threads + ranges - 1) / ranges;
     else
         ranges = round_up(ranges, threads);
-    const int64_t columns = shape.out_channels / packed_columns;
+    const int64_t columns = columns_of(shape.out_channels);
     const int64_t columns_a_task = (columns + groups - 1) / groups;
     Division result;
     result.tiles = (tiles + ranges - 1) / ranges;
@@ -61,7 +67,7 @@ void convolve_tiles(const ConvolutionShape& shape, const Number* x, const Number
                     const float* bias, Number* y) {
     const Division division = divide<Number>(shape);
     const int64_t tiles = shape.tiles(winograd_tile<Number>);
-    const int64_t scratch_bytes = winograd_scratch<Number>(division.tiles, shape.in_channels);
+    const int64_t scratch_bytes = kernel<Number>()->scratch(division.tiles, shape.in_channels);
     at::parallel_for(
         0, division.tile_ranges * division.channel_ranges, 1, [&](int64_t first, int64_t last) {
             const torch::Tensor scratch = torch::empty({scratch_bytes}, torch::kUInt8);
@@ -72,7 +78,7 @@ void convolve_tiles(const ConvolutionShape& shape, const Number* x, const Number
                 part.first_channel = task % division.channel_ranges * division.channels;
                 part.last_channel =
                     std::min(shape.out_channels, part.first_channel + division.channels);
-                convolve_winograd(shape, x, packed, bias, y, part, scratch.data_ptr());
+                kernel<Number>()->convolve(shape, x, packed, bias, y, part, scratch.data_ptr());
             }
         });
 }
@@ -112,10 +118,10 @@ std::vector<int64_t> WinogradConvolution::turned_points() const {
 void WinogradConvolution::pack_column(const void* weights, int64_t out_channels,
                                       int64_t in_channels, int64_t column, void* packed) const {
     if (dtype() == torch::kBFloat16)
-        pack_winograd_weights(static_cast<const BrainFloat*>(weights), out_channels, in_channels,
-                              column, static_cast<BrainFloat*>(packed));
+        kernel<BrainFloat>()->pack(static_cast<const BrainFloat*>(weights), out_channels,
+                                   in_channels, column, static_cast<BrainFloat*>(packed));
     else
-        pack_winograd_weights(static_cast<const float*>(weights), out_channels, in_channels, column,
+        kernel<float>()->pack(static_cast<const float*>(weights), out_channels, in_channels, column,
                               static_cast<float*>(packed));
 }
 

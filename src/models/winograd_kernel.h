@@ -1,7 +1,7 @@
-// The arithmetic of winograd.h on plain memory: AVX-512, compiled for it alone
-// (src/CMakeLists.txt), so nothing here may be called where matrix_kernel_runs() says no.
+// The arithmetic of winograd.h on plain memory.
 #pragma once
 
+#include "item3d/models/instructions.h"
 #include "item3d/models/matrix_kernel.h"
 
 #include <cstdint>
@@ -23,19 +23,27 @@ struct WinogradPart {
     std::int64_t first_tile, last_tile, first_channel, last_channel;
 };
 
-/// Transforms weights [64, 3, 3, in] of the output channels from `column` on into their places in
-/// `packed`, winograd_points * out * in numbers in the order of pack_taps().
 template <typename Number>
-void pack_winograd_weights(const Number* weights, std::int64_t out_channels,
-                           std::int64_t in_channels, std::int64_t column, Number* packed);
+struct WinogradKernel {
+    /// Transforms weights [64, 3, 3, in] of the output channels from `column` on (fewer in the last
+    /// column) into their places in `packed`, winograd_points * out * in numbers in the order of
+    /// DirectKernel::pack().
+    void (*pack)(const Number* weights, std::int64_t out_channels, std::int64_t in_channels,
+                 std::int64_t column, Number* packed);
+    /// Bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
+    std::int64_t (*scratch)(std::int64_t tiles, std::int64_t in_channels);
+    /// y = conv(x, weights) + bias, for one part. bias: [out] or null.
+    void (*convolve)(const ConvolutionShape& shape, const Number* x, const Number* packed,
+                     const float* bias, Number* y, const WinogradPart& part, void* scratch);
+};
 
-/// Bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
-template <typename Number>
-std::int64_t winograd_scratch(std::int64_t tiles, std::int64_t in_channels);
-
-/// y = conv(x, weights) + bias, for one part. bias: [out] or null.
-template <typename Number>
-void convolve_winograd(const ConvolutionShape& shape, const Number* x, const Number* packed,
-                       const float* bias, Number* y, const WinogradPart& part, void* scratch);
+template <Instructions instructions, typename Number>
+WinogradKernel<Number> winograd_kernel();
+template <>
+WinogradKernel<float> winograd_kernel<Instructions::avx2, float>();
+template <>
+WinogradKernel<float> winograd_kernel<Instructions::avx512, float>();
+template <>
+WinogradKernel<BrainFloat> winograd_kernel<Instructions::avx512, BrainFloat>();
 
 }  // namespace item3d
