@@ -1,6 +1,7 @@
 #include "item3d/models/linear_kernel.h"
 
 #include "item3d/models/matrix_tile.h"
+#include "item3d/models/normal_distribution.h"
 
 #include <algorithm>
 #include <cstring>
@@ -26,19 +27,6 @@ void pack_columns(const Weight* weights, int64_t depth, int64_t first, int64_t l
                 Maths::scatter(to + c * columns + o * Maths::group, static_cast<int>(columns),
                                load(weights + (column + o) * depth + c));
     }
-}
-
-/// x Phi(x) by Abramowitz and Stegun 7.1.26, within 1.5e-7 |x|.
-ITEM3D_INLINE Lanes gelu(Lanes x) {
-    const Lanes z = absolute(x) * all(0.70710678f);
-    const Lanes t = all(1) / multiply_add(z, all(0.3275911f), all(1));
-    Lanes series = all(1.061405429f);
-    for (const float term : {-1.453152027f, 1.421413741f, -0.284496736f, 0.254829592f})
-        series = multiply_add(series, t, all(term));
-    const Lanes exponent = larger(zero() - z * z, all(-87));
-    const Lanes tail =  // x (1 - Phi(|x|))
-        all(0.5f) * x * t * series * exponential(exponent);
-    return choose(is_less(x, zero()), tail, x - tail);
 }
 
 ITEM3D_INLINE Lanes quick_gelu(Lanes x) {

@@ -1,6 +1,7 @@
 #include "item3d/models/unet_blocks.h"
 
 #include "item3d/models/attention.h"
+#include "item3d/models/gated_gelu.h"
 #include "item3d/models/group_norm.h"
 
 #include <ATen/autocast_mode.h>
@@ -44,6 +45,18 @@ struct StridedStep : torch::autograd::Function<StridedStep> {
     }
 };
 
+/// A convolution with a kernel of one pixel. With frozen weights in float32 it is a product of
+/// matrices, which the library takes longer to see by itself.
+torch::Tensor pointwise(nn::Conv2d& convolution, const torch::Tensor& x) {
+    const torch::Tensor &weight = convolution->weight, &bias = convolution->bias;
+    const bool product = x.is_cpu() && x.scalar_type() == torch::kFloat32 &&
+                         weight.scalar_type() == torch::kFloat32 && !weight.requires_grad() &&
+                         !bias.requires_grad() && !at::autocast::is_autocast_enabled(at::kCPU);
+    if (!product) return convolution(x);
+    return at::linear(x.permute({0, 2, 3, 1}), weight.view({weight.size(0), -1}), bias)
+        .permute({0, 3, 1, 2});
+}
+
 }  // namespace
 
 ResnetBlockImpl::ResnetBlockImpl(const Options& options) : options_(options) {
@@ -64,7 +77,7 @@ torch::Tensor ResnetBlockImpl::forward(const torch::Tensor& x, const torch::Tens
     torch::Tensor hidden = conv1_(group_norm(norm1_, x, Activation::silu));
     if (time_emb_proj_) hidden = hidden + time_emb_proj_(time).unsqueeze(-1).unsqueeze(-1);
     hidden = conv2_(group_norm(norm2_, hidden, Activation::silu));
-    const torch::Tensor sum = (conv_shortcut_ ? conv_shortcut_(x) : x) + hidden;
+    const torch::Tensor sum = (conv_shortcut_ ? pointwise(conv_shortcut_, x) : x) + hidden;
     return options_.output_scale == 1.0 ? sum : sum / options_.output_scale;
 }
 
@@ -111,8 +124,7 @@ TransformerBlockImpl::TransformerBlockImpl(int channels, int context_channels, i
 torch::Tensor TransformerBlockImpl::forward(torch::Tensor x, const torch::Tensor& context) {
     x = x + attn1_(norm1_(x));
     x = x + attn2_(norm2_(x), context);
-    const auto halves = feed_in_(norm3_(x)).chunk(2, -1);
-    return x + feed_out_(halves[0] * torch::gelu(halves[1]));
+    return x + feed_out_(gated_gelu(feed_in_(norm3_(x))));
 }
 
 SpatialTransformerImpl::SpatialTransformerImpl(const Options& options) : options_(options) {
@@ -136,14 +148,14 @@ torch::Tensor SpatialTransformerImpl::forward(const torch::Tensor& x,
                                               const torch::Tensor& context) {
     const auto rows = x.size(0), channels = x.size(1), height = x.size(2), width = x.size(3);
     torch::Tensor hidden = group_norm(norm_, x);
-    if (conv_in_) hidden = conv_in_(hidden);
+    if (conv_in_) hidden = pointwise(conv_in_, hidden);
     hidden = hidden.permute({0, 2, 3, 1}).reshape({rows, height * width, channels});
     if (linear_in_) hidden = linear_in_(hidden);
     for (TransformerBlock& block : blocks_)
         hidden = block(hidden, context);
     if (linear_out_) hidden = linear_out_(hidden);
     hidden = hidden.reshape({rows, height, width, channels}).permute({0, 3, 1, 2});
-    if (conv_out_) hidden = conv_out_(hidden);
+    if (conv_out_) hidden = pointwise(conv_out_, hidden);
     return x + hidden;
 }
 
