@@ -25,7 +25,7 @@ int say(const char* text) {
 /// that keeps the processor busy an edit takes many times as long: the one that is waited for does
 /// not run meanwhile. On a quiet machine a short spin is no slower.
 void wait_briefly() {
-    if (std::getenv("OMP_WAIT_POLICY") == nullptr) setenv("GOMP_SPINCOUNT", "1000", 0);
+    if (std::getenv("OMP_WAIT_POLICY") == nullptr) setenv("GOMP_SPINCOUNT", "5000", 0);
 }
 
 }  // namespace
