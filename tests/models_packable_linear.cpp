@@ -89,7 +89,7 @@ TEST_P(Packed, PassesGradientsToItsInput) {
 }
 
 TEST(PackableLinear, KeepsTheHalvesOfAFile) {
-    if (!PackedMatrix::runs(torch::kCPU, torch::kFloat16)) GTEST_SKIP() << "no AVX-512";
+    if (!PackedMatrix::runs(torch::kCPU, torch::kFloat16)) GTEST_SKIP() << "no instructions for it";
     PackableLinear layer = packed_layer(1024, 512), small = packed_layer(64, 64);
     const torch::Tensor stored = torch::randn({512, 1024}).to(torch::kFloat16);
     ASSERT_TRUE(layer->pack_stored(stored));

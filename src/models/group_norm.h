@@ -10,8 +10,8 @@ namespace item3d {
 enum class Activation { none, silu };
 
 /// activation(norm(x)), x [N, C, H, W]. Where the norm's weights ask for no gradient, on a CPU with
-/// AVX-512 and for channels in multiples of 16, this is a kernel of our own whose backward pass, to
-/// x alone, keeps nothing but x; elsewhere it is LibTorch's two operations.
+/// AVX2 or AVX-512 and for channels in multiples of 16, this is a kernel of our own whose backward
+/// pass, to x alone, keeps nothing but x; elsewhere it is LibTorch's two operations.
 torch::Tensor group_norm(torch::nn::GroupNorm& norm, const torch::Tensor& x,
                          Activation activation = Activation::none);
 

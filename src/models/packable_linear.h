@@ -23,8 +23,8 @@ struct LinearEnd {
 /// float16 they are multiplied in float32, exactly.
 class PackedMatrix {
   public:
-    /// Whether this processor has what products with weights packed in `dtype` need: AVX-512, and
-    /// for bfloat16 its instructions for that. Never on another device.
+    /// Whether this processor has what products with weights packed in `dtype` need: AVX2, and for
+    /// bfloat16 AVX-512's instructions for that. Never on another device.
     static bool runs(torch::Device device, torch::Dtype dtype);
     /// Whether weights of this shape can be packed: I a multiple of 16.
     static bool fits(const torch::Tensor& weight);

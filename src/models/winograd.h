@@ -1,6 +1,6 @@
 // 3x3 convolutions with fewer multiplications (Lavin & Gray 2016, "Fast Algorithms for
-// Convolutional Neural Networks"), for networks that only run: on a CPU with AVX-512 they take half
-// the time of the library's direct ones in bfloat16 and a third in float32.
+// Convolutional Neural Networks"), for networks that only run: they take half the time of
+// the library's direct ones in bfloat16 (AVX-512) and a third to two fifths in float32.
 #pragma once
 
 #include "item3d/models/frozen_convolution.h"
