@@ -48,6 +48,8 @@ def train(options, name, arguments):
             shutil.copy(first / file, folder)
         prior = json.loads(done.read_text())
         done.write_text(json.dumps({key: prior[key] for key in ("words", "resolution")}))
+    if options.autoencoder and "--resolution" not in arguments:
+        arguments = ["--autoencoder", options.autoencoder, *arguments]
     subprocess.run(
         [options.item3d, "prior", "train", "-o", folder, "--part", "diffusion", "--samples", str(options.samples),
          "--data", str(options.data), "--autoencoder-samples", str(options.autoencoder_samples),
@@ -63,6 +65,8 @@ def main():
     parser.add_argument("--samples", type=int, default=40000)
     parser.add_argument("--data", type=int, default=40000)
     parser.add_argument("--autoencoder-samples", type=int, default=24000)
+    parser.add_argument("--autoencoder", metavar="PRIOR",
+                        help="take this prior's autoencoder, but for pictures of another size")
     parser.add_argument("--word-pictures", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="+", choices=CONTENDERS, default=list(CONTENDERS))

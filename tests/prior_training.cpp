@@ -1,6 +1,7 @@
 // Checkpoints, what a training begins with and what it writes, on networks small enough for a test.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/models/pipeline.h"
 #include "item3d/models/safetensors.h"
 #include "item3d/models/shape_condition.h"
 #include "item3d/prior/begin_with.h"
@@ -198,6 +199,31 @@ TEST_F(PriorTraining, BeginsWithTheWeightsOfAnotherPrior) {
     EXPECT_NE(message.find("--widths"), std::string::npos) << message;
     EXPECT_NE(refusal([&] { begin_with_autoencoder(first.output, picture_size); }).find("vae"),
               std::string::npos);
+}
+
+TEST_F(PriorTraining, TakesTheAutoencoderOfAnotherPrior) {
+    AutoencoderTiny trained(prior_autoencoder_config(picture_size));
+    const TrainSettings first = settings("first");
+    std::filesystem::create_directories(first.output / "vae");
+    save_autoencoder(first.output / "vae", trained, torch::kFloat32);
+    write_atomically(first.output / "prior.json",
+                     R"({"train": {"psnr": 31.0, "object_psnr": 27.0, "samples": 9}})");
+    TrainSettings second = settings("second");
+    second.autoencoder = first.output;
+    check_begin_with(second);
+    EXPECT_EQ(autoencoder_record(first.output),
+              nlohmann::json({{"psnr", 31.0}, {"object_psnr", 27.0}}));
+    // The U-Net's size does not matter, the pictures' does.
+    second.widths = {16, 32, 32};
+    check_begin_with(second);
+    second.resolution = 128;
+    EXPECT_NE(refusal([&] { check_begin_with(second); }).find("vae"), std::string::npos);
+    second.resolution = picture_size;
+    second.begin_with = first.output;
+    EXPECT_NE(refusal([&] { check_begin_with(second); }).find("--autoencoder"), std::string::npos);
+    second.begin_with.clear();
+    second.output = first.output;
+    EXPECT_NE(refusal([&] { check_begin_with(second); }).find("-o"), std::string::npos);
 }
 
 TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {

@@ -163,6 +163,12 @@ void add_train(CLI::App& app) {
     options->given.emplace_back([options = options.get(), begin](TrainSettings& to) {
         if (begin->count() > 0) to.begin_with = find_prior(options->settings.begin_with);
     });
+    CLI::Option* autoencoder = command->add_option(
+        "--autoencoder", options->settings.autoencoder,
+        "A prior, by folder or name, whose autoencoder to take instead of training one");
+    options->given.emplace_back([options = options.get(), autoencoder](TrainSettings& to) {
+        if (autoencoder->count() > 0) to.autoencoder = find_prior(options->settings.autoencoder);
+    });
     add_setting(*command, *options, "--seed", &TrainSettings::seed, "Of everything random")
         ->capture_default_str();
     add_setting(*command, *options, "--word-pictures", &TrainSettings::word_pictures,

@@ -41,16 +41,24 @@ void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::
         item.value().copy_(given[item.key()]);
 }
 
-void check_not_overwritten(const TrainSettings& settings) {
-    if (fs::exists(settings.output) && fs::equivalent(settings.begin_with, settings.output))
-        throw InputError(settings.output.string(), "would be overwritten while it is begun with",
+void check_not_overwritten(const fs::path& taken, const TrainSettings& settings) {
+    if (fs::exists(settings.output) && fs::equivalent(taken, settings.output))
+        throw InputError(settings.output.string(), "would be overwritten while it is read",
                          "give another folder with -o");
 }
 
 }  // namespace
 
 void check_begin_with(const TrainSettings& settings) {
-    check_not_overwritten(settings);
+    if (!settings.autoencoder.empty()) {
+        if (!settings.begin_with.empty())
+            throw InputError("--autoencoder", "the prior to begin with has an autoencoder",
+                             "give --begin-with or --autoencoder");
+        check_not_overwritten(settings.autoencoder, settings);
+        begin_with_autoencoder(settings.autoencoder, settings.resolution);
+    }
+    if (settings.begin_with.empty()) return;
+    check_not_overwritten(settings.begin_with, settings);
     const fs::path file = settings.begin_with / "unet" / "config.json";
     auto given = UNet2DConditionConfig::from_config(Config::read(file));
     const UNet2DConditionConfig wanted = prior_unet_config(settings);
@@ -71,13 +79,18 @@ std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const fs::path& folder, 
     return model;
 }
 
-nlohmann::json begin_with_record(const fs::path& folder) {
-    const nlohmann::json json = read_prior_json(folder);
-    const auto train = json.find("train");
-    if (train == json.end() || !train->is_object()) return nlohmann::json::object();
-    nlohmann::json record{{"begun_with", *train}};
+nlohmann::json autoencoder_record(const fs::path& folder) {
+    const nlohmann::json train = read_prior_json(folder).value("train", nlohmann::json());
+    nlohmann::json record = nlohmann::json::object();
     for (const char* name : {"psnr", "object_psnr"})
-        if (train->contains(name)) record[name] = train->at(name);
+        if (train.is_object() && train.contains(name)) record[name] = train.at(name);
+    return record;
+}
+
+nlohmann::json begin_with_record(const fs::path& folder) {
+    nlohmann::json record = autoencoder_record(folder);
+    const nlohmann::json train = read_prior_json(folder).value("train", nlohmann::json());
+    if (train.is_object()) record["begun_with"] = train;
     return record;
 }
 
@@ -95,7 +108,7 @@ fs::path begin_with_part(const TrainSettings& settings, const char* part) {
 // Everything is read once, so that no file turns out to be broken after the pictures are drawn.
 void check_begin_with_readers(const TrainSettings& settings, bool clip, bool captioner) {
     if (settings.begin_with.empty()) return;
-    check_not_overwritten(settings);
+    check_not_overwritten(settings.begin_with, settings);
     const auto check = [](const fs::path& folder, const auto& given, const auto& wanted) {
         if (given.to_json() != wanted.to_json())
             throw InputError((folder / "config.json").string(), another_size, reader_hint);

@@ -16,7 +16,8 @@ namespace item3d {
 
 struct TrainSettings;
 
-/// Throws InputError where the prior in settings.begin_with does not fit: before the data is drawn.
+/// Throws InputError where the prior in settings.begin_with or settings.autoencoder does not fit,
+/// or both are given: before the data is drawn.
 void check_begin_with(const TrainSettings& settings);
 
 /// The autoencoder of the prior in `folder`. Throws InputError where it is of another kind than
@@ -24,8 +25,9 @@ void check_begin_with(const TrainSettings& settings);
 std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const std::filesystem::path& folder,
                                                         int resolution);
 
-/// What its training wrote down about itself, for the new one's: {"psnr", "object_psnr",
-/// "begun_with": all of it}.
+/// What its training wrote down about its autoencoder, for the new one's: {"psnr", "object_psnr"}.
+nlohmann::json autoencoder_record(const std::filesystem::path& folder);
+/// The same and {"begun_with": all of it}.
 nlohmann::json begin_with_record(const std::filesystem::path& folder);
 
 /// Copies the weights of the prior in `folder`. Where its U-Net is told less of the shape than this

@@ -124,6 +124,7 @@ nlohmann::json fingerprint(const TrainSettings& s) {
     return {{"version", 9},
             {"seed", s.seed},
             {"begin_with", s.begin_with.string()},
+            {"autoencoder", s.autoencoder.string()},
             {"resolution", s.resolution},
             {"data_samples", s.data_samples},
             {"autoencoder_samples", s.autoencoder_samples},
@@ -196,13 +197,16 @@ Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) 
     const ExampleSource source = make_source(settings, lights, false);
     Prepared prepared;
     std::shared_ptr<AutoencoderTiny> autoencoder;
-    if (settings.begin_with.empty()) {
+    if (!settings.begin_with.empty()) {
+        autoencoder = begin_with_autoencoder(settings.begin_with, settings.resolution);
+        prepared.record = begin_with_record(settings.begin_with);
+    } else if (!settings.autoencoder.empty()) {
+        autoencoder = begin_with_autoencoder(settings.autoencoder, settings.resolution);
+        prepared.record = autoencoder_record(settings.autoencoder);
+    } else {
         const TrainedAutoencoder trained = draw_and_train_autoencoder(source, lights, settings);
         autoencoder = trained.model;
         prepared.record = {{"psnr", trained.psnr}, {"object_psnr", trained.object_psnr}};
-    } else {
-        autoencoder = begin_with_autoencoder(settings.begin_with, settings.resolution);
-        prepared.record = begin_with_record(settings.begin_with);
     }
     export_autoencoder(settings.output, *autoencoder, tokenizer);
     write_atomically(settings.work / "autoencoder.json", prepared.record.dump(2) + "\n");
@@ -224,7 +228,7 @@ ClipTokenizer read_tokenizer(const TrainSettings& settings) {
 
 /// What process 0 does before all train together.
 Prepared prepare_or_read(const TrainSettings& settings) {
-    if (!settings.begin_with.empty()) check_begin_with(settings);
+    check_begin_with(settings);
     make_output_folder(settings.output);
     open_work_folder(settings);
     const std::vector<WordCount> counted = prior_words(settings);

@@ -28,6 +28,8 @@ struct TrainSettings {
     std::filesystem::path work;    ///< data, checkpoints; may be deleted afterwards
     /// A prior whose weights, tokenizer and autoencoder this one begins with; empty: with nothing.
     std::filesystem::path begin_with;
+    /// A prior whose autoencoder alone this one takes over; empty: it trains one.
+    std::filesystem::path autoencoder;
     std::int64_t samples = 360000;       ///< pictures that the U-Net sees, repetitions counted
     std::int64_t data_samples = 112000;  ///< different pictures
     std::int64_t autoencoder_samples = 64000;
