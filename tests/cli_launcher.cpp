@@ -21,7 +21,7 @@ class Launcher : public Program {
 };
 
 TEST_F(Launcher, ThreadsWaitBriefly) {
-    EXPECT_EQ(spin_count(""), "1000 edit a b\n");
+    EXPECT_EQ(spin_count(""), "5000 edit a b\n");
 }
 
 TEST_F(Launcher, WaitingIsAsTheCallerSays) {
