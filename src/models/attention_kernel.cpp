@@ -12,8 +12,9 @@ namespace {
 
 using std::int64_t;
 
-int64_t round_up(int64_t value, int64_t step) {
-    return (value + step - 1) / step * step;
+/// Places are filled up to two registers, which are one of BrainFloat.
+int64_t whole_keys(int64_t keys) {
+    return (keys + 2 * lanes - 1) / (2 * lanes) * (2 * lanes);
 }
 
 /// Columns of `count`, the last of them as narrow as whole registers allow: calls f(first,
@@ -21,7 +22,7 @@ int64_t round_up(int64_t value, int64_t step) {
 template <typename Function>
 void for_each_column(int64_t count, const Function& f) {
     for (int64_t first = 0; first < count; first += packed_columns)
-        f(first, std::min(packed_columns, round_up(count - first, lanes)));
+        f(first, std::min(packed_columns, whole_registers(count - first)));
 }
 
 /// What one head needs beside its inputs. Places and widths are rounded up to whole registers.
@@ -32,16 +33,16 @@ struct Scratch {
     Number *weights, *keys_packed, *values_packed;  ///< [rows, keys], and as multiply() wants them
 
     Scratch(const AttentionShape& shape, void* memory)
-        : keys(round_up(shape.keys, 2 * lanes)),
-          width(round_up(shape.width, lanes)),
+        : keys(whole_keys(shape.keys)),
+          width(whole_registers(shape.width)),
           scores(static_cast<float*>(memory)),
           sums(scores + rows * keys),
           weights(reinterpret_cast<Number*>(sums + rows * packed_columns)),
           keys_packed(weights + rows * keys),
           values_packed(keys_packed + keys * shape.width) {}
     static int64_t bytes(const AttentionShape& shape) {
-        const int64_t keys = round_up(shape.keys, 2 * lanes);
-        const int64_t width = round_up(shape.width, lanes);
+        const int64_t keys = whole_keys(shape.keys);
+        const int64_t width = whole_registers(shape.width);
         return static_cast<int64_t>(sizeof(float)) * rows * (keys + packed_columns) +
                static_cast<int64_t>(sizeof(Number)) * keys * (rows + shape.width + width);
     }
@@ -112,7 +113,7 @@ float soften(const float* scores, int64_t count, int64_t places, float scale, Nu
         sum += value;
         store(weights + whole, value);
     }
-    for (int64_t i = round_up(count, lanes); i < places; i += lanes)
+    for (int64_t i = whole_registers(count); i < places; i += lanes)
         store(weights + i, zero());
     return sum_of(sum);
 }

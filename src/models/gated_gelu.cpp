@@ -1,7 +1,6 @@
 #include "item3d/models/gated_gelu.h"
 
 #include "item3d/models/gate_kernel.h"
-#include "item3d/models/matrix_kernel.h"
 
 #include <ATen/Parallel.h>
 #include <torch/csrc/autograd/custom_function.h>

@@ -236,7 +236,7 @@ torch::Tensor group_norm(torch::nn::GroupNorm& norm, const torch::Tensor& x,
                          Activation activation) {
     const bool silu = activation == Activation::silu;
     const torch::Tensor &weight = norm->weight, &bias = norm->bias;
-    const bool ours = x.is_cpu() && x.dim() == 4 && x.size(1) % norm_lanes == 0 &&
+    const bool ours = x.is_cpu() && x.dim() == 4 && x.size(1) % register_numbers == 0 &&
                       weight.defined() && !weight.requires_grad() && !bias.requires_grad() &&
                       x.scalar_type() == weight.scalar_type() && runs(x.scalar_type()) &&
                       !at::autocast::is_autocast_enabled(at::kCPU);

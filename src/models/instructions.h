@@ -3,10 +3,18 @@
 
 #include "item3d/models/brain_float.h"
 
+#include <cstdint>
 #include <optional>
 #include <type_traits>
 
 namespace item3d {
+
+/// Numbers that kernels take at a time.
+constexpr std::int64_t register_numbers = 16;
+
+inline std::int64_t whole_registers(std::int64_t count) {
+    return (count + register_numbers - 1) / register_numbers * register_numbers;
+}
 
 enum class Instructions {
     none,
@@ -28,7 +36,7 @@ bool matrix_units_run();
 /// What make.operator()<instructions>() gives for this processor's, asked once; nothing where it
 /// has none. make: a lambda that captures nothing.
 template <typename Number, typename Make>
-const auto& kernel_for_this_processor(const Make& make) {
+const auto& kernel_for_this_processor([[maybe_unused]] const Make& make) {
     using Kernel = decltype(make.template operator()<Instructions::avx512>());
     static const std::optional<Kernel> found = [&]() -> std::optional<Kernel> {
 #if defined(__x86_64__)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "item3d/models/brain_float.h"
+#include "item3d/models/instructions.h"
 
 #include <immintrin.h>
 
@@ -15,6 +16,7 @@ namespace item3d::ITEM3D_INSTRUCTIONS {
 
 /// Numbers of a register, or of two that are used as one.
 constexpr int lanes = 16;
+static_assert(lanes == register_numbers);
 
 #ifdef __AVX512F__
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/models/brain_float.h"
+#include "item3d/models/instructions.h"
 
 #include <cstdint>
 
@@ -19,13 +20,6 @@ struct MultipliedBy<HalfFloat> {
 };
 template <typename Weight>
 using Multiplied = typename MultipliedBy<Weight>::Number;
-
-/// Numbers that kernels take at a time.
-constexpr std::int64_t register_numbers = 16;
-
-inline std::int64_t whole_registers(std::int64_t count) {
-    return (count + register_numbers - 1) / register_numbers * register_numbers;
-}
 
 /// Output channels are packed in columns of this many, the last of them as narrow as whole
 /// registers allow.

@@ -10,8 +10,6 @@ namespace {
 
 using std::int64_t;
 
-static_assert(norm_lanes == lanes);
-
 /// Pixels whose sums are kept in float, before they go into double.
 constexpr int64_t float_pixels = 32;
 

@@ -1,5 +1,5 @@
 // The arithmetic of group_norm.h on plain memory. Maps are [pixels, channels]; channels are a
-// multiple of norm_lanes; per-channel arrays have one number for each channel.
+// multiple of register_numbers; per-channel arrays have one number for each channel.
 #pragma once
 
 #include "item3d/models/instructions.h"
@@ -7,8 +7,6 @@
 #include <cstdint>
 
 namespace item3d {
-
-constexpr std::int64_t norm_lanes = 16;
 
 template <typename Number>
 struct NormKernel {
