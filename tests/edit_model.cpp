@@ -70,6 +70,7 @@ TEST_F(EditTest, iterations_change_the_texture_and_depend_on_the_seed) {
 
 TEST_F(EditTest, resumes_to_the_same_bytes_after_two_interrupts) {
     EditRequest edit = request("whole", 6);
+    edit.settings.light_augment = "all";
     edit.settings.evenness = 100;
     edit.settings.detail = "always";
     edit.settings.detail_views = 2;

@@ -83,6 +83,7 @@ class EditTest : public ::testing::Test {
         request.settings.iterations = iterations;
         request.settings.batch = 1;
         request.settings.resolution = 32;
+        request.settings.light_augment = "off";  // other lights take a second each edit
         request.precision = "fp32";
         request.picture_pixels = 32;
         request.command = "item3d edit";

@@ -85,6 +85,7 @@ TEST(Reconstruct, MaterialsAndLightOfAGivenMesh) {
     request.reference = request.mesh;
     request.move_vertices = false;
     request.refine.iterations = 150;
+    request.refine.light_every = 3;  // most of a step's time is the light's
     request.texture_size = 128;
     const nlohmann::json summary = reconstruct(request);
     EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 25);
@@ -108,9 +109,10 @@ TEST(Reconstruct, ShapeFromPicturesAlone) {
     request.output = testing::fresh_folder("shape_out");
     request.reference = request.dataset / "sphere.glb";
     request.shape.cells = {12, 24};
-    request.shape.iterations = 120;
+    request.shape.iterations = 80;
     request.shape.triangles = 2000;
-    request.refine.iterations = 120;
+    request.refine.iterations = 60;
+    request.refine.light_every = 4;
     request.texture_size = 128;
     const nlohmann::json summary = reconstruct(request);
     EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 22);

@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -25,9 +26,11 @@ constexpr std::int64_t ray_budget = std::int64_t{1} << 24;
 /// Of the triangles that meet at a point, so many are looked at.
 constexpr std::int64_t most_members = 16;
 
-/// A point of the (0, 2)-sequence of van der Corput and Sobol', digits scrambled by `scramble`: any
+using Bits2 = std::array<std::uint32_t, 2>;
+
+/// A point of the (0, 2)-sequence of van der Corput and Sobol', as bits behind the point: any
 /// aligned power of two of them is spread evenly over the unit square.
-Vec2 sequence_point(std::uint32_t index, std::uint64_t scramble) {
+Bits2 sequence_point(std::uint32_t index) {
     std::uint32_t x = 0, y = 0, direction = 1u << 31;
     for (std::uint32_t bits = index, place = 1u << 31; bits != 0; bits >>= 1, place >>= 1) {
         if ((bits & 1u) != 0) {
@@ -36,20 +39,40 @@ Vec2 sequence_point(std::uint32_t index, std::uint64_t scramble) {
         }
         direction ^= direction >> 1;
     }
-    x ^= static_cast<std::uint32_t>(scramble);
-    y ^= static_cast<std::uint32_t>(scramble >> 32);
+    return {x, y};
+}
+
+/// With its digits scrambled, which keeps the points as evenly spread.
+Vec2 scrambled(Bits2 point, std::uint64_t scramble) {
+    const std::uint32_t x = point[0] ^ static_cast<std::uint32_t>(scramble);
+    const std::uint32_t y = point[1] ^ static_cast<std::uint32_t>(scramble >> 32);
     // 24 bits are what a float holds below 1.
     return Vec2(static_cast<float>(x >> 8), static_cast<float>(y >> 8)) * 0x1.0p-24f;
 }
 
-/// A direction around a unit normal, with the density cos / pi.
-Vec3 cosine_direction(Vec3 normal, Vec2 square) {
-    const float radius = std::sqrt(square.x), angle = 2 * pi * square.y;
-    const Vec3 side = glm::normalize(
-        glm::cross(normal, std::abs(normal.x) < 0.7f ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
-    return radius * std::cos(angle) * side + radius * std::sin(angle) * glm::cross(normal, side) +
-           std::sqrt(std::max(0.0f, 1 - square.x)) * normal;
-}
+/// Where rays start: the point, and a frame around its normal.
+struct Start {
+    Vec3 position, face;
+    Vec3 normal, side, other_side;
+
+    Start() = default;
+    Start(const OcclusionGrid::Point& point, bool behind)
+        : position(point.position),
+          face(point.face),
+          normal(behind ? -point.normal : point.normal) {
+        if (glm::dot(normal, face) < 0) face = -face;
+        side = glm::normalize(
+            glm::cross(normal, std::abs(normal.x) < 0.7f ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
+        other_side = glm::cross(normal, side);
+    }
+
+    /// A direction around the normal, with the density cos / pi.
+    Vec3 cosine_direction(Vec2 square) const {
+        const float radius = std::sqrt(square.x), angle = 2 * pi * square.y;
+        return radius * std::cos(angle) * side + radius * std::sin(angle) * other_side +
+               std::sqrt(std::max(0.0f, 1 - square.x)) * normal;
+    }
+};
 
 /// What traces the rays of one group of points after another.
 class Tracer {
@@ -64,6 +87,8 @@ class Tracer {
             std::clamp<std::int64_t>(share, std::min(fewest_rays, options.rays), options.rays));
         // Enough for any ray to leave the triangle that it starts from, whatever the rounding.
         offset_ = std::max(5e-5f * grid.diagonal, 1e-6f * grid.farthest);
+        for (int ray = 0; ray < rays_; ++ray)
+            sequence_.push_back(sequence_point(static_cast<std::uint32_t>(ray)));
     }
 
     /// The share of light that reaches the points of a group, on the normal's side or behind it.
@@ -75,14 +100,11 @@ class Tracer {
         const std::uint64_t scramble = random.bits(), choice = random.bits();
 
         // Where points of several triangles meet, each has its own plane to start from.
-        std::array<OcclusionGrid::Point, most_members> points;
+        std::array<Start, most_members> starts;
         const std::int64_t chosen = std::min<std::int64_t>(members, most_members);
         for (std::int64_t k = 0; k < chosen; ++k) {
             const auto member = static_cast<std::size_t>(begin + k * members / chosen);
-            OcclusionGrid::Point& point = points[static_cast<std::size_t>(k)];
-            point = grid_.point(grid_.member[member]);
-            if (behind) point.normal = -point.normal;
-            if (glm::dot(point.normal, point.face) < 0) point.face = -point.face;
+            starts[static_cast<std::size_t>(k)] = Start(grid_.point(grid_.member[member]), behind);
         }
 
         double arrives = 0, comes = 0;
@@ -90,15 +112,15 @@ class Tracer {
             // A deep crevice and the inside of a closed shape need not be known better.
             if (ray == rays_ / 4 && ray >= 16 && arrives == 0 && comes > 0) return 0;
             const std::uint64_t bits = mix_bits(choice ^ static_cast<std::uint64_t>(ray));
-            const OcclusionGrid::Point& point =
-                points[static_cast<std::size_t>(bits % static_cast<std::uint64_t>(chosen))];
-            const Vec3 up = point.face;
+            const Start& start =
+                starts[static_cast<std::size_t>(bits % static_cast<std::uint64_t>(chosen))];
+            const Vec3 up = start.face;
             if (up == Vec3(0.0f)) continue;
-            const Sample sample = direction(point.normal, ray, scramble);
+            const Sample sample = direction(start, static_cast<std::size_t>(ray), scramble);
             // What the interpolated normal sees below the triangle is no obstacle's doing.
             if (!(sample.weight > 0) || !(glm::dot(sample.direction, up) > 0)) continue;
             comes += sample.weight;
-            if (!scene_.blocked(point.position + offset_ * up, sample.direction, bits))
+            if (!scene_.blocked(start.position + offset_ * up, sample.direction, bits))
                 arrives += sample.weight;
         }
         return comes > 0 ? static_cast<float>(arrives / comes) : 1.0f;
@@ -112,25 +134,28 @@ class Tracer {
 
     /// With a light, half of the rays follow it and half the cosine; each is weighed by what both
     /// halves together send that way (the balance heuristic of Veach 1997).
-    Sample direction(Vec3 normal, int ray, std::uint64_t scramble) const {
-        if (!light_)
-            return {
-                cosine_direction(normal, sequence_point(static_cast<std::uint32_t>(ray), scramble)),
-                1.0f};
-        const Vec2 square = sequence_point(static_cast<std::uint32_t>(ray / 2),
-                                           ray % 2 == 0 ? scramble : mix_bits(scramble));
-        const Vec3 direction =
-            ray % 2 == 0 ? cosine_direction(normal, square) : light_->direction(square);
-        const float cosine = glm::dot(normal, direction);
-        if (!(cosine > 0)) return {direction, 0.0f};
-        const float radiance = light_->luminance(direction);
-        return {direction, radiance * cosine / (cosine / pi + radiance / light_->total())};
+    Sample direction(const Start& start, std::size_t ray, std::uint64_t scramble) const {
+        if (!light_) return {start.cosine_direction(scrambled(sequence_[ray], scramble)), 1.0f};
+        const bool follows_cosine = ray % 2 == 0;
+        const Vec2 square =
+            scrambled(sequence_[ray / 2], follows_cosine ? scramble : mix_bits(scramble));
+        OcclusionLight::Drawn drawn{};
+        if (follows_cosine)
+            drawn.direction = start.cosine_direction(square);
+        else
+            drawn = light_->draw(square);
+        const float cosine = glm::dot(start.normal, drawn.direction);
+        if (!(cosine > 0)) return {drawn.direction, 0.0f};
+        const float radiance =
+            follows_cosine ? light_->luminance(drawn.direction) : drawn.luminance;
+        return {drawn.direction, radiance * cosine / (cosine / pi + radiance / light_->total())};
     }
 
     const OcclusionGrid& grid_;
     const RayScene& scene_;
     std::optional<OcclusionLight> light_;
     std::uint64_t seed_;
+    std::vector<Bits2> sequence_;  ///< a point for each ray
     int rays_ = 0;
     float offset_ = 0;
 };
