@@ -356,8 +356,15 @@ TEST_F(PriorTraining, DataThatDoesNotBelongIsRefused) {
 
 TEST(PriorTraining128, TheAutoencoderShrinksLargerPicturesMore) {
     for (const int resolution : {64, 128}) {
-        const AutoencoderTiny model(prior_autoencoder_config(resolution));
+        AutoencoderTiny model(prior_autoencoder_config(resolution));
         EXPECT_EQ(model.downscale() * latent_size, resolution);
+        const torch::Tensor latents = model.encode(torch::rand({1, 3, resolution, resolution}));
+        EXPECT_EQ(latents.sizes(),
+                  torch::IntArrayRef({1, latent_channels, latent_size, latent_size}));
+        EXPECT_EQ(model.decode(latents).sizes(),
+                  torch::IntArrayRef({1, 3, resolution, resolution}));
+        // What is written can be read.
+        EXPECT_NO_THROW(AutoencoderTinyConfig::from_config(Config(model.config_json(), "")));
     }
 }
 

@@ -104,18 +104,17 @@ TrainedAutoencoder finish(std::shared_ptr<AutoencoderTiny> model, const PictureD
 AutoencoderTinyConfig prior_autoencoder_config(int resolution) {
     AutoencoderTinyConfig config;
     config.latent_channels = latent_channels;
-    config.encoder_block_out_channels = {32, 32, 32};
-    config.decoder_block_out_channels = {32, 32, 32};
     config.num_encoder_blocks = {1, 2, 3};
     config.num_decoder_blocks = {3, 2, 1};
-    // Each further level halves the picture. The one at full size is narrow: it is most of the
-    // work.
+    // Each further level halves the picture. At full size the encoder, which every step of an edit
+    // runs forward and back, does without blocks.
     for (int size = 4 * latent_size; size < resolution; size *= 2) {
-        config.encoder_block_out_channels.insert(config.encoder_block_out_channels.begin(), 16);
         config.num_encoder_blocks.insert(config.num_encoder_blocks.begin(), 0);
-        config.decoder_block_out_channels.push_back(16);
-        config.num_decoder_blocks.push_back(0);
+        config.num_decoder_blocks.push_back(1);
     }
+    // diffusers' class has one width for all levels.
+    config.encoder_block_out_channels.assign(config.num_encoder_blocks.size(), 32);
+    config.decoder_block_out_channels = config.encoder_block_out_channels;
     return config;
 }
 
