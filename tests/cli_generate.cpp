@@ -32,6 +32,30 @@ TEST_F(GenerateProgram, DrawsWithTheFoldersSchedulerOrAnother) {
     }
 }
 
+TEST_F(GenerateProgram, TheEmbeddedPriorTakesAShapeOfItsOwnForAThingThatItKnows) {
+    const auto shape_of = [&](const std::string& prompt, const std::string& rest) {
+        const Result result = run("generate '" + prompt + "' --steps 2 --json -o " +
+                                  quoted(folder_ / "p.png") + " " + rest);
+        EXPECT_EQ(result.code, 0) << result.error;
+        const auto record = nlohmann::json::parse(result.out, nullptr, false);
+        const std::string shape = record.is_object() ? record.value("own_shape", "?") : "?";
+        EXPECT_EQ(result.error.find("--like none") == std::string::npos, shape.empty());
+        return shape;
+    };
+    EXPECT_EQ(shape_of("a golden chair", "--count 2"), "chair");
+    const std::string first = read_file(folder_ / "p_000.png");
+    EXPECT_NE(first, read_file(folder_ / "p_001.png"));
+    EXPECT_EQ(shape_of("a golden chair", ""), "chair");
+    EXPECT_EQ(read_file(folder_ / "p.png"), first) << "it depends on the count";
+    EXPECT_EQ(shape_of("a golden chair", "--like none"), "");
+    EXPECT_NE(read_file(folder_ / "p.png"), first);
+    EXPECT_EQ(shape_of("a golden object", ""), "");
+    EXPECT_EQ(shape_of("a golden chair", "--like " + quoted(cube_)), "");
+    EXPECT_EQ(
+        shape_of("a red mug", "--size 32x16 --prior '" ITEM3D_TEST_DATA "/models/pipeline_sd'"),
+        "");
+}
+
 TEST_F(GenerateProgram, SeveralPicturesGetASheet) {
     EXPECT_EQ(run(generate("pipeline_sd", "--count 3")).code, 0);
     EXPECT_TRUE(fs::exists(folder_ / "p.png"));

@@ -3,6 +3,7 @@
 #include "item3d/prior/lathe.h"
 #include "item3d/prior/materials/makers.h"
 #include "item3d/prior/polygonize.h"
+#include "item3d/prior/shape_models.h"
 #include "item3d/prior/shapes.h"
 #include "item3d/prior/sky_visibility.h"
 #include "item3d/prior/views.h"
@@ -181,6 +182,23 @@ TEST(Shapes, PatternsLieOnThePlaneThatTheNetworkIsTold) {
             EXPECT_NEAR(sine_up[y][x].item<float>(), std::sin(2 * pi * flat.y), 1e-5);
         }
     }
+}
+
+TEST(Shapes, AreNamedInSentences) {
+    EXPECT_EQ(shape_named("a Wooden chair with a red seat, on a table"), "chair");
+    EXPECT_EQ(shape_named("a shiny golden automobile"), "car");
+    EXPECT_EQ(shape_named("a zebra print teapot"), "teapot");
+    EXPECT_EQ(shape_named("a red object"), std::nullopt);
+    EXPECT_EQ(shape_named("a red spaceship"), std::nullopt);
+}
+
+TEST(Shapes, AreModelsInTheUnitSphere) {
+    const Model mug = shape_model("mug", 3);
+    ASSERT_EQ(mug.primitives.size(), 1u);
+    float farthest = 0;
+    for (const Vec3& position : mug.primitives[0].positions)
+        farthest = std::max(farthest, glm::length(position));
+    EXPECT_NEAR(farthest, 1, 1e-4);
 }
 
 TEST(Shapes, HeldOutVariantsAreNeverForTraining) {

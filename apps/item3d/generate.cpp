@@ -1,10 +1,12 @@
-// item3d generate: pictures that a prior draws from a prompt, on the depth of a model if given one.
+// item3d generate: pictures that a prior draws from a prompt, in the shape of a model where it
+// takes one.
 #include "command.h"
 #include "extras_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/core/random.h"
 #include "item3d/edit/render_view.h"
 #include "item3d/evaluate/contact_sheet.h"
 #include "item3d/hub/find_prior.h"
@@ -12,6 +14,8 @@
 #include "item3d/models/shape_condition.h"
 #include "item3d/models/vocabulary.h"
 #include "item3d/prior/generate_defaults.h"
+#include "item3d/prior/shape_models.h"
+#include "item3d/prior/shapes.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/render/shade.h"
 #include "item3d/scene/io/load.h"
@@ -21,6 +25,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +34,9 @@ namespace item3d {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* no_shape = "none";              ///< for --like
+constexpr std::uint64_t shape_stream = 0x7368617065;  ///< of the seed
 
 struct GenerateCommand : CommonOptions {
     GenerateOptions generate;
@@ -52,8 +60,7 @@ void complete_options(const GenerateCommand& command, const fs::path& prior,
 }
 
 /// A model from the default view, as the pipeline takes it.
-torch::Tensor condition_of(const std::string& file, PictureSize size, const Pipeline& pipeline) {
-    const Model model = load_model(file);
+torch::Tensor condition_of(const Model& model, PictureSize size, const Pipeline& pipeline) {
     const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
     const Camera camera = default_view(model, aspect);
     const Geometry geometry = Geometry::from_model(model, pipeline.device());
@@ -65,6 +72,19 @@ torch::Tensor condition_of(const std::string& file, PictureSize size, const Pipe
     return condition_of_shape(
         pipeline, seen_shape(raster, surface, bounding_sphere(model)),
         torch::empty({1, 1, cells(size.height), cells(size.width)}, pipeline.device()));
+}
+
+/// The prior's own kind of shape, another variant for each picture.
+torch::Tensor own_condition(const std::string& shape_class, const GenerateOptions& options,
+                            const Pipeline& pipeline) {
+    std::vector<torch::Tensor> conditions;
+    for (int i = 0; i < options.count; ++i) {
+        Random random(options.seed, shape_stream, static_cast<std::uint64_t>(i));
+        const auto variant = static_cast<int>(random.index(training_variants));
+        conditions.push_back(condition_of(shape_model(shape_class, variant),
+                                          {options.width, options.height}, pipeline));
+    }
+    return torch::cat(conditions);
 }
 
 /// Throws unless `output` can be a picture's file; makes its folder.
@@ -112,7 +132,15 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
     const auto extras = command.extras.get<PipelineExtras>();
     apply_extras(pipeline, extras);
     const PriorVocabulary vocabulary = PriorVocabulary::load(prior);
-    const std::string warning = vocabulary.warning(command.generate.prompt, !command.like.empty());
+    // A prior that came from elsewhere was not trained on shapes like ours.
+    const std::optional<std::string> own_shape = command.like.empty() && takes_shape(pipeline) &&
+                                                         extras.controlnet.empty() &&
+                                                         !vocabulary.open()
+                                                     ? shape_named(command.generate.prompt)
+                                                     : std::nullopt;
+    const bool like_model = !command.like.empty() && command.like != no_shape;
+    const std::string warning =
+        vocabulary.warning(command.generate.prompt, like_model || own_shape.has_value());
     if (!warning.empty()) warn(warning);
     warn_of_lost_words(*pipeline.tokenizer, "PROMPT", command.generate.prompt);
 
@@ -134,13 +162,19 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
                                      channels),
                          "use a text-to-image or depth-to-image model");
     }
-    if (command.like.empty() && !extras.controlnet.empty())
+    if (!like_model && !extras.controlnet.empty())
         throw InputError("--controlnet", "has no depth to look at", "name a model with --like");
-    if (!command.like.empty()) {
+    if (like_model) {
         if (!takes_shape(pipeline))
             throw InputError(prior.string(), "its U-Net takes no depth",
                              "leave out --like, or add a depth ControlNet with --controlnet");
-        condition = condition_of(command.like, size, pipeline);
+        condition = condition_of(load_model(command.like), size, pipeline);
+    } else if (own_shape) {
+        note(
+            fmt::format("drawn in the shape of a {} of its own (--like MODEL: of that model; "
+                        "--like none: as the prompt alone has it)",
+                        *own_shape));
+        condition = own_condition(*own_shape, options, pipeline);
     }
 
     nlohmann::json names = nlohmann::json::array();
@@ -155,6 +189,7 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
                     {"negative_prompt", options.negative_prompt.value_or("")},
                     {"prior", prior.string()},
                     {"like", command.like},
+                    {"own_shape", own_shape.value_or("")},
                     {"width", size.width},
                     {"height", size.height},
                     {"scheduler", options.scheduler},
@@ -209,8 +244,11 @@ void add_generate_command(CLI::App& app) {
     command->add_option("--size", options->size,
                         "WxH in pixels, multiples of 8 for most priors; without it, the size that "
                         "the prior was trained on");
-    command->add_option("--like", options->like,
-                        "A model whose depth, seen as render sees it, the picture shall have");
+    command->add_option(
+        "--like", options->like,
+        "A model whose shape, seen as render sees it, the picture shall have. Without "
+        "it the embedded prior takes a shape of its own for a thing that it knows; "
+        "none: the prompt alone says what is there");
     add_extras_options(*command, options->extras);
     command->footer(list_schedulers());
     command->callback([options] { run_generate(*options, start_command(*options)); });

@@ -56,7 +56,7 @@ figure { margin: 0; min-width: 0; }
 figure img { display: block; width: 100%; height: auto; border-radius: 10px; background: var(--well); }
 figcaption { color: var(--soft); font-size: 13px; margin-top: 8px; }
 .checkered img { background: repeating-conic-gradient(var(--well) 0 25%, var(--card) 0 50%) 0 / 20px 20px; }
-.gallery { display: grid; gap: 20px;
+.gallery { display: grid; gap: 32px 20px;
   grid-template-columns: repeat(auto-fill, minmax(min(100%, var(--least)), 1fr)); }
 .gallery + .gallery { margin-top: 20px; }
 .comparison > div { position: relative; overflow: hidden; border-radius: 12px; background: var(--well); }

@@ -26,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int shown_edge = 128;
+constexpr int one_a_row = 900;  ///< least width of a sheet, in pixels of the page
 constexpr int model_views = 4;  ///< that a model's caption is made from, as `item3d caption` does
 
 Image sample_sheet(const SampleGrid& grid) {
@@ -176,10 +177,10 @@ std::string evaluation_page(const nlohmann::json& evaluation,
     const auto prior = evaluation.at("prior").get<std::string>();
     std::string body = html_header("item3d prior evaluate", prior);
     body += html_section("In numbers", html_table(summary_rows(evaluation)));
-    std::string pictures;
+    std::vector<std::string> pictures;
     for (const auto& [caption, bytes] : sheets)
-        pictures += html_figure({caption, bytes});
-    body += html_section("In pictures", pictures);
+        pictures.push_back(html_figure({caption, bytes}));
+    body += html_section("In pictures", html_gallery(pictures, one_a_row));
     for (const auto& [kind, words] : evaluation.at("vocabulary").items())
         body += html_section("Words: " + kind, word_bars(words));
     return html_page("What " + prior + " knows", body);
