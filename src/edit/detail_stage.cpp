@@ -10,6 +10,8 @@
 #include <torch/nn/functional/pooling.h>
 
 #include <algorithm>
+#include <map>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -30,7 +32,9 @@ constexpr int fits = 24;              ///< steps of the optimiser for each view
 constexpr int last_fits = 200;        ///< and for all pictures together at the end
 constexpr double learning_rate = 0.01;
 constexpr double network_learning_rate = 0.0025;
-constexpr float spread = 0.5f;              ///< pixels, see ViewOptions
+constexpr float spread = 0.5f;  ///< pixels, see ViewOptions
+/// Pixels of a picture's edge up to which what its view sees is kept: about 2 MB each.
+constexpr int largest_kept = 128;
 constexpr std::uint64_t choice_stream = 7;  // of the edit's seed
 
 torch::Tensor blur(torch::Tensor images) {
@@ -64,11 +68,13 @@ class Painter {
     void paint(std::size_t index);
 
   private:
-    EditView render(std::size_t index, float spread_pixels = 0, std::uint64_t draw = 0) const;
+    SeenModel see(std::size_t index);
+    EditView render(std::size_t index, const SeenModel& seen, float spread_pixels = 0,
+                    std::uint64_t draw = 0) const;
     torch::Tensor known_pixels(std::size_t index) const;
     double strength(const PaintingView& planned) const;
-    torch::Tensor target(std::size_t index, const EditView& view) const;
-    torch::Tensor drift(const EditView& view) const;
+    torch::Tensor target(std::size_t index, const SeenModel& seen) const;
+    torch::Tensor drift(const EditView& view, const MaterialSample& own) const;
     void fit_step(std::size_t chosen, std::uint64_t draw);
     void fit_all();
 
@@ -76,15 +82,25 @@ class Painter {
     const EditSettings& settings_;
     EditState& state_;
     std::vector<PaintingView> plan_;
+    std::map<std::size_t, SeenModel> seen_;  ///< views of the plan, where they are small
 };
 
-EditView Painter::render(std::size_t index, float spread_pixels, std::uint64_t draw) const {
-    ViewOptions options{1, settings_.iterations + static_cast<std::int64_t>(index)};
-    options.camera = &plan_[index].camera;
+/// Each view is rendered dozens of times.
+SeenModel Painter::see(std::size_t index) {
+    const auto found = seen_.find(index);
+    if (found != seen_.end()) return found->second;
+    const SeenModel seen = see_model(scene_, settings_, {plan_[index].camera});
+    if (settings_.resolution <= largest_kept) seen_[index] = seen;
+    return seen;
+}
+
+EditView Painter::render(std::size_t index, const SeenModel& seen, float spread_pixels,
+                         std::uint64_t draw) const {
+    ViewOptions options{settings_.iterations + static_cast<std::int64_t>(index)};
     options.light = &scene_.lights->studio();
     options.spread = spread_pixels;
     options.spread_draw = draw;
-    return render_view(scene_, settings_, state_.field, options);
+    return render_view(scene_, settings_, state_.field, seen, options);
 }
 
 /// [1, 1, R, R] 0 .. 1.
@@ -106,7 +122,9 @@ double Painter::strength(const PaintingView& planned) const {
 }
 
 /// What the prior would rather see from here.
-torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
+torch::Tensor Painter::target(std::size_t index, const SeenModel& seen) const {
+    const torch::NoGradGuard no_grad;
+    const EditView view = render(index, seen);
     const Pipeline& prior = *scene_.prior();
     const PaintingView& planned = plan_[index];
     const torch::Tensor latents = prior.encode_image(view.images * 2 - 1);
@@ -122,7 +140,7 @@ torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
     options.eta = 1;
     options.seed = mix_bits(settings_.seed) + index;
     options.show_progress = false;
-    const torch::Tensor condition = condition_of_shape(prior, view.shape, latents);
+    const torch::Tensor condition = condition_of_shape(prior, seen.shape, latents);
     const torch::Tensor sampled = generate_latents(prior, options, condition);
     const torch::Tensor decoded = prior.decode_image(sampled) / 2;
     // The difference of two decoded pictures: what the autoencoder loses cancels out.
@@ -138,10 +156,10 @@ torch::Tensor Painter::target(std::size_t index, const EditView& view) const {
 
 /// How far the channels that the stage leaves alone have moved; the field's features are shared by
 /// all of them.
-torch::Tensor Painter::drift(const EditView& view) const {
+torch::Tensor Painter::drift(const EditView& view, const MaterialSample& own) const {
     const MaterialSample was = [&] {
         const torch::NoGradGuard no_grad;
-        return scene_.source->sample(view.surface, state_.detail.before);
+        return scene_.source->sample(view.surface, state_.detail.before, own);
     }();
     torch::Tensor moved = (view.material.orm - was.orm).square().mean();
     if (was.normal.defined()) moved = moved + (view.material.normal - was.normal).square().mean();
@@ -149,22 +167,20 @@ torch::Tensor Painter::drift(const EditView& view) const {
 }
 
 void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
-    const EditView view = render(chosen, spread, draw);
+    const SeenModel seen = see(chosen);
+    const EditView view = render(chosen, seen, spread, draw);
     const torch::Tensor weight = inner(view.coverage) * plan_[chosen].facing *
                                  (1 - (1 - known_weight) * known_pixels(chosen));
     const torch::Tensor apart =
         ((view.images - state_.detail.targets[chosen]).square() * weight).sum() /
         (weight.sum() + 1e-4f);
-    (apart + drift(view)).backward();
+    (apart + drift(view, seen.own)).backward();
     state_.detail.optimizer.step();
     state_.detail.optimizer.zero_grad();
 }
 
 void Painter::paint(std::size_t index) {
-    {
-        const torch::NoGradGuard no_grad;
-        state_.detail.targets.push_back(target(index, render(index)));
-    }
+    state_.detail.targets.push_back(target(index, see(index)));
     for (std::size_t i = 0; i < fits; ++i) {
         const std::uint64_t draw = index * fits + i;
         Random random(settings_.seed, choice_stream, draw);

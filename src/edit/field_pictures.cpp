@@ -17,7 +17,8 @@ torch::Tensor draw_field(const EditScene& scene, NeuralTexture& field,
     const torch::NoGradGuard no_grad;
     const Raster raster = rasterize(scene.geometry, cameras, size, size);
     const Surface surface = interpolate_surface(scene.geometry, raster, cameras);
-    const MaterialSample material = scene.source->sample(surface, field);
+    const MaterialSample material =
+        scene.source->sample(surface, field, scene.source->own(surface));
     const torch::Tensor background = torch::full({3}, background_gray, scene.device);
     const torch::Tensor pictures =
         scatter(shade(surface, material, light), surface, raster, background);

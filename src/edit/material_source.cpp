@@ -60,24 +60,27 @@ MaterialSource::MaterialSource(const Model& model, const TexturedMaterials& text
         torch::tensor({channels.occlusion, channels.roughness, channels.metallic}).to(device);
 }
 
-MaterialSample MaterialSource::sample(const Surface& surface, NeuralTexture& field) const {
-    MaterialSample own = [&] {
-        const torch::NoGradGuard no_grad;
-        return textured_.sample(surface);
-    }();
+MaterialSample MaterialSource::own(const Surface& surface) const {
+    const torch::NoGradGuard no_grad;
+    return textured_.sample(surface);
+}
+
+MaterialSample MaterialSource::sample(const Surface& surface, NeuralTexture& field,
+                                      const MaterialSample& own) const {
     if (!channels_.any()) return own;
+    MaterialSample mixed = own;
     const MaterialSample edited = field->forward(space_.positions(surface));
     const torch::Tensor here = all_edited_
                                    ? torch::ones({1, 1}, is_edited_.options())
                                    : is_edited_.index_select(0, surface.material).unsqueeze(1);
     if (channels_.base_color)
-        own.base_color = torch::where(here, edited.base_color, own.base_color);
-    own.orm = torch::where(here & orm_is_edited_, edited.orm, own.orm);
+        mixed.base_color = torch::where(here, edited.base_color, own.base_color);
+    mixed.orm = torch::where(here & orm_is_edited_, edited.orm, own.orm);
     if (channels_.normal) {
-        own.normal =
+        mixed.normal =
             own.normal.defined() ? torch::where(here, edited.normal, own.normal) : edited.normal;
     }
-    return own;
+    return mixed;
 }
 
 }  // namespace item3d

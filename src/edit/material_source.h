@@ -36,8 +36,11 @@ class MaterialSource {
     MaterialSource(const Model& model, const TexturedMaterials& textured, const FieldSpace& space,
                    const std::vector<int>& edited_materials, ChannelMask channels,
                    torch::Device device = torch::kCPU);
-    /// Differentiable in the field's parameters.
-    MaterialSample sample(const Surface& surface, NeuralTexture& field) const;
+    /// The model's own materials, which are the same whatever the field holds.
+    MaterialSample own(const Surface& surface) const;
+    /// Differentiable in the field's parameters. own: of this surface.
+    MaterialSample sample(const Surface& surface, NeuralTexture& field,
+                          const MaterialSample& own) const;
 
   private:
     const TexturedMaterials& textured_;

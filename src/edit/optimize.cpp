@@ -59,18 +59,21 @@ void end_where_settled(const EditSettings& settings, EditState& state) {
 /// What guidance looks at. The unedited model is the field as it was fitted, so that a render that
 /// has not been edited yet equals its reference.
 GuidanceInput look(const EditScene& scene, const EditSettings& settings, EditState& state) {
-    ViewOptions options{settings.batch, state.iteration};
+    const SeenModel seen =
+        see_model(scene, settings,
+                  sample_cameras(scene.sphere, settings.batch, settings.seed, state.iteration));
+    ViewOptions options{state.iteration};
     EnvironmentLight light;
     if (state.light) {
         light = prefilter(state.light->cube(optimized_light_size).to(scene.device));
         options.light = &light;
     }
-    const EditView view = render_view(scene, settings, state.field, options);
-    GuidanceInput input{view.images, view.shape};
+    GuidanceInput input{render_view(scene, settings, state.field, seen, options).images,
+                        seen.shape};
     if (state.guidance->needs_reference()) {
         const torch::NoGradGuard no_grad;
         if (state.light) options.light = &state.first_light;
-        input.reference = render_view(scene, settings, state.fitted, options).images;
+        input.reference = render_view(scene, settings, state.fitted, seen, options).images;
     }
     return input;
 }

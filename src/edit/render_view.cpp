@@ -38,35 +38,40 @@ SeenShape seen_shape(const Raster& raster, const Surface& surface, const Boundin
             pixels(surface.normal)};
 }
 
+SeenModel see_model(const EditScene& scene, const EditSettings& settings,
+                    const std::vector<Camera>& cameras) {
+    const int size = settings.resolution * supersampling(settings.resolution);
+    SeenModel seen;
+    seen.raster = rasterize(scene.geometry, cameras, size, size);
+    seen.surface = interpolate_surface(scene.geometry, seen.raster, cameras);
+    seen.shape = seen_shape(seen.raster, seen.surface, scene.sphere);
+    seen.own = scene.source->own(seen.surface);
+    return seen;
+}
+
 EditView render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
-                     const ViewOptions& options) {
-    const int scale = supersampling(settings.resolution);
-    const int size = settings.resolution * scale;
-    const auto cameras = options.camera ? std::vector<Camera>{*options.camera}
-                                        : sample_cameras(scene.sphere, options.count, settings.seed,
-                                                         options.iteration);
+                     const SeenModel& seen, const ViewOptions& options) {
+    const auto& [raster, surface, shape, own] = seen;
     const EnvironmentLight light =
         options.light ? *options.light : scene.lights->pick(settings.seed, options.iteration);
-
-    const Raster raster = rasterize(scene.geometry, cameras, size, size);
-    const Surface surface = interpolate_surface(scene.geometry, raster, cameras);
     EditView view;
-    view.shape = seen_shape(raster, surface, scene.sphere);
     view.surface = surface;
     if (options.spread > 0) {
         view.surface.position =
             surface.position + offsets(surface.position, scene, settings, options);
     }
-    view.material = scene.source->sample(view.surface, field);
+    view.material = scene.source->sample(view.surface, field, own);
     torch::Tensor radiance = shade(surface, view.material, light);
     if (view.material.emissive.defined()) radiance = radiance + view.material.emissive;
 
+    const int views = raster.views(), size = raster.width();
     const torch::Tensor background =
-        sample_backgrounds(settings.background, options.count, settings.seed, options.iteration)
+        sample_backgrounds(settings.background, views, settings.seed, options.iteration)
             .to(scene.device)
-            .view({options.count, 1, 1, 3})
-            .expand({options.count, size, size, 3});
+            .view({views, 1, 1, 3})
+            .expand({views, size, size, 3});
     torch::Tensor picture = scatter(radiance, surface, raster, background);
+    const int scale = size / settings.resolution;
     if (scale == 1) picture = antialias(picture, raster, scene.geometry);
     view.images = linear_to_srgb(picture.clamp(0, 1)).permute({0, 3, 1, 2});
     view.coverage = (raster.triangle >= 0).to(torch::kFloat32).unsqueeze(1);
