@@ -71,6 +71,7 @@ class OcclusionLight {
         const auto sine = static_cast<float>(std::sqrt(std::max(0.0, 1 - cosine * cosine)));
         const auto u =
             static_cast<float>((static_cast<double>(x) + std::clamp(along, 0.0, 1.0)) / width_);
+        // equirectangular_direction(), which would take the cosine's angle and its cosine again.
         const float azimuth = 2 * pi * (u - 0.5f);
         return {
             Vec3(sine * std::sin(azimuth), static_cast<float>(cosine), -sine * std::cos(azimuth)),
