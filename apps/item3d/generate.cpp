@@ -24,8 +24,8 @@
 #include "picture_options.h"
 
 #include <filesystem>
+#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,14 +77,69 @@ torch::Tensor condition_of(const Model& model, PictureSize size, const Pipeline&
 /// The prior's own kind of shape, another variant for each picture.
 torch::Tensor own_condition(const std::string& shape_class, const GenerateOptions& options,
                             const Pipeline& pipeline) {
+    std::map<int, torch::Tensor> of_variant;
     std::vector<torch::Tensor> conditions;
+    Progress progress("shapes", options.count);
     for (int i = 0; i < options.count; ++i) {
         Random random(options.seed, shape_stream, static_cast<std::uint64_t>(i));
         const auto variant = static_cast<int>(random.index(training_variants));
-        conditions.push_back(condition_of(shape_model(shape_class, variant),
-                                          {options.width, options.height}, pipeline));
+        torch::Tensor& condition = of_variant[variant];
+        if (!condition.defined())
+            condition = condition_of(shape_model(shape_class, variant),
+                                     {options.width, options.height}, pipeline);
+        conditions.push_back(condition);
+        progress.update(i + 1);
     }
     return torch::cat(conditions);
+}
+
+/// Whose shape the pictures have; neither: the prompt alone says what is there.
+struct ShapeChoice {
+    std::string model;      ///< file
+    std::string own_class;  ///< of the program's own shapes
+
+    bool any() const { return !model.empty() || !own_class.empty(); }
+};
+
+ShapeChoice choose_shape(const GenerateCommand& command, const Pipeline& pipeline,
+                         const PipelineExtras& extras, const PriorVocabulary& vocabulary) {
+    if (command.like == no_shape) return {};
+    if (!command.like.empty()) return {command.like, ""};
+    // A prior that came from elsewhere was not trained on shapes like ours.
+    const bool knows_ours = !vocabulary.open() && takes_shape(pipeline);
+    if (!knows_ours || !extras.controlnet.empty()) return {};
+    return {"", shape_named(command.generate.prompt).value_or("")};
+}
+
+/// Throws where the prior cannot be told a shape, or cannot do without.
+void check_shape(const ShapeChoice& shape, const fs::path& prior, const Pipeline& pipeline,
+                 const PipelineExtras& extras) {
+    const int channels = pipeline.condition_channels();
+    if (channels > 1 && channels != surface_condition_channels) {
+        throw InputError(prior.string(),
+                         fmt::format("its U-Net takes {} further channels, which generate cannot "
+                                     "fill",
+                                     channels),
+                         "use a text-to-image or depth-to-image model");
+    }
+    if (shape.model.empty() && !extras.controlnet.empty())
+        throw InputError("--controlnet", "has no depth to look at", "name a model with --like");
+    if (!shape.model.empty() && !takes_shape(pipeline))
+        throw InputError(prior.string(), "its U-Net takes no depth",
+                         "leave out --like, or add a depth ControlNet with --controlnet");
+}
+
+/// What the pipeline is told of the shape; undefined where there is none.
+torch::Tensor shape_condition(const ShapeChoice& shape, const GenerateOptions& options,
+                              const Pipeline& pipeline) {
+    if (!shape.model.empty())
+        return condition_of(load_model(shape.model), {options.width, options.height}, pipeline);
+    if (shape.own_class.empty()) return {};
+    note(
+        fmt::format("drawn in the shape of a {} of its own (--like MODEL: of that model; "
+                    "--like none: as the prompt alone has it)",
+                    shape.own_class));
+    return own_condition(shape.own_class, options, pipeline);
 }
 
 /// Throws unless `output` can be a picture's file; makes its folder.
@@ -132,15 +187,9 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
     const auto extras = command.extras.get<PipelineExtras>();
     apply_extras(pipeline, extras);
     const PriorVocabulary vocabulary = PriorVocabulary::load(prior);
-    // A prior that came from elsewhere was not trained on shapes like ours.
-    const std::optional<std::string> own_shape = command.like.empty() && takes_shape(pipeline) &&
-                                                         extras.controlnet.empty() &&
-                                                         !vocabulary.open()
-                                                     ? shape_named(command.generate.prompt)
-                                                     : std::nullopt;
-    const bool like_model = !command.like.empty() && command.like != no_shape;
-    const std::string warning =
-        vocabulary.warning(command.generate.prompt, like_model || own_shape.has_value());
+    const ShapeChoice shape = choose_shape(command, pipeline, extras, vocabulary);
+    check_shape(shape, prior, pipeline, extras);
+    const std::string warning = vocabulary.warning(command.generate.prompt, shape.any());
     if (!warning.empty()) warn(warning);
     warn_of_lost_words(*pipeline.tokenizer, "PROMPT", command.generate.prompt);
 
@@ -153,29 +202,7 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
     options.width = size.width;
     options.height = size.height;
 
-    torch::Tensor condition;
-    const int channels = pipeline.condition_channels();
-    if (channels > 1 && channels != surface_condition_channels) {
-        throw InputError(prior.string(),
-                         fmt::format("its U-Net takes {} further channels, which generate cannot "
-                                     "fill",
-                                     channels),
-                         "use a text-to-image or depth-to-image model");
-    }
-    if (!like_model && !extras.controlnet.empty())
-        throw InputError("--controlnet", "has no depth to look at", "name a model with --like");
-    if (like_model) {
-        if (!takes_shape(pipeline))
-            throw InputError(prior.string(), "its U-Net takes no depth",
-                             "leave out --like, or add a depth ControlNet with --controlnet");
-        condition = condition_of(load_model(command.like), size, pipeline);
-    } else if (own_shape) {
-        note(
-            fmt::format("drawn in the shape of a {} of its own (--like MODEL: of that model; "
-                        "--like none: as the prompt alone has it)",
-                        *own_shape));
-        condition = own_condition(*own_shape, options, pipeline);
-    }
+    const torch::Tensor condition = shape_condition(shape, options, pipeline);
 
     nlohmann::json names = nlohmann::json::array();
     for (const fs::path& file :
@@ -189,7 +216,7 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
                     {"negative_prompt", options.negative_prompt.value_or("")},
                     {"prior", prior.string()},
                     {"like", command.like},
-                    {"own_shape", own_shape.value_or("")},
+                    {"own_shape", shape.own_class},
                     {"width", size.width},
                     {"height", size.height},
                     {"scheduler", options.scheduler},
