@@ -296,6 +296,27 @@ TEST(EditSettings, detail_is_wanted_where_the_target_alone_names_such_a_material
     EXPECT_FALSE(wants_detail(settings));
 }
 
+TEST(EditSettings, fewer_iterations_come_before_the_detail_stage_unless_they_are_given) {
+    const fs::path folder =
+        fs::temp_directory_path() / ("item3d-before-detail-" + std::to_string(::getpid()));
+    fs::create_directories(folder);
+    write_atomically(folder / "prior.json", std::string_view(R"({"defaults": {"iterations": 150,
+        "iterations_before_detail": 60, "detail_words": ["mossy"]}})"));
+    const nlohmann::json painted = {{"from", "a cow"}, {"to", "a mossy cow"}};
+    const auto with = [&](const nlohmann::json& more) {
+        nlohmann::json overrides = painted;
+        overrides.update(more);
+        return resolve_settings(folder, overrides).iterations;
+    };
+    EXPECT_EQ(with(nlohmann::json::object()), 60);
+    EXPECT_EQ(with({{"to", "a red cow"}}), 150);
+    EXPECT_EQ(with({{"detail", "off"}}), 150);
+    EXPECT_EQ(with({{"optimize", "both"}}), 150);
+    EXPECT_EQ(with({{"iterations", 200}}), 200);
+    EXPECT_THROW(with({{"iterations_before_detail", -1}}), InputError);
+    fs::remove_all(folder);
+}
+
 TEST(EditSettings, prior_defaults_and_overrides_are_merged_and_checked) {
     const fs::path folder =
         fs::temp_directory_path() / ("item3d-prior-" + std::to_string(::getpid()));

@@ -75,7 +75,8 @@ void add_settings(CLI::App& command, EditCommandOptions& options) {
                          "What not to show: guidance pushes away from it, and so does the detail "
                          "stage. Meaningless for rdl's direction, in which it cancels");
     setting<int>(command, options, "--iterations", "iterations",
-                 "Steps of the optimisation; with --settle, at most");
+                 "Steps of the optimisation; with --settle, at most. Without it, the prior's own "
+                 "number, which may be smaller where the detail stage follows");
     setting<int>(command, options, "--batch", "batch", "Views in each step");
     setting<int>(command, options, "--resolution", "resolution",
                  "Edge in pixels of the pictures that the prior sees");

@@ -56,6 +56,20 @@ torch::Tensor inner(const torch::Tensor& coverage) {
     return -torch::max_pool2d(-coverage, 3, 1, 1);
 }
 
+/// What a view of the plan shows whatever the stage has painted so far.
+struct PaintedView {
+    SeenModel seen;
+    MaterialSample before;  ///< the field's materials as the stage began
+};
+
+/// How far the channels that the stage leaves alone have moved; the field's features are shared by
+/// all of them. `now` is as of up to half a pixel aside, which they vary little over.
+torch::Tensor drift(const MaterialSample& now, const MaterialSample& before) {
+    torch::Tensor moved = (now.orm - before.orm).square().mean();
+    if (before.normal.defined()) moved = moved + (now.normal - before.normal).square().mean();
+    return moved;
+}
+
 /// The stage in progress.
 class Painter {
   public:
@@ -68,13 +82,12 @@ class Painter {
     void paint(std::size_t index);
 
   private:
-    SeenModel see(std::size_t index);
+    PaintedView see(std::size_t index);
     EditView render(std::size_t index, const SeenModel& seen, float spread_pixels = 0,
                     std::uint64_t draw = 0) const;
     torch::Tensor known_pixels(std::size_t index) const;
     double strength(const PaintingView& planned) const;
     torch::Tensor target(std::size_t index, const SeenModel& seen) const;
-    torch::Tensor drift(const EditView& view, const MaterialSample& own) const;
     void fit_step(std::size_t chosen, std::uint64_t draw);
     void fit_all();
 
@@ -82,16 +95,19 @@ class Painter {
     const EditSettings& settings_;
     EditState& state_;
     std::vector<PaintingView> plan_;
-    std::map<std::size_t, SeenModel> seen_;  ///< views of the plan, where they are small
+    std::map<std::size_t, PaintedView> kept_;  ///< views of the plan, where they are small
 };
 
 /// Each view is rendered dozens of times.
-SeenModel Painter::see(std::size_t index) {
-    const auto found = seen_.find(index);
-    if (found != seen_.end()) return found->second;
-    const SeenModel seen = see_model(scene_, settings_, {plan_[index].camera});
-    if (settings_.resolution <= largest_kept) seen_[index] = seen;
-    return seen;
+PaintedView Painter::see(std::size_t index) {
+    const auto found = kept_.find(index);
+    if (found != kept_.end()) return found->second;
+    const torch::NoGradGuard no_grad;
+    PaintedView view{see_model(scene_, settings_, {plan_[index].camera}), {}};
+    const auto& [raster, surface, shape, own] = view.seen;
+    view.before = scene_.source->sample(surface, state_.detail.before, own);
+    if (settings_.resolution <= largest_kept) kept_[index] = view;
+    return view;
 }
 
 EditView Painter::render(std::size_t index, const SeenModel& seen, float spread_pixels,
@@ -154,33 +170,21 @@ torch::Tensor Painter::target(std::size_t index, const SeenModel& seen) const {
     return (painted + sharpening * fresh * fine).clamp(0, 1);
 }
 
-/// How far the channels that the stage leaves alone have moved; the field's features are shared by
-/// all of them.
-torch::Tensor Painter::drift(const EditView& view, const MaterialSample& own) const {
-    const MaterialSample was = [&] {
-        const torch::NoGradGuard no_grad;
-        return scene_.source->sample(view.surface, state_.detail.before, own);
-    }();
-    torch::Tensor moved = (view.material.orm - was.orm).square().mean();
-    if (was.normal.defined()) moved = moved + (view.material.normal - was.normal).square().mean();
-    return moved;
-}
-
 void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
-    const SeenModel seen = see(chosen);
+    const auto& [seen, before] = see(chosen);
     const EditView view = render(chosen, seen, spread, draw);
     const torch::Tensor weight = inner(view.coverage) * plan_[chosen].facing *
                                  (1 - (1 - known_weight) * known_pixels(chosen));
     const torch::Tensor apart =
         ((view.images - state_.detail.targets[chosen]).square() * weight).sum() /
         (weight.sum() + 1e-4f);
-    (apart + drift(view, seen.own)).backward();
+    (apart + drift(view.material, before)).backward();
     state_.detail.optimizer.step();
     state_.detail.optimizer.zero_grad();
 }
 
 void Painter::paint(std::size_t index) {
-    state_.detail.targets.push_back(target(index, see(index)));
+    state_.detail.targets.push_back(target(index, see(index).seen));
     for (std::size_t i = 0; i < fits; ++i) {
         const std::uint64_t draw = index * fits + i;
         Random random(settings_.seed, choice_stream, draw);

@@ -48,6 +48,8 @@ void require(bool condition, const std::string& option, const std::string& probl
 void check(const EditSettings& settings) {
     require(settings.fit_steps >= 1, "fit_steps", "must be 1 or more");
     require(settings.iterations >= 0, "--iterations", "must be 0 or more");
+    require(settings.iterations_before_detail >= 0, "iterations_before_detail",
+            "must be 0 or more");
     require(settings.batch >= 1 && settings.batch <= 64, "--batch", "must be between 1 and 64");
     require(settings.resolution >= 16 && settings.resolution <= 2048, "--resolution",
             "must be between 16 and 2048 pixels");
@@ -109,6 +111,10 @@ EditSettings resolve_settings(const std::filesystem::path& prior, const json& ov
     try {
         EditSettings settings = merged.get<EditSettings>();
         check(settings);
+        const bool given = overrides.contains("iterations");
+        if (!given && settings.iterations_before_detail > 0 && !edits_light(settings) &&
+            wants_detail(settings))
+            settings.iterations = settings.iterations_before_detail;
         return settings;
     } catch (const json::exception& error) {
         throw InputError((prior / "prior.json").string(),

@@ -35,6 +35,9 @@ struct EditSettings : PipelineExtras {
     float settle = 0;
     int fit_steps = 200;  ///< that make the neural texture look like the model's own materials
     int iterations = 600;
+    /// Instead of these, where a texture is edited and the detail stage follows, which paints anew
+    /// what they made of the base colour. 0: as many as without it.
+    int iterations_before_detail = 0;
     int batch = 2;         ///< views an iteration
     int resolution = 512;  ///< pixels of the square picture that the prior sees
     float learning_rate = 0.01f;
@@ -71,15 +74,16 @@ struct EditSettings : PipelineExtras {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     EditSettings, lora, embedding, controlnet, controlnet_scale, vae, from, to, negative_prompt,
     guidance, adjust, anchor, cfg, adjust_learning_rate, adjust_samples, adjust_every,
-    adjust_strength, settle, fit_steps, iterations, batch, resolution, learning_rate, evenness,
-    metallic, metallic_start, detail, detail_words, detail_views, timesteps, timestep_schedule,
-    weighting, light, optimize, light_model, light_learning_rate, light_from, light_augment,
-    background, texture_size, keep, material, seed)
+    adjust_strength, settle, fit_steps, iterations, iterations_before_detail, batch, resolution,
+    learning_rate, evenness, metallic, metallic_start, detail, detail_words, detail_views,
+    timesteps, timestep_schedule, weighting, light, optimize, light_model, light_learning_rate,
+    light_from, light_augment, background, texture_size, keep, material, seed)
 
 /// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- what relighting needs, where
 /// the overrides say to optimise the light alone <- what a method was published with, where the
-/// overrides name it <- overrides. Throws InputError when a value is of the wrong
-/// type or out of range.
+/// overrides name it <- overrides; then `iterations` <- `iterations_before_detail`, where that is
+/// meant and the overrides have no iterations. Throws InputError when a value is of the wrong type
+/// or out of range.
 EditSettings resolve_settings(const std::filesystem::path& prior, const nlohmann::json& overrides);
 
 /// Whether a captioner adjusts the direction.

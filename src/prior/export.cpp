@@ -66,6 +66,7 @@ nlohmann::json edit_defaults(int resolution) {
             {"adjust_learning_rate", 0.06},
             {"adjust_samples", 4},
             {"iterations", 250},
+            {"iterations_before_detail", 120},
             {"settle", 0.5},
             {"batch", 1},
             {"resolution", resolution},
