@@ -28,5 +28,19 @@ TEST(ReconstructedLight, LiesBesideAReconstructedModelAlone) {
     std::filesystem::remove_all(folder);
 }
 
+TEST(ReconstructedLight, IsNotForTexturesWhereThePriorNamesALight) {
+    const auto folder = std::filesystem::temp_directory_path() /
+                        ("item3d-found-light-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    const nlohmann::json none = nlohmann::json::object();
+    EXPECT_TRUE(suits_found_light(folder, none));  // no prior.json
+    write_atomically(folder / "prior.json",
+                     std::string_view(R"({"defaults": {"light": "studio"}})"));
+    EXPECT_FALSE(suits_found_light(folder, none));
+    EXPECT_TRUE(suits_found_light(folder, {{"optimize", "both"}}));
+    EXPECT_TRUE(suits_found_light(folder, {{"optimize", "light"}}));
+    std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace item3d

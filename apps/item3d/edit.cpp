@@ -146,6 +146,18 @@ void refuse_contradictions(const EditCommandOptions& options) {
             "--optimize light changes no texture: without --keep, --texture-size and --metallic");
 }
 
+void take_found_light(EditCommandOptions& options) {
+    const auto light = reconstructed_light(options.request.model);
+    if (light.empty() || options.overrides.contains("light")) return;
+    if (suits_found_light(options.request.prior, options.overrides)) {
+        note("light: " + light.string() + ", found with the model (--light takes another)");
+        options.overrides["light"] = light.string();
+    } else {
+        note("light: the prior's own (--light " + light.string() +
+             ": the one found with the model)");
+    }
+}
+
 void run_edit(EditCommandOptions& options) {
     refuse_contradictions(options);
 
@@ -161,11 +173,7 @@ void run_edit(EditCommandOptions& options) {
     if (options.overrides.value("keep", nlohmann::json()) == nlohmann::json::array({"nothing"})) {
         options.overrides["keep"] = nlohmann::json::array();
     }
-    const auto light = reconstructed_light(request.model);
-    if (!light.empty() && !options.overrides.contains("light")) {
-        note("light: " + light.string() + ", found with the model (--light takes another)");
-        options.overrides["light"] = light.string();
-    }
+    take_found_light(options);
     request.settings = resolve_settings(request.prior, options.overrides);
     warn_of_words(request, request.settings);
 

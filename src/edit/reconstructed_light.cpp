@@ -1,5 +1,7 @@
 #include "item3d/edit/reconstructed_light.h"
 
+#include "item3d/edit/settings.h"
+
 namespace item3d {
 
 std::filesystem::path reconstructed_light(const std::filesystem::path& model) {
@@ -9,6 +11,11 @@ std::filesystem::path reconstructed_light(const std::filesystem::path& model) {
                           std::filesystem::is_regular_file(folder / "reconstruct.json", ignored) &&
                           std::filesystem::is_regular_file(light, ignored);
     return is_there ? light : std::filesystem::path();
+}
+
+bool suits_found_light(const std::filesystem::path& prior, const nlohmann::json& overrides) {
+    const bool texture_alone = overrides.value("optimize", "texture") == "texture";
+    return !texture_alone || !prior_defaults(prior).contains("light");
 }
 
 }  // namespace item3d

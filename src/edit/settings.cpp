@@ -13,16 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-json prior_defaults(const std::filesystem::path& prior) {
-    const auto path = prior / "prior.json";
-    if (!std::filesystem::exists(path)) return json::object();
-    const json document = json::parse(read_text(path), nullptr, false);
-    if (!document.is_object()) {
-        throw InputError(path.string(), "is not a JSON object", "fetch or train the prior again");
-    }
-    return document.value("defaults", json::object());
-}
-
 /// What a method needs that is not usual: guidance scales, noise levels. rdl and sds are what the
 /// other defaults are for.
 json published_settings(const std::string& method) {
@@ -98,6 +88,16 @@ void check(const EditSettings& settings) {
 }
 
 }  // namespace
+
+json prior_defaults(const std::filesystem::path& prior) {
+    const auto path = prior / "prior.json";
+    if (!std::filesystem::exists(path)) return json::object();
+    const json document = json::parse(read_text(path), nullptr, false);
+    if (!document.is_object()) {
+        throw InputError(path.string(), "is not a JSON object", "fetch or train the prior again");
+    }
+    return document.value("defaults", json::object());
+}
 
 EditSettings resolve_settings(const std::filesystem::path& prior, const json& overrides) {
     json merged = EditSettings{};

@@ -79,6 +79,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(
     timesteps, timestep_schedule, weighting, light, optimize, light_model, light_learning_rate,
     light_from, light_augment, background, texture_size, keep, material, seed)
 
+/// "defaults" of PRIOR/prior.json; an empty object where it has none. Throws InputError.
+nlohmann::json prior_defaults(const std::filesystem::path& prior);
+
 /// Built-in defaults <- "defaults" of PRIOR/prior.json (if there) <- what relighting needs, where
 /// the overrides say to optimise the light alone <- what a method was published with, where the
 /// overrides name it <- overrides; then `iterations` <- `iterations_before_detail`, where that is
