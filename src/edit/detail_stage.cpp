@@ -32,6 +32,8 @@ constexpr int fits = 24;              ///< steps of the optimiser for each view
 constexpr int last_fits = 200;        ///< and for all pictures together at the end
 constexpr double learning_rate = 0.01;
 constexpr double network_learning_rate = 0.0025;
+/// As a part of the first, where the stage ends: steps of Adam as long as before leave speckles.
+constexpr double final_learning_rate = 0.05;
 constexpr float spread = 0.5f;  ///< pixels, see ViewOptions
 /// Pixels of a picture's edge up to which what its view sees is kept: about 2 MB each.
 constexpr int largest_kept = 128;
@@ -89,6 +91,7 @@ class Painter {
     double strength(const PaintingView& planned) const;
     torch::Tensor target(std::size_t index, const SeenModel& seen) const;
     void fit_step(std::size_t chosen, std::uint64_t draw);
+    void set_learning_rate(double factor);
     void fit_all();
 
     const EditScene& scene_;
@@ -158,16 +161,12 @@ torch::Tensor Painter::target(std::size_t index, const SeenModel& seen) const {
     options.show_progress = false;
     const torch::Tensor condition = condition_of_shape(prior, seen.shape, latents);
     const torch::Tensor sampled = generate_latents(prior, options, condition);
-    const torch::Tensor decoded = prior.decode_image(sampled) / 2;
-    // The difference of two decoded pictures: what the autoencoder loses cancels out.
-    const torch::Tensor change = decoded - prior.decode_image(latents) / 2;
+    const torch::Tensor decoded = prior.decode_image(sampled) / 2 + 0.5f;
+    // Not the render with what has changed: it has what a pixel of the round before was too coarse
+    // to see, as noise, and close-ups would keep it.
     const torch::Tensor fresh = 1 - known_pixels(index);
-    // Where the stage begins nothing shall be left of what was there; later rounds add to it.
-    const bool begins = planned.round == PaintingRound::begin;
-    const torch::Tensor painted =
-        view.images + (begins ? fresh * (decoded + 0.5f - view.images) : change);
-    const torch::Tensor fine = fine_part(begins ? decoded : change, view.coverage);
-    return (painted + sharpening * fresh * fine).clamp(0, 1);
+    const torch::Tensor painted = view.images + fresh * (decoded - view.images);
+    return (painted + sharpening * fresh * fine_part(decoded, view.coverage)).clamp(0, 1);
 }
 
 void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
@@ -198,6 +197,11 @@ void Painter::paint(std::size_t index) {
     ++state_.iteration;
 }
 
+void Painter::set_learning_rate(double factor) {
+    state_.detail.optimizer.options(0).learning_rate = factor * learning_rate;
+    state_.detail.optimizer.options(1).learning_rate = factor * network_learning_rate;
+}
+
 /// To all pictures but those that the stage began with. What a view got right may have suffered
 /// from the views that came after it.
 void Painter::fit_all() {
@@ -208,6 +212,8 @@ void Painter::fit_all() {
     const std::int64_t count = plan_.end() - first;
     if (count == 0) return;
     for (std::size_t i = 0; i < last_fits; ++i) {
+        const double left = 1 - static_cast<double>(i) / last_fits;
+        set_learning_rate(final_learning_rate + (1 - final_learning_rate) * left);
         const std::uint64_t draw = plan_.size() * fits + i;
         Random random(settings_.seed, choice_stream, draw);
         fit_step(static_cast<std::size_t>(skipped + random.index(count)), draw);
