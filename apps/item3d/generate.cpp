@@ -74,12 +74,11 @@ torch::Tensor condition_of(const Model& model, PictureSize size, const Pipeline&
         torch::empty({1, 1, cells(size.height), cells(size.width)}, pipeline.device()));
 }
 
-/// The prior's own kind of shape, another variant for each picture.
+/// The prior's own kind of shape, another variant for each picture while there are some.
 torch::Tensor own_condition(const std::string& shape_class, const GenerateOptions& options,
                             const Pipeline& pipeline) {
     std::map<int, torch::Tensor> of_variant;
     std::vector<torch::Tensor> conditions;
-    Progress progress("shapes", options.count);
     for (int i = 0; i < options.count; ++i) {
         Random random(options.seed, shape_stream, static_cast<std::uint64_t>(i));
         const auto variant = static_cast<int>(random.index(training_variants));
@@ -88,7 +87,6 @@ torch::Tensor own_condition(const std::string& shape_class, const GenerateOption
             condition = condition_of(shape_model(shape_class, variant),
                                      {options.width, options.height}, pipeline);
         conditions.push_back(condition);
-        progress.update(i + 1);
     }
     return torch::cat(conditions);
 }

@@ -32,7 +32,7 @@ constexpr int fits = 24;              ///< steps of the optimiser for each view
 constexpr int last_fits = 200;        ///< and for all pictures together at the end
 constexpr double learning_rate = 0.01;
 constexpr double network_learning_rate = 0.0025;
-/// As a part of the first, where the stage ends: steps of Adam as long as before leave speckles.
+/// As a part of the first, where the stage ends, so that no picture counts more for coming last.
 constexpr double final_learning_rate = 0.05;
 constexpr float spread = 0.5f;  ///< pixels, see ViewOptions
 /// Pixels of a picture's edge up to which what its view sees is kept: about 2 MB each.
