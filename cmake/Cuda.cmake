@@ -1,5 +1,5 @@
 # libitem3d_cuda.so: every kernel, compiled for CUDA devices by the nvcc that scripts/setup.sh fetched.
-# A module that the program opens when there is a device (src/render/cuda/module.h); nothing links it.
+# A module that the program opens when there is a device (src/item3d/render/cuda/module.h); nothing links it.
 # nvcc is called by itself: CMake's CUDA language wants a whole toolkit.
 set(ITEM3D_CUDA_DEFAULT OFF)
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64" AND NOT "$ENV{ITEM3D_CUDA}" STREQUAL "OFF")
@@ -26,14 +26,12 @@ set(NVCC_OPTIONS
     -Werror all-warnings
     # GLM marks functions that the compiler writes itself.
     -diag-suppress 20012
-    -I ${CMAKE_BINARY_DIR}/include/core
-    -I ${CMAKE_BINARY_DIR}/include/render
-    -I ${CMAKE_BINARY_DIR}/include/field)
+    -I ${CMAKE_SOURCE_DIR}/src)
 
-# item3d_cuda_object(FILE [OPTION...]): compiles src/FILE.cu and appends the object to CUDA_OBJECTS.
+# item3d_cuda_object(FILE [OPTION...]): compiles src/item3d/FILE.cu and appends the object to CUDA_OBJECTS.
 set(CUDA_OBJECTS)
 function(item3d_cuda_object FILE)
-    set(SOURCE ${CMAKE_SOURCE_DIR}/src/${FILE}.cu)
+    set(SOURCE ${CMAKE_SOURCE_DIR}/src/item3d/${FILE}.cu)
     string(REPLACE "/" "_" NAME ${FILE})
     set(OBJECT ${CMAKE_BINARY_DIR}/cuda/${NAME}.o)
     add_custom_command(OUTPUT ${OBJECT}

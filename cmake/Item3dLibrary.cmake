@@ -1,12 +1,12 @@
 # item3d_library(NAME [TORCH] [DEPENDS lib...] [PACKAGES target...] [COMPILED_APART file...]): one
-# folder of src/ as one static library, but for the files that the caller compiles. DEPENDS is the whole list of item3d folders that this folder may include; include
+# folder of src/item3d/ as one static library, but for the files that the caller compiles. DEPENDS is the whole list of item3d folders that this folder may include; include
 # paths come only through it, so a wrong dependency does not compile. PACKAGES are imported targets
 # of other projects; TORCH links LibTorch and uses its precompiled header. Several files are compiled
 # at a time, because the templates of LibTorch, JSON and the like are most of each one's compilation:
 # names in their anonymous namespaces must differ.
 function(item3d_library NAME)
     cmake_parse_arguments(ARG "TORCH" "" "DEPENDS;PACKAGES;COMPILED_APART" ${ARGN})
-    file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cpp)
+    file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/item3d/${NAME}/*.cpp)
     if(ARG_COMPILED_APART)
         list(REMOVE_ITEM SOURCES ${ARG_COMPILED_APART})
     endif()
@@ -23,11 +23,7 @@ function(item3d_library NAME)
     endif()
     add_library(item3d::${NAME} ALIAS ${TARGET})
 
-    # Each folder sees its own headers as "item3d/<folder>/x.h" through a link in the build tree.
-    set(VIEW ${CMAKE_BINARY_DIR}/include/${NAME})
-    file(MAKE_DIRECTORY ${VIEW}/item3d)
-    file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${NAME} ${VIEW}/item3d/${NAME} SYMBOLIC)
-    target_include_directories(${TARGET} ${SCOPE} ${VIEW})
+    target_include_directories(${TARGET} ${SCOPE} ${CMAKE_SOURCE_DIR}/src)
 
     foreach(DEPENDENCY ${ARG_DEPENDS})
         target_link_libraries(${TARGET} ${SCOPE} item3d::${DEPENDENCY})

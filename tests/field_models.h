@@ -1,4 +1,4 @@
-// Small models for the tests of src/field.
+// Small models for the tests of src/item3d/field.
 #pragma once
 
 #include "item3d/core/math.h"
