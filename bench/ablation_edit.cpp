@@ -2,14 +2,14 @@
 
 #include "item3d/core/files.h"
 #include "item3d/core/stage_times.h"
-#include "item3d/edit/outputs.h"
-#include "item3d/edit/surface_means.h"
-#include "item3d/evaluate/clip_score.h"
-#include "item3d/evaluate/model_pictures.h"
+#include "item3d/edit/outputs/outputs.h"
+#include "item3d/edit/outputs/surface_means.h"
 #include "item3d/hub/find_prior.h"
-#include "item3d/scene/io/load.h"
-#include "item3d/scene/io/save.h"
-#include "item3d/scene/light_layout.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/lighting/layout.h"
+#include "item3d/metrics/clip_score.h"
+#include "item3d/report/model_pictures.h"
 #include "item3d/suite/look_by_clip.h"
 
 #include <cmath>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "ablation_contenders.h"
-#include "item3d/models/clip_model.h"
-#include "item3d/models/vocabulary.h"
+#include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vocabulary.h"
 #include "item3d/suite/cases.h"
 
 #include <nlohmann/json.hpp>

@@ -2,9 +2,9 @@
 
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
-#include "item3d/evaluate/contact_sheet.h"
-#include "item3d/scene/io/load.h"
-#include "item3d/scene/io/save.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/report/contact_sheet.h"
 
 #include <algorithm>
 #include <cmath>

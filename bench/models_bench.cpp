@@ -1,8 +1,8 @@
 // What an iteration of an edit spends in networks of the embedded prior's size: U-Net, U-Net with a
 // gradient to the text (a learned source), autoencoder. Argument: rows of the batch. Weights are
 // random, which takes the same time.
-#include "item3d/models/autoencoder.h"
-#include "item3d/models/unet.h"
+#include "item3d/networks/diffusion/autoencoder.h"
+#include "item3d/networks/diffusion/unet.h"
 
 #include <ATen/autocast_mode.h>
 #include <benchmark/benchmark.h>

@@ -10,9 +10,9 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
 #include "item3d/render/shade.h"
-#include "item3d/scene/io/load.h"
-#include "item3d/scene/io/save.h"
 
 #include <CLI/CLI.hpp>
 

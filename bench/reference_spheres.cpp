@@ -2,9 +2,9 @@
 // (evaluated without our chain of levels, by summing over every texel of the map), what the choice
 // of reflectance model costs, and what our chain adds.
 #include "item3d/core/format.h"
+#include "item3d/io/load.h"
+#include "item3d/lighting/environment.h"
 #include "item3d/render/textured.h"
-#include "item3d/scene/environment.h"
-#include "item3d/scene/io/load.h"
 #include "item3d/scene/sphere.h"
 #include "reference_report.h"
 #include "reference_split_sum.h"

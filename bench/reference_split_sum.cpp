@@ -1,10 +1,10 @@
 #include "reference_split_sum.h"
 
 #include "item3d/core/parallel.h"
-#include "item3d/render/environment_light.h"
+#include "item3d/lighting/environment.h"
 #include "item3d/render/kernels/shade.h"
+#include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/shade.h"
-#include "item3d/scene/environment.h"
 
 #include <algorithm>
 #include <cmath>

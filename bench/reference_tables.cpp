@@ -1,9 +1,9 @@
 // The BSDF table, a white furnace, irradiance, and a texture's gradient.
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/io/load.h"
+#include "item3d/lighting/environment.h"
 #include "item3d/render/textured.h"
-#include "item3d/scene/environment.h"
-#include "item3d/scene/io/load.h"
 #include "reference_report.h"
 
 #include <fstream>

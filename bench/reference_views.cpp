@@ -1,9 +1,9 @@
 // A textured model from eight views: what is seen where, and its radiance.
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
-#include "item3d/render/occlusion.h"
+#include "item3d/io/load.h"
+#include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/textured.h"
-#include "item3d/scene/io/load.h"
 #include "reference_report.h"
 #include "reference_split_sum.h"
 

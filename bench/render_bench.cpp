@@ -1,8 +1,8 @@
 // How long the renderer's operations take. The mesh is a sphere of about as many triangles as a
 // scanned object; ITEM3D_BENCH_MODEL names a model to use instead.
 
+#include "item3d/io/load.h"
 #include "item3d/render/textured.h"
-#include "item3d/scene/io/load.h"
 #include "item3d/scene/sphere.h"
 
 #include <benchmark/benchmark.h>

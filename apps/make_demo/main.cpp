@@ -1,6 +1,6 @@
 // Writes the demo model that `make demo` edits: make_demo FILE.glb
 #include "item3d/core/error.h"
-#include "item3d/scene/io/save.h"
+#include "item3d/io/save.h"
 #include "mug.h"
 
 #include <cstdio>

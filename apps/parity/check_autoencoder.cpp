@@ -1,5 +1,5 @@
 #include "item3d/core/error.h"
-#include "item3d/models/autoencoder.h"
+#include "item3d/networks/diffusion/autoencoder.h"
 #include "parity.h"
 
 #include <torch/csrc/autograd/autograd.h>

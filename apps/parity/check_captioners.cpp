@@ -1,8 +1,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/models/blip.h"
-#include "item3d/models/blip2.h"
-#include "item3d/models/caption_tokenizer.h"
+#include "item3d/networks/vision_language/blip.h"
+#include "item3d/networks/vision_language/blip2.h"
+#include "item3d/text/caption_tokenizer.h"
 #include "parity.h"
 
 namespace item3d::parity {

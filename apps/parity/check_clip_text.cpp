@@ -1,5 +1,5 @@
 #include "item3d/core/error.h"
-#include "item3d/models/clip_text.h"
+#include "item3d/networks/vision_language/clip_text.h"
 #include "parity.h"
 
 #include <charconv>

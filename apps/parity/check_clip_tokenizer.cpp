@@ -1,6 +1,6 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/models/clip_tokenizer.h"
+#include "item3d/text/clip_tokenizer.h"
 #include "parity.h"
 
 namespace item3d::parity {

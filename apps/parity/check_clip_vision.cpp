@@ -1,5 +1,5 @@
-#include "item3d/models/clip_model.h"
-#include "item3d/models/clip_vision.h"
+#include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vision_language/clip_vision.h"
 #include "parity.h"
 
 namespace item3d::parity {

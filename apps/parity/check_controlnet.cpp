@@ -1,4 +1,4 @@
-#include "item3d/models/controlnet.h"
+#include "item3d/networks/diffusion/controlnet.h"
 #include "parity.h"
 
 namespace item3d::parity {

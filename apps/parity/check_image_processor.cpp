@@ -1,7 +1,7 @@
 #include "item3d/core/error.h"
-#include "item3d/models/image_processor.h"
+#include "item3d/io/load.h"
+#include "item3d/networks/vision_language/image_processor.h"
 #include "item3d/render/shade.h"
-#include "item3d/scene/io/load.h"
 #include "parity.h"
 
 namespace item3d::parity {

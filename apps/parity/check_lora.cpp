@@ -1,5 +1,5 @@
 #include "item3d/core/format.h"
-#include "item3d/models/lora.h"
+#include "item3d/networks/diffusion/lora.h"
 #include "parity.h"
 
 namespace item3d::parity {

@@ -1,6 +1,6 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/models/pipeline.h"
+#include "item3d/networks/diffusion/pipeline.h"
 #include "parity.h"
 
 namespace item3d::parity {

@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/guidance/noised_latents.h"
 #include "item3d/guidance/rdl.h"
-#include "item3d/models/pipeline.h"
+#include "item3d/networks/diffusion/pipeline.h"
 #include "parity.h"
 
 #include <torch/csrc/autograd/autograd.h>

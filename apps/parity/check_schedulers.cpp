@@ -1,4 +1,4 @@
-#include "item3d/models/sampler.h"
+#include "item3d/networks/diffusion/samplers/sampler.h"
 #include "parity.h"
 
 namespace item3d::parity {

@@ -1,5 +1,5 @@
-#include "item3d/models/pipeline.h"
-#include "item3d/models/textual_inversion.h"
+#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/textual_inversion.h"
 #include "parity.h"
 
 namespace item3d::parity {

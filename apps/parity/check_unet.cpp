@@ -1,4 +1,4 @@
-#include "item3d/models/unet.h"
+#include "item3d/networks/diffusion/unet.h"
 #include "parity.h"
 
 namespace item3d::parity {

@@ -1,8 +1,8 @@
 // Comparing networks with recorded outputs of the reference libraries: what the checkers share.
 #pragma once
 
-#include "item3d/models/config.h"
-#include "item3d/models/safetensors.h"
+#include "item3d/core/config.h"
+#include "item3d/tensors/safetensors.h"
 
 #include <nlohmann/json.hpp>
 #include <torch/types.h>

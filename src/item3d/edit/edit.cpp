@@ -2,8 +2,8 @@
 
 #include "item3d/core/files.h"
 #include "item3d/core/stage_times.h"
-#include "item3d/edit/optimize.h"
-#include "item3d/edit/outputs.h"
+#include "item3d/edit/optimize/optimize.h"
+#include "item3d/edit/outputs/outputs.h"
 #include "item3d/edit/scene.h"
 
 namespace item3d {

@@ -3,8 +3,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
-#include "item3d/models/precision.h"
-#include "item3d/models/verify.h"
+#include "item3d/networks/verify.h"
+#include "item3d/tensors/precision.h"
 
 #include <algorithm>
 #include <fstream>

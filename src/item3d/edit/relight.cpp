@@ -1,10 +1,10 @@
 #include "item3d/edit/relight.h"
 
 #include "item3d/core/error.h"
-#include "item3d/edit/optimize.h"
+#include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/scene.h"
 #include "item3d/edit/timing.h"
-#include "item3d/light/physical_light.h"
+#include "item3d/lighting/optimized/physical_light.h"
 
 namespace item3d {
 namespace {

@@ -3,10 +3,10 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/memory.h"
-#include "item3d/models/checkpoint.h"
-#include "item3d/models/precision.h"
-#include "item3d/models/vocabulary.h"
-#include "item3d/scene/io/load.h"
+#include "item3d/io/load.h"
+#include "item3d/networks/vocabulary.h"
+#include "item3d/tensors/checkpoint.h"
+#include "item3d/tensors/precision.h"
 
 namespace item3d {
 namespace {

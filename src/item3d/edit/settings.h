@@ -2,7 +2,7 @@
 #pragma once
 
 #include "item3d/guidance/guidance.h"
-#include "item3d/models/pipeline_extras.h"
+#include "item3d/networks/diffusion/pipeline_extras.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,9 +2,9 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
-#include "item3d/evaluate/color.h"
-#include "item3d/scene/environment.h"
-#include "item3d/scene/light_layout.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/lighting/layout.h"
+#include "item3d/metrics/color.h"
 
 #include <array>
 #include <cmath>

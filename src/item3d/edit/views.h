@@ -2,7 +2,7 @@
 #pragma once
 
 #include "item3d/edit/settings.h"
-#include "item3d/render/environment_light.h"
+#include "item3d/render/prefilter/environment_light.h"
 #include "item3d/scene/camera.h"
 #include "item3d/scene/image.h"
 #include "item3d/scene/model.h"

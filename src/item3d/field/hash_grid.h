@@ -1,7 +1,7 @@
 // The multi-resolution hash grid as a differentiable operation on tensors.
 #pragma once
 
-#include "item3d/field/hash_grid_kernels.h"
+#include "item3d/field/kernels/hash_grid.h"
 
 #include <torch/types.h>
 

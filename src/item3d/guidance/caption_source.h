@@ -13,8 +13,8 @@
 #pragma once
 
 #include "item3d/guidance/text_direction.h"
-#include "item3d/models/captioner.h"
-#include "item3d/models/pipeline.h"
+#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/vision_language/captioner.h"
 
 #include <memory>
 #include <optional>

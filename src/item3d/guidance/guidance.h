@@ -2,9 +2,9 @@
 #pragma once
 
 #include "item3d/guidance/text_direction.h"
-#include "item3d/models/pipeline.h"
-#include "item3d/models/safetensors.h"
-#include "item3d/models/shape_condition.h"
+#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/tensors/safetensors.h"
 
 #include <torch/types.h>
 

@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
 #include "item3d/guidance/timestep_schedule.h"
-#include "item3d/models/shape_condition.h"
+#include "item3d/networks/diffusion/shape_condition.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 

@@ -1,7 +1,7 @@
 // Directions between sentences, in the space of their embeddings.
 #pragma once
 
-#include "item3d/models/text_embedding.h"
+#include "item3d/networks/diffusion/text_embedding.h"
 
 namespace item3d {
 

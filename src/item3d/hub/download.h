@@ -1,9 +1,9 @@
 // One file of the hub into the cache's blobs.
 #pragma once
 
+#include "item3d/hub/backoff.h"
 #include "item3d/hub/cache.h"
 #include "item3d/hub/http.h"
-#include "item3d/hub/patience.h"
 
 #include <cstdint>
 #include <functional>

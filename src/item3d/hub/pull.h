@@ -1,7 +1,7 @@
 // A prior from the Hugging Face hub, or a server that speaks its API, into the local cache.
 #pragma once
 
-#include "item3d/hub/patience.h"
+#include "item3d/hub/backoff.h"
 
 #include <cstdint>
 #include <filesystem>

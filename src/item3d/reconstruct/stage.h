@@ -4,9 +4,9 @@
 
 #include "item3d/core/random.h"
 #include "item3d/field/adam.h"
-#include "item3d/models/checkpoint.h"
 #include "item3d/reconstruct/surface/appearance.h"
 #include "item3d/reconstruct/surface/view_render.h"
+#include "item3d/tensors/checkpoint.h"
 
 #include <string>
 #include <vector>

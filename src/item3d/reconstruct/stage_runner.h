@@ -2,9 +2,9 @@
 #pragma once
 
 #include "item3d/core/progress.h"
+#include "item3d/reconstruct/outputs/stage_preview.h"
 #include "item3d/reconstruct/reconstruct.h"
 #include "item3d/reconstruct/stage.h"
-#include "item3d/reconstruct/stage_preview.h"
 
 #include <chrono>
 #include <optional>

@@ -1,5 +1,5 @@
 #include "item3d/core/error.h"
-#include "item3d/render/occlusion.h"
+#include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/textured.h"
 
 namespace item3d {

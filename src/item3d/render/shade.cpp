@@ -5,8 +5,8 @@
 #include "item3d/render/checks.h"
 #include "item3d/render/dispatch.h"
 #include "item3d/render/kernels/shade.h"
+#include "item3d/render/prefilter/specular_chain.h"
 #include "item3d/render/scatter_sum.h"
-#include "item3d/render/specular_chain.h"
 
 #include <torch/csrc/autograd/custom_function.h>
 

@@ -1,7 +1,7 @@
 // Light and material to radiance, at covered pixels alone; and pictures from radiance.
 #pragma once
 
-#include "item3d/render/environment_light.h"
+#include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/rasterize.h"
 
 #include <torch/types.h>

@@ -1,7 +1,7 @@
 #include "item3d/suite/cases.h"
 
 #include "item3d/core/error.h"
-#include "item3d/prior/captions.h"
+#include "item3d/prior/data/captions.h"
 #include "item3d/suite/models.h"
 
 #include <algorithm>

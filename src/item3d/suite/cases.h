@@ -1,8 +1,8 @@
 // The edits that methods and settings are judged by, and what they start from.
 #pragma once
 
-#include "item3d/evaluate/color.h"
-#include "item3d/models/vocabulary.h"
+#include "item3d/metrics/color.h"
+#include "item3d/networks/vocabulary.h"
 #include "item3d/scene/model.h"
 
 #include <string>

@@ -5,15 +5,15 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/edit.h"
-#include "item3d/evaluate/html.h"
-#include "item3d/evaluate/model_pictures.h"
 #include "item3d/hub/find_prior.h"
-#include "item3d/models/checkpoint.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/lighting/layout.h"
 #include "item3d/render/shade.h"
-#include "item3d/scene/io/load.h"
-#include "item3d/scene/io/save.h"
-#include "item3d/scene/light_layout.h"
+#include "item3d/report/html.h"
+#include "item3d/report/model_pictures.h"
 #include "item3d/suite/look_by_clip.h"
+#include "item3d/tensors/checkpoint.h"
 
 #include <algorithm>
 #include <memory>

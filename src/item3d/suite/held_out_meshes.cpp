@@ -1,9 +1,9 @@
 #include "item3d/suite/held_out_meshes.h"
 
 #include "item3d/core/files.h"
-#include "item3d/prior/shape_models.h"
-#include "item3d/prior/shapes.h"
-#include "item3d/scene/io/save.h"
+#include "item3d/io/save.h"
+#include "item3d/prior/data/shapes/shape_models.h"
+#include "item3d/prior/data/shapes/shapes.h"
 
 namespace item3d {
 

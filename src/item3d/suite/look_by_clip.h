@@ -1,8 +1,8 @@
 // Which of a prior's words a CLIP sees on pictures.
 #pragma once
 
-#include "item3d/models/clip_model.h"
-#include "item3d/models/vocabulary.h"
+#include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vocabulary.h"
 
 #include <torch/types.h>
 

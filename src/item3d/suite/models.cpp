@@ -2,8 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/field/fill.h"
-#include "item3d/field/uv_raster.h"
+#include "item3d/field/atlas/uv_raster.h"
+#include "item3d/field/bake/fill.h"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 // What libitem3d_cuda.so offers to the neural texture (item3d/render/cuda/table.h has the rules).
 #pragma once
 
-#include "item3d/field/adam_kernels.h"
-#include "item3d/field/hash_grid_kernels.h"
+#include "item3d/field/kernels/adam.h"
+#include "item3d/field/kernels/hash_grid.h"
 #include "item3d/render/cuda/table.h"
 
 namespace item3d::cuda {

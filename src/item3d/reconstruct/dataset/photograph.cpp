@@ -3,9 +3,9 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
-#include "item3d/evaluate/picture.h"
+#include "item3d/io/load.h"
 #include "item3d/reconstruct/dataset/orientation.h"
-#include "item3d/scene/io/load.h"
+#include "item3d/report/picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "item3d/reconstruct/surface/plain_model.h"
 
-#include "item3d/field/atlas.h"
-#include "item3d/scene/io/load.h"
+#include "item3d/field/atlas/atlas.h"
+#include "item3d/io/load.h"
 
 namespace item3d {
 

@@ -1,8 +1,8 @@
 #include "item3d/reconstruct/surface/trainable_light.h"
 
 #include "item3d/core/error.h"
+#include "item3d/lighting/environment.h"
 #include "item3d/render/shade.h"
-#include "item3d/scene/environment.h"
 
 #include <cmath>
 

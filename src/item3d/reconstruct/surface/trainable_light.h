@@ -1,7 +1,7 @@
 // The unknown light that the photographs were taken in.
 #pragma once
 
-#include "item3d/render/environment_light.h"
+#include "item3d/render/prefilter/environment_light.h"
 #include "item3d/scene/image.h"
 
 #include <torch/types.h>

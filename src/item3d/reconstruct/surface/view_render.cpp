@@ -1,6 +1,6 @@
 #include "item3d/reconstruct/surface/view_render.h"
 
-#include "item3d/evaluate/picture.h"
+#include "item3d/report/picture.h"
 
 #include <algorithm>
 #include <cmath>

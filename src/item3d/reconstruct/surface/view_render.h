@@ -4,8 +4,8 @@
 #include "item3d/core/random.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/reconstruct/dataset/dataset.h"
-#include "item3d/render/environment_light.h"
-#include "item3d/render/occlusion.h"
+#include "item3d/render/occlusion/occlusion.h"
+#include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/shade.h"
 
 #include <torch/types.h>

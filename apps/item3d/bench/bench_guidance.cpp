@@ -1,0 +1,138 @@
+// item3d bench guidance: how long one step of guidance takes with a prior, and what memory.
+#include "bench/bench_guidance.h"
+
+#include "command.h"
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/stage_times.h"
+#include "item3d/guidance/guidance.h"
+#include "item3d/guidance/noised_latents.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/networks/diffusion/pipeline_extras.h"
+#include "item3d/tensors/precision.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace item3d {
+namespace {
+
+struct BenchGuidanceCommand : CommonOptions {
+    std::string prior;
+    std::string precision = "auto";
+    std::string method = "rdl";
+    std::string adjust = "off";
+    int size = 0;  ///< 0: the prior's own
+    int batch = 1;
+    int repeats = 5;
+};
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+void run(const BenchGuidanceCommand& options, torch::Device device) {
+    const auto folder = find_prior(options.prior);
+    const torch::Dtype precision = choose_precision(options.precision, device);
+    const double begin = seconds_now();
+    GuidanceOptions guidance_options;
+    guidance_options.method = options.method;
+    guidance_options.adjust = options.adjust;
+    const std::string from = "a red mug", to = "a golden mug";
+    const auto prior = std::make_shared<Pipeline>(load_to_run(  // as an edit does
+        folder, device, precision, {}, {{from, to, default_negative_prompt()}, false}));
+    const double loaded = seconds_now();
+    const auto guidance = make_guidance(prior, from, to, guidance_options);
+    const int size =
+        options.size > 0 ? options.size : prior->unet->config().sample_size * prior->downscale();
+    const torch::Tensor images =
+        torch::rand({options.batch, 3, size, size}, device).set_requires_grad(true);
+    const torch::Tensor nowhere = torch::zeros({options.batch, size, size, 3}, device);
+    const SeenShape shape{torch::ones({options.batch, size, size}, device), nowhere, nowhere};
+
+    GuidanceInput input{images, shape};
+    if (guidance->needs_reference()) input.reference = torch::rand_like(images);
+
+    std::vector<double> step, encode, unet;
+    double first = 0;
+    Progress progress("bench", options.repeats);
+    for (int i = -1; i < options.repeats; ++i) {
+        if (interrupted()) throw Interrupted("nothing was written");
+        const double start = seconds_now();
+        const GuidanceOutput output = guidance->step(input, i + 1);
+        output.latents.backward(output.latents_gradient);
+        // Waits for the device as well.
+        ITEM3D_CHECK(images.grad().isfinite().all().item<bool>(), "the gradient is not finite");
+        const double taken = seconds_now() - start;
+        images.mutable_grad() = torch::Tensor();
+        if (i < 0) {
+            first = seconds_now() - begin;
+            continue;
+        }
+        step.push_back(taken);
+        encode.push_back(output.seconds_encode);
+        unet.push_back(output.seconds_unet);
+        progress.update(i + 1);
+    }
+    progress.finish();
+    const double seconds = median(step), peak = static_cast<double>(peak_memory_bytes());
+    const double backward = std::max(0.0, seconds - median(encode) - median(unet));
+    if (options.json) {
+        print_json({{"prior", folder.string()},
+                    {"method", options.method},
+                    {"adjust", options.adjust},
+                    {"precision", precision_name(precision)},
+                    {"size", size},
+                    {"batch", options.batch},
+                    {"load_seconds", loaded - begin},
+                    {"first_step_after_seconds", first},
+                    {"seconds_per_step", seconds},
+                    {"encode_seconds", median(encode)},
+                    {"unet_seconds", median(unet)},
+                    {"backward_seconds", backward},
+                    {"peak_memory_bytes", peak}});
+        return;
+    }
+    fmt::print("{}, {}, {} x {} pixels, batch {}, {}\n", folder.string(), options.method, size,
+               size, options.batch, precision_name(precision));
+    fmt::print("  load                 {:8.2f} s\n", loaded - begin);
+    fmt::print("  first step done after{:8.2f} s\n", first);
+    fmt::print("  a step               {:8.3f} s\n", seconds);
+    fmt::print("    encode             {:8.3f} s\n", median(encode));
+    fmt::print("    U-Net              {:8.3f} s\n", median(unet));
+    fmt::print("    back to the picture{:8.3f} s\n", backward);
+    fmt::print("  peak memory          {:8.2f} GB\n", peak / 1e9);
+}
+
+}  // namespace
+
+void add_bench_guidance(CLI::App& app) {
+    auto options = std::make_shared<BenchGuidanceCommand>();
+    CLI::App* command = add_command(
+        app, "guidance", "Seconds and memory of one step of guidance with a prior", *options);
+    command->add_option(
+        "--prior", options->prior,
+        "A folder in the diffusers layout, or a name; without it, the embedded one");
+    command->add_option("--precision", options->precision, "Of the networks")
+        ->check(CLI::IsMember(precision_names()))
+        ->capture_default_str();
+    command->add_option("--guidance", options->method, "The method")
+        ->check(CLI::IsMember(guidance_methods()))
+        ->capture_default_str();
+    command->add_option("--adjust", options->adjust, "The adjustment of the direction")
+        ->check(CLI::IsMember(adjustment_names()))
+        ->capture_default_str();
+    command->add_option("--size", options->size, "Pixels of a side; without it, the prior's own")
+        ->check(CLI::Range(64, 4096));
+    command->add_option("--batch", options->batch, "Pictures a step")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    command->add_option("--repeats", options->repeats, "Steps after the first; the median counts")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    command->callback([options] { run(*options, start_command(*options)); });
+}
+
+}  // namespace item3d

@@ -1,0 +1,134 @@
+// item3d caption: a sentence for a picture, or for a model seen from all around.
+#include "command.h"
+#include "edit/picture_options.h"
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/io/load.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/lighting/layout.h"
+#include "item3d/networks/vision_language/captioner.h"
+#include "item3d/report/model_pictures.h"
+#include "item3d/report/picture.h"
+#include "item3d/tensors/precision.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+namespace {
+
+struct CaptionCommand : CommonOptions {
+    std::string input;
+    std::string captioner;
+    std::string precision = "auto";
+    std::string light = "studio";
+    int views = 4;
+    CaptionOptions caption{.prefix = {}, .beams = caption_beams};
+};
+
+constexpr int view_pixels = 512;
+constexpr int least_pixels = 8;  ///< of a side of a picture that can show something
+
+torch::Tensor to_bytes(const torch::Tensor& picture) {
+    return (picture.nan_to_num(0).clamp(0, 1) * 255).round().to(torch::kUInt8);
+}
+
+/// The pictures to be captioned, bytes [H, W, C] each: one, or one a view of a model.
+std::vector<torch::Tensor> load_pictures(const CaptionCommand& options, torch::Device device) {
+    const std::string extension = lower_extension(options.input);
+    if (extension != ".glb" && extension != ".gltf" && extension != ".obj") {
+        const Image image = load_image(options.input);
+        if (std::min(image.width, image.height) < least_pixels)
+            throw InputError(
+                options.input,
+                fmt::format("a picture of {} x {} pixels shows nothing", image.width, image.height),
+                fmt::format("give one of at least {0} x {0}", least_pixels));
+        const bool linear = extension == ".exr" || extension == ".hdr";
+        return {to_bytes(to_tensor(linear ? to_display(image) : image))};
+    }
+    const Model model = load_model(options.input);
+    const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
+    const torch::Tensor views =
+        over_white(draw_pictures(model, light, picture_cameras(model, options.views), view_pixels));
+    std::vector<torch::Tensor> pictures;
+    for (const torch::Tensor& view : views.cpu().unbind(0))
+        pictures.push_back(to_bytes(view.permute({1, 2, 0})));
+    return pictures;
+}
+
+void run_caption(const CaptionCommand& options, torch::Device device) {
+    const std::unique_ptr<Captioner> captioner =
+        load_captioner(options.captioner, device, choose_precision(options.precision, device));
+    const std::vector<torch::Tensor> pictures = load_pictures(options, device);
+
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string caption = captioner->caption_together(pictures, options.caption);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    if (options.json) {
+        // What each view says alone shows where the views disagree.
+        nlohmann::json of_views = nlohmann::json::array();
+        if (pictures.size() == 1) {
+            of_views.push_back(caption);
+        } else {
+            for (const Caption& alone : captioner->captions(pictures, options.caption))
+                of_views.push_back(alone.text);
+        }
+        print_json({{"file", options.input},
+                    {"captioner", options.captioner},
+                    {"prefix", options.caption.prefix},
+                    {"beams", options.caption.beams},
+                    {"caption", caption},
+                    {"of_views", of_views},
+                    {"seconds", took.count()}});
+    } else {
+        fmt::print("{}\n", caption);
+    }
+}
+
+}  // namespace
+
+void add_caption_command(CLI::App& app) {
+    auto options = std::make_shared<CaptionCommand>();
+    CLI::App* command =
+        add_command(app, "caption", "Describe a picture or a model in words", *options);
+    command
+        ->add_option("IMAGE|MODEL", options->input,
+                     "A .png, .jpg, .hdr or .exr picture, or a .glb, .gltf or .obj model")
+        ->required();
+    command->add_option(
+        "--captioner", options->captioner,
+        "A folder with BLIP or BLIP-2 (OPT) in the transformers layout; without it, "
+        "the embedded prior's captioner");
+    command->add_option("--prefix", options->caption.prefix,
+                        "What the caption goes on from, as in \"a photo of\"");
+    command->add_option("--beams", options->caption.beams, "Of the beam search; 1: greedy")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    command
+        ->add_option("--max-tokens", options->caption.max_new_tokens,
+                     "Longest caption, in tokens behind the prefix")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command
+        ->add_option("--views", options->views,
+                     "Around a model, which the caption is made from together")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    command
+        ->add_option("--light", options->light,
+                     "On a model: studio, noon, sunset, overcast, night, or an .hdr or .exr file")
+        ->capture_default_str();
+    command->add_option("--precision", options->precision, "Of the networks: auto, fp32 or bf16")
+        ->capture_default_str();
+    command->callback([options] {
+        const torch::Device device = start_command(*options);
+        options->captioner = given_or_embedded(options->captioner, "captioner", "--captioner");
+        run_caption(*options, device);
+    });
+}
+
+}  // namespace item3d

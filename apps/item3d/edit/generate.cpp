@@ -1,0 +1,282 @@
+// item3d generate: pictures that a prior draws from a prompt, in the shape of a model where it
+// takes one.
+#include "command.h"
+#include "edit/extras_options.h"
+#include "edit/light_options.h"
+#include "edit/picture_options.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/random.h"
+#include "item3d/edit/optimize/render_view.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/networks/diffusion/generate_defaults.h"
+#include "item3d/networks/diffusion/pipeline_extras.h"
+#include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/networks/vocabulary.h"
+#include "item3d/prior/data/shapes/shape_models.h"
+#include "item3d/prior/data/shapes/shapes.h"
+#include "item3d/render/rasterize.h"
+#include "item3d/render/shade.h"
+#include "item3d/report/contact_sheet.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* no_shape = "none";              ///< for --like
+constexpr std::uint64_t shape_stream = 0x7368617065;  ///< of the seed
+
+struct GenerateCommand : CommonOptions {
+    GenerateOptions generate;
+    std::string output;
+    std::string prior;
+    std::string size;
+    std::string like;
+    float guidance_scale = 0;                          ///< 0: the prior's
+    int steps = 0;                                     ///< 0: the prior's
+    nlohmann::json extras = nlohmann::json::object();  ///< what of PipelineExtras is given
+};
+
+/// What was not said is the prior's own.
+void complete_options(const GenerateCommand& command, const fs::path& prior,
+                      const Pipeline& pipeline, GenerateOptions& options) {
+    const GenerateOptions defaults = generate_defaults(prior, pipeline, options.scheduler);
+    options.scheduler = defaults.scheduler;
+    options.steps = command.steps > 0 ? command.steps : defaults.steps;
+    options.guidance_scale =
+        command.guidance_scale > 0 ? command.guidance_scale : defaults.guidance_scale;
+}
+
+/// A model from the default view, as the pipeline takes it.
+torch::Tensor condition_of(const Model& model, PictureSize size, const Pipeline& pipeline) {
+    const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+    const Camera camera = default_view(model, aspect);
+    const Geometry geometry = Geometry::from_model(model, pipeline.device());
+    const Raster raster = rasterize(geometry, {camera}, size.width, size.height);
+    const Surface surface = interpolate_surface(geometry, raster, {camera});
+    // Sizes that the model cannot make are rounded up here and refused by generate().
+    const int cell = pipeline.downscale();
+    const auto cells = [&](int pixels) { return (pixels + cell - 1) / cell; };
+    return condition_of_shape(
+        pipeline, seen_shape(raster, surface, bounding_sphere(model)),
+        torch::empty({1, 1, cells(size.height), cells(size.width)}, pipeline.device()));
+}
+
+/// The prior's own kind of shape, another variant for each picture while there are some.
+torch::Tensor own_condition(const std::string& shape_class, const GenerateOptions& options,
+                            const Pipeline& pipeline) {
+    std::map<int, torch::Tensor> of_variant;
+    std::vector<torch::Tensor> conditions;
+    for (int i = 0; i < options.count; ++i) {
+        Random random(options.seed, shape_stream, static_cast<std::uint64_t>(i));
+        const auto variant = static_cast<int>(random.index(training_variants));
+        torch::Tensor& condition = of_variant[variant];
+        if (!condition.defined())
+            condition = condition_of(shape_model(shape_class, variant),
+                                     {options.width, options.height}, pipeline);
+        conditions.push_back(condition);
+    }
+    return torch::cat(conditions);
+}
+
+/// Whose shape the pictures have; neither: the prompt alone says what is there.
+struct ShapeChoice {
+    std::string model;      ///< file
+    std::string own_class;  ///< of the program's own shapes
+
+    bool any() const { return !model.empty() || !own_class.empty(); }
+};
+
+ShapeChoice choose_shape(const GenerateCommand& command, const Pipeline& pipeline,
+                         const PipelineExtras& extras, const PriorVocabulary& vocabulary) {
+    if (command.like == no_shape) return {};
+    if (!command.like.empty()) return {command.like, ""};
+    // A prior that came from elsewhere was not trained on shapes like ours.
+    const bool knows_ours = !vocabulary.open() && takes_shape(pipeline);
+    if (!knows_ours || !extras.controlnet.empty()) return {};
+    return {"", shape_named(command.generate.prompt).value_or("")};
+}
+
+/// Throws where the prior cannot be told a shape, or cannot do without.
+void check_shape(const ShapeChoice& shape, const fs::path& prior, const Pipeline& pipeline,
+                 const PipelineExtras& extras) {
+    const int channels = pipeline.condition_channels();
+    if (channels > 1 && channels != surface_condition_channels) {
+        throw InputError(prior.string(),
+                         fmt::format("its U-Net takes {} further channels, which generate cannot "
+                                     "fill",
+                                     channels),
+                         "use a text-to-image or depth-to-image model");
+    }
+    if (shape.model.empty() && !extras.controlnet.empty())
+        throw InputError("--controlnet", "has no depth to look at", "name a model with --like");
+    if (!shape.model.empty() && !takes_shape(pipeline))
+        throw InputError(prior.string(), "its U-Net takes no depth",
+                         "leave out --like, or add a depth ControlNet with --controlnet");
+}
+
+/// What the pipeline is told of the shape; undefined where there is none.
+torch::Tensor shape_condition(const ShapeChoice& shape, const GenerateOptions& options,
+                              const Pipeline& pipeline) {
+    if (!shape.model.empty())
+        return condition_of(load_model(shape.model), {options.width, options.height}, pipeline);
+    if (shape.own_class.empty()) return {};
+    note(
+        fmt::format("drawn in the shape of a {} of its own (--like MODEL: of that model; "
+                    "--like none: as the prompt alone has it)",
+                    shape.own_class));
+    return own_condition(shape.own_class, options, pipeline);
+}
+
+/// Throws unless `output` can be a picture's file; makes its folder.
+void open_output(const fs::path& output) {
+    if (output.extension() != ".png")
+        throw UsageError(fmt::format("-o {}: expected the name of a .png file", output.string()));
+    if (fs::is_directory(output))
+        throw InputError(output.string(), "is a folder, expected a name for a picture");
+    if (output.has_parent_path()) make_output_folder(output.parent_path());
+}
+
+/// A single picture is `output` itself. Several get numbers behind its name, and it becomes a sheet
+/// of them all. Returns what was written.
+std::vector<fs::path> save_pictures(const fs::path& output, const torch::Tensor& images) {
+    if (images.size(0) == 1) {
+        save_image(output, to_image(images[0].cpu()));
+        return {output};
+    }
+    std::vector<fs::path> files{output};
+    std::vector<Tile> tiles;
+    for (std::int64_t i = 0; i < images.size(0); ++i) {
+        files.push_back(output.parent_path() /
+                        fmt::format("{}_{:03}.png", output.stem().string(), i));
+        tiles.push_back({to_image(images[i].cpu()), ""});
+        save_image(files.back(), tiles.back().picture);
+    }
+    save_image(output, contact_sheet(tiles));
+    return files;
+}
+
+std::string list_schedulers() {
+    std::string list = "Schedulers:\n";
+    for (const SamplerKind& kind : sampler_kinds())
+        list += fmt::format("  {:<16} {} ({} steps unless --steps says)\n", kind.name,
+                            kind.description, kind.usual_steps);
+    return list;
+}
+
+void run_generate(const GenerateCommand& command, torch::Device device) {
+    if (command.generate.prompt.find_first_not_of(" \t\n") == std::string::npos)
+        throw InputError("PROMPT", "is empty", "say what to draw, as in \"a golden vase\"");
+    open_output(command.output);
+    const fs::path prior = find_prior(command.prior);
+    Pipeline pipeline = Pipeline::load(prior, device);
+    const auto extras = command.extras.get<PipelineExtras>();
+    apply_extras(pipeline, extras);
+    const PriorVocabulary vocabulary = PriorVocabulary::load(prior);
+    const ShapeChoice shape = choose_shape(command, pipeline, extras, vocabulary);
+    check_shape(shape, prior, pipeline, extras);
+    const std::string warning = vocabulary.warning(command.generate.prompt, shape.any());
+    if (!warning.empty()) warn(warning);
+    warn_of_lost_words(*pipeline.tokenizer, "PROMPT", command.generate.prompt);
+
+    GenerateOptions options = command.generate;
+    options.prompt = vocabulary.reading(options.prompt);
+    complete_options(command, prior, pipeline, options);
+    const int native = pipeline.unet->config().sample_size * pipeline.downscale();
+    const PictureSize size =
+        command.size.empty() ? PictureSize{native, native} : parse_size(command.size);
+    options.width = size.width;
+    options.height = size.height;
+
+    const torch::Tensor condition = shape_condition(shape, options, pipeline);
+
+    nlohmann::json names = nlohmann::json::array();
+    for (const fs::path& file :
+         save_pictures(command.output, generate(pipeline, options, condition))) {
+        names.push_back(file.string());
+        if (!command.json) fmt::print("{}\n", file.string());
+    }
+    if (command.json) {
+        print_json({{"files", names},
+                    {"prompt", options.prompt},
+                    {"negative_prompt", options.negative_prompt.value_or("")},
+                    {"prior", prior.string()},
+                    {"like", command.like},
+                    {"own_shape", shape.own_class},
+                    {"width", size.width},
+                    {"height", size.height},
+                    {"scheduler", options.scheduler},
+                    {"steps", options.steps},
+                    {"guidance_scale", options.guidance_scale},
+                    {"seed", options.seed},
+                    {"extras", extras}});
+    }
+}
+
+}  // namespace
+
+void add_generate_command(CLI::App& app) {
+    auto options = std::make_shared<GenerateCommand>();
+    CLI::App* command =
+        add_command(app, "generate", "Draw pictures from a prompt with the prior alone", *options);
+    command->add_option("PROMPT", options->generate.prompt, "What to draw, as in \"a golden vase\"")
+        ->required();
+    command
+        ->add_option("-o,--output", options->output,
+                     "A .png file; of several pictures a sheet, and each with a number behind its "
+                     "name")
+        ->required();
+    command->add_option(
+        "--prior", options->prior,
+        "A folder in the diffusers layout, or a name (item3d prior pull); without it, "
+        "the prior that comes along");
+    command->add_option_function<std::string>(
+        "--negative-prompt",
+        [options](const std::string& text) { options->generate.negative_prompt = text; },
+        "What not to draw");
+    std::vector<std::string> schedulers;
+    for (const SamplerKind& kind : sampler_kinds())
+        schedulers.push_back(kind.name);
+    command
+        ->add_option("--scheduler", options->generate.scheduler,
+                     "How to sample, see below; without it, as the prior's folder says")
+        ->check(CLI::IsMember(schedulers));
+    command
+        ->add_option("--steps", options->steps,
+                     "Denoising steps; without it, the prior's or the scheduler's usual number")
+        ->check(CLI::Range(1, 1000));
+    command
+        ->add_option("--guidance-scale,--cfg", options->guidance_scale,
+                     "Weight of the prompt (classifier-free guidance); without it, the prior's own")
+        ->check(number_between(0.1f, 1000));
+    command->add_option("--seed", options->generate.seed, "Of the noise that it starts from")
+        ->capture_default_str();
+    command->add_option("--count", options->generate.count, "How many pictures")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command->add_option("--size", options->size,
+                        "WxH in pixels, multiples of 8 for most priors; without it, the size that "
+                        "the prior was trained on");
+    command->add_option(
+        "--like", options->like,
+        "A model whose shape, seen as render sees it, the picture shall have. Without "
+        "it the embedded prior takes a shape of its own for a thing that it knows; "
+        "none: the prompt alone says what is there");
+    add_extras_options(*command, options->extras);
+    command->footer(list_schedulers());
+    command->callback([options] { run_generate(*options, start_command(*options)); });
+}
+
+}  // namespace item3d

@@ -1,0 +1,311 @@
+// item3d relight: the same model under another light, chosen and changed by hand, or by words.
+#include "command.h"
+#include "edit/light_options.h"
+#include "edit/picture_options.h"
+#include "edit/relight_words.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/version.h"
+#include "item3d/io/gltf/light.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/lighting/layout.h"
+#include "item3d/lighting/presets/sky_hour.h"
+#include "item3d/render/occlusion/occlusion.h"
+#include "item3d/render/prefilter/image_based_light.h"
+#include "item3d/render/shade.h"
+#include "item3d/render/textured.h"
+#include "item3d/report/animation.h"
+#include "item3d/report/contact_sheet.h"
+#include "item3d/report/model_pictures.h"
+#include "item3d/report/picture.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
+
+struct RelightCommand : CommonOptions {
+    std::string model;
+    std::string output;
+    std::string light = "studio";
+    std::optional<float> sky;  ///< hour; instead of light
+    std::string from_light = "studio";
+    LightOptions change;
+    RelightWords words;
+    bool punctual = false;
+    bool image_based = false;
+    bool shadows = true;
+    int views = 6;
+    int frames = 30;
+    int size = 384;
+};
+
+/// Cameras around the model, of which the first sees it as `item3d render` does, from where left
+/// and right are told.
+std::vector<Camera> cameras_around(const Model& model, int count) {
+    std::vector<Camera> cameras = picture_cameras(model, count);
+    const auto bounds = model.bounds();
+    const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
+    const Mat4 turn = glm::translate(Mat4(1), centre) *
+                      glm::rotate(Mat4(1), default_azimuth, Vec3(0, 1, 0)) *
+                      glm::translate(Mat4(1), -centre);
+    for (Camera& camera : cameras)
+        camera.camera_to_world = turn * camera.camera_to_world;
+    return cameras;
+}
+
+/// Draws a model in one light, with the shadows that it throws upon itself.
+class LitPainter {
+  public:
+    LitPainter(const Model& model, const Image& light, bool shadows, torch::Device device)
+        : model_(model),
+          geometry_(Geometry::from_model(model, device)),
+          materials_(model, device),
+          light_(prefilter(light, 256, device)) {
+        if (!shadows) return;
+        OcclusionOptions options;
+        options.light = light;
+        occlusion_ = std::make_shared<Occlusion>(geometry_, &model, options);
+    }
+
+    std::vector<Image> draw(int count, int pixels) const {
+        const torch::NoGradGuard no_grad;
+        RenderOptions options;
+        options.width = pixels;
+        options.height = pixels;
+        options.occlusion = occlusion_;
+        std::vector<Image> pictures;
+        for (const Camera& camera : cameras_around(model_, count)) {
+            const torch::Tensor picture = render(geometry_, materials_, light_, {camera}, options);
+            pictures.push_back(to_display(to_image(picture[0].cpu())));
+        }
+        return pictures;
+    }
+
+  private:
+    const Model& model_;
+    Geometry geometry_;
+    TexturedMaterials materials_;
+    EnvironmentLight light_;
+    std::shared_ptr<const Occlusion> occlusion_;
+};
+
+Image views_sheet(const std::vector<Image>& pictures, const std::string& title) {
+    std::vector<Tile> tiles;
+    for (const Image& picture : pictures)
+        tiles.push_back({picture, ""});
+    ContactSheetOptions options;
+    options.columns = std::min<int>(3, static_cast<int>(tiles.size()));
+    options.title = title;
+    return contact_sheet(tiles, options);
+}
+
+/// A row for each light: the light itself, and up to three views.
+Image comparison(const std::vector<Image>& before, const std::vector<Image>& after,
+                 const Image& old_light, const Image& new_light, const std::string& title) {
+    std::vector<Tile> tiles;
+    const std::size_t views = std::min<std::size_t>(3, before.size());
+    const auto add_row = [&](const Image& light, const std::vector<Image>& pictures,
+                             const std::string& label) {
+        tiles.push_back({light_picture(light, pictures.front().width), label});
+        for (std::size_t i = 0; i < views; ++i)
+            tiles.push_back({pictures[i], ""});
+    };
+    add_row(old_light, before, "before");
+    add_row(new_light, after, "after");
+    ContactSheetOptions options;
+    options.columns = static_cast<int>(views) + 1;
+    options.title = title;
+    return contact_sheet(tiles, options);
+}
+
+std::string light_title(const RelightCommand& options) {
+    if (options.words.given()) return options.words.to;
+    if (!options.change.lit.empty()) return options.change.lit;
+    return options.sky ? fmt::format("the sky at {:g} o'clock", *options.sky)
+                       : fs::path(options.light).stem().string();
+}
+
+/// What guidance finds may be tinted and exposed; what else changes a light says where it comes
+/// from, and so do the words.
+void refuse_contradictions(const RelightCommand& options, bool light_is_given) {
+    if (!options.words.given()) {
+        if (options.words.resume || !options.words.overrides.empty() ||
+            !options.words.prior.empty())
+            throw UsageError("--prior and the options below it are those of --from and --to");
+        return;
+    }
+    const LightOptions& change = options.change;
+    if (light_is_given || options.sky)
+        throw UsageError(
+            "--to finds the light that --light and --sky give: leave out one of them "
+            "(--from-light says where to begin)");
+    if (!change.sun.empty() || !change.lit.empty() || change.strength || change.rotation != 0 ||
+        change.tilt != 0)
+        throw UsageError(
+            "--to says itself where the light comes from: without --sun, --lit, "
+            "--strength, --rotate and --tilt");
+}
+
+Image chosen_light(const RelightCommand& options, const std::optional<SunSetting>& sun) {
+    const Image base = options.sky
+                           ? make_sky_at(*options.sky)
+                           : load_light(options.light, parse_light_layout(options.change.layout));
+    return apply(options.change, sun, base);
+}
+
+/// What is drawn under both lights, and written.
+void write_pictures(const RelightCommand& options, const Model& model, const Image& old_image,
+                    const Image& new_image, torch::Device device) {
+    const fs::path folder = options.output;
+    const LitPainter old_painter(model, old_image, options.shadows, device);
+    const LitPainter painter(model, new_image, options.shadows, device);
+    const auto before = old_painter.draw(options.views, options.size);
+    const auto after = painter.draw(options.views, options.size);
+    const std::string title = light_title(options);
+    save_image(folder / "before.png",
+               views_sheet(before, fs::path(options.from_light).stem().string()));
+    save_image(folder / "after.png", views_sheet(after, title));
+    save_image(folder / "sheet.png", comparison(before, after, old_image, new_image, title));
+    if (interrupted()) throw Interrupted("the turntable was not drawn");
+
+    const int frame_size = std::max(16, options.size * 3 / 4);
+    std::vector<Image> frames = painter.draw(options.frames, frame_size);
+    for (Image& frame : frames)
+        frame = flatten(frame, turntable_ground);
+    write_atomically(folder / "turntable.webp",
+                     std::span<const std::uint8_t>(encode_animation(frames)));
+}
+
+/// What model.glb is to bring along. Viewers add up all lights, so where the brightest lobe is one
+/// by itself, the surroundings do without.
+ModelLights lights_for_model(const RelightCommand& options, const Image& light,
+                             const LightLobe& lobe) {
+    ModelLights lights;
+    if (options.punctual) lights.sun = DirectionalLight{lobe.direction, Vec3(lobe.irradiance)};
+    if (options.image_based) {
+        lights.surroundings =
+            make_image_based_light(options.punctual ? without_lobe(light, lobe) : light);
+    }
+    return lights;
+}
+
+void run_relight(const RelightCommand& options, torch::Device device) {
+    const std::optional<SunSetting> placed_sun = chosen_sun(options.change);
+    const Model model = load_model(options.model);
+    const Image old_light = load_light(options.from_light);
+    const fs::path folder = options.output;
+    nlohmann::json by_words = nullptr;
+    Image new_light;
+    if (options.words.given()) {
+        make_output_folder(folder);
+        WordsLight found =
+            light_by_words(options.words, options.model, options.from_light, folder, device);
+        new_light = apply(options.change, placed_sun, found.light);
+        by_words = std::move(found.record);
+    } else {
+        new_light = chosen_light(options, placed_sun);
+    }
+    const LightDescription description = describe_light(new_light);
+    if (options.punctual && description.lobe.share == 0) {
+        throw InputError("--punctual", "the light is black and has no brightest lobe");
+    }
+    make_output_folder(folder);
+    save_image(folder / "light.hdr", new_light, 32);
+    save_image(folder / "light.exr", new_light, 32);
+    write_pictures(options, model, old_light, new_light, device);
+
+    nlohmann::json record = {{"version", version()},
+                             {"command", command_line()},
+                             {"model", options.model},
+                             {"from_light", options.from_light},
+                             {"light", options.light},
+                             {"sky", nullptr},
+                             {"settings", settings_json(options.change, placed_sun)},
+                             {"description", to_json(description)},
+                             {"description_before", to_json(describe_light(old_light))},
+                             {"words", by_words},
+                             {"punctual", nullptr},
+                             {"image_based", options.image_based}};
+    if (options.sky || options.words.given()) record["light"] = nullptr;
+    if (options.sky) record["sky"] = *options.sky;
+    const ModelLights lights = lights_for_model(options, new_light, description.lobe);
+    if (lights.sun) {
+        const Vec3 from = lights.sun->direction, irradiance = lights.sun->irradiance;
+        record["punctual"] = {{"direction", {from.x, from.y, from.z}},
+                              {"irradiance", {irradiance.x, irradiance.y, irradiance.z}}};
+    }
+    save_lit_model(folder / "model.glb", model, lights);
+    write_atomically(folder / "relight.json", std::string_view(record.dump(2) + "\n"));
+    if (options.json) {
+        print_json(record);
+    } else {
+        fmt::print("{}\n", (folder / "sheet.png").string());
+    }
+}
+
+}  // namespace
+
+void add_relight_command(CLI::App& app) {
+    auto options = std::make_shared<RelightCommand>();
+    CLI::App* command = add_command(app, "relight", "Show a model under another light", *options);
+    command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
+    command->add_option("-o,--output", options->output, "A folder")->required();
+    CLI::Option* light =
+        command
+            ->add_option(
+                "--light", options->light,
+                "The new light: studio, noon, sunset, overcast, night, or a .hdr, .exr or .glb "
+                "file")
+            ->capture_default_str();
+    command
+        ->add_option(
+            "--sky", options->sky,
+            "A clear sky at this hour (0 to 24) instead: the sun rises in the east at 6 and "
+            "is in the south at 12")
+        ->check(number_between(0, 24))
+        ->excludes(light);
+    command->add_option("--from-light", options->from_light, "The old light, to compare with")
+        ->capture_default_str();
+    add_light_options(*command, options->change);
+    add_words_options(*command, options->words);
+    command->add_flag("--punctual", options->punctual,
+                      "Add the light's brightest lobe to model.glb as a directional light "
+                      "(KHR_lights_punctual)");
+    command->add_flag("--image-based", options->image_based,
+                      "Add the light to model.glb as an image-based light "
+                      "(EXT_lights_image_based); with --punctual, all of it but that lobe");
+    command->add_flag("!--no-shadows", options->shadows,
+                      "Draw without the shadows that the model throws upon itself");
+    command->add_option("--views", options->views, "Of before.png and after.png")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    command->add_option("--frames", options->frames, "Of turntable.webp")
+        ->check(CLI::Range(1, 360))
+        ->capture_default_str();
+    command->add_option("--size", options->size, "Pixels of a view's side")
+        ->check(CLI::Range(16, 2048))
+        ->capture_default_str();
+    command->callback([options, light] {
+        const torch::Device device = start_command(*options);
+        refuse_contradictions(*options, light->count() > 0);
+        run_relight(*options, device);
+    });
+}
+
+}  // namespace item3d

@@ -1,0 +1,346 @@
+// item3d render: pictures of a model, shaded or of one of its material channels.
+#include "command.h"
+#include "edit/light_options.h"
+#include "edit/picture_options.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/lighting/layout.h"
+#include "item3d/metrics/color.h"
+#include "item3d/render/occlusion/occlusion.h"
+#include "item3d/render/textured.h"
+#include "item3d/report/picture.h"
+#include "item3d/scene/camera.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderCommand : CommonOptions {
+    std::string model;
+    std::string output;
+    int views = 0;  ///< 0: one picture from the default camera
+    std::string cameras;
+    std::string format = "png";
+    std::string light = "studio";
+    float light_rotation = 0;
+    float exposure = 0;
+    std::string size = "512x512";
+    std::string channel = "shaded";
+    std::string background = "none";
+    std::string occlusion = "none";
+    int samples = 0;  ///< along each side of a pixel; 0: 2, or 1 where that is too large to draw
+};
+
+/// Where the pictures go: one named file, or a folder with a file for each camera.
+struct Destination {
+    fs::path path;
+    bool folder = false;
+    std::string extension;
+
+    fs::path file(const Camera& camera) const {
+        return folder ? path / (camera.name + extension) : path;
+    }
+};
+
+Destination choose_destination(const RenderCommand& options, std::size_t pictures) {
+    Destination destination;
+    destination.path = options.output;
+    const std::string extension = lower_extension(destination.path);
+    destination.folder = extension != ".png" && extension != ".exr";
+    destination.extension = destination.folder ? "." + options.format : extension;
+    if (!destination.folder && pictures > 1) {
+        throw UsageError(fmt::format("-o {}: {} pictures need a folder, not one file",
+                                     options.output, pictures));
+    }
+    if (destination.folder) {
+        make_output_folder(destination.path);
+    } else if (fs::is_directory(destination.path)) {
+        throw InputError(options.output, "is a folder, expected a name for a picture");
+    } else if (destination.path.has_parent_path()) {
+        make_output_folder(destination.path.parent_path());
+    }
+    return destination;
+}
+
+std::vector<Camera> choose_cameras(const RenderCommand& options, const Model& model,
+                                   PictureSize size) {
+    const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+    const std::array<Vec3, 2> bounds = model.bounds();
+    std::vector<Camera> cameras;
+    if (!options.cameras.empty()) {
+        cameras = load_cameras(options.cameras);
+        for (Camera& camera : cameras)
+            fit_depth_range(camera, bounds);
+    } else if (options.views > 0) {
+        cameras = turntable(bounds, options.views, default_elevation, default_field_of_view);
+        for (Camera& camera : cameras) {
+            camera.field_of_view_x = horizontal_field_of_view(default_field_of_view, aspect);
+        }
+    } else {
+        cameras = {default_view(model, aspect)};
+        cameras.front().name = "view_000";
+    }
+    return cameras;
+}
+
+int choose_samples(const RenderCommand& options, PictureSize size) {
+    const int most = largest_side / std::max(size.width, size.height);
+    if (options.samples == 0) return std::min(2, most);
+    if (options.samples > most) {
+        throw UsageError(
+            fmt::format("--samples {}: with this --size at most {}", options.samples, most));
+    }
+    return options.samples;
+}
+
+/// World-space normal with the material's normal map applied, [P, 3].
+torch::Tensor shading_normal(const Surface& surface, const MaterialSample& sample) {
+    if (!sample.normal.defined()) return surface.normal;
+    const auto unit = [](const torch::Tensor& v) {
+        return v / v.norm(2, {-1}, /*keepdim=*/true).clamp_min(1e-12);
+    };
+    const torch::Tensor& n = surface.normal;
+    const torch::Tensor along = surface.tangent.narrow(-1, 0, 3);
+    const torch::Tensor tangent = unit(along - n * (n * along).sum(-1, true));
+    const torch::Tensor bitangent =
+        torch::linalg_cross(n, tangent) * surface.tangent.narrow(-1, 3, 1);
+    const torch::Tensor mapped = tangent * sample.normal.narrow(-1, 0, 1) +
+                                 bitangent * sample.normal.narrow(-1, 1, 1) +
+                                 n * sample.normal.narrow(-1, 2, 1);
+    // Where there are no UVs the tangent is zero and the surface's own normal remains.
+    return torch::where(along.square().sum(-1, true) > 0, unit(mapped), n);
+}
+
+/// Draws what the options ask for: linear values, ready for OpenEXR.
+class Painter {
+  public:
+    Painter(const RenderCommand& options, const Model& model, torch::Device device)
+        : channel_(options.channel),
+          size_(parse_size(options.size)),
+          samples_(choose_samples(options, size_)),
+          geometry_(Geometry::from_model(model, device)),
+          materials_(model, device) {
+        if (options.background != "none") {
+            const Vec3 color = parse_color(options.background);
+            background_ = Vec3(item3d::srgb_to_linear(color.x), item3d::srgb_to_linear(color.y),
+                               item3d::srgb_to_linear(color.z));
+        }
+        if (channel_ == "shaded") {
+            const Image light =
+                adjust_light(load_light(options.light), options.light_rotation, options.exposure);
+            light_ = prefilter(light, 256, device);
+            if (options.occlusion != "none") {
+                OcclusionOptions occlusion;
+                if (options.occlusion == "light") occlusion.light = light;
+                occlusion_ = std::make_shared<Occlusion>(geometry_, &model, occlusion);
+            }
+        }
+    }
+
+    /// RGBA, premultiplied; one channel for depth and mask.
+    Image linear(const Camera& camera) const {
+        const torch::NoGradGuard no_gradients;
+        if (channel_ != "shaded") return values(camera);
+        RenderOptions options;
+        options.width = size_.width;
+        options.height = size_.height;
+        options.supersampling = samples_;
+        options.background = background_;
+        options.occlusion = occlusion_;
+        return to_image(render(geometry_, materials_, light_, {camera}, options)[0].cpu());
+    }
+
+    /// What a PNG shows of linear().
+    Image display(const Image& linear, const Camera& camera) const {
+        if (channel_ == "mask") return linear;
+        if (channel_ == "depth") return depth_display(linear, camera);
+        if (channel_ == "shaded" || channel_ == "base_color") {
+            return to_display(linear, channel_ == "shaded" ? background_ : std::nullopt);
+        }
+        Image picture = linear;
+        if (channel_ == "normal") {
+            for (int i = 0; i < picture.width * picture.height; ++i) {
+                float* pixel = &picture.pixels[static_cast<std::size_t>(i) * 4];
+                for (int c = 0; c < 3; ++c)
+                    pixel[c] = pixel[3] * (0.5f + 0.5f * pixel[c]);
+            }
+        }
+        return picture;
+    }
+
+  private:
+    /// Material channels are taken at pixel centres: a mean over an edge would be no material.
+    Image values(const Camera& camera) const {
+        const Raster raster = visible(camera);
+        if (channel_ == "depth") return to_image(raster.depth[0].unsqueeze(-1).cpu());
+        const torch::Tensor mask = (raster.triangle[0] >= 0).to(torch::kFloat32).unsqueeze(-1);
+        if (channel_ == "mask") return to_image(mask.cpu());
+
+        const Surface surface = interpolate_surface(geometry_, raster, {camera});
+        const MaterialSample sample = materials_.sample(surface);
+        torch::Tensor chosen = sample.base_color;
+        if (channel_ == "orm") chosen = sample.orm;
+        if (channel_ == "normal") chosen = shading_normal(surface, sample);
+        const torch::Tensor image =
+            scatter(chosen, surface, raster, torch::zeros({3}, chosen.options()));
+        return to_image(torch::cat({image[0], mask}, -1).cpu());
+    }
+
+    /// The nearest surface that is at least half opaque.
+    Raster visible(const Camera& camera) const {
+        constexpr int most_layers = 8;
+        Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
+        for (int layer = 1; materials_.has_alpha() && layer < most_layers; ++layer) {
+            const Surface surface = interpolate_surface(geometry_, raster, {camera});
+            const torch::Tensor alpha = materials_.sample(surface).alpha.unsqueeze(-1);
+            const torch::Tensor open =
+                scatter(alpha, surface, raster, torch::ones({1}, alpha.options())).squeeze(-1) <
+                0.5f;
+            if (!open.any().item<bool>()) break;
+            // Nothing lies behind the farthest depth, so the other pixels stay as they are.
+            const Raster next =
+                rasterize(geometry_, {camera}, size_.width, size_.height,
+                          torch::where(open, raster.depth, torch::full_like(raster.depth, 1e30f)));
+            raster.triangle = torch::where(open, next.triangle, raster.triangle);
+            raster.depth = torch::where(open, next.depth, raster.depth);
+            raster.barycentrics =
+                torch::where(open.unsqueeze(-1), next.barycentrics, raster.barycentrics);
+        }
+        return raster;
+    }
+
+    /// 1 at the near end of the model's box, falling to 0.1 at its far end; 0 where there is
+    /// nothing.
+    static Image depth_display(const Image& depth, const Camera& camera) {
+        Image picture = depth;
+        const float span =
+            std::max(camera.far_plane - camera.near_plane, std::numeric_limits<float>::min());
+        for (float& value : picture.pixels) {
+            if (value > 0) {
+                value = 1 - 0.9f * std::clamp((value - camera.near_plane) / span, 0.0f, 1.0f);
+            }
+        }
+        return picture;
+    }
+
+    std::string channel_;
+    PictureSize size_;
+    int samples_;
+    std::optional<Vec3> background_;
+    Geometry geometry_;
+    TexturedMaterials materials_;
+    EnvironmentLight light_;
+    std::shared_ptr<const Occlusion> occlusion_;
+};
+
+void run_render(const RenderCommand& options, torch::Device device) {
+    if (!options.cameras.empty() && options.views > 0) {
+        throw UsageError("--views and --cameras exclude one another");
+    }
+    if (options.occlusion != "none" && options.channel != "shaded") {
+        throw UsageError("--occlusion is of --channel shaded alone");
+    }
+    const PictureSize size = parse_size(options.size);
+    const Model model = load_model(options.model);
+    const std::vector<Camera> cameras = choose_cameras(options, model, size);
+    const Destination destination = choose_destination(options, cameras.size());
+    const Painter painter(options, model, device);
+
+    nlohmann::json files = nlohmann::json::array();
+    Progress progress("render", static_cast<std::int64_t>(cameras.size()));
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        if (interrupted()) {
+            throw Interrupted(fmt::format("{} of {} pictures were written", i, cameras.size()));
+        }
+        const fs::path path = destination.file(cameras[i]);
+        const Image linear = painter.linear(cameras[i]);
+        if (destination.extension == ".exr") {
+            save_image(path, linear, 32);
+        } else {
+            const Image picture = painter.display(linear, cameras[i]);
+            save_image(path, picture, options.channel == "depth" ? 16 : 8);
+        }
+        files.push_back(path.string());
+        progress.update(static_cast<std::int64_t>(i + 1));
+    }
+    progress.finish();
+    if (options.json) {
+        print_json({{"files", files},
+                    {"width", size.width},
+                    {"height", size.height},
+                    {"channel", options.channel}});
+    } else {
+        fmt::print("{}\n", destination.path.string());
+    }
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+    auto options = std::make_shared<RenderCommand>();
+    CLI::App* command = add_command(app, "render", "Draw pictures of a model", *options);
+    command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
+    command
+        ->add_option("-o,--output", options->output,
+                     "A .png or .exr file, or a folder for several pictures")
+        ->required();
+    command->add_option("--views", options->views, "So many views around the model")
+        ->check(CLI::Range(1, 10000));
+    command->add_option("--cameras", options->cameras,
+                        "A NeRF-synthetic transforms.json in the model's own axes: one picture for "
+                        "each frame, named after it");
+    command->add_option("--format", options->format, "Of pictures that go into a folder")
+        ->check(CLI::IsMember({"png", "exr"}))
+        ->capture_default_str();
+    command
+        ->add_option("--light", options->light,
+                     "studio, noon, sunset, overcast, night, or an equirectangular .hdr or .exr")
+        ->capture_default_str();
+    command
+        ->add_option("--light-rotation", options->light_rotation,
+                     "Degrees about +Y, from -Z towards +X")
+        ->check(number_between(-36000, 36000))
+        ->capture_default_str();
+    command->add_option("--exposure", options->exposure, "Stops: the light is multiplied by 2^EV")
+        ->check(number_between(-30, 30))
+        ->capture_default_str();
+    command->add_option("--size", options->size, "WxH in pixels")->capture_default_str();
+    command
+        ->add_option("--channel", options->channel,
+                     "shaded; or at pixel centres base_color, orm, normal (world space), depth "
+                     "(along the view axis), mask")
+        ->check(CLI::IsMember({"shaded", "base_color", "orm", "normal", "depth", "mask"}))
+        ->capture_default_str();
+    command
+        ->add_flag("--occlusion{ambient}", options->occlusion,
+                   "Darken what the model hides from light all around it; --occlusion=light: from "
+                   "this light, so that its sun casts shadows. Multiplies an occlusion texture")
+        ->check(CLI::IsMember({"none", "ambient", "light"}));
+    command
+        ->add_option("--samples", options->samples,
+                     "So many along each side of a shaded pixel: more make finer edges and take "
+                     "longer (2, or 1 for pictures too large for that)")
+        ->check(CLI::Range(1, 16));
+    command
+        ->add_option("--background", options->background,
+                     "A colour by name, #rrggbb, or none for a transparent picture")
+        ->capture_default_str();
+    command->callback([options] { run_render(*options, start_command(*options)); });
+}
+
+}  // namespace item3d

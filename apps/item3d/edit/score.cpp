@@ -1,0 +1,124 @@
+// item3d score: how well an edited model follows its two sentences, and what it kept of the source.
+#include "command.h"
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/io/load.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/lighting/layout.h"
+#include "item3d/metrics/clip_score.h"
+#include "item3d/report/model_pictures.h"
+#include "item3d/tensors/precision.h"
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+namespace {
+
+struct ScoreCommand : CommonOptions {
+    std::string before;
+    std::string after;
+    std::string from;
+    std::string to;
+    std::string clip;
+    std::string light = "studio";
+    std::string precision = "fp32";
+    int views = 6;
+};
+
+constexpr int view_pixels = 384;
+
+void print_table(const ClipScores& scores, const std::vector<double>& kept, double kept_mean) {
+    fmt::print("{:8} {:>8} {:>8} {:>12} {:>12}\n", "view", "target", "before", "directional",
+               "detail kept");
+    const auto line = [](const std::string& name, const ClipScore& score, double detail) {
+        fmt::print("{:8} {:>8.4f} {:>8.4f} {:>12.4f} {:>12.4f}\n", name, score.global,
+                   score.global_before, score.directional, detail);
+    };
+    for (std::size_t i = 0; i < scores.views.size(); ++i)
+        line(std::to_string(i), scores.views[i], kept[i]);
+    line("all", scores.mean, kept_mean);
+}
+
+void check_sentence(const std::string& option, const std::string& sentence) {
+    if (sentence.find_first_not_of(" \t\n") == std::string::npos)
+        throw InputError(option, "the sentence is empty", "say what the model looks like");
+}
+
+void run_score(const ScoreCommand& options, torch::Device device) {
+    check_sentence("--from", options.from);
+    check_sentence("--to", options.to);
+    const Model before = load_model(options.before), after = load_model(options.after);
+    const Clip clip =
+        Clip::load_to_run(options.clip, device, choose_precision(options.precision, device));
+    clip.warn_of_lost_words("--from", options.from);
+    clip.warn_of_lost_words("--to", options.to);
+    const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
+    // One set of cameras: what moved or shrank shows.
+    const std::vector<Camera> cameras = picture_cameras(before, options.views);
+    const torch::Tensor was = draw_pictures(before, light, cameras, view_pixels);
+    const torch::Tensor is = draw_pictures(after, light, cameras, view_pixels);
+    const torch::Tensor before_pictures = over_white(was), after_pictures = over_white(is);
+    const auto begin = std::chrono::steady_clock::now();
+    const ClipScores scores =
+        clip_scores(clip, before_pictures, after_pictures, options.from, options.to);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+
+    std::vector<double> kept;
+    for (std::int64_t i = 0; i < was.size(0); ++i)
+        kept.push_back(detail_kept(was.narrow(0, i, 1), is.narrow(0, i, 1)));
+    const double kept_mean = detail_kept(was, is);
+    if (!options.json) {
+        print_table(scores, kept, kept_mean);
+        return;
+    }
+    nlohmann::json views = scores.views;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        views[i]["detail_kept"] = kept[i];
+    nlohmann::json result = scores.mean;
+    result.update({{"before", options.before},
+                   {"after", options.after},
+                   {"from", options.from},
+                   {"to", options.to},
+                   {"clip", options.clip},
+                   {"detail_kept", kept_mean},
+                   {"seconds", took.count()},
+                   {"views", views}});
+    print_json(result);
+}
+
+}  // namespace
+
+void add_score_command(CLI::App& app) {
+    auto options = std::make_shared<ScoreCommand>();
+    CLI::App* command = add_command(
+        app, "score", "Measure by CLIP how well an edit follows its sentences", *options);
+    command->add_option("BEFORE", options->before, "The model as it was")->required();
+    command->add_option("AFTER", options->after, "The edited model")->required();
+    command->add_option("--from", options->from, "What the model looked like")->required();
+    command->add_option("--to", options->to, "What it should look like")->required();
+    command->add_option("--clip", options->clip,
+                        "A folder with CLIP in the transformers layout; without it, the embedded "
+                        "prior's, which knows its words alone");
+    command->add_option("--views", options->views, "Around the model, the same for both")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command
+        ->add_option("--precision", options->precision,
+                     "Of the network: fp32, as the reference computes, or bf16, quicker")
+        ->capture_default_str();
+    command
+        ->add_option("--light", options->light,
+                     "studio, noon, sunset, overcast, night, or an .hdr or .exr file")
+        ->capture_default_str();
+    command->callback([options] {
+        const torch::Device device = start_command(*options);
+        options->clip = given_or_embedded(options->clip, "clip", "--clip");
+        run_score(*options, device);
+    });
+}
+
+}  // namespace item3d

@@ -1,0 +1,143 @@
+// item3d reconstruct: photographs with poses in, a model and its light out.
+#include "item3d/reconstruct/reconstruct.h"
+
+#include "command.h"
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/metrics/color.h"
+
+#include <memory>
+#include <string>
+
+namespace item3d {
+
+namespace {
+
+struct ReconstructCommand : CommonOptions {
+    ReconstructRequest request;
+    std::string background;
+    bool move_vertices = false;
+    bool no_normal_map = false;
+    bool no_shadows = false;
+    int cells = 96;
+    double demodulation = 0;
+    std::uint64_t seed = 0;
+};
+
+ReconstructRequest make_request(const ReconstructCommand& options) {
+    ReconstructRequest request = options.request;
+    if (!options.background.empty())
+        request.dataset_options.background = parse_color(options.background);
+    request.move_vertices = request.mesh.empty() || options.move_vertices;
+    request.refine.normal_map = !options.no_normal_map;
+    request.refine.shadows = !options.no_shadows;
+    request.shape.cells = {options.cells / 2, options.cells};
+    request.shape.demodulation_weight = request.refine.weights.demodulation = options.demodulation;
+    request.shape.seed = request.refine.seed = options.seed;
+    request.command = command_line();
+    return request;
+}
+
+void run_reconstruct(const ReconstructCommand& options) {
+    const nlohmann::json summary = reconstruct(make_request(options));
+    if (options.json) {
+        print_json(summary);
+        return;
+    }
+    const auto& scores = summary["scores"];
+    const auto& chosen = scores["test"].is_null() ? scores["train"] : scores["test"];
+    fmt::print("{}: {} views {:.2f} dB, SSIM {:.3f}\n",
+               (options.request.output / "model.glb").string(),
+               scores["test"].is_null() ? "training" : "held-out", chosen["psnr"].get<double>(),
+               chosen["ssim"].get<double>());
+}
+
+void add_dataset_options(CLI::App& command, ReconstructCommand& options) {
+    DatasetOptions& dataset = options.request.dataset_options;
+    command.add_option("--images", dataset.images, "Folder of the pictures (COLMAP, LLFF)");
+    command.add_option("--masks", dataset.masks, "Folder of masks, named as the pictures");
+    command.add_option("--background", options.background,
+                       "What has this colour is not the object: a name, #rrggbb or r,g,b");
+    command
+        .add_option("--longest-side", dataset.longest_side, "Shrink pictures to this many pixels")
+        ->check(CLI::Range(16, 8192));
+    command.add_flag("--linear", dataset.is_linear, "PNG and JPEG hold linear light, not sRGB");
+    command
+        .add_option("--hold-out", dataset.hold_out,
+                    "Keep every n-th view for testing where the dataset does not say; 0: none")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    command.add_option("--views", dataset.most_views, "Learn from this many views, evenly chosen")
+        ->check(CLI::Range(3, 100000));
+    command.add_option("--up", dataset.up, "Up in the dataset's world: x, y, z, -x, ... or auto")
+        ->capture_default_str();
+}
+
+}  // namespace
+
+void add_reconstruct_command(CLI::App& app) {
+    auto options = std::make_shared<ReconstructCommand>();
+    CLI::App* command =
+        add_command(app, "reconstruct", "Make a model from photographs with poses", *options);
+    ReconstructRequest& request = options->request;
+    command
+        ->add_option("DATASET", request.dataset,
+                     "NeRF-synthetic, nerfstudio (transforms.json), COLMAP or LLFF")
+        ->required();
+    command->add_option("-o,--output", request.output, "A folder")->required();
+    command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
+    add_dataset_options(*command, *options);
+    CLI::Option* mesh = command->add_option(
+        "--mesh", request.mesh, "The shape, known already: find its materials and the light");
+    command->add_flag("--move-vertices", options->move_vertices, "Let that mesh's vertices move")
+        ->needs(mesh);
+    command
+        ->add_option("--extraction", request.shape.extraction,
+                     "How triangles come from values on a lattice")
+        ->check(CLI::IsMember(extraction_names()))
+        ->capture_default_str();
+    command
+        ->add_option("--cells", options->cells, "Of the lattice, along the object's longest side")
+        ->check(CLI::Range(16, 256))
+        ->capture_default_str();
+    command
+        ->add_option("--shape-iterations", request.shape.iterations, "One picture each; the shape")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    command
+        ->add_option("--iterations", request.refine.iterations,
+                     "One picture each; materials, light and vertices")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    command->add_option("--triangles", request.shape.triangles, "Of the model, at most about")
+        ->check(CLI::Range(100, 10000000))
+        ->capture_default_str();
+    command->add_option("--texture-size", request.texture_size, "Pixels of a side")
+        ->check(CLI::Range(16, 4096))
+        ->capture_default_str();
+    command->add_flag("--no-normal-map", options->no_normal_map, "The mesh alone has normals");
+    command->add_flag("--no-shadows", options->no_shadows,
+                      "Do not trace what the object hides from the light");
+    command
+        ->add_option("--demodulation", options->demodulation,
+                     "Weight of a loss that makes the light alone as bright as the photographs")
+        ->check(CLI::Range(0.0, 100.0))
+        ->capture_default_str();
+    command->add_option("--reference", request.reference,
+                        "The true mesh, to measure a distance to");
+    command->add_option("--relit", request.relit.folder,
+                        "Pictures of the test views in another light, to compare with");
+    command->add_option("--relit-light", request.relit.light, "That light: a preset or a file")
+        ->capture_default_str();
+    command->add_option("--relit-exposure", request.relit.exposure, "Stops")->capture_default_str();
+    command->add_option("--seed", options->seed)->capture_default_str();
+    command->callback([options] {
+        start_command(*options);
+        if (options->device == "cuda") {
+            throw ResourceError("--device cuda: reconstruct computes on the CPU; use --device cpu");
+        }
+        run_reconstruct(*options);
+    });
+}
+
+}  // namespace item3d

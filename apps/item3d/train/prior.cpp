@@ -1,0 +1,335 @@
+// item3d prior: train the embedded prior, look at what it is trained on, fetch and verify others.
+#include "command.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/io/save.h"
+#include "item3d/networks/vocabulary.h"
+#include "item3d/prior/data/shapes/shapes.h"
+#include "item3d/prior/evaluation/sheets.h"
+#include "item3d/prior/training/train.h"
+#include "item3d/prior/training/vision_language.h"
+#include "train/prior_commands.h"
+
+#include <functional>
+#include <utility>
+
+namespace item3d {
+namespace {
+
+struct TrainOptions : CommonOptions {
+    TrainSettings settings;
+    std::string output;
+    std::string work;
+    std::string part = "all";
+    std::string recipe = "embedded";
+    /// Each puts an option that was given into a recipe's settings.
+    std::vector<std::function<void(TrainSettings&)>> given;
+
+    /// The recipe with what the command line says instead.
+    TrainSettings chosen() const {
+        TrainSettings result = train_recipe(recipe);
+        for (const auto& put : given)
+            put(result);
+        result.output = output;
+        result.work = work.empty() ? result.output / "work" : std::filesystem::path(work);
+        return result;
+    }
+};
+
+/// An option for a member of the settings.
+template <class Value>
+CLI::Option* add_setting(CLI::App& command, TrainOptions& options, const std::string& name,
+                         Value TrainSettings::*member, const std::string& help) {
+    CLI::Option* option = command.add_option(name, options.settings.*member, help);
+    options.given.emplace_back([&options, option, member](TrainSettings& to) {
+        if (option->count() > 0) to.*member = options.settings.*member;
+    });
+    return option;
+}
+
+void run_train(const TrainOptions& options) {
+    TrainSettings settings = options.chosen();
+    settings.processes = ProcessGroup::from_environment();
+    if (settings.processes.size() > 1)
+        note(fmt::format("process {} of {} has joined the others", settings.processes.rank(),
+                         settings.processes.size()));
+    const bool all = options.part == "all";
+    if (all || options.part == "diffusion") train_prior(settings);
+    if (all || options.part != "diffusion")
+        train_vision_language(settings, all || options.part == "clip",
+                              all || options.part == "captioner");
+}
+
+void add_network_settings(CLI::App& command, TrainOptions& options) {
+    add_setting(command, options, "--resolution", &TrainSettings::resolution,
+                "Edge of the pictures in pixels: 64 or 128")
+        ->check(CLI::IsMember({64, 128}))
+        ->capture_default_str();
+    add_setting(command, options, "--widths", &TrainSettings::widths,
+                "Channels of the U-Net's levels, multiples of 16, as 48,96,144")
+        ->delimiter(',')
+        ->check(CLI::IsMember({16, 32, 48, 64, 96, 128, 144, 160, 192, 224, 256, 320, 384, 512}))
+        ->expected(2, 4)
+        ->capture_default_str();
+    add_setting(command, options, "--prediction", &TrainSettings::prediction_type,
+                "What the U-Net learns to say: v_prediction or epsilon")
+        ->check(CLI::IsMember({"v_prediction", "epsilon"}))
+        ->capture_default_str();
+    add_setting(command, options, "--optimizer", &TrainSettings::optimizer,
+                "How matrices of weights are stepped: muon or adamw")
+        ->check(CLI::IsMember({"adamw", "muon"}))
+        ->capture_default_str();
+    add_setting(
+        command, options, "--condition", &TrainSettings::condition,
+        "What the U-Net is told of a shape: surface (depth, position, normal), depth or none")
+        ->check(CLI::IsMember({"surface", "depth", "none"}))
+        ->capture_default_str();
+    add_setting(command, options, "--batch", &TrainSettings::batch,
+                "Pictures a step and replica that the U-Net learns from")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    add_setting(command, options, "--replicas", &TrainSettings::replicas,
+                "Copies of the model that each process trains in parallel")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    add_setting(command, options, "--learning-rate", &TrainSettings::learning_rate,
+                "Highest learning rate; the captioner's is twice that")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+}
+
+void add_count_settings(CLI::App& command, TrainOptions& options) {
+    const auto add = [&](const char* name, auto member, const char* help) {
+        return add_setting(command, options, name, member, help)->capture_default_str();
+    };
+    add("--clip-samples", &TrainSettings::clip_samples,
+        "Pictures that CLIP learns from, repetitions counted")
+        ->check(CLI::PositiveNumber);
+    add("--captioner-samples", &TrainSettings::captioner_samples,
+        "Pictures that the captioner learns from, repetitions counted")
+        ->check(CLI::PositiveNumber);
+    add("--labeled-data", &TrainSettings::labeled_samples,
+        "Different pictures for CLIP and the captioner")
+        ->check(CLI::Range(256, 10000000));
+    add("--labeled-variants", &TrainSettings::labeled_variants, "Shapes of each class for them")
+        ->check(CLI::Range(1, 10000));
+    add("--samples", &TrainSettings::samples, "Pictures to learn from, repetitions counted")
+        ->check(CLI::PositiveNumber);
+    add("--data", &TrainSettings::data_samples, "Different pictures")
+        ->check(CLI::Range(64, 10000000));
+    add("--autoencoder-samples", &TrainSettings::autoencoder_samples,
+        "Pictures that the autoencoder learns from, repetitions counted")
+        ->check(CLI::PositiveNumber);
+    add("--autoencoder-data", &TrainSettings::autoencoder_pictures,
+        "Different pictures for the autoencoder")
+        ->check(CLI::Range(32, 1000000));
+    add("--variants", &TrainSettings::shape_variants, "Shapes of each class")
+        ->check(CLI::Range(1, 10000));
+    add("--views", &TrainSettings::views_each, "Views of each shape")->check(CLI::Range(1, 1000));
+    add("--lights", &TrainSettings::lights, "Different lights")->check(CLI::Range(1, 100000));
+    add("--patterns", &TrainSettings::pattern_weight,
+        "How often patterns come, against all else: 1 is 39 % of the pictures")
+        ->check(CLI::Range(0.0, 100.0));
+}
+
+void add_train(CLI::App& app) {
+    auto options = std::make_shared<TrainOptions>();
+    CLI::App* command =
+        add_command(app, "train", "Train the embedded prior from nothing", *options);
+    command->add_option("-o,--output", options->output, "Folder to write the prior to")->required();
+    command->add_option("--work", options->work,
+                        "Folder for data and checkpoints; without it, work/ in the output folder");
+    command
+        ->add_option("--recipe", options->recipe,
+                     "Settings by name, where no option says otherwise; the defaults below are "
+                     "those of embedded")
+        ->check(CLI::IsMember(train_recipe_names()))
+        ->capture_default_str();
+    command
+        ->add_option("--part", options->part,
+                     "What to train: diffusion (autoencoder, text encoder and U-Net), clip, "
+                     "captioner, or all")
+        ->check(CLI::IsMember({"all", "diffusion", "clip", "captioner"}))
+        ->capture_default_str();
+    add_count_settings(*command, *options);
+    add_network_settings(*command, *options);
+    CLI::Option* begin = command->add_option(
+        "--begin-with", options->settings.begin_with,
+        "A prior, by folder or name, whose weights, words and autoencoder to begin with, and its "
+        "captioner and CLIP where they are trained");
+    options->given.emplace_back([options = options.get(), begin](TrainSettings& to) {
+        if (begin->count() > 0) to.begin_with = find_prior(options->settings.begin_with);
+    });
+    CLI::Option* autoencoder = command->add_option(
+        "--autoencoder", options->settings.autoencoder,
+        "A prior, by folder or name, whose autoencoder to take instead of training one");
+    options->given.emplace_back([options = options.get(), autoencoder](TrainSettings& to) {
+        if (autoencoder->count() > 0) to.autoencoder = find_prior(options->settings.autoencoder);
+    });
+    add_setting(*command, *options, "--seed", &TrainSettings::seed, "Of everything random")
+        ->capture_default_str();
+    add_setting(*command, *options, "--word-pictures", &TrainSettings::word_pictures,
+                "Held-out pictures that each word is asked about at the end")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    add_setting(*command, *options, "--stop-after", &TrainSettings::stop_after,
+                "End after so many pictures, to go on later with --resume");
+    CLI::Option* resume = command->add_flag("--resume", options->settings.resume,
+                                            "Go on from the checkpoint in the work folder");
+    options->given.emplace_back([resume](TrainSettings& to) { to.resume = resume->count() > 0; });
+    command->footer(
+        "Several processes or machines train one prior where RANK, WORLD_SIZE, MASTER_ADDR and "
+        "MASTER_PORT are set, as torchrun does.");
+    command->callback([options] {
+        start_command(*options);
+        run_train(*options);
+    });
+}
+
+struct PicturesOptions : CommonOptions {
+    std::string output;
+    std::string of = "examples";
+    SheetOptions sheet;
+};
+
+/// A contact sheet of training pictures; their captions go to stdout, row by row.
+void run_pictures(const PicturesOptions& options) {
+    const Sheet sheet = options.of == "objects"     ? object_sheet(options.sheet)
+                        : options.of == "materials" ? material_sheet(options.sheet)
+                        : options.of == "lights"    ? light_sheet(options.sheet)
+                                                    : example_sheet(options.sheet);
+    save_image(options.output, sheet.image);
+    if (options.json) {
+        print_json({{"captions", sheet.captions}});
+    } else {
+        for (const std::string& caption : sheet.captions)
+            fmt::print("{}\n", caption);
+    }
+}
+
+void add_pictures(CLI::App& app) {
+    auto options = std::make_shared<PicturesOptions>();
+    CLI::App* command = add_command(app, "pictures", "Draw a sheet of training pictures", *options);
+    SheetOptions& sheet = options->sheet;
+    command->add_option("-o,--output", options->output, "Image file")->required();
+    command
+        ->add_option("--of", options->of,
+                     "examples as they come, or every one of the objects, materials or lights")
+        ->check(CLI::IsMember({"examples", "objects", "materials", "lights"}))
+        ->capture_default_str();
+    command->add_option("--columns", sheet.columns)
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    command->add_option("--rows", sheet.rows, "Of examples")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    command
+        ->add_option("--resolution", sheet.picture,
+                     "Edge of a picture in pixels: 48, 64, 96 or 128")
+        ->check(CLI::IsMember({48, 64, 96, 128}))
+        ->capture_default_str();
+    command->add_option("--variants", sheet.variants, "Shapes of each class, of examples")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    command->add_option("--seed", sheet.seed)->capture_default_str();
+    command->callback([options] {
+        start_command(*options);
+        run_pictures(*options);
+    });
+}
+
+struct FolderOptions : CommonOptions {
+    std::string folder;
+};
+
+/// By a training and those that it was begun with.
+std::int64_t pictures_seen(const nlohmann::json& train) {
+    const std::int64_t before =
+        train.contains("begun_with") ? pictures_seen(train["begun_with"]) : 0;
+    return before + train.value("samples", std::int64_t{0});
+}
+
+void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
+    const PriorVocabulary vocabulary(prior, subject);
+    std::vector<std::string> kinds;
+    for (const KnownWord& word : vocabulary.words())
+        if (kinds.empty() || kinds.back() != word.kind) kinds.push_back(word.kind);
+    fmt::print("{}\n", prior.value("name", subject));
+    if (prior.contains("train")) {
+        const auto& train = prior.at("train");
+        if (train.contains("begun_with"))
+            fmt::print("begun with a prior of {} pictures, then ",
+                       pictures_seen(train["begun_with"]));
+        fmt::print("trained on {} pictures in {}, loss {:.3f}, autoencoder {:.1f} dB\n",
+                   train.value("samples", 0), format_duration(train.value("seconds", 0.0)),
+                   train.value("loss", 0.0), train.value("psnr", 0.0));
+    }
+    const auto part = [](const nlohmann::json& from, const char* name) {
+        return 100 * from.value(name, 0.0);
+    };
+    if (prior.contains("clip") && prior["clip"].contains("retrieval")) {
+        const auto& found = prior["clip"]["retrieval"];
+        fmt::print("clip: finds the right one of {} captions for {:.0f} % of held-out pictures\n",
+                   found.value("candidates", 0), part(found, "picture_to_caption"));
+    }
+    for (const auto& [member, what] : {std::pair{"captions", "a picture in any light"},
+                                       std::pair{"model_captions", "a model from four sides"}}) {
+        if (!prior.contains("captioner") || !prior["captioner"].contains(member)) continue;
+        const auto& named = prior["captioner"][member];
+        fmt::print(
+            "captioner: of {}, names the object of {:.0f} %, the material of {:.0f} %, both "
+            "of {:.0f} %\n",
+            what, part(named, "object"), part(named, "material"), part(named, "both"));
+    }
+    if (kinds.empty()) fmt::print("not measured: see `item3d prior evaluate`\n");
+    for (const std::string& kind : kinds) {
+        fmt::print("\n{}\n", kind);
+        for (const KnownWord& word : vocabulary.words_of(kind)) {
+            std::string spellings;
+            for (const std::string& spelling : word.spellings)
+                if (spelling != word.word) spellings += (spellings.empty() ? "" : ", ") + spelling;
+            fmt::print("  {:12} {:4.0f} % {} {}\n", word.word, 100 * word.accuracy,
+                       word.accuracy < weak_accuracy ? "weak" : "    ", spellings);
+        }
+    }
+}
+
+void add_info(CLI::App& app) {
+    auto info = std::make_shared<FolderOptions>();
+    CLI::App* command =
+        add_command(app, "info", "List what a prior knows, with its accuracy a word", *info);
+    command->add_option("PRIOR", info->folder,
+                        "Its folder or name; without it, the embedded prior");
+    command->callback([info] {
+        start_command(*info);
+        const auto file = find_prior(info->folder) / "prior.json";
+        if (!std::filesystem::exists(file))
+            throw InputError(file.string(), "no such file: this prior does not list its words",
+                             "`item3d prior verify` says what else it is");
+        const auto prior = nlohmann::json::parse(read_text(file), nullptr, false);
+        if (!prior.is_object()) throw InputError(file.string(), "is not a JSON object");
+        if (info->json)
+            print_json(prior);
+        else
+            print_vocabulary(prior, file.string());
+    });
+}
+
+}  // namespace
+
+void add_prior_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("prior", "Train, fetch and inspect priors");
+    command->require_subcommand(1);
+    add_train(*command);
+    add_prior_list(*command);
+    add_info(*command);
+    add_prior_evaluate(*command);
+    add_prior_pull(*command);
+    add_prior_verify(*command);
+    add_pictures(*command);
+}
+
+}  // namespace item3d

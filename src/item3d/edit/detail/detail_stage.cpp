@@ -1,0 +1,250 @@
+#include "item3d/core/progress.h"
+#include "item3d/core/random.h"
+#include "item3d/edit/detail/painting_plan.h"
+#include "item3d/edit/optimize/checkpoint_state.h"
+#include "item3d/edit/optimize/checkpoint_writer.h"
+#include "item3d/edit/optimize/optimize.h"
+#include "item3d/edit/optimize/render_view.h"
+#include "item3d/networks/diffusion/shape_condition.h"
+
+#include <torch/nn/functional/pooling.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+constexpr int sampling_steps = 24;
+/// How much of a picture noise replaces: nearly all where the prior is told the shape.
+constexpr double begin_strength = 0.95;
+constexpr double begin_strength_without_shape = 0.7;
+constexpr double again_strength = 0.7;
+constexpr double close_up_strength = 0.5;
+constexpr float guidance_scale = 5.0f;
+/// A small autoencoder flattens what it decodes; so much of what is fine is added once more.
+constexpr float sharpening = 0.3f;
+/// Fine is what two box filters of this part of the picture's edge take away.
+constexpr int filter_share = 8;
+constexpr float known_weight = 0.3f;  ///< of what earlier views painted, where a view is fitted
+constexpr int fits = 24;              ///< steps of the optimiser for each view
+constexpr int last_fits = 200;        ///< and for all pictures together at the end
+constexpr double learning_rate = 0.01;
+constexpr double network_learning_rate = 0.0025;
+/// As a part of the first, where the stage ends, so that no picture counts more for coming last.
+constexpr double final_learning_rate = 0.05;
+constexpr float spread = 0.5f;  ///< pixels, see ViewOptions
+/// Pixels of a picture's edge up to which what its view sees is kept: about 2 MB each.
+constexpr int largest_kept = 128;
+constexpr std::uint64_t choice_stream = 7;  // of the edit's seed
+
+torch::Tensor blur(torch::Tensor images) {
+    const auto size = images.size(2) / filter_share | 1;
+    for (int i = 0; i < 2; ++i) {
+        images = torch::avg_pool2d(images, {size, size}, {1, 1}, {size / 2, size / 2}, false,
+                                   /*count_include_pad=*/false);
+    }
+    return images;
+}
+
+/// Without what varies slowly over the covered part; the background does not count.
+torch::Tensor fine_part(const torch::Tensor& images, const torch::Tensor& coverage) {
+    return images - blur(images * coverage) / (blur(coverage) + 1e-4f);
+}
+
+/// Pixels whose neighbours are covered too: at silhouettes the prior draws its own outline.
+torch::Tensor inner(const torch::Tensor& coverage) {
+    return -torch::max_pool2d(-coverage, 3, 1, 1);
+}
+
+/// What a view of the plan shows whatever the stage has painted so far.
+struct PaintedView {
+    SeenModel seen;
+    MaterialSample before;  ///< the field's materials as the stage began
+};
+
+/// How far the channels that the stage leaves alone have moved; the field's features are shared by
+/// all of them. `now` is as of up to half a pixel aside, which they vary little over.
+torch::Tensor drift(const MaterialSample& now, const MaterialSample& before) {
+    torch::Tensor moved = (now.orm - before.orm).square().mean();
+    if (before.normal.defined()) moved = moved + (now.normal - before.normal).square().mean();
+    return moved;
+}
+
+/// The stage in progress.
+class Painter {
+  public:
+    Painter(const EditScene& scene, const EditSettings& settings, EditState& state)
+        : scene_(scene),
+          settings_(settings),
+          state_(state),
+          plan_(plan_painting(scene, settings)) {}
+
+    void paint(std::size_t index);
+
+  private:
+    PaintedView see(std::size_t index);
+    EditView render(std::size_t index, const SeenModel& seen, float spread_pixels = 0,
+                    std::uint64_t draw = 0) const;
+    torch::Tensor known_pixels(std::size_t index) const;
+    double strength(const PaintingView& planned) const;
+    torch::Tensor target(std::size_t index, const SeenModel& seen) const;
+    void fit_step(std::size_t chosen, std::uint64_t draw);
+    void set_learning_rate(double factor);
+    void fit_all();
+
+    const EditScene& scene_;
+    const EditSettings& settings_;
+    EditState& state_;
+    std::vector<PaintingView> plan_;
+    std::map<std::size_t, PaintedView> kept_;  ///< views of the plan, where they are small
+};
+
+/// Each view is rendered dozens of times.
+PaintedView Painter::see(std::size_t index) {
+    const auto found = kept_.find(index);
+    if (found != kept_.end()) return found->second;
+    const torch::NoGradGuard no_grad;
+    PaintedView view{see_model(scene_, settings_, {plan_[index].camera}), {}};
+    const auto& [raster, surface, shape, own] = view.seen;
+    view.before = scene_.source->sample(surface, state_.detail.before, own);
+    if (settings_.resolution <= largest_kept) kept_[index] = view;
+    return view;
+}
+
+EditView Painter::render(std::size_t index, const SeenModel& seen, float spread_pixels,
+                         std::uint64_t draw) const {
+    ViewOptions options{settings_.iterations + static_cast<std::int64_t>(index)};
+    options.light = &scene_.lights->studio();
+    options.spread = spread_pixels;
+    options.spread_draw = draw;
+    return render_view(scene_, settings_, state_.field, seen, options);
+}
+
+/// [1, 1, R, R] 0 .. 1.
+torch::Tensor Painter::known_pixels(std::size_t index) const {
+    return torch::upsample_bilinear2d(plan_[index].known, plan_[index].facing.sizes().slice(2),
+                                      /*align_corners=*/false);
+}
+
+double Painter::strength(const PaintingView& planned) const {
+    switch (planned.round) {
+        case PaintingRound::again:
+            return again_strength;
+        case PaintingRound::close_up:
+            return close_up_strength;
+        case PaintingRound::begin:
+            break;
+    }
+    return takes_shape(*scene_.prior()) ? begin_strength : begin_strength_without_shape;
+}
+
+/// What the prior would rather see from here.
+torch::Tensor Painter::target(std::size_t index, const SeenModel& seen) const {
+    const torch::NoGradGuard no_grad;
+    const EditView view = render(index, seen);
+    const Pipeline& prior = *scene_.prior();
+    const PaintingView& planned = plan_[index];
+    const torch::Tensor latents = prior.encode_image(view.images * 2 - 1);
+    GenerateOptions options;
+    options.prompt = scene_.to;
+    options.negative_prompt = settings_.negative_prompt;
+    options.steps = sampling_steps;
+    options.guidance_scale = guidance_scale;
+    options.image = latents;
+    options.keep = planned.known;
+    options.strength = strength(planned);
+    options.scheduler = "ddim";
+    options.eta = 1;
+    options.seed = mix_bits(settings_.seed) + index;
+    options.show_progress = false;
+    const torch::Tensor condition = condition_of_shape(prior, seen.shape, latents);
+    const torch::Tensor sampled = generate_latents(prior, options, condition);
+    const torch::Tensor decoded = prior.decode_image(sampled) / 2 + 0.5f;
+    // Not the render with what has changed: it has what a pixel of the round before was too coarse
+    // to see, as noise, and close-ups would keep it.
+    const torch::Tensor fresh = 1 - known_pixels(index);
+    const torch::Tensor painted = view.images + fresh * (decoded - view.images);
+    return (painted + sharpening * fresh * fine_part(decoded, view.coverage)).clamp(0, 1);
+}
+
+void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
+    const auto& [seen, before] = see(chosen);
+    const EditView view = render(chosen, seen, spread, draw);
+    const torch::Tensor weight = inner(view.coverage) * plan_[chosen].facing *
+                                 (1 - (1 - known_weight) * known_pixels(chosen));
+    const torch::Tensor apart =
+        ((view.images - state_.detail.targets[chosen]).square() * weight).sum() /
+        (weight.sum() + 1e-4f);
+    (apart + drift(view.material, before)).backward();
+    state_.detail.optimizer.step();
+    state_.detail.optimizer.zero_grad();
+}
+
+void Painter::paint(std::size_t index) {
+    state_.detail.targets.push_back(target(index, see(index).seen));
+    for (std::size_t i = 0; i < fits; ++i) {
+        const std::uint64_t draw = index * fits + i;
+        Random random(settings_.seed, choice_stream, draw);
+        // Every other step looks back, so that one view does not undo another; not to the pictures
+        // of earlier rounds, which this one refines.
+        const auto first = static_cast<std::size_t>(plan_[index].first_of_round);
+        const auto back = random.index(static_cast<std::int64_t>(index - first) + 1);
+        fit_step(i % 2 == 0 ? index : index - static_cast<std::size_t>(back), draw);
+    }
+    if (index + 1 == plan_.size()) fit_all();
+    ++state_.iteration;
+}
+
+void Painter::set_learning_rate(double factor) {
+    state_.detail.optimizer.options(0).learning_rate = factor * learning_rate;
+    state_.detail.optimizer.options(1).learning_rate = factor * network_learning_rate;
+}
+
+/// To all pictures but those that the stage began with. What a view got right may have suffered
+/// from the views that came after it.
+void Painter::fit_all() {
+    const auto first = std::find_if(plan_.begin(), plan_.end(), [](const PaintingView& view) {
+        return view.round != PaintingRound::begin;
+    });
+    const std::int64_t skipped = first - plan_.begin();
+    const std::int64_t count = plan_.end() - first;
+    if (count == 0) return;
+    for (std::size_t i = 0; i < last_fits; ++i) {
+        const double left = 1 - static_cast<double>(i) / last_fits;
+        set_learning_rate(final_learning_rate + (1 - final_learning_rate) * left);
+        const std::uint64_t draw = plan_.size() * fits + i;
+        Random random(settings_.seed, choice_stream, draw);
+        fit_step(static_cast<std::size_t>(skipped + random.index(count)), draw);
+    }
+}
+
+}  // namespace
+
+void begin_detail(EditState& state) {
+    state.detail.before = snapshot(state.field);
+    AdamOptions options;
+    options.learning_rate = learning_rate;
+    state.detail.optimizer.add_group({state.field->table()}, options);
+    options.learning_rate = network_learning_rate;
+    state.detail.optimizer.add_group(state.field->network_parameters(), options);
+}
+
+void add_detail(const EditRequest& request, const EditScene& scene, EditState& state) {
+    const EditSettings& settings = request.settings;
+    const std::int64_t total = total_iterations(settings);
+    if (state.iteration >= total) return;
+    if (state.detail.before.is_empty()) begin_detail(state);
+    Progress progress("detail", settings.detail_views, state.iteration - settings.iterations);
+    Safekeeping safekeeping(request, scene);
+    Painter painter(scene, settings, state);
+    while (state.iteration < total) {
+        painter.paint(state.detail.targets.size());
+        progress.update(state.iteration - settings.iterations);
+        safekeeping.after_step(state, progress);
+    }
+    save_state(request, state);
+}
+
+}  // namespace item3d

@@ -1,0 +1,135 @@
+#include "item3d/edit/detail/painting_plan.h"
+
+#include "item3d/core/random.h"
+
+#include <torch/nn/functional/pooling.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+constexpr std::uint64_t camera_stream = 8;  // of the edit's seed; others are in views.cpp
+constexpr float golden_angle = 2.39996323f;
+constexpr float degrees = pi / 180.0f;
+constexpr double begin_share = 0.4, again_share = 0.3;  ///< of the views
+constexpr int samples = 2;                              ///< along a pixel's edge
+constexpr float flattest = 0.2f;        ///< cosine below which a view does not count
+constexpr float clearly_better = 0.7f;  ///< of a view's own cosine an earlier one must have reached
+constexpr float known_share = 0.75f;    ///< of a latent cell
+/// Parts of the radius by which a point may lie behind what a view sees and still be seen.
+constexpr float depth_tolerance = 0.03f;
+
+PaintingRound round_of(int index, int views) {
+    const auto end_of = [&](double share) { return std::max(1l, std::lround(share * views)); };
+    return index < end_of(begin_share)                 ? PaintingRound::begin
+           : index < end_of(begin_share + again_share) ? PaintingRound::again
+                                                       : PaintingRound::close_up;
+}
+
+Camera paint_camera(const BoundingSphere& sphere, int index, bool close_up, std::uint64_t seed) {
+    Random random(mix_bits(seed) + static_cast<std::uint64_t>(index), camera_stream);
+    const auto draw = [&](double low, double high) {
+        return static_cast<float>(random.uniform(low, high));
+    };
+    const float azimuth = golden_angle * static_cast<float>(index) + draw(-.2, .2);
+    const float elevation = draw(-10, 45) * degrees;
+    const float field_of_view = draw(25.7, 45) * degrees;
+    const float fill = close_up ? draw(1.3, 2.0) : draw(0.85, 1.05);
+    const float distance = sphere.radius / (fill * std::sin(0.5f * field_of_view));
+    const float aside = (close_up ? 0.4f : 0.05f) * sphere.radius;
+    const Vec3 target = sphere.center + aside * Vec3(draw(-1, 1), draw(-1, 1), draw(-1, 1));
+    Camera camera = orbit_camera(target, distance, azimuth, elevation, field_of_view);
+    camera.near_plane = std::max(0.02f * sphere.radius, distance - 2 * sphere.radius);
+    camera.far_plane = distance + 2 * sphere.radius;
+    return camera;
+}
+
+/// What a view sees, one row a covered sample.
+struct Sight {
+    Camera camera;
+    torch::Tensor depth;  ///< [S, S]
+    Surface surface;
+    torch::Tensor cosine;  ///< [P] between the normal and the way to the camera
+
+    Sight(const Geometry& geometry, const Camera& from, int size) : camera(from) {
+        const Raster raster = rasterize(geometry, {camera}, size, size);
+        surface = interpolate_surface(geometry, raster, {camera});
+        depth = raster.depth[0];
+        cosine = (surface.normal * surface.view).sum(1).clamp_min(0);
+    }
+
+    /// [P'] of another view's points: the cosine at which this one sees them, 0 where it does not.
+    torch::Tensor cosine_of(const Surface& points, float tolerance) const {
+        const auto options = points.position.options();
+        const Mat4 view = camera.world_to_camera();
+        const auto row = [&](int r) {
+            const torch::Tensor axis = torch::tensor({view[0][r], view[1][r], view[2][r]}, options);
+            return points.position.mv(axis) + view[3][r];
+        };
+        const torch::Tensor ahead = -row(2);
+        const std::int64_t size = depth.size(0);
+        const float scale = 0.5f * static_cast<float>(size) / std::tan(camera.field_of_view_x / 2);
+        const torch::Tensor x = (row(0) / ahead * scale + 0.5f * size).floor().to(torch::kInt64);
+        const torch::Tensor y = (row(1) / -ahead * scale + 0.5f * size).floor().to(torch::kInt64);
+        const torch::Tensor inside = (ahead > 0) * (x >= 0) * (x < size) * (y >= 0) * (y < size);
+        const torch::Tensor seen =
+            depth.flatten().index_select(0, (y * size + x) * inside.to(torch::kInt64));
+        const torch::Tensor origin =
+            torch::tensor({camera.position().x, camera.position().y, camera.position().z}, options);
+        const torch::Tensor way = origin - points.position;
+        const torch::Tensor cosines =
+            (points.normal * way).sum(1) / way.square().sum(1).sqrt().clamp_min(1e-12);
+        return cosines.clamp_min(0) * (inside * (seen > 0) * (ahead < seen + tolerance));
+    }
+};
+
+/// Values of a view's points as pixels [1, 1, R, R], 0 where there is none.
+torch::Tensor as_pixels(const Sight& sight, const torch::Tensor& values) {
+    const std::int64_t size = sight.depth.size(0);
+    const torch::Tensor pixels = torch::zeros({size * size}, values.options())
+                                     .index_copy(0, sight.surface.pixel, values)
+                                     .view({1, 1, size, size});
+    return torch::avg_pool2d(pixels, samples);
+}
+
+torch::Tensor known_cells(const torch::Tensor& fresh, std::int64_t pixels_each) {
+    const torch::Tensor settled = 1 - torch::max_pool2d(fresh, 3, 1, 1);
+    return (torch::avg_pool2d(settled, pixels_each) > known_share).to(torch::kFloat32);
+}
+
+}  // namespace
+
+std::vector<PaintingView> plan_painting(const EditScene& scene, const EditSettings& settings) {
+    const torch::NoGradGuard no_grad;
+    const std::int64_t pixels_each = scene.prior()->downscale();
+    std::vector<PaintingView> plan;
+    std::vector<Sight> earlier;
+    for (int i = 0; i < settings.detail_views; ++i) {
+        PaintingView view;
+        view.round = round_of(i, settings.detail_views);
+        const bool begins_round = plan.empty() || plan.back().round != view.round;
+        if (begins_round) earlier.clear();
+        view.first_of_round = begins_round ? i : plan.back().first_of_round;
+        view.camera =
+            paint_camera(scene.sphere, i, view.round == PaintingRound::close_up, settings.seed);
+        const Sight sight(scene.geometry, view.camera, settings.resolution * samples);
+        const torch::Tensor own = as_pixels(sight, sight.cosine);
+        view.facing = (own > flattest).to(torch::kFloat32);
+        torch::Tensor best = torch::zeros_like(sight.cosine);
+        for (const Sight& other : earlier) {
+            best = torch::maximum(
+                best, other.cosine_of(sight.surface, depth_tolerance * scene.sphere.radius));
+        }
+        const torch::Tensor fresh =
+            view.facing * (as_pixels(sight, best) < clearly_better * own).to(torch::kFloat32);
+        view.known = known_cells(fresh, pixels_each);
+        earlier.push_back(sight);
+        earlier.back().surface = {};  // large; later views ask for its depth alone
+        plan.push_back(view);
+    }
+    return plan;
+}
+
+}  // namespace item3d

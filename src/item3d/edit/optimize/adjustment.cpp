@@ -1,0 +1,109 @@
+#include "item3d/edit/optimize/adjustment.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+#include "item3d/edit/field_pictures.h"
+#include "item3d/edit/optimize/optimize.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace item3d {
+namespace {
+
+constexpr int caption_views = 4;  ///< captions are averaged over these
+
+/// A prior of small pictures is quick, and its captions must be too; large ones show more to a
+/// captioner.
+int caption_pixels(const EditSettings& settings) {
+    return std::clamp(settings.resolution, 144, 384);
+}
+
+/// Mean over the iterations since the line before; no value where there were none.
+std::optional<double> recent_mean(const std::vector<float>& curve,
+                                  const std::vector<AdjustmentRecord>& records) {
+    const auto begin = records.empty() ? 0 : records.back().iteration;
+    if (begin >= static_cast<std::int64_t>(curve.size())) return std::nullopt;
+    const auto first = curve.begin() + begin;
+    return std::accumulate(first, curve.end(), 0.0) / static_cast<double>(curve.end() - first);
+}
+
+/// [N, H, W, 3] in [0, 1] -> bytes [H, W, 3] of each, on the CPU.
+std::vector<torch::Tensor> to_bytes(const torch::Tensor& pictures) {
+    return (pictures * 255).round().to(torch::kUInt8).cpu().unbind(0);
+}
+
+}  // namespace
+
+DirectionAdjustment::DirectionAdjustment(const EditRequest& request, const EditScene& scene)
+    : settings_(request.settings), scene_(scene), cameras_(field_cameras(scene, caption_views)) {
+    if (!scene.captioner) return;
+    source_.emplace(
+        scene.prior(), settings_.from, settings_.to,
+        CaptionSourceOptions{settings_.adjust_strength, settings_.adjust == "caption-paper"});
+}
+
+void DirectionAdjustment::before_iteration(EditState& state) const {
+    if (state.iteration % settings_.adjust_every == 0) observe(state);
+}
+
+void DirectionAdjustment::finish(EditState& state) const {
+    const auto& records = state.adjustment.records;
+    const auto done = static_cast<std::int64_t>(state.direction_length.size());
+    if (done > 0 && (records.empty() || records.back().iteration < done)) observe(state);
+}
+
+void DirectionAdjustment::observe(EditState& state) const {
+    std::vector<AdjustmentRecord>& records = state.adjustment.records;
+    const bool asks = source_ && state.adjustment.failure.empty();
+    // The first view alone where only people look.
+    const std::vector<Camera> cameras(cameras_.begin(),
+                                      asks ? cameras_.end() : cameras_.begin() + 1);
+    const torch::Tensor pictures = draw_field(scene_, state.field, light_as_it_is(scene_, state),
+                                              cameras, caption_pixels(settings_));
+
+    AdjustmentRecord record;
+    record.iteration = static_cast<std::int64_t>(state.direction_length.size());
+    record.picture = to_bytes(pictures).front();
+    record.direction = recent_mean(state.direction_length, records);
+    record.source_loss = recent_mean(state.source_loss, records);
+    if (asks) {
+        for (const Caption& caption : follow(state, pictures))
+            record.captions.push_back(caption.text);
+    }
+    record.text = state.guidance->text_direction();
+    if (!record.text) record.source_loss.reset();
+    records.push_back(std::move(record));
+}
+
+std::vector<Caption> DirectionAdjustment::follow(EditState& state,
+                                                 const torch::Tensor& pictures) const {
+    AdjustmentState& adjustment = state.adjustment;
+    std::vector<Caption> captions;
+    try {
+        if (adjustment.captions_before.empty())
+            adjustment.captions_before = scene_.captioner->captions(
+                to_bytes(draw_field(scene_, state.fitted,
+                                    state.light ? state.first_light : scene_.lights->front(),
+                                    cameras_, caption_pixels(settings_))),
+                {});
+        captions = scene_.captioner->captions(to_bytes(pictures), {});
+    } catch (const Interrupted&) {
+        throw;
+    } catch (const std::exception& error) {
+        give_up(adjustment, error.what());
+        return {};
+    }
+    if (const auto shift = source_->shift(adjustment.captions_before, captions))
+        state.guidance->shift_source(*shift);
+    else
+        give_up(adjustment, "the captioner says nothing, or does not come to an end");
+    return captions;
+}
+
+void DirectionAdjustment::give_up(AdjustmentState& state, const std::string& reason) const {
+    state.failure = reason.substr(0, reason.find('\n'));
+    warn("no more captions, the source stays as it is: " + state.failure);
+}
+
+}  // namespace item3d

@@ -1,0 +1,125 @@
+#include "item3d/edit/optimize/checkpoint_state.h"
+
+#include "item3d/tensors/checkpoint.h"
+
+namespace item3d {
+namespace {
+
+std::filesystem::path checkpoint_path(const EditRequest& request) {
+    return request.output / "checkpoint.safetensors";
+}
+
+nlohmann::json identity_of(const EditRequest& request, const EditState& state) {
+    nlohmann::json identity = request.settings;
+    identity["model"] = hash_of_file(request.model);
+    identity["prior_weights"] = state.prior_weights;
+    identity["precision"] = request.precision;
+    if (wants_captions(request.settings)) identity["captioner"] = request.captioner.string();
+    return identity;
+}
+
+/// Its text as bytes of a tensor, its pictures as one.
+void append_adjustment(NamedTensors& tensors, const AdjustmentState& adjustment) {
+    nlohmann::json before = nlohmann::json::array();
+    for (const Caption& caption : adjustment.captions_before)
+        before.push_back({{"text", caption.text}, {"ended", caption.ended}});
+    const nlohmann::json json = {
+        {"records", adjustment.records}, {"before", before}, {"failure", adjustment.failure}};
+    const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    tensors.emplace_back("adjustment.json",
+                         torch::tensor(std::vector<std::uint8_t>(text.begin(), text.end())));
+    std::vector<torch::Tensor> pictures;
+    for (const AdjustmentRecord& record : adjustment.records)
+        pictures.push_back(record.picture);
+    if (!pictures.empty()) tensors.emplace_back("adjustment.pictures", torch::stack(pictures));
+}
+
+void read_adjustment(const CheckpointReader& reader, AdjustmentState& adjustment) {
+    const torch::Tensor bytes = reader.get("adjustment.json").contiguous();
+    const auto* text = bytes.const_data_ptr<std::uint8_t>();
+    const auto json = nlohmann::json::parse(text, text + bytes.numel());
+    json.at("records").get_to(adjustment.records);
+    json.at("failure").get_to(adjustment.failure);
+    for (const auto& caption : json.at("before"))
+        adjustment.captions_before.push_back(
+            {caption.at("text").get<std::string>(), caption.at("ended").get<bool>()});
+    for (std::size_t i = 0; i < adjustment.records.size(); ++i)
+        adjustment.records[i].picture =
+            reader.get("adjustment.pictures")[static_cast<std::int64_t>(i)];
+}
+
+std::vector<float> to_floats(const torch::Tensor& tensor) {
+    const torch::Tensor flat = tensor.contiguous();
+    return {flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel()};
+}
+
+}  // namespace
+
+void save_state(const EditRequest& request, const EditState& state) {
+    Checkpoint checkpoint;
+    checkpoint.identity = identity_of(request, state);
+    checkpoint.iteration = state.iteration;
+    append_parameters(checkpoint.tensors, "fitted.", *state.fitted);
+    append_parameters(checkpoint.tensors, "field.", *state.field);
+    if (state.light) {
+        for (const torch::Tensor& parameter : state.light->parameters())
+            checkpoint.tensors.emplace_back("light", parameter.detach());
+    }
+    for (const auto& [name, tensor] : state.optimizer.state()) {
+        checkpoint.tensors.emplace_back("optimizer." + name, tensor);
+    }
+    for (const auto& [name, tensor] : state.guidance->state()) {
+        checkpoint.tensors.emplace_back("guidance." + name, tensor);
+    }
+    if (!state.detail.before.is_empty()) {
+        append_parameters(checkpoint.tensors, "detail.before.", *state.detail.before);
+        for (const auto& [name, tensor] : state.detail.optimizer.state()) {
+            checkpoint.tensors.emplace_back("detail.optimizer." + name, tensor);
+        }
+        if (!state.detail.targets.empty())
+            checkpoint.tensors.emplace_back("detail.targets", torch::cat(state.detail.targets));
+    }
+    checkpoint.tensors.emplace_back("curve.direction_length",
+                                    torch::tensor(state.direction_length));
+    checkpoint.tensors.emplace_back("curve.source_loss", torch::tensor(state.source_loss));
+    append_adjustment(checkpoint.tensors, state.adjustment);
+    save_checkpoint(checkpoint_path(request), checkpoint);
+}
+
+bool load_state(const EditRequest& request, EditState& state) {
+    const auto checkpoint = load_checkpoint(checkpoint_path(request));
+    if (!checkpoint) return false;
+    require_same_identity(checkpoint_path(request), checkpoint->identity,
+                          identity_of(request, state),
+                          {{"model", "belongs to another model file"},
+                           {"prior_weights", "belongs to a prior of other weights"}});
+
+    const CheckpointReader reader(checkpoint_path(request).string(), checkpoint->tensors);
+    reader.parameters("fitted.", *state.fitted);
+    reader.parameters("field.", *state.field);
+    if (state.light) {
+        for (const torch::Tensor& parameter : state.light->parameters())
+            reader.copy("light", parameter);
+    }
+    state.optimizer.load_state(reader.with_prefix("optimizer."));
+    NamedTensors guidance;
+    for (const auto& [name, tensor] : reader.with_prefix("guidance.")) {
+        guidance.emplace_back(name, tensor);
+    }
+    state.guidance->load_state(guidance);
+    if (reader.has("detail.before.table")) {
+        begin_detail(state);
+        reader.parameters("detail.before.", *state.detail.before);
+        state.detail.optimizer.load_state(reader.with_prefix("detail.optimizer."));
+        if (reader.has("detail.targets"))
+            state.detail.targets =
+                reader.get("detail.targets").to(state.field->table().device()).split(1);
+    }
+    state.direction_length = to_floats(reader.get("curve.direction_length"));
+    state.source_loss = to_floats(reader.get("curve.source_loss"));
+    read_adjustment(reader, state.adjustment);
+    state.iteration = checkpoint->iteration;
+    return true;
+}
+
+}  // namespace item3d

@@ -1,0 +1,15 @@
+// An edit's state to and from its checkpoint.
+#pragma once
+
+#include "item3d/edit/optimize/optimize.h"
+
+namespace item3d {
+
+/// Writes OUTPUT/checkpoint.safetensors.
+void save_state(const EditRequest& request, const EditState& state);
+
+/// Fills `state` (whose field, optimiser and guidance are already built) from the checkpoint; false
+/// when there is none. Throws InputError when it belongs to another model or other settings.
+bool load_state(const EditRequest& request, EditState& state);
+
+}  // namespace item3d

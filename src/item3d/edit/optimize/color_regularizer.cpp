@@ -1,0 +1,78 @@
+#include "item3d/edit/optimize/color_regularizer.h"
+
+#include "item3d/core/random.h"
+#include "item3d/field/surface_points.h"
+
+#include <ATen/ops/linalg_solve.h>
+
+namespace item3d {
+namespace {
+
+constexpr std::int64_t points = 2048;  ///< an iteration
+constexpr std::int64_t draws = 16;     ///< iteration i takes those of i modulo this
+/// Of encoded values, where steps look about equal: a blotch departs by less, a part of its own by
+/// more.
+constexpr float blotch = 0.25f;
+constexpr int refits = 3;
+/// Keeps the slopes of a surface without contrast at nothing; that of spots is 0.1 and more.
+constexpr float least_variance = 0.01f;
+constexpr std::uint64_t point_stream = 9;  // of the edit's seed; others are in views.cpp
+
+}  // namespace
+
+Departures departures(const torch::Tensor& change, const torch::Tensor& color, float scale) {
+    const std::int64_t count = change.size(0);
+    const torch::Tensor features =
+        torch::cat({torch::ones_like(color.narrow(1, 0, 1)), color - color.mean(0)}, 1);
+    const torch::Tensor ridge =
+        least_variance * static_cast<float>(count) *
+        torch::diag(torch::tensor({0.0f, 1.0f, 1.0f, 1.0f}, color.options()));
+    Departures found{change, torch::ones({count, 1}, change.options())};
+    for (int i = 0; i < refits; ++i) {
+        const torch::Tensor weighted = (features * found.weights).t();
+        const torch::Tensor slopes =
+            at::linalg_solve(weighted.mm(features) + ridge, weighted.mm(change));
+        found.values = change - features.mm(slopes);
+        const torch::Tensor squared = found.values.square().sum(1, true);
+        found.weights = (1 + squared / (scale * scale)).square().reciprocal();
+    }
+    return found;
+}
+
+Evenness::Evenness(const EditScene& scene, const EditSettings& settings, const EditState& state) {
+    if (settings.evenness == 0 || !edits_texture(settings) || names_detail(settings)) return;
+    const torch::NoGradGuard no_grad;
+    weight_ = settings.evenness;
+    Random random(settings.seed, point_stream);
+    const Surface surface =
+        SurfaceSampler(scene.geometry, *scene.space).sample(draws * points, random);
+    const torch::Tensor positions = scene.space->positions(surface);
+    // The sampler goes over the surface in order: each draw takes one of as many neighbours.
+    const auto deal = [](const torch::Tensor& rows) {
+        return rows.reshape({points, draws, -1}).transpose(0, 1).contiguous();
+    };
+    positions_ = deal(positions);
+    fitted_ = deal(NeuralTexture(state.fitted)->encoded(positions));
+    const float base_color = scene.channels.base_color ? 1 : 0;
+    channels_ = torch::tensor({base_color, base_color, base_color, 0.0f,
+                               scene.channels.roughness ? 1.0f : 0.0f,
+                               scene.channels.metallic ? 1.0f : 0.0f, 0.0f, 0.0f})
+                    .to(scene.device);
+}
+
+void Evenness::backward(EditState& state) const {
+    if (weight_ == 0) return;
+    const std::int64_t draw = state.iteration % draws;
+    const torch::Tensor before = fitted_[draw];
+    const torch::Tensor now = state.field->encoded(positions_[draw]);
+    torch::Tensor gradient;
+    {
+        const torch::NoGradGuard no_grad;
+        const Departures found =
+            departures((now - before) * channels_, before.narrow(1, 0, 3), blotch);
+        gradient = found.values * found.weights * (weight_ / points);
+    }
+    now.backward(gradient);
+}
+
+}  // namespace item3d

@@ -1,0 +1,40 @@
+// Where a sentence names nothing that has a pattern, blotches are noise that guidance left behind.
+#pragma once
+
+#include "item3d/edit/optimize/optimize.h"
+
+#include <torch/types.h>
+
+namespace item3d {
+
+/// An edit towards a plain colour or metal is taken for a recolouring: what it adds to a material
+/// is an affine function of the base colour that was there, the same all over the surface, so that
+/// spots and stripes stay to be seen. What departs from the best such function is pulled back, the
+/// less the further it is away (the weights of Geman and McClure), because a part that guidance
+/// keeps apart, as a handle of another colour, is no blotch.
+class Evenness {
+  public:
+    /// Does nothing where the settings' `evenness` is 0 or the target names detail, names_detail().
+    Evenness(const EditScene& scene, const EditSettings& settings, const EditState& state);
+
+    /// Adds its gradient to the field's. A function of the field and the iteration alone.
+    void backward(EditState& state) const;
+
+  private:
+    float weight_ = 0;
+    torch::Tensor positions_;  ///< [draws, P, 3] of the surface
+    torch::Tensor fitted_;     ///< [draws, P, 8] as NeuralTexture::encoded(), before the edit
+    torch::Tensor
+        channels_;  ///< [8] 1 for those of base colour, roughness and metallic that change
+};
+
+struct Departures {
+    torch::Tensor values;   ///< [P, C]
+    torch::Tensor weights;  ///< [P, 1] 0 to 1: what each point counted
+};
+
+/// `change` [P, C] without its best affine function of `color` [P, 3]. Points that depart by much
+/// more than `scale` hardly count. For Evenness and its tests.
+Departures departures(const torch::Tensor& change, const torch::Tensor& color, float scale);
+
+}  // namespace item3d

@@ -1,0 +1,97 @@
+#include "item3d/core/files.h"
+#include "item3d/edit/outputs/outputs.h"
+#include "item3d/field/bake/bake.h"
+#include "item3d/io/gltf/light.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+
+#include <cctype>
+#include <optional>
+
+namespace item3d {
+namespace {
+
+std::string file_name_of(const std::string& material, int index) {
+    std::string name;
+    for (const char c : material) {
+        const auto byte = static_cast<unsigned char>(c);
+        name += std::isalnum(byte) != 0 || c == '-' || c == '_' ? c : '_';
+    }
+    return name.empty() ? "material" + std::to_string(index) : name;
+}
+
+Bytes source_thumbnail(const Model& model, int texture, const std::filesystem::path& scratch) {
+    if (texture < 0) return {};
+    const Image& image = model.textures[static_cast<std::size_t>(texture)].image;
+    if (image.empty()) return {};
+    save_image(scratch, image);
+    Bytes bytes = read_bytes(scratch);
+    std::filesystem::remove(scratch);
+    return bytes;
+}
+
+/// Writes one image into textures/ and remembers it beside the source's for the report.
+void save_texture(const EditRequest& request, const EditScene& scene, const std::string& material,
+                  const std::string& suffix, const std::string& title,
+                  const std::optional<Image>& image, int source_texture, int bits,
+                  std::vector<TexturePair>& pairs) {
+    if (!image) return;
+    const auto folder = request.output / "textures";
+    const auto path = folder / (material + "_" + suffix + ".png");
+    save_image(path, *image, bits);
+    pairs.push_back({title,
+                     source_thumbnail(scene.model, source_texture, folder / "source.tmp.png"),
+                     read_bytes(path)});
+}
+
+constexpr int light_height = 256;
+
+EditedModel bake_textures(const EditRequest& request, const EditScene& scene, EditState& state) {
+    BakeOptions options;
+    options.texture_size = request.settings.texture_size;
+    options.channels = {scene.channels.base_color, scene.channels.occlusion,
+                        scene.channels.roughness, scene.channels.metallic, scene.channels.normal};
+    const BakeScene bake_scene{scene.model, scene.geometry, *scene.textured, *scene.space,
+                               scene.atlas};
+    const ModelEdit edit = bake(bake_scene, state.fitted, state.field, options);
+
+    EditedModel edited;
+    const auto path = request.output / "model.glb";
+    save_model(path, scene.model, edit);
+    make_output_folder(request.output / "textures");
+    for (const auto& [index, material_edit] : edit.materials) {
+        const Material& source = scene.model.materials[static_cast<std::size_t>(index)];
+        const std::string name = file_name_of(source.name, index);
+        const int bits = material_edit.bits_per_channel;
+        save_texture(request, scene, name, "base_color", "Base colour", material_edit.base_color,
+                     source.base_color_texture, bits, edited.textures);
+        save_texture(request, scene, name, "orm", "Occlusion, roughness, metallic",
+                     material_edit.metallic_roughness, source.metallic_roughness_texture, bits,
+                     edited.textures);
+        save_texture(request, scene, name, "normal", "Normal", material_edit.normal,
+                     source.normal_texture, bits, edited.textures);
+    }
+    edited.model = load_model(path);
+    return edited;
+}
+
+}  // namespace
+
+EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state) {
+    const torch::NoGradGuard no_grad;
+    EditedModel edited;
+    if (edits_texture(request.settings)) {
+        edited = bake_textures(request, scene, state);
+    } else {
+        save_lit_model(request.output / "model.glb", scene.model);
+        edited.model = scene.model;
+    }
+    if (state.light) {
+        edited.light = state.light->image(light_height);
+        for (const char* name : {"light.hdr", "light.exr"})
+            save_image(request.output / name, *edited.light, 32);
+    }
+    return edited;
+}
+
+}  // namespace item3d

@@ -1,0 +1,82 @@
+#include "item3d/core/files.h"
+#include "item3d/edit/outputs/outputs.h"
+#include "item3d/io/save.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/lighting/layout.h"
+#include "item3d/report/animation.h"
+#include "item3d/report/contact_sheet.h"
+#include "item3d/report/model_pictures.h"
+#include "item3d/report/picture.h"
+
+namespace item3d {
+namespace {
+
+constexpr int view_count = 6;
+constexpr int turntable_frames = 30;
+const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
+
+std::vector<Image> to_pictures(const torch::Tensor& linear) {
+    std::vector<Image> pictures;
+    for (const torch::Tensor& picture : linear.unbind(0)) {
+        pictures.push_back(to_display(to_image(picture)));
+    }
+    return pictures;
+}
+
+void save_sheet(const std::filesystem::path& path, const std::vector<Image>& pictures,
+                const std::string& title) {
+    std::vector<Tile> tiles;
+    for (const Image& picture : pictures)
+        tiles.push_back({picture, ""});
+    ContactSheetOptions options;
+    options.columns = 3;
+    options.title = title;
+    save_image(path, contact_sheet(tiles, options));
+}
+
+std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
+    std::vector<ReportImage> images;
+    for (const Image& picture : pictures)
+        images.push_back({"", encode_webp(picture)});
+    return images;
+}
+
+}  // namespace
+
+Pictures render_pictures(const EditRequest& request, const EditScene& scene,
+                         const EditedModel& edited, const std::optional<Clip>& clip) {
+    const EnvironmentLight light = prefilter(load_light(request.settings.light), 256, scene.device);
+    const int view_pixels = request.picture_pixels;
+    const auto cameras = picture_cameras(scene.model, view_count);
+    const torch::Tensor before = draw_pictures(scene.model, light, cameras, view_pixels);
+    const EnvironmentLight new_light =
+        edited.light ? prefilter(*edited.light, 256, scene.device) : light;
+    const ModelDrawing drawing(edited.model, new_light);
+    const torch::Tensor after = drawing.draw(cameras, view_pixels);
+
+    Pictures pictures;
+    const auto before_pictures = to_pictures(before);
+    const auto after_pictures = to_pictures(after);
+    save_sheet(request.output / "before.png", before_pictures, request.settings.from);
+    save_sheet(request.output / "after.png", after_pictures, request.settings.to);
+    pictures.before = to_report(before_pictures);
+    pictures.after = to_report(after_pictures);
+
+    std::vector<Image> frames;
+    for (const Camera& camera : picture_cameras(scene.model, turntable_frames)) {
+        const torch::Tensor frame = drawing.draw({camera}, view_pixels * 3 / 4);
+        frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
+    }
+    pictures.turntable = {request.settings.to, encode_animation(frames)};
+    write_atomically(request.output / "turntable.webp", pictures.turntable.bytes);
+
+    pictures.means_before = surface_means(scene.model, scene.materials);
+    pictures.means_after = surface_means(edited.model, scene.materials);
+    pictures.detail_kept = detail_kept(before, after);
+    if (clip)
+        pictures.clip = clip_scores(*clip, over_white(before), over_white(after),
+                                    request.settings.from, request.settings.to);
+    return pictures;
+}
+
+}  // namespace item3d

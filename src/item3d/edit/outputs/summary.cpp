@@ -1,0 +1,258 @@
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/version.h"
+#include "item3d/edit/outputs/outputs.h"
+#include "item3d/report/animation.h"
+#include "item3d/tensors/precision.h"
+
+#include <ATen/Parallel.h>
+#include <torch/types.h>
+
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+using nlohmann::json;
+
+json means_json(const SurfaceMeans& means) {
+    return {{"base_color_linear", {means.base_color.x, means.base_color.y, means.base_color.z}},
+            {"roughness", means.roughness},
+            {"metallic", means.metallic}};
+}
+
+std::string hex_color(const Vec3& linear) {
+    const auto byte = [](float value) {
+        return static_cast<int>(
+            std::lround(255.0f * linear_to_srgb(std::clamp(value, 0.0f, 1.0f))));
+    };
+    return fmt::format("#{:02x}{:02x}{:02x}", byte(linear.x), byte(linear.y), byte(linear.z));
+}
+
+json seconds_json(const StageTimes& times) {
+    json seconds = json::object();
+    for (const auto& [stage, value] : times.stages())
+        seconds[stage] = value;
+    seconds["total"] = times.total();
+    return seconds;
+}
+
+json iteration_json(const IterationTimes& times) {
+    const auto count = static_cast<double>(std::max<std::int64_t>(1, times.iterations));
+    return {{"render", times.render / count}, {"encode", times.encode / count},
+            {"unet", times.unet / count},     {"backward", times.backward / count},
+            {"step", times.step / count},     {"adjust", times.adjust / count}};
+}
+
+json adjustment_json(const EditRequest& request, const AdjustmentState& adjustment) {
+    json result = {{"records", adjustment.records}};
+    if (wants_captions(request.settings)) {
+        result["captioner"] = request.captioner.string();
+        json before = json::array();
+        for (const Caption& caption : adjustment.captions_before)
+            before.push_back(caption.text);
+        result["captions_before"] = before;
+    }
+    if (!adjustment.failure.empty()) result["failure"] = adjustment.failure;
+    return result;
+}
+
+json summary_json(const EditRequest& request, const EditScene& scene, const EditState& state,
+                  const StageTimes& times, const IterationTimes& iteration_times,
+                  const Pictures& pictures) {
+    const EditSettings& settings = request.settings;
+    json remade = json::object();
+    for (const auto& [material, reason] : scene.atlas.remade) {
+        remade[scene.model.materials[static_cast<std::size_t>(material)].name] = reason;
+    }
+    json summary = {{"version", version()},
+                    {"command", request.command},
+                    {"model", request.model.string()},
+                    {"from", settings.from},
+                    {"to", settings.to},
+                    {"read_as", {{"from", scene.from}, {"to", scene.to}}},
+                    {"prior", request.prior.string()},
+                    {"guidance", settings.guidance},
+                    {"seed", settings.seed},
+                    {"device", scene.device.is_cuda() ? "cuda" : "cpu"},
+                    {"precision", precision_name(scene.precision)},
+                    {"threads", at::get_num_threads()},
+                    {"iterations", settings.iterations},
+                    {"iterations_done", state.direction_length.size()},
+                    {"adjustment", adjustment_json(request, state.adjustment)},
+                    {"settings", settings},
+                    {"new_uv_maps", remade},
+                    {"scores",
+                     {{"detail_kept", pictures.detail_kept},
+                      {"before", means_json(pictures.means_before)},
+                      {"after", means_json(pictures.means_after)}}},
+                    {"seconds", seconds_json(times)},
+                    {"seconds_per_iteration", iteration_json(iteration_times)},
+                    {"peak_memory_bytes", peak_memory_bytes()}};
+    if (pictures.clip) {
+        json clip = pictures.clip->mean;
+        clip["model"] = request.clip.string();
+        clip["views"] = pictures.clip->views;
+        summary["scores"]["clip"] = std::move(clip);
+    }
+    return summary;
+}
+
+std::vector<Score> scores_of(const Pictures& pictures) {
+    const SurfaceMeans& before = pictures.means_before;
+    const SurfaceMeans& after = pictures.means_after;
+    std::vector<Score> scores = {
+        {"Mean base colour", hex_color(after.base_color), "was " + hex_color(before.base_color)},
+        {"Metallic", fmt::format("{:.2f}", after.metallic),
+         fmt::format("was {:.2f}; 1 is bare metal", before.metallic)},
+        {"Roughness", fmt::format("{:.2f}", after.roughness),
+         fmt::format("was {:.2f}; 0 is a mirror", before.roughness)},
+        {"Detail kept", fmt::format("{:.2f}", pictures.detail_kept),
+         "correlation of luminance detail before and after; 1 keeps every line"}};
+    if (pictures.clip) {
+        const ClipScore& clip = pictures.clip->mean;
+        scores.push_back({"CLIP, target", fmt::format("{:.3f}", clip.global),
+                          fmt::format("was {:.3f}; cosine of pictures and target sentence",
+                                      clip.global_before)});
+        scores.push_back({"CLIP, direction", fmt::format("{:.3f}", clip.directional),
+                          "cosine of what changed in the pictures and in the sentence"});
+    }
+    return scores;
+}
+
+Curve curve_of(const std::string& name, const std::vector<float>& values) {
+    return {name, std::vector<double>(values.begin(), values.end()), 1, 1};
+}
+
+std::string timeline_note(const EditState& state) {
+    std::string text = "direction: its mean length since the picture before";
+    if (state.guidance->text_direction())
+        text +=
+            "; turned, length: where the direction between the two sentences points now, beside "
+            "where it pointed at first; loss: how badly the source describes the picture, on "
+            "average since the one before";
+    return text + ".";
+}
+
+std::vector<Chart> charts_of(const EditSettings& settings, const EditState& state) {
+    if (state.direction_length.empty()) return {};
+    std::vector<Chart> charts;
+    charts.push_back(
+        {settings.guidance == "sds" ? "Length of the score" : "Length of the direction",
+         "iteration",
+         {curve_of("direction", state.direction_length)},
+         true});
+    if (state.guidance->text_direction()) {
+        charts.push_back({settings.adjust == "off" ? "Denoising loss of the source sentence"
+                                                   : "Denoising loss of the source as it follows",
+                          "iteration",
+                          {curve_of("loss", state.source_loss)},
+                          true});
+    }
+    return charts;
+}
+
+/// The first caption stands for all of them; the rest is in edit.json.
+TimelineEntry entry_of(const AdjustmentRecord& record) {
+    TimelineEntry entry;
+    entry.title = record.iteration == 0 ? "start" : fmt::format("step {}", record.iteration);
+    entry.picture = {entry.title, encode_webp(to_image(record.picture.to(torch::kFloat32) / 255))};
+    if (!record.captions.empty()) entry.caption = record.captions.front();
+    if (record.direction)
+        entry.facts.emplace_back("direction", fmt::format("{:.3f}", *record.direction));
+    if (record.text) {
+        entry.facts.emplace_back("turned", fmt::format("{:.0f}\u00b0", record.text->angle));
+        entry.facts.emplace_back("length", fmt::format("{:.2f}", record.text->length));
+    }
+    if (record.source_loss)
+        entry.facts.emplace_back("loss", fmt::format("{:.3f}", *record.source_loss));
+    return entry;
+}
+
+/// No more than fit on a page, the first and the last among them.
+std::vector<TimelineEntry> timeline_of(const std::vector<AdjustmentRecord>& records) {
+    constexpr std::size_t most = 12;
+    const std::size_t count = std::min(records.size(), most);
+    std::vector<TimelineEntry> timeline;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t index = count < 2 ? i : i * (records.size() - 1) / (count - 1);
+        timeline.push_back(entry_of(records[index]));
+    }
+    return timeline;
+}
+
+/// As people write it: 0.06 and not all digits of the nearest float, lists without brackets.
+std::string readable(const json& value) {
+    if (value.is_number_float()) return fmt::format("{}", value.get<float>());
+    if (value.is_array()) {
+        std::string list;
+        for (const json& each : value)
+            list += (list.empty() ? "" : ", ") + readable(each);
+        return list.empty() ? "none" : list;
+    }
+    if (!value.is_string()) return value.dump();
+    return value.get<std::string>().empty() ? "none" : value.get<std::string>();
+}
+
+TableRows settings_table(const json& summary) {
+    TableRows rows;
+    for (const auto& [key, value] : summary["settings"].items()) {
+        // No list of materials means that all of them may change.
+        const bool all = key == "material" && value.empty();
+        rows.emplace_back(key, all ? "all" : readable(value));
+    }
+    for (const char* key : {"prior", "device", "precision", "threads"}) {
+        rows.emplace_back(key, readable(summary[key]));
+    }
+    rows.emplace_back("peak memory",
+                      fmt::format("{:.0f} MB", summary["peak_memory_bytes"].get<double>() / 1e6));
+    return rows;
+}
+
+}  // namespace
+
+json write_summary(const EditRequest& request, const EditScene& scene, const EditState& state,
+                   const StageTimes& times, const IterationTimes& iteration_times,
+                   const EditedModel& edited, const Pictures& pictures) {
+    const json summary = summary_json(request, scene, state, times, iteration_times, pictures);
+
+    EditReport report;
+    report.model = request.model.filename().string();
+    report.from = request.settings.from;
+    report.to = request.settings.to;
+    if (state.direction_length.size() < static_cast<std::size_t>(request.settings.iterations))
+        report.summary = fmt::format("Settled after {} of {} iterations.",
+                                     state.direction_length.size(), request.settings.iterations);
+    report.before = pictures.before;
+    report.after = pictures.after;
+    report.turntable = pictures.turntable;
+    report.textures = edited.textures;
+    report.scores = scores_of(pictures);
+    report.timeline = timeline_of(state.adjustment.records);
+    report.timeline_note = timeline_note(state);
+    report.charts = charts_of(request.settings, state);
+    report.settings = settings_table(summary);
+    report.seconds = times.stages();
+    for (const auto& [material, reason] : scene.atlas.remade) {
+        report.warnings.push_back("Material " +
+                                  scene.model.materials[static_cast<std::size_t>(material)].name +
+                                  " has a new UV map: " + reason);
+    }
+    if (!state.adjustment.failure.empty())
+        report.warnings.push_back("The captioner was not asked to the end: " +
+                                  state.adjustment.failure);
+    report.files = {{"model.glb", "model.glb"},
+                    {"edit.json", "edit.json"},
+                    {"turntable.webp", "turntable.webp"},
+                    {"before.png", "before.png"},
+                    {"after.png", "after.png"}};
+    if (edited.light) report.files.push_back({"light.exr", "light.exr"});
+    report.command = request.command;
+    report.version = version();
+    write_atomically(request.output / "report.html", edit_report_html(report));
+    write_atomically(request.output / "edit.json", summary.dump(2) + "\n");
+    return summary;
+}
+
+}  // namespace item3d

@@ -1,0 +1,61 @@
+#include "item3d/field/bake/fill.h"
+
+#include <algorithm>
+
+namespace item3d {
+
+void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels,
+                    int layers) {
+    const int width = image.width;
+    const int height = image.height;
+    std::vector<std::uint8_t> known = covered;  // 1: has its value, 2: is in the next layer
+    const auto at = [&](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(x);
+    };
+    const auto for_neighbours = [&](int x, int y, const auto& f) {
+        for (int ny = std::max(0, y - 1); ny <= std::min(height - 1, y + 1); ++ny) {
+            for (int nx = std::max(0, x - 1); nx <= std::min(width - 1, x + 1); ++nx)
+                f(nx, ny);
+        }
+    };
+    struct Texel {
+        int x, y;
+    };
+    std::vector<Texel> layer, next;
+    const auto enqueue_around = [&](int x, int y) {
+        for_neighbours(x, y, [&](int nx, int ny) {
+            if (known[at(nx, ny)] != 0) return;
+            known[at(nx, ny)] = 2;
+            next.push_back({nx, ny});
+        });
+    };
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            if (covered[at(x, y)] != 0) enqueue_around(x, y);
+        }
+    }
+    for (int done = 0; !next.empty() && (layers == 0 || done < layers); ++done) {
+        layer.swap(next);
+        next.clear();
+        for (const Texel texel : layer) {
+            for (int c = 0; c < image.channels; ++c) {
+                if ((channels >> c & 1u) == 0) continue;
+                float sum = 0.0f;
+                int count = 0;
+                for_neighbours(texel.x, texel.y, [&](int nx, int ny) {
+                    if (known[at(nx, ny)] != 1) return;
+                    sum += image.at(nx, ny, c);
+                    ++count;
+                });
+                image.at(texel.x, texel.y, c) = sum / static_cast<float>(count);
+            }
+        }
+        for (const Texel texel : layer)
+            known[at(texel.x, texel.y)] = 1;
+        for (const Texel texel : layer)
+            enqueue_around(texel.x, texel.y);
+    }
+}
+
+}  // namespace item3d

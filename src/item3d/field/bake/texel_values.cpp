@@ -1,0 +1,148 @@
+#include "item3d/field/bake/texel_values.h"
+
+#include "item3d/core/error.h"
+
+#include <algorithm>
+
+namespace item3d {
+namespace {
+
+constexpr int packed_width = 10;
+constexpr int samples_at_once = 65536;
+
+/// [P, 3, 3] with rows tangent, bitangent, normal of glTF's tangent space.
+torch::Tensor tangent_frame(const torch::Tensor& normal, const torch::Tensor& tangent) {
+    const auto unit = [](const torch::Tensor& v) {
+        return v / torch::sqrt(v.square().sum(1, true)).clamp_min(1e-12);
+    };
+    const torch::Tensor direction = tangent.narrow(1, 0, 3);
+    const torch::Tensor t = unit(direction - normal * (normal * direction).sum(1, true));
+    const torch::Tensor b = torch::cross(normal, t, 1) * tangent.narrow(1, 3, 1).sign();
+    return torch::stack({t, b, normal}, 1);
+}
+
+}  // namespace
+
+TexelEvaluator::TexelEvaluator(const BakeScene& scene, int material, int width, int height,
+                               int supersampling, bool needs_normals)
+    : scene_(scene),
+      width_(width),
+      height_(height),
+      samples_(std::max(width, height) > 2048 ? 1 : std::max(1, supersampling)),
+      model_triangles_(scene.atlas.material_triangles.at(material)) {
+    ITEM3D_CHECK(
+        static_cast<std::int64_t>(scene.atlas.triangles.size()) == scene.geometry.triangles.size(0),
+        "atlas and geometry are of different models");
+    for (const std::int32_t t : model_triangles_) {
+        triangles_.push_back(scene.atlas.triangles[static_cast<std::size_t>(t)]);
+    }
+    raster_ = rasterize_uv(triangles_, width * samples_, height * samples_);
+    if (needs_normals && !scene.atlas.is_own(material)) {
+        Model remade;
+        for (std::size_t i = 0; i < scene.model.primitives.size(); ++i) {
+            const auto edit = scene.atlas.primitives.find(static_cast<int>(i));
+            const Primitive& primitive = scene.model.primitives[i];
+            remade.primitives.push_back(
+                edit == scene.atlas.primitives.end() ? primitive : apply(edit->second, primitive));
+        }
+        atlas_geometry_ = Geometry::from_model(remade, scene.geometry.positions.device());
+    }
+}
+
+int TexelEvaluator::rows_at_once() const {
+    return std::max(1, samples_at_once / (width_ * samples_ * samples_));
+}
+
+torch::Tensor TexelEvaluator::frame_change(const Surface& surface, const torch::Tensor& triangle,
+                                           const torch::Tensor& barycentrics) const {
+    if (!atlas_geometry_) return {};
+    const Surface remade = surface_at(*atlas_geometry_, triangle, barycentrics);
+    // Old tangent space -> world -> new tangent space.
+    return torch::matmul(tangent_frame(surface.normal, remade.tangent),
+                         tangent_frame(surface.normal, surface.tangent).transpose(1, 2));
+}
+
+torch::Tensor TexelEvaluator::pack(const MaterialSample& sample,
+                                   const torch::Tensor& rotation) const {
+    const std::int64_t count = sample.base_color.size(0);
+    torch::Tensor normal =
+        sample.normal.defined()
+            ? sample.normal
+            : torch::tensor({0.0f, 0.0f, 1.0f}, sample.base_color.options()).expand({count, 3});
+    if (rotation.defined()) normal = torch::matmul(rotation, normal.unsqueeze(2)).squeeze(2);
+    const torch::Tensor alpha = sample.alpha.defined()
+                                    ? sample.alpha.unsqueeze(1)
+                                    : torch::ones({count, 1}, sample.base_color.options());
+    return torch::cat(
+               {sample.base_color.clamp(0.0f, 1.0f), sample.orm.clamp(0.0f, 1.0f), normal, alpha},
+               1)
+        .cpu()
+        .contiguous();
+}
+
+TexelMaterial TexelEvaluator::read(const float* row) const {
+    return {Vec3(row[0], row[1], row[2]), Vec3(row[3], row[4], row[5]),
+            Vec3(row[6], row[7], row[8]), row[9]};
+}
+
+std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture& fitted,
+                                             NeuralTexture& now) const {
+    std::vector<TexelValue> texels;
+    std::vector<std::int64_t> triangle;
+    std::vector<float> barycentrics;
+    std::vector<std::size_t> first_sample;  // of each texel
+    const float scale_x = 1.0f / static_cast<float>(raster_.width);
+    const float scale_y = 1.0f / static_cast<float>(raster_.height);
+    for (int y = first; y < last; ++y) {
+        for (int x = 0; x < width_; ++x) {
+            const std::size_t before = triangle.size();
+            for (int s = 0; s < samples_ * samples_; ++s) {
+                const int sample_x = x * samples_ + s % samples_;
+                const int sample_y = y * samples_ + s / samples_;
+                const std::int32_t t = raster_.at(sample_x, sample_y);
+                if (t < 0) continue;
+                const Vec2 uv((static_cast<float>(sample_x) + 0.5f) * scale_x,
+                              (static_cast<float>(sample_y) + 0.5f) * scale_y);
+                const Vec2 weights = uv_barycentrics(triangles_[static_cast<std::size_t>(t)], uv);
+                triangle.push_back(model_triangles_[static_cast<std::size_t>(t)]);
+                barycentrics.insert(barycentrics.end(), {weights.x, weights.y});
+            }
+            if (triangle.size() == before) continue;
+            TexelValue texel;
+            texel.x = x;
+            texel.y = y;
+            texels.push_back(texel);
+            first_sample.push_back(before);
+        }
+    }
+    if (texels.empty()) return texels;
+    first_sample.push_back(triangle.size());
+
+    const torch::NoGradGuard no_grad;
+    const torch::Device device = scene_.geometry.positions.device();
+    const torch::Tensor triangles = torch::tensor(triangle, torch::kInt64).to(device);
+    const torch::Tensor weights =
+        torch::tensor(barycentrics, torch::kFloat32).view({-1, 2}).to(device);
+    const Surface surface = surface_at(scene_.geometry, triangles, weights);
+    const torch::Tensor rotation = frame_change(surface, triangles, weights);
+    const torch::Tensor positions = scene_.space.positions(surface);
+    const torch::Tensor values[3] = {pack(scene_.materials.sample(surface), rotation),
+                                     pack(fitted->forward(positions), rotation),
+                                     pack(now->forward(positions), rotation)};
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        const float share = 1.0f / static_cast<float>(first_sample[i + 1] - first_sample[i]);
+        TexelMaterial* targets[3] = {&texels[i].source, &texels[i].fitted, &texels[i].now};
+        for (int k = 0; k < 3; ++k) {
+            float mean[packed_width] = {};
+            for (std::size_t s = first_sample[i]; s < first_sample[i + 1]; ++s) {
+                const float* row = values[k].data_ptr<float>() + s * packed_width;
+                for (int c = 0; c < packed_width; ++c)
+                    mean[c] += share * row[c];
+            }
+            *targets[k] = read(mean);
+        }
+    }
+    return texels;
+}
+
+}  // namespace item3d

@@ -1,0 +1,49 @@
+// Typed lists in glTF buffers. Internal to scene/io.
+#pragma once
+
+#include "item3d/io/gltf/document.h"
+
+#include <glm/glm.hpp>
+
+namespace item3d {
+
+/// glTF's numbers for component types.
+enum class ComponentType : int {
+    i8 = 5120,
+    u8 = 5121,
+    i16 = 5122,
+    u16 = 5123,
+    u32 = 5125,
+    f32 = 5126
+};
+
+std::size_t component_size(ComponentType type);
+
+/// The elements of an accessor, packed without gaps, sparse substitutions made.
+struct Accessor {
+    ComponentType component_type = ComponentType::f32;
+    std::string type;              ///< "SCALAR", "VEC3", "MAT4", ...
+    std::size_t components = 1;    ///< in an element
+    std::size_t element_size = 4;  ///< bytes, with the padding of small matrices
+    std::size_t count = 0;
+    bool normalized = false;
+    Bytes bytes;  ///< count * element_size
+
+    /// As stored.
+    double raw(std::size_t element, std::size_t component) const;
+    /// With normalised integers mapped to [0, 1] or [-1, 1].
+    float value(std::size_t element, std::size_t component) const;
+};
+
+/// All but the bytes. Throws InputError.
+Accessor accessor_shape(const SourceDocument& document, std::size_t index);
+
+/// Everything is checked against the buffers before memory is taken. Throws InputError.
+Accessor read_accessor(const SourceDocument& document, std::size_t index);
+
+/// Reads an accessor that must have one of these component counts.
+Accessor read_vectors(const SourceDocument& document, std::size_t index,
+                      std::size_t least_components, std::size_t most_components);
+std::vector<std::uint32_t> read_indices(const SourceDocument& document, std::size_t index);
+
+}  // namespace item3d

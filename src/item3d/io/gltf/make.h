@@ -1,0 +1,15 @@
+// A new glTF document for a model that came from elsewhere. Internal to scene/io.
+#pragma once
+
+#include "item3d/io/gltf/document.h"
+#include "item3d/io/save.h"
+
+#include <memory>
+
+namespace item3d {
+
+/// Mesh i, primitive 0, node i are Model::primitives[i]; materials keep their indices. Textures and
+/// texture coordinates that `edit` replaces are left out.
+std::shared_ptr<SourceDocument> make_gltf(const Model& model, const ModelEdit& edit);
+
+}  // namespace item3d

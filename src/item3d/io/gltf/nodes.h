@@ -1,0 +1,20 @@
+// The node tree of a glTF. Internal to scene/io.
+#pragma once
+
+#include "item3d/io/gltf/document.h"
+
+#include <glm/glm.hpp>
+
+namespace item3d {
+
+struct NodeTree {
+    /// Node to world, for every node of the document.
+    std::vector<glm::dmat4> world;
+    /// Nodes of the default scene in depth-first order (of all nodes when there is no scene).
+    std::vector<std::size_t> scene;
+};
+
+/// Throws InputError when nodes form a cycle, have two parents, or lie out of range.
+NodeTree read_nodes(const SourceDocument& document);
+
+}  // namespace item3d

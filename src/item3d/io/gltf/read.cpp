@@ -1,0 +1,430 @@
+// glTF 2.0 (Khronos, ISO/IEC 12113:2022) to a Model: one primitive for each triangle primitive of
+// each node of the default scene, in world space, at rest (default morph weights, nodes as they
+// are).
+#include "item3d/core/error.h"
+#include "item3d/io/gltf/accessors.h"
+#include "item3d/io/gltf/draco.h"
+#include "item3d/io/gltf/materials.h"
+#include "item3d/io/gltf/nodes.h"
+#include "item3d/io/readers.h"
+#include "item3d/scene/flat_normals.h"
+#include "item3d/scene/smooth_normals.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace item3d {
+namespace {
+
+// Extensions that a file may require and that are read, or that change nothing that is read here.
+constexpr std::string_view known_extensions[] = {
+    "KHR_mesh_quantization",      "KHR_texture_transform", "KHR_lights_punctual",
+    "KHR_animation_pointer",      "KHR_xmp_json_ld",       "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression",
+};
+
+void check_required_extensions(const SourceDocument& document) {
+    const GltfObject root = root_of(document);
+    const std::size_t count = root.list_size("extensionsRequired");
+    for (std::size_t i = 0; i < count; ++i) {
+        const Json& item = document.json["extensionsRequired"][i];
+        const std::string name = item.is_string() ? item.get<std::string>() : "?";
+        if (name.starts_with("KHR_materials_") ||
+            std::find(std::begin(known_extensions), std::end(known_extensions), name) !=
+                std::end(known_extensions)) {
+            continue;
+        }
+        std::string hint = "export it without that extension";
+        if (name == "KHR_texture_basisu" || name == "EXT_texture_webp") {
+            hint = "convert its textures to PNG first, for instance with 'gltf-transform png'";
+        }
+        root.fail("requires the glTF extension " + name + ", which cannot be read", hint);
+    }
+}
+
+/// Vertex attributes in the space of the mesh.
+struct Vertices {
+    std::vector<glm::dvec3> positions;
+    std::vector<glm::dvec3> normals;
+    std::vector<glm::dvec4> tangents;
+};
+
+class GltfReader {
+  public:
+    explicit GltfReader(std::shared_ptr<SourceDocument> document)
+        : document_(std::move(document)), root_(root_of(*document_)) {}
+
+    Model read();
+
+  private:
+    void add_mesh(std::size_t mesh, std::optional<std::size_t> node);
+    void add_primitive(const GltfObject& mesh, const GltfObject& source, Primitive primitive,
+                       std::optional<std::size_t> node);
+    Vertices read_vertices(const GltfObject& attributes) const;
+    void apply_morph_targets(const GltfObject& source, const std::vector<double>& weights,
+                             Vertices& vertices) const;
+    std::vector<double> morph_weights(const GltfObject& mesh, const GltfObject& source,
+                                      std::optional<std::size_t> node) const;
+    std::vector<glm::dmat4> joint_matrices(std::size_t skin) const;
+    std::vector<glm::dmat4> blend_joints(const GltfObject& attributes, std::size_t skin,
+                                         std::size_t count) const;
+    void place(const Vertices& vertices, const std::vector<glm::dmat4>& matrices,
+               Primitive& primitive) const;
+    void read_uvs(const GltfObject& attributes, Primitive& primitive) const;
+    void read_colors(const GltfObject& attributes, Primitive& primitive) const;
+    void read_triangles(const GltfObject& source, std::size_t mode, Primitive& primitive) const;
+    void count_vertices(const GltfObject& source, std::size_t count);
+
+    std::optional<std::size_t> accessor_of(const GltfObject& object, const char* key) const {
+        return object.index(key, root_.list_size("accessors"));
+    }
+
+    std::shared_ptr<SourceDocument> document_;
+    GltfObject root_;
+    NodeTree nodes_;
+    Model model_;
+    std::size_t vertex_count_ = 0;
+    bool uses_default_material_ = false;
+};
+
+void check_count(const GltfObject& attributes, const char* name, std::size_t count,
+                 std::size_t expected) {
+    if (count != expected) {
+        attributes.fail(fmt::format("{} has {} elements, POSITION {}", name, count, expected));
+    }
+}
+
+glm::dvec3 to_dvec3(const Accessor& accessor, std::size_t i) {
+    return {accessor.value(i, 0), accessor.value(i, 1), accessor.value(i, 2)};
+}
+
+// A few nodes can repeat a mesh without end; what the file holds bounds what is taken.
+void GltfReader::count_vertices(const GltfObject& source, std::size_t count) {
+    std::size_t size_of_file = 0;
+    for (const Bytes& buffer : document_->buffers)
+        size_of_file += buffer.size();
+    const std::size_t limit =
+        std::min<std::size_t>(1 << 26, std::max<std::size_t>(1 << 20, 64 * size_of_file));
+    vertex_count_ += count;
+    if (count > limit || vertex_count_ > limit) {
+        source.fail(fmt::format("more than {} vertices in all", limit), "split the model");
+    }
+}
+
+Vertices GltfReader::read_vertices(const GltfObject& attributes) const {
+    Vertices vertices;
+    const Accessor positions = read_vectors(*document_, *accessor_of(attributes, "POSITION"), 3, 3);
+    vertices.positions.resize(positions.count);
+    for (std::size_t i = 0; i < positions.count; ++i)
+        vertices.positions[i] = to_dvec3(positions, i);
+    if (const auto index = accessor_of(attributes, "NORMAL")) {
+        const Accessor normals = read_vectors(*document_, *index, 3, 3);
+        check_count(attributes, "NORMAL", normals.count, positions.count);
+        vertices.normals.resize(normals.count);
+        for (std::size_t i = 0; i < normals.count; ++i)
+            vertices.normals[i] = to_dvec3(normals, i);
+    }
+    if (const auto index = accessor_of(attributes, "TANGENT")) {
+        const Accessor tangents = read_vectors(*document_, *index, 4, 4);
+        check_count(attributes, "TANGENT", tangents.count, positions.count);
+        vertices.tangents.resize(tangents.count);
+        for (std::size_t i = 0; i < tangents.count; ++i) {
+            vertices.tangents[i] = glm::dvec4(to_dvec3(tangents, i), tangents.value(i, 3));
+        }
+    }
+    return vertices;
+}
+
+std::vector<double> GltfReader::morph_weights(const GltfObject& mesh, const GltfObject& source,
+                                              std::optional<std::size_t> node) const {
+    const std::size_t count = source.list_size("targets");
+    if (count == 0) return {};
+    std::vector<double> weights;
+    if (node) weights = root_.item("nodes", *node).numbers("weights", count);
+    if (weights.empty()) weights = mesh.numbers("weights", count);
+    return weights;
+}
+
+void GltfReader::apply_morph_targets(const GltfObject& source, const std::vector<double>& weights,
+                                     Vertices& vertices) const {
+    for (std::size_t t = 0; t < weights.size(); ++t) {
+        if (weights[t] == 0.0) continue;
+        const GltfObject target = source.item("targets", t);
+        const auto add = [&](const char* name, auto& values) {
+            const auto index = accessor_of(target, name);
+            if (!index || values.empty()) return;
+            const Accessor offsets = read_vectors(*document_, *index, 3, 3);
+            check_count(target, name, offsets.count, values.size());
+            for (std::size_t i = 0; i < offsets.count; ++i) {
+                for (int c = 0; c < 3; ++c)
+                    values[i][c] += weights[t] * offsets.value(i, c);
+            }
+        };
+        add("POSITION", vertices.positions);
+        add("NORMAL", vertices.normals);
+        add("TANGENT", vertices.tangents);
+    }
+}
+
+std::vector<glm::dmat4> GltfReader::joint_matrices(std::size_t index) const {
+    const GltfObject skin = root_.item("skins", index);
+    const std::size_t count = skin.list_size("joints");
+    std::vector<glm::dmat4> matrices;
+    for (std::size_t j = 0; j < count; ++j) {
+        matrices.push_back(nodes_.world[skin.index_item("joints", j, nodes_.world.size())]);
+    }
+    if (const auto accessor = accessor_of(skin, "inverseBindMatrices")) {
+        const Accessor inverse = read_accessor(*document_, *accessor);
+        if (inverse.type != "MAT4" || inverse.count < count) {
+            skin.fail("inverseBindMatrices must be a MAT4 for each joint");
+        }
+        for (std::size_t j = 0; j < count; ++j) {
+            glm::dmat4 matrix;
+            for (int c = 0; c < 16; ++c)
+                matrix[c / 4][c % 4] = inverse.value(j, c);
+            matrices[j] = matrices[j] * matrix;
+        }
+    }
+    return matrices;
+}
+
+// One matrix a vertex: the weighted mean of its joints'.
+std::vector<glm::dmat4> GltfReader::blend_joints(const GltfObject& attributes, std::size_t skin,
+                                                 std::size_t count) const {
+    const std::vector<glm::dmat4> joints = joint_matrices(skin);
+    std::vector<glm::dmat4> blended(count, glm::dmat4(0.0));
+    std::vector<double> sums(count, 0.0);
+    for (int set = 0; attributes.has(fmt::format("JOINTS_{}", set).c_str()); ++set) {
+        const std::string joints_name = fmt::format("JOINTS_{}", set);
+        const std::string weights_name = fmt::format("WEIGHTS_{}", set);
+        const auto joints_index = accessor_of(attributes, joints_name.c_str());
+        const auto weights_index = accessor_of(attributes, weights_name.c_str());
+        if (!weights_index) attributes.fail(weights_name + " is missing");
+        const Accessor indices = read_vectors(*document_, *joints_index, 4, 4);
+        const Accessor weights = read_vectors(*document_, *weights_index, 4, 4);
+        check_count(attributes, joints_name.c_str(), indices.count, count);
+        check_count(attributes, weights_name.c_str(), weights.count, count);
+        for (std::size_t i = 0; i < count; ++i) {
+            for (int c = 0; c < 4; ++c) {
+                const double weight = weights.value(i, c);
+                if (weight == 0.0) continue;
+                const double joint = indices.raw(i, c);
+                if (!(joint >= 0.0) || joint >= static_cast<double>(joints.size())) {
+                    attributes.fail(fmt::format("joint {} of {}", joint, joints.size()));
+                }
+                blended[i] += weight * joints[static_cast<std::size_t>(joint)];
+                sums[i] += weight;
+            }
+        }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        blended[i] = sums[i] > 0.0 ? blended[i] / sums[i] : glm::dmat4(1.0);
+    }
+    return blended;
+}
+
+// matrices: one for all vertices, or one a vertex.
+void GltfReader::place(const Vertices& vertices, const std::vector<glm::dmat4>& matrices,
+                       Primitive& primitive) const {
+    const std::size_t count = vertices.positions.size();
+    primitive.is_mirrored = count > 0 && glm::determinant(glm::dmat3(matrices[0])) < 0.0;
+    bool all_normals = !vertices.normals.empty();
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dmat4& matrix = matrices[matrices.size() == 1 ? 0 : i];
+        const glm::dvec3 x(matrix[0]), y(matrix[1]), z(matrix[2]);
+        primitive.positions.emplace_back(matrix * glm::dvec4(vertices.positions[i], 1.0));
+        if (all_normals) {
+            // Cofactors are the inverse transpose times the determinant and exist for any matrix.
+            const glm::dvec3& n = vertices.normals[i];
+            glm::dvec3 normal =
+                glm::cross(y, z) * n.x + glm::cross(z, x) * n.y + glm::cross(x, y) * n.z;
+            if (primitive.is_mirrored) normal = -normal;
+            const double length = glm::length(normal);
+            all_normals = std::isfinite(length) && length > 0.0;
+            if (all_normals) primitive.normals.emplace_back(normal / length);
+        }
+        if (!vertices.tangents.empty()) {
+            const glm::dvec4& t = vertices.tangents[i];
+            const glm::dvec3 tangent = x * t.x + y * t.y + z * t.z;
+            const double length = glm::length(tangent);
+            const glm::dvec3 direction = std::isfinite(length) && length > 0.0
+                                             ? tangent / length
+                                             : glm::dvec3(1.0, 0.0, 0.0);
+            primitive.tangents.emplace_back(Vec3(direction),
+                                            (t.w < 0.0) != primitive.is_mirrored ? -1.0f : 1.0f);
+        }
+    }
+    if (!all_normals) primitive.normals.clear();
+}
+
+void GltfReader::read_uvs(const GltfObject& attributes, Primitive& primitive) const {
+    const std::size_t materials = root_.list_size("materials");
+    UvLayout layout;
+    if (static_cast<std::size_t>(primitive.material) < materials) {
+        layout = material_uv_layout(
+            root_.item("materials", static_cast<std::size_t>(primitive.material)));
+    }
+    const std::string name = fmt::format("TEXCOORD_{}", layout.tex_coord);
+    const auto index = accessor_of(attributes, name.c_str());
+    if (!index) return;
+    const Accessor uvs = read_vectors(*document_, *index, 2, 2);
+    check_count(attributes, name.c_str(), uvs.count, primitive.positions.size());
+    for (std::size_t i = 0; i < uvs.count; ++i) {
+        Vec2 uv(uvs.value(i, 0), uvs.value(i, 1));
+        if (layout.is_transformed()) uv = layout.apply(uv);
+        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = Vec2(0.0f);
+        primitive.uvs.push_back(uv);
+    }
+}
+
+void GltfReader::read_colors(const GltfObject& attributes, Primitive& primitive) const {
+    const auto index = accessor_of(attributes, "COLOR_0");
+    if (!index) return;
+    const Accessor colors = read_vectors(*document_, *index, 3, 4);
+    check_count(attributes, "COLOR_0", colors.count, primitive.positions.size());
+    for (std::size_t i = 0; i < colors.count; ++i) {
+        Vec4 color(1.0f);
+        for (std::size_t c = 0; c < colors.components; ++c) {
+            const float value = colors.value(i, c);
+            color[static_cast<int>(c)] = std::isfinite(value) ? std::max(value, 0.0f) : 1.0f;
+        }
+        primitive.colors.push_back(color);
+    }
+}
+
+void GltfReader::read_triangles(const GltfObject& source, std::size_t mode,
+                                Primitive& primitive) const {
+    std::vector<std::uint32_t> corners;
+    if (const auto index = accessor_of(source, "indices")) {
+        corners = read_indices(*document_, *index);
+    } else {
+        corners.resize(primitive.positions.size());
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            corners[i] = static_cast<std::uint32_t>(i);
+    }
+    for (const std::uint32_t corner : corners) {
+        if (corner >= primitive.positions.size()) {
+            source.fail(fmt::format("index {} of {} vertices", corner, primitive.positions.size()),
+                        "the file is damaged");
+        }
+    }
+    if (mode == 4) {
+        corners.resize(corners.size() / 3 * 3);
+        primitive.indices = std::move(corners);
+    } else {
+        for (std::size_t i = 2; i < corners.size(); ++i) {
+            // Strips change their winding with every triangle, fans share their first corner.
+            const std::size_t odd = mode == 5 ? i % 2 : 0;
+            const std::size_t first = mode == 5 ? i - 2 : 0;
+            primitive.indices.insert(primitive.indices.end(),
+                                     {corners[first], corners[i - 1 + odd], corners[i - odd]});
+        }
+    }
+    if (!primitive.is_mirrored) return;
+    for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
+        std::swap(primitive.indices[t + 1], primitive.indices[t + 2]);
+    }
+}
+
+void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
+                               Primitive primitive, std::optional<std::size_t> node) {
+    const std::size_t mode = source.integer("mode", 4);
+    if (mode > 6) source.fail(fmt::format("mode {} is unknown", mode));
+    const auto attributes = source.object("attributes");
+    if (mode < 4 || !attributes || !attributes->has("POSITION")) return;
+    const GltfObject position = root_.item("accessors", *accessor_of(*attributes, "POSITION"));
+    count_vertices(source, position.integer("count"));
+    if (needs_draco(*document_, source)) decode_draco_primitive(*document_, source);
+    const std::size_t materials = root_.list_size("materials");
+    const auto material = source.index("material", materials);
+    uses_default_material_ = uses_default_material_ || !material;
+    primitive.material = static_cast<int>(material.value_or(materials));
+
+    Vertices vertices = read_vertices(*attributes);
+    apply_morph_targets(source, morph_weights(mesh, source, node), vertices);
+    std::vector<glm::dmat4> matrices{node ? nodes_.world[*node] : glm::dmat4(1.0)};
+    if (node && attributes->has("JOINTS_0")) {
+        // The node's own transform does not count for a skinned mesh.
+        const auto skin = root_.item("nodes", *node).index("skin", root_.list_size("skins"));
+        if (skin && !vertices.positions.empty()) {
+            matrices = blend_joints(*attributes, *skin, vertices.positions.size());
+        }
+    }
+    place(vertices, matrices, primitive);
+    for (std::size_t i = 0; i < primitive.positions.size(); ++i) {
+        const Vec3& p = primitive.positions[i];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+            source.fail(fmt::format("vertex {} has a coordinate that is not a finite number", i),
+                        "export the mesh again");
+        }
+    }
+    read_uvs(*attributes, primitive);
+    read_colors(*attributes, primitive);
+    read_triangles(source, mode, primitive);
+    if (primitive.indices.empty()) return;
+    if (!attributes->has("NORMAL")) {
+        count_vertices(source, primitive.indices.size());
+        document_->split_vertices[{primitive.source_mesh, primitive.source_primitive}] =
+            make_flat(primitive);
+    } else if (primitive.normals.empty()) {
+        primitive.normals = smooth_normals(primitive.positions, primitive.indices);
+    }
+    model_.primitives.push_back(std::move(primitive));
+}
+
+void GltfReader::add_mesh(std::size_t index, std::optional<std::size_t> node) {
+    const GltfObject mesh = root_.item("meshes", index);
+    std::string name = mesh.text("name", "");
+    if (node) name = root_.item("nodes", *node).text("name", name);
+    if (name.empty()) name = fmt::format("mesh_{}", index);
+    const std::size_t count = mesh.list_size("primitives");
+    for (std::size_t i = 0; i < count; ++i) {
+        Primitive primitive;
+        primitive.name = count > 1 ? fmt::format("{}_{}", name, i) : name;
+        primitive.source_mesh = static_cast<int>(index);
+        primitive.source_primitive = static_cast<int>(i);
+        primitive.source_node = node ? static_cast<int>(*node) : -1;
+        add_primitive(mesh, mesh.item("primitives", i), std::move(primitive), node);
+    }
+}
+
+Model GltfReader::read() {
+    check_required_extensions(*document_);
+    nodes_ = read_nodes(*document_);
+    const std::size_t meshes = root_.list_size("meshes");
+    for (const std::size_t node : nodes_.scene) {
+        if (const auto mesh = root_.item("nodes", node).index("mesh", meshes))
+            add_mesh(*mesh, node);
+    }
+    if (nodes_.world.empty()) {
+        // A library of meshes.
+        for (std::size_t mesh = 0; mesh < meshes; ++mesh)
+            add_mesh(mesh, std::nullopt);
+    }
+    if (model_.primitives.empty()) {
+        throw InputError(
+            document_->path.string(),
+            fmt::format("a mesh with triangles was expected, found none in {} meshes", meshes),
+            "export a model with triangles in its default scene");
+    }
+    std::vector<bool> used(root_.list_size("materials") + 1, false);
+    for (const Primitive& primitive : model_.primitives)
+        used[primitive.material] = true;
+    read_gltf_materials(*document_, used, model_);
+    if (uses_default_material_) model_.materials.push_back(default_gltf_material());
+    model_.name = document_->path.stem().string();
+    model_.source = document_;
+    return std::move(model_);
+}
+
+}  // namespace
+
+Model read_gltf(const std::filesystem::path& path, const Bytes& bytes) {
+    return GltfReader(parse_gltf(path, bytes)).read();
+}
+
+}  // namespace item3d

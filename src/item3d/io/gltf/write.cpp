@@ -1,0 +1,229 @@
+// Documents to .glb and .gltf files.
+#include "item3d/io/gltf/write.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+#include "item3d/io/gltf/make.h"
+#include "item3d/io/gltf/patch.h"
+#include "item3d/io/image/formats.h"
+#include "item3d/io/readers.h"
+#include "item3d/io/resources.h"
+#include "item3d/io/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace item3d {
+namespace fs = std::filesystem;
+namespace {
+
+// All buffers become one, the BIN chunk; views follow. Buffers without data (of extensions) stay.
+Bytes pack_buffers(const SourceDocument& document, Json& json) {
+    if (document.buffers.empty()) return {};
+    if (document.has_binary_chunk && document.buffers.size() == 1) return document.buffers[0];
+    Bytes binary;
+    std::vector<std::size_t> new_index;
+    std::vector<std::size_t> offsets;
+    Json packed = Json::object();
+    Json buffers = Json::array({Json::object()});
+    for (std::size_t i = 0; i < document.buffers.size(); ++i) {
+        const Bytes& bytes = document.buffers[i];
+        if (bytes.empty()) {
+            offsets.push_back(0);
+            new_index.push_back(buffers.size());
+            buffers.push_back(json["buffers"][i]);
+            continue;
+        }
+        binary.resize((binary.size() + 7) / 8 * 8);
+        offsets.push_back(binary.size());
+        if (packed.empty()) packed = json["buffers"][i];
+        new_index.push_back(0);
+        binary.insert(binary.end(), bytes.begin(), bytes.end());
+    }
+    packed.erase("uri");
+    packed["byteLength"] = binary.size();
+    buffers[0] = std::move(packed);
+    json["buffers"] = std::move(buffers);
+    const auto move_view = [&](Json& view) {
+        const auto buffer = view["buffer"].get<std::size_t>();
+        view["buffer"] = new_index[buffer];
+        const std::size_t offset = view.value("byteOffset", std::size_t{0}) + offsets[buffer];
+        if (offset > 0) view["byteOffset"] = offset;
+    };
+    if (!json.contains("bufferViews")) return binary;
+    for (Json& view : json["bufferViews"]) {
+        move_view(view);
+        if (view.contains("extensions") && view["extensions"].contains("EXT_meshopt_compression")) {
+            move_view(view["extensions"]["EXT_meshopt_compression"]);
+        }
+    }
+    return binary;
+}
+
+std::string mime_type_of(const Bytes& bytes, const Json& image) {
+    switch (detect_image_format(bytes)) {
+        case ImageFormat::png:
+            return "image/png";
+        case ImageFormat::jpeg:
+            return "image/jpeg";
+        default:
+            break;
+    }
+    if (image.contains("mimeType")) return image["mimeType"].get<std::string>();
+    const std::string uri = to_lower(image.value("uri", std::string()));
+    return uri.ends_with(".ktx2")   ? "image/ktx2"
+           : uri.ends_with(".webp") ? "image/webp"
+                                    : "image/png";
+}
+
+// A .glb stands alone, so pictures in files and data URIs go into it.
+void embed_images(const SourceDocument& document, GltfBuilder& builder) {
+    if (!document.json.contains("images")) return;
+    const std::size_t count = document.json["images"].size();
+    for (std::size_t i = 0; i < count; ++i) {
+        Json image = document.json["images"][i];
+        if (!image.contains("uri")) continue;
+        try {
+            const Bytes bytes = read_image_bytes(document, i);
+            builder.embed_image(image, bytes, mime_type_of(bytes, image));
+            builder.json()["images"][i] = std::move(image);
+        } catch (const InputError& error) {
+            warn(std::string(error.what()) + "; the reference is kept as it is");
+        }
+    }
+}
+
+// Files that the document refers to, copied beside the new one under the same names.
+void copy_files(const SourceDocument& document, const fs::path& folder) {
+    const auto copy = [&](const Json& item, const auto& read) {
+        const std::string uri = item.value("uri", std::string());
+        if (uri.empty() || is_data_uri(uri)) return;
+        try {
+            const std::string subject = document.path.string();
+            const fs::path relative = uri_to_relative_path(uri, subject);
+            const fs::path from = resolve_in_folder(document.path.parent_path(), relative, subject);
+            const fs::path to = folder / relative;
+            std::error_code code;
+            if (fs::equivalent(from, to, code)) return;
+            const Bytes bytes = read();
+            fs::create_directories(to.parent_path(), code);
+            write_atomically(to, std::span<const std::uint8_t>(bytes));
+        } catch (const InputError& error) {
+            warn(std::string(error.what()) + "; the reference is kept as it is");
+        }
+    };
+    for (std::size_t i = 0; i < document.buffers.size(); ++i) {
+        copy(document.json["buffers"][i], [&] { return document.buffers[i]; });
+    }
+    const std::size_t images =
+        document.json.contains("images") ? document.json["images"].size() : 0;
+    for (std::size_t i = 0; i < images; ++i) {
+        copy(document.json["images"][i], [&] { return read_image_bytes(document, i); });
+    }
+}
+
+std::vector<PrimitiveUse> primitive_uses(const Model& model, bool is_made) {
+    std::vector<PrimitiveUse> uses;
+    for (std::size_t i = 0; i < model.primitives.size(); ++i) {
+        const Primitive& primitive = model.primitives[i];
+        PrimitiveUse use{
+            static_cast<int>(i),   primitive.source_mesh,     primitive.source_primitive,
+            primitive.source_node, primitive.material,        primitive.is_mirrored,
+            &primitive.uvs,        primitive.positions.size()};
+        if (is_made) {
+            use.mesh = use.node = static_cast<int>(i);
+            use.primitive = 0;
+            use.is_mirrored = false;
+        } else {
+            const std::size_t materials = model.source->json.contains("materials")
+                                              ? model.source->json["materials"].size()
+                                              : 0;
+            if (use.material >= static_cast<int>(materials)) use.material = -1;
+        }
+        uses.push_back(use);
+    }
+    return uses;
+}
+
+}  // namespace
+
+Bytes to_glb(const Json& json, const Bytes& binary, const SourceDocument& document) {
+    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    Bytes out;
+    const auto put = [&](std::uint32_t value) {
+        for (int shift = 0; shift < 32; shift += 8) {
+            out.push_back(static_cast<std::uint8_t>(value >> shift & 255));
+        }
+    };
+    std::size_t total = 12 + 8 + text.size();
+    const auto padded = [](std::size_t size) { return (size + 3) / 4 * 4; };
+    if (!binary.empty()) total += 8 + padded(binary.size());
+    for (const auto& chunk : document.other_chunks)
+        total += 8 + padded(chunk.bytes.size());
+    if (total > std::numeric_limits<std::uint32_t>::max()) {
+        throw InputError("glb",
+                         fmt::format("the model needs {} bytes, more than a .glb can hold", total),
+                         "write a .gltf, or smaller textures");
+    }
+    out.reserve(total);
+    const auto put_chunk = [&](std::uint32_t type, std::span<const std::uint8_t> bytes) {
+        put(static_cast<std::uint32_t>(padded(bytes.size())));
+        put(type);
+        out.insert(out.end(), bytes.begin(), bytes.end());
+        out.resize(padded(out.size()), 0);
+    };
+    put(0x46546c67);
+    put(2);
+    put(static_cast<std::uint32_t>(total));
+    put_chunk(0x4e4f534a, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    if (!binary.empty()) put_chunk(0x004e4942, binary);
+    for (const auto& chunk : document.other_chunks)
+        put_chunk(chunk.type, chunk.bytes);
+    return out;
+}
+
+void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit) {
+    const bool is_binary = to_lower(path.extension().string()) == ".glb";
+    const std::shared_ptr<const SourceDocument> document =
+        model.source ? model.source : make_gltf(model, edit);
+    const std::vector<PrimitiveUse> uses = primitive_uses(model, !model.source);
+    Json json = document->json;
+
+    // New data goes to the end of the BIN chunk, or to a buffer of its own.
+    const bool own_buffer = !is_binary && !document->has_binary_chunk;
+    Bytes binary;
+    if (is_binary) {
+        binary = pack_buffers(*document, json);
+    } else if (document->has_binary_chunk) {
+        binary = document->buffers[0];
+    }
+    const std::size_t buffer = own_buffer ? document->buffers.size() : 0;
+    GltfBuilder builder(json, buffer, std::move(binary), !is_binary, path.stem().string());
+    if (is_binary) embed_images(*document, builder);
+    patch_gltf(*document, uses, edit, builder);
+    builder.finish();
+
+    if (is_binary) {
+        write_atomically(path,
+                         std::span<const std::uint8_t>(to_glb(json, builder.binary(), *document)));
+        return;
+    }
+    const fs::path folder = path.parent_path();
+    copy_files(*document, folder);
+    if (!builder.binary().empty()) {
+        const std::string name = builder.unused_file_name(path.stem().string(), ".bin");
+        json["buffers"][buffer]["uri"] = path_to_uri(name);
+        write_atomically(folder / name, std::span<const std::uint8_t>(builder.binary()));
+    }
+    for (const auto& [name, bytes] : builder.files()) {
+        write_atomically(folder / name, std::span<const std::uint8_t>(bytes));
+    }
+    write_atomically(path,
+                     std::string_view(json.dump(1, ' ', false, Json::error_handler_t::replace)));
+}
+
+}  // namespace item3d

@@ -1,0 +1,29 @@
+#include "item3d/io/load.h"
+
+#include "item3d/core/error.h"
+#include "item3d/io/readers.h"
+#include "item3d/io/text.h"
+
+namespace item3d {
+
+Model load_model(const std::filesystem::path& path) {
+    const Bytes bytes = read_bytes(path);
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::string extension = to_lower(path.extension().string());
+    if (bytes.empty()) {
+        throw InputError(path.string(), "a model was expected, the file is empty",
+                         "export it again");
+    }
+    if (text.starts_with("glTF") || extension == ".gltf") return read_gltf(path, bytes);
+    if (extension == ".obj") return read_obj(path, bytes);
+    if (extension == ".glb") {
+        throw InputError(path.string(),
+                         "a binary glTF was expected, the file does not start with 'glTF'",
+                         "export it again");
+    }
+    throw InputError(path.string(),
+                     "a model was expected (.glb, .gltf or .obj), found '" + extension + "'",
+                     "convert it to one of these");
+}
+
+}  // namespace item3d

@@ -1,0 +1,102 @@
+// Lights by name and from files, brought to what the rest of the program takes for granted.
+#include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+#include "item3d/io/gltf/image_light.h"
+#include "item3d/io/image/formats.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/lighting/layout.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string extension_of(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+/// Three channels, linear, as far as the file has them.
+Image read_picture(const std::string& path) {
+    const Bytes bytes = read_bytes(path);
+    const Image source = decode_image(bytes, path).image;
+    const ImageFormat format = detect_image_format(bytes);
+    const bool is_encoded = format == ImageFormat::png || format == ImageFormat::jpeg;
+    if (is_encoded) {
+        warn(path +
+             ": is no HDR picture: read as sRGB, white becomes radiance 1 and suns are no brighter "
+             "than that");
+    }
+    Image light(source.width, source.height, 3);
+    for (int y = 0; y < light.height; ++y) {
+        for (int x = 0; x < light.width; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                const float value = source.at(x, y, source.channels >= 3 ? c : 0);
+                light.at(x, y, c) = is_encoded ? srgb_to_linear(value) : value;
+            }
+        }
+    }
+    return light;
+}
+
+/// Throws InputError for what is no light; warns of what is left out.
+void make_usable(Image& light, const std::string& path) {
+    std::size_t negative = 0;
+    bool is_black = true;
+    for (std::size_t i = 0; i < light.pixels.size(); ++i) {
+        float& value = light.pixels[i];
+        if (!std::isfinite(value)) {
+            const std::size_t pixel = i / 3, width = static_cast<std::size_t>(light.width);
+            throw InputError(path, fmt::format("pixel ({}, {}) is not a finite number",
+                                               pixel % width, pixel / width));
+        }
+        negative += value < 0 ? 1 : 0;
+        value = std::max(0.0f, value);
+        is_black = is_black && value == 0;
+    }
+    if (is_black) {
+        throw InputError(
+            path, negative > 0 ? "has no value above 0: no light" : "is black all over: no light",
+            "give another one, or a preset");
+    }
+    if (negative > 0) warn(fmt::format("{}: {} negative values are taken as 0", path, negative));
+}
+
+}  // namespace
+
+Image load_light(const std::string& name_or_path, LightLayout layout) {
+    const auto& names = light_preset_names();
+    if (std::find(names.begin(), names.end(), name_or_path) != names.end())
+        return make_light_preset(name_or_path);
+    std::error_code ignored;
+    if (!fs::exists(name_or_path, ignored)) {
+        throw InputError("light '" + name_or_path + "'",
+                         "neither a preset nor a file that is there",
+                         fmt::format("give {} or an .hdr or .exr file", fmt::join(names, ", ")));
+    }
+    const std::string extension = extension_of(name_or_path);
+    if (extension == ".glb" || extension == ".gltf") return load_image_based_light(name_or_path);
+    Image light = read_picture(name_or_path);
+    if (light.width < 2 || light.height < 2) {
+        throw InputError(
+            name_or_path,
+            fmt::format("a picture of {}x{} shows no surroundings", light.width, light.height),
+            "give one of all directions, or a preset");
+    }
+    make_usable(light, name_or_path);
+    return to_equirectangular(light, layout, name_or_path);
+}
+
+}  // namespace item3d

@@ -1,0 +1,237 @@
+// OBJ and MTL in world space. Metallic-roughness goes into Pm, Pr, map_Pm and map_Pr (grey
+// pictures), normals into norm, occlusion into map_AO, which this project reads back and others
+// skip.
+#include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+#include "item3d/io/image/formats.h"
+#include "item3d/io/readers.h"
+#include "item3d/io/text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace item3d {
+namespace fs = std::filesystem;
+namespace {
+
+Image channel_of(const Image& image, int channel) {
+    Image result(image.width, image.height, 1);
+    const int from = std::min(channel, image.channels - 1);
+    for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+        result.pixels[i] = image.pixels[i * static_cast<std::size_t>(image.channels) + from];
+    }
+    return result;
+}
+
+// Texture values times a factor, for maps that replace their factor.
+Image scaled(Image image, float factor) {
+    if (factor != 1.0f) {
+        for (float& value : image.pixels)
+            value *= factor;
+    }
+    return image;
+}
+
+Image tinted(const Image& image, const Vec4& factor) {
+    if (factor == Vec4(1.0f)) return image;
+    Image result = image;
+    const int colors = image.channels < 3 ? 1 : 3;
+    for (std::size_t i = 0; i < result.pixels.size();
+         i += static_cast<std::size_t>(image.channels)) {
+        for (int c = 0; c < colors; ++c) {
+            const float linear = srgb_to_linear(result.pixels[i + c]) * factor[c];
+            result.pixels[i + c] = linear_to_srgb(linear);
+        }
+    }
+    return result;
+}
+
+std::string one_word(std::string name) {
+    for (char& c : name) {
+        if (static_cast<unsigned char>(c) <= ' ' || c == '#' || c == '/' || c == '\\') c = '_';
+    }
+    return name;
+}
+
+class ObjWriter {
+  public:
+    ObjWriter(const fs::path& path, const Model& model, const ModelEdit& edit)
+        : folder_(path.parent_path()), stem_(path.stem().string()), model_(model), edit_(edit) {}
+
+    void write(const fs::path& path) {
+        name_materials();
+        fmt::format_to(std::back_inserter(obj_), "# item3d\nmtllib {}.mtl\n", stem_);
+        for (std::size_t i = 0; i < model_.primitives.size(); ++i)
+            write_primitive(static_cast<int>(i));
+        for (std::size_t i = 0; i < model_.materials.size(); ++i)
+            write_material(static_cast<int>(i));
+        write_atomically(folder_ / (stem_ + ".mtl"), std::string_view(mtl_));
+        write_atomically(path, std::string_view(obj_));
+    }
+
+  private:
+    void name_materials() {
+        std::map<std::string, int> seen;
+        for (const Material& material : model_.materials) {
+            std::string name = one_word(material.name.empty() ? "material" : material.name);
+            if (const int count = seen[name]++; count > 0) name += "_" + std::to_string(count);
+            names_.push_back(name);
+        }
+    }
+
+    std::string save(const Image& image, int bits, const std::string& material, const char* what) {
+        std::string name = stem_ + "_" + material + "_" + what + ".png";
+        const Bytes png = encode_png(image, bits);
+        write_atomically(folder_ / name, std::span<const std::uint8_t>(png));
+        return name;
+    }
+
+    const Texture* texture(int index) const {
+        if (index < 0) return nullptr;
+        const Texture& found = model_.textures[static_cast<std::size_t>(index)];
+        return found.image.empty() ? nullptr : &found;
+    }
+
+    void line(const std::string& text) { mtl_ += text + "\n"; }
+
+    static std::string clamp_option(const Texture* texture) {
+        return texture && texture->wrap_u == Wrap::clamp_to_edge ? "-clamp on " : "";
+    }
+
+    void write_material(int index) {
+        const Material& material = model_.materials[static_cast<std::size_t>(index)];
+        const std::string& name = names_[static_cast<std::size_t>(index)];
+        const auto found = edit_.materials.find(index);
+        const MaterialEdit edit = found == edit_.materials.end() ? MaterialEdit{} : found->second;
+        line("\nnewmtl " + name);
+        const Vec4& factor = material.base_color_factor;
+        const Texture* base = texture(material.base_color_texture);
+        if (edit.base_color) {
+            line("Kd 1 1 1\nmap_Kd " +
+                 save(*edit.base_color, edit.bits_per_channel, name, "base_color"));
+        } else if (base) {
+            const Image image = tinted(base->image, factor);
+            line("Kd 1 1 1\nmap_Kd " + clamp_option(base) +
+                 save(image, base->bits_per_channel, name, "base_color"));
+        } else {
+            line(fmt::format("Kd {} {} {}", factor.x, factor.y, factor.z));
+        }
+        if (factor.w < 1.0f) line(fmt::format("d {}", factor.w));
+        write_metallic_roughness(material, name, edit);
+
+        const Texture* normal = texture(material.normal_texture);
+        if (edit.normal) {
+            line("norm " + save(*edit.normal, edit.bits_per_channel, name, "normal"));
+        } else if (normal) {
+            const std::string scale =
+                material.normal_scale == 1.0f ? "" : fmt::format("-bm {} ", material.normal_scale);
+            line("norm " + scale + clamp_option(normal) +
+                 save(normal->image, normal->bits_per_channel, name, "normal"));
+        }
+        const Vec3& emission = material.emissive_factor;
+        if (emission == Vec3(0.0f)) return;
+        line(fmt::format("Ke {} {} {}", emission.x, emission.y, emission.z));
+        if (const Texture* emissive = texture(material.emissive_texture)) {
+            line("map_Ke " + clamp_option(emissive) +
+                 save(tinted(emissive->image, Vec4(glm::min(emission, 1.0f), 1.0f)),
+                      emissive->bits_per_channel, name, "emissive"));
+        }
+    }
+
+    void write_metallic_roughness(const Material& material, const std::string& name,
+                                  const MaterialEdit& edit) {
+        const Texture* orm = texture(material.metallic_roughness_texture);
+        const Texture* occlusion = texture(material.occlusion_texture);
+        if (edit.metallic_roughness) {
+            const Image& image = *edit.metallic_roughness;
+            const int bits = edit.bits_per_channel;
+            line("Pm 1\nPr 1");
+            line("map_AO " + save(channel_of(image, 0), bits, name, "occlusion"));
+            line("map_Pr " + save(channel_of(image, 1), bits, name, "roughness"));
+            line("map_Pm " + save(channel_of(image, 2), bits, name, "metallic"));
+            return;
+        }
+        line(fmt::format("Pm {}\nPr {}", material.metallic_factor, material.roughness_factor));
+        if (orm) {
+            const int bits = orm->bits_per_channel;
+            const std::string clamp = clamp_option(orm);
+            line("map_Pr " + clamp +
+                 save(scaled(channel_of(orm->image, 1), material.roughness_factor), bits, name,
+                      "roughness"));
+            line("map_Pm " + clamp +
+                 save(scaled(channel_of(orm->image, 2), material.metallic_factor), bits, name,
+                      "metallic"));
+        }
+        if (!occlusion) return;
+        Image image = channel_of(occlusion->image, 0);
+        for (float& value : image.pixels)
+            value = 1.0f + material.occlusion_strength * (value - 1.0f);
+        line("map_AO " + clamp_option(occlusion) +
+             save(image, occlusion->bits_per_channel, name, "occlusion"));
+    }
+
+    void write_primitive(int index) {
+        const Primitive& primitive = model_.primitives[static_cast<std::size_t>(index)];
+        const auto found = edit_.primitives.find(index);
+        const PrimitiveEdit* edit = found == edit_.primitives.end() ? nullptr : &found->second;
+        const auto material_edit = edit_.materials.find(primitive.material);
+        const bool drops_colors = material_edit != edit_.materials.end() &&
+                                  material_edit->second.base_color &&
+                                  material_edit->second.includes_vertex_colors;
+        auto out = std::back_inserter(obj_);
+        const std::string& name = names_[static_cast<std::size_t>(primitive.material)];
+        fmt::format_to(out, "o {}\nusemtl {}\n",
+                       one_word(primitive.name.empty() ? name : primitive.name), name);
+        for (std::size_t i = 0; i < primitive.positions.size(); ++i) {
+            const Vec3& p = primitive.positions[i];
+            fmt::format_to(out, "v {} {} {}", p.x, p.y, p.z);
+            if (!primitive.colors.empty() && !drops_colors) {
+                const Vec4 c = glm::clamp(primitive.colors[i], 0.0f, 1.0f);
+                fmt::format_to(out, " {} {} {}", linear_to_srgb(c.x), linear_to_srgb(c.y),
+                               linear_to_srgb(c.z));
+            }
+            obj_.push_back('\n');
+        }
+        for (const Vec3& n : primitive.normals)
+            fmt::format_to(out, "vn {} {} {}\n", n.x, n.y, n.z);
+        const std::vector<Vec2>& uvs = edit ? edit->uvs : primitive.uvs;
+        for (const Vec2& uv : uvs)
+            fmt::format_to(out, "vt {} {}\n", uv.x, 1.0f - uv.y);
+
+        const std::vector<std::uint32_t>& indices = edit ? edit->indices : primitive.indices;
+        for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
+            obj_.push_back('f');
+            for (int k = 0; k < 3; ++k) {
+                const std::size_t corner = indices[t + k];
+                const std::size_t vertex = edit ? edit->source_vertices.at(corner) : corner;
+                fmt::format_to(out, " {}/", vertices_ + vertex + 1);
+                if (!uvs.empty()) fmt::format_to(out, "{}", uvs_ + corner + 1);
+                if (!primitive.normals.empty()) fmt::format_to(out, "/{}", normals_ + vertex + 1);
+            }
+            obj_.push_back('\n');
+        }
+        vertices_ += primitive.positions.size();
+        normals_ += primitive.normals.size();
+        uvs_ += uvs.size();
+    }
+
+    fs::path folder_;
+    std::string stem_;
+    const Model& model_;
+    const ModelEdit& edit_;
+    std::vector<std::string> names_;
+    std::string obj_;
+    std::string mtl_;
+    std::size_t vertices_ = 0;
+    std::size_t normals_ = 0;
+    std::size_t uvs_ = 0;
+};
+
+}  // namespace
+
+void write_obj(const fs::path& path, const Model& model, const ModelEdit& edit) {
+    ObjWriter(path, model, edit).write(path);
+}
+
+}  // namespace item3d

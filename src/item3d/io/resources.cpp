@@ -1,0 +1,158 @@
+#include "item3d/io/resources.h"
+
+#include "item3d/core/error.h"
+#include "item3d/io/text.h"
+
+#include <array>
+#include <cctype>
+#include <cstring>
+
+namespace item3d {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view base64_digits =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+int hexadecimal_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    const int lower = std::tolower(static_cast<unsigned char>(c));
+    return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
+}
+
+std::string percent_decode(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '%' && i + 2 < text.size() && hexadecimal_digit(text[i + 1]) >= 0 &&
+            hexadecimal_digit(text[i + 2]) >= 0) {
+            result.push_back(static_cast<char>(hexadecimal_digit(text[i + 1]) * 16 +
+                                               hexadecimal_digit(text[i + 2])));
+            i += 2;
+        } else {
+            result.push_back(text[i]);
+        }
+    }
+    return result;
+}
+
+Bytes decode_base64(std::string_view text, const std::string& subject) {
+    std::array<std::int8_t, 256> values;
+    values.fill(-1);
+    for (int i = 0; i < 64; ++i) {
+        values[static_cast<unsigned char>(base64_digits[i])] = static_cast<std::int8_t>(i);
+    }
+    values['-'] = 62;  // the URL alphabet, which some writers use
+    values['_'] = 63;
+    while (!text.empty() && text.back() == '=')
+        text.remove_suffix(1);
+    Bytes bytes;
+    bytes.reserve(text.size() / 4 * 3 + 3);
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : text) {
+        if (c == '\n' || c == '\r' || c == ' ') continue;
+        const int value = values[static_cast<unsigned char>(c)];
+        if (value < 0) {
+            throw InputError(subject, "a data URI holds bytes that are not base64",
+                             "export it again");
+        }
+        bits = bits << 6 | static_cast<std::uint32_t>(value);
+        count += 6;
+        if (count >= 8) {
+            count -= 8;
+            bytes.push_back(static_cast<std::uint8_t>(bits >> count & 255));
+        }
+    }
+    return bytes;
+}
+
+}  // namespace
+
+fs::path resolve_in_folder(const fs::path& folder, const fs::path& relative,
+                           const std::string& subject) {
+    const std::string name = relative.string();
+    if (name.empty() || name.find('\0') != std::string::npos) {
+        throw InputError(subject, "refers to a file without a name");
+    }
+    std::error_code code;
+    const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, code);
+    const fs::path target = code ? fs::path() : fs::weakly_canonical(root / relative, code);
+    const fs::path inside = target.lexically_relative(root);
+    if (code || relative.is_absolute() || inside.empty() || *inside.begin() == "..") {
+        throw InputError(subject, "refers to '" + name + "', which is outside of its folder",
+                         "copy that file beside the model");
+    }
+    const fs::file_status status = fs::status(target, code);
+    if (!fs::exists(status)) {
+        throw InputError(subject, "refers to '" + name + "', which does not exist",
+                         "copy that file beside the model");
+    }
+    if (!fs::is_regular_file(status)) {
+        throw InputError(subject, "refers to '" + name + "', which is not a file");
+    }
+    return target;
+}
+
+bool is_data_uri(std::string_view uri) {
+    return to_lower(uri.substr(0, 5)) == "data:";
+}
+
+Bytes decode_data_uri(std::string_view uri, const std::string& subject) {
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string_view::npos) {
+        throw InputError(subject, "a data URI has no comma", "export it again");
+    }
+    const std::string_view kind = uri.substr(0, comma);
+    const std::string_view data = uri.substr(comma + 1);
+    if (to_lower(kind).ends_with(";base64")) {
+        if (data.find('%') == std::string_view::npos) return decode_base64(data, subject);
+        return decode_base64(percent_decode(data), subject);
+    }
+    const std::string text = percent_decode(data);
+    return Bytes(text.begin(), text.end());
+}
+
+fs::path uri_to_relative_path(std::string_view uri, const std::string& subject) {
+    const std::size_t colon = uri.find(':');
+    if (colon != std::string_view::npos && uri.find('/') > colon) {
+        throw InputError(subject,
+                         "refers to '" + std::string(uri.substr(0, 80)) +
+                             "', and nothing is read from other places than its folder",
+                         "copy that file beside the model");
+    }
+    return percent_decode(uri);
+}
+
+std::string path_to_uri(const fs::path& relative) {
+    constexpr std::string_view plain = "-._~/!$&'()*+,;=@";
+    constexpr std::string_view digits = "0123456789ABCDEF";
+    std::string result;
+    for (const char c : relative.generic_string()) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x80 && (std::isalnum(byte) || plain.find(c) != std::string_view::npos)) {
+            result.push_back(c);
+        } else {
+            result.push_back('%');
+            result.push_back(digits[byte >> 4]);
+            result.push_back(digits[byte & 15]);
+        }
+    }
+    return result;
+}
+
+std::string encode_base64(std::span<const std::uint8_t> bytes) {
+    std::string result;
+    result.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t bits = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            bits = bits << 8 | (k < count ? bytes[i + k] : 0u);
+        for (std::size_t k = 0; k < 4; ++k) {
+            result.push_back(k <= count ? base64_digits[bits >> (18 - 6 * k) & 63] : '=');
+        }
+    }
+    return result;
+}
+
+}  // namespace item3d

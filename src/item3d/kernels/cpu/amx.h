@@ -1,0 +1,97 @@
+// Products of bfloat16 on a processor's matrix units (AMX: tiles of 16 rows of 64 bytes). For the
+// files that are compiled for them alone; nothing here may be called where matrix_units_run() says
+// no.
+#pragma once
+
+#include "item3d/kernels/cpu/bfloat16.h"
+#include "item3d/kernels/cpu/linear/matrix_kernel.h"
+
+#include <immintrin.h>
+
+#include <cstdint>
+
+namespace item3d::units {
+
+/// Of a tile, and multiplied at a time: two tiles.
+constexpr int tile_rows = 16, rows = 2 * tile_rows;
+
+inline std::int64_t whole_rows(std::int64_t count) {
+    return (count + rows - 1) / rows * rows;
+}
+
+/// While it lives, this thread's tiles are all of full size.
+class Tiles {
+  public:
+    Tiles() {
+        struct alignas(64) Layout {
+            std::uint8_t palette = 1, start_row = 0, reserved[14] = {};
+            std::uint16_t row_bytes[16] = {64, 64, 64, 64, 64, 64, 64, 64};
+            std::uint8_t rows[16] = {16, 16, 16, 16, 16, 16, 16, 16};
+        };
+        static_assert(sizeof(Layout) == 64);
+        const Layout layout;
+        _tile_loadconfig(&layout);
+    }
+    ~Tiles() { _tile_release(); }
+    Tiles(const Tiles&) = delete;
+    Tiles& operator=(const Tiles&) = delete;
+};
+
+/// sums [count, 64] = (or +=, with `add`) a [count, depth] times b [depth / 2, 64, 2]; count is a
+/// multiple of `rows`, depth of 32. Rows of a are told by tiles: tile_at(i) is the first of
+/// sixteen, each `depth` numbers after the one before. `next` is the b of the call after this one:
+/// it is fetched meanwhile, for processors do not foresee what tiles will read, and to wait for it
+/// takes as long again as multiplying.
+template <typename TileAt>
+void multiply(const TileAt& tile_at, std::int64_t count, std::int64_t depth, const BrainFloat* b,
+              const BrainFloat* next, float* sums, bool add) {
+    constexpr int half = packed_columns / 2, group = 2, line = 64;
+    constexpr int b_stride = packed_columns * group * static_cast<int>(sizeof(BrainFloat));
+    constexpr int sums_stride = packed_columns * static_cast<int>(sizeof(float));
+    const auto a_stride = depth * static_cast<std::int64_t>(sizeof(BrainFloat));
+    const std::int64_t steps = count / rows * (packed_columns / half) * (depth / half);
+    const std::int64_t bytes = depth * packed_columns * static_cast<std::int64_t>(sizeof(*b));
+    const std::int64_t lines_a_step = (bytes / line + steps - 1) / steps;
+    const char* fetched = reinterpret_cast<const char*>(next);
+    const char* const fetched_end = fetched + bytes;
+    for (std::int64_t row = 0; row < count; row += rows) {
+        const BrainFloat* const upper = tile_at(row / tile_rows);
+        const BrainFloat* const lower = tile_at(row / tile_rows + 1);
+        for (int column = 0; column < packed_columns; column += half) {
+            float* const top = sums + row * packed_columns + column;
+            float* const bottom = top + tile_rows * packed_columns;
+            if (add) {
+                _tile_loadd(0, top, sums_stride);
+                _tile_loadd(1, top + tile_rows, sums_stride);
+                _tile_loadd(2, bottom, sums_stride);
+                _tile_loadd(3, bottom + tile_rows, sums_stride);
+            } else {
+                _tile_zero(0);
+                _tile_zero(1);
+                _tile_zero(2);
+                _tile_zero(3);
+            }
+            for (std::int64_t k = 0; k < depth; k += half) {
+                for (std::int64_t i = 0; i < lines_a_step && fetched < fetched_end; ++i) {
+                    _mm_prefetch(fetched, _MM_HINT_T1);
+                    fetched += line;
+                }
+                const BrainFloat* left = b + k * packed_columns + column * group;
+                _tile_loadd(4, upper + k, a_stride);
+                _tile_loadd(6, left, b_stride);
+                _tile_dpbf16ps(0, 4, 6);
+                _tile_loadd(7, left + tile_rows * group, b_stride);
+                _tile_dpbf16ps(1, 4, 7);
+                _tile_loadd(5, lower + k, a_stride);
+                _tile_dpbf16ps(2, 5, 6);
+                _tile_dpbf16ps(3, 5, 7);
+            }
+            _tile_stored(0, top, sums_stride);
+            _tile_stored(1, top + tile_rows, sums_stride);
+            _tile_stored(2, bottom, sums_stride);
+            _tile_stored(3, bottom + tile_rows, sums_stride);
+        }
+    }
+}
+
+}  // namespace item3d::units

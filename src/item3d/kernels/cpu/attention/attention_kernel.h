@@ -1,0 +1,40 @@
+// Attention on plain memory.
+#pragma once
+
+#include "item3d/kernels/cpu/dispatch.h"
+#include "item3d/kernels/cpu/linear/matrix_kernel.h"
+
+#include <cstdint>
+
+namespace item3d {
+
+/// Queries, keys and values are [rows, places, heads * width]; the width of a head is even.
+struct AttentionShape {
+    std::int64_t rows, heads, queries, keys, width;
+};
+
+/// One head of one row, and a range of its queries.
+struct AttentionPart {
+    std::int64_t row, head, first_query, last_query;
+};
+
+template <typename Number>
+struct AttentionKernel {
+    /// Bytes of scratch memory (64-byte aligned) for a part.
+    std::int64_t (*scratch)(const AttentionShape& shape);
+    /// Writes softmax(q k^T / sqrt(width)) v of a part. Scores and sums are float, the softmax's
+    /// values are rounded to Number before they are multiplied.
+    void (*attend)(const AttentionShape& shape, const Number* query, const Number* key,
+                   const Number* value, const AttentionPart& part, Number* result, void* scratch);
+};
+
+template <Instructions instructions, typename Number>
+AttentionKernel<Number> attention_kernel();
+template <>
+AttentionKernel<float> attention_kernel<Instructions::avx2, float>();
+template <>
+AttentionKernel<float> attention_kernel<Instructions::avx512, float>();
+template <>
+AttentionKernel<BrainFloat> attention_kernel<Instructions::avx512, BrainFloat>();
+
+}  // namespace item3d

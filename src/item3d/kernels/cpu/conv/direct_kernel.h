@@ -1,0 +1,42 @@
+// 3x3 convolutions without transforms on plain memory, for maps too small for winograd.h.
+#pragma once
+
+#include "item3d/kernels/cpu/dispatch.h"
+#include "item3d/kernels/cpu/linear/matrix_kernel.h"
+
+namespace item3d {
+
+/// Pixels of all pictures together, and output channels in whole columns.
+struct PixelPart {
+    std::int64_t first_pixel, last_pixel, first_channel, last_channel;
+};
+
+template <typename Weight>
+struct DirectKernel {
+    /// Weights [64, 3, 3, in] of the output channels from `column` on (fewer in the last column),
+    /// to their places in `packed`, [9, out / 64, in / group, 64, group]. A group is the input
+    /// channels that one instruction multiplies (2 of BrainFloat, 1 of the others).
+    void (*pack)(const Weight* weights, std::int64_t out_channels, std::int64_t in_channels,
+                 std::int64_t column, Weight* packed);
+    /// Bytes of scratch memory (64-byte aligned) for a part of `pixels` pixels.
+    std::int64_t (*scratch)(std::int64_t pixels, std::int64_t in_channels);
+    /// y = conv(x, weights) + bias, for one part. bias: [out] or null.
+    void (*convolve)(const ConvolutionShape& shape, const Multiplied<Weight>* x,
+                     const Weight* packed, const float* bias, Multiplied<Weight>* y,
+                     const PixelPart& part, void* scratch);
+};
+
+template <Instructions instructions, typename Weight>
+DirectKernel<Weight> direct_kernel();
+template <>
+DirectKernel<float> direct_kernel<Instructions::avx2, float>();
+template <>
+DirectKernel<HalfFloat> direct_kernel<Instructions::avx2, HalfFloat>();
+template <>
+DirectKernel<float> direct_kernel<Instructions::avx512, float>();
+template <>
+DirectKernel<HalfFloat> direct_kernel<Instructions::avx512, HalfFloat>();
+template <>
+DirectKernel<BrainFloat> direct_kernel<Instructions::avx512, BrainFloat>();
+
+}  // namespace item3d

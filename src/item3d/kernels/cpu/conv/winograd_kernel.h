@@ -1,0 +1,49 @@
+// The arithmetic of winograd.h on plain memory.
+#pragma once
+
+#include "item3d/kernels/cpu/dispatch.h"
+#include "item3d/kernels/cpu/linear/matrix_kernel.h"
+
+#include <cstdint>
+
+namespace item3d {
+
+/// Output pixels of a tile's side, F(m x m, 3 x 3) in Lavin & Gray's notation: each tile of m x m
+/// takes (m + 2)^2 multiplications a channel pair instead of 9 m^2. The larger tile loses about
+/// three bits, which float can spare and bfloat16 cannot.
+template <typename Number>
+constexpr int winograd_tile = sizeof(Number) == 4 ? 4 : 2;
+
+/// Points of a transformed tile.
+template <typename Number>
+constexpr int winograd_points = (winograd_tile<Number> + 2) * (winograd_tile<Number> + 2);
+
+/// Part of the work: a range of tiles, and of output channels in whole columns.
+struct WinogradPart {
+    std::int64_t first_tile, last_tile, first_channel, last_channel;
+};
+
+template <typename Number>
+struct WinogradKernel {
+    /// Transforms weights [64, 3, 3, in] of the output channels from `column` on (fewer in the last
+    /// column) into their places in `packed`, winograd_points * out * in numbers in the order of
+    /// DirectKernel::pack().
+    void (*pack)(const Number* weights, std::int64_t out_channels, std::int64_t in_channels,
+                 std::int64_t column, Number* packed);
+    /// Bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
+    std::int64_t (*scratch)(std::int64_t tiles, std::int64_t in_channels);
+    /// y = conv(x, weights) + bias, for one part. bias: [out] or null.
+    void (*convolve)(const ConvolutionShape& shape, const Number* x, const Number* packed,
+                     const float* bias, Number* y, const WinogradPart& part, void* scratch);
+};
+
+template <Instructions instructions, typename Number>
+WinogradKernel<Number> winograd_kernel();
+template <>
+WinogradKernel<float> winograd_kernel<Instructions::avx2, float>();
+template <>
+WinogradKernel<float> winograd_kernel<Instructions::avx512, float>();
+template <>
+WinogradKernel<BrainFloat> winograd_kernel<Instructions::avx512, BrainFloat>();
+
+}  // namespace item3d

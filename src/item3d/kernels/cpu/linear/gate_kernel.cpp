@@ -1,0 +1,54 @@
+#include "item3d/kernels/cpu/linear/gate_kernel.h"
+
+#include "item3d/kernels/cpu/linear/normal_distribution.h"
+
+namespace item3d {
+namespace ITEM3D_INSTRUCTIONS {
+namespace {
+
+using std::int64_t;
+
+template <typename Number>
+void apply_gate(const Number* x, int64_t rows, int64_t width, Number* y) {
+    for (int64_t row = 0; row < rows; ++row) {
+        const Number *values = x + 2 * row * width, *gates = values + width;
+        for (int64_t c = 0; c < width; c += lanes)
+            store(y + row * width + c, load(values + c) * gelu(load(gates + c)));
+    }
+}
+
+template <typename Number>
+void apply_gate_gradient(const Number* x, const Number* dy, int64_t rows, int64_t width,
+                         Number* dx) {
+    for (int64_t row = 0; row < rows; ++row) {
+        const int64_t begin = 2 * row * width;
+        for (int64_t c = 0; c < width; c += lanes) {
+            const int64_t value = begin + c, gate = value + width;
+            const Lanes b = load(x + gate), gradient = load(dy + row * width + c);
+            const NormalDistribution normal = normal_distribution(b);
+            const Lanes slope = multiply_add(b, normal.density, normal.below);
+            store(dx + value, gradient * b * normal.below);
+            store(dx + gate, gradient * load(x + value) * slope);
+        }
+    }
+}
+
+template <typename Number>
+constexpr GateKernel<Number> gate_functions{apply_gate<Number>, apply_gate_gradient<Number>};
+
+}  // namespace
+}  // namespace ITEM3D_INSTRUCTIONS
+
+template <>
+GateKernel<float> gate_kernel<Instructions::ITEM3D_INSTRUCTIONS, float>() {
+    return ITEM3D_INSTRUCTIONS::gate_functions<float>;
+}
+
+#ifdef __AVX512BF16__
+template <>
+GateKernel<BrainFloat> gate_kernel<Instructions::avx512, BrainFloat>() {
+    return avx512::gate_functions<BrainFloat>;
+}
+#endif
+
+}  // namespace item3d

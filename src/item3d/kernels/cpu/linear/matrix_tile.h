@@ -1,0 +1,133 @@
+// The product that the kernels of this folder spend their time in: a few rows times a packed
+// matrix, sums in registers. For the files that are compiled for each set of instructions.
+#pragma once
+
+#include "item3d/kernels/cpu/linear/matrix_kernel.h"
+#include "item3d/kernels/cpu/simd.h"
+
+#include <immintrin.h>
+
+#include <cstdint>
+
+namespace item3d::ITEM3D_INSTRUCTIONS {
+
+/// Rows multiplied at a time: their sums stay in registers, 24 of AVX-512's 32 or 12 of AVX2's 16.
+constexpr int rows = 6;
+
+inline std::int64_t whole_rows(std::int64_t count) {
+    return (count + rows - 1) / rows * rows;
+}
+
+// What differs between the weights' types. A `group` of input channels is multiplied by one
+// instruction.
+template <typename Weight>
+struct Arithmetic;
+
+#ifdef __AVX512F__
+template <>
+struct Arithmetic<BrainFloat> {
+    static constexpr int group = 2;
+    static __m512i broadcast(const BrainFloat* from) {
+        int pair;
+        __builtin_memcpy(&pair, from, sizeof pair);
+        return _mm512_set1_epi32(pair);
+    }
+    static __m512i operand(const BrainFloat* from) { return _mm512_loadu_si512(from); }
+    static __m512 multiply_add(__m512i a, __m512i b, __m512 sum) {
+        return _mm512_dpbf16_ps(sum, reinterpret_cast<__m512bh>(a), reinterpret_cast<__m512bh>(b));
+    }
+    /// Sixteen input channels of one output channel, each pair `columns` pairs on.
+    static void scatter(BrainFloat* to, int columns, Lanes value) {
+        const __m256i places = _mm256_mullo_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
+                                                  _mm256_set1_epi32(columns));
+        _mm256_i32scatter_epi32(to, places, narrow(value), 4);
+    }
+};
+#endif
+
+template <>
+struct Arithmetic<float> {
+    static constexpr int group = 1;
+    static Lanes broadcast(const float* from) { return all(*from); }
+    static Lanes operand(const float* from) { return load(from); }
+    static Lanes multiply_add(Lanes a, Lanes b, Lanes sum) {
+        return ITEM3D_INSTRUCTIONS::multiply_add(a, b, sum);
+    }
+    static void scatter(float* to, int columns, Lanes value) {
+        ITEM3D_INSTRUCTIONS::scatter(to, columns, value);
+    }
+};
+
+/// Weights as files have them, multiplied as floats: no bit is lost, and half the memory read.
+template <>
+struct Arithmetic<HalfFloat> : Arithmetic<float> {
+    static Lanes operand(const HalfFloat* from) { return load(from); }
+    static void scatter(HalfFloat* to, int columns, Lanes value) {
+        HalfFloat numbers[lanes];
+        store(numbers, value);
+        for (int i = 0; i < lanes; ++i)
+            to[i * columns] = numbers[i];
+    }
+};
+
+/// sums [rows, 16 registers], each row `stride` numbers after the one before, = (or +=, with `add`)
+/// a [rows, depth], given by its rows, times the first columns of b [depth / group, columns,
+/// group].
+template <typename Weight, int registers>
+void multiply_registers(const Multiplied<Weight>* const* a, std::int64_t depth, const Weight* b,
+                        std::int64_t columns, float* sums, std::int64_t stride, bool add) {
+    using Maths = Arithmetic<Weight>;
+    using Number = Multiplied<Weight>;
+    static_assert(rows == 6);
+    const Number *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4], *a5 = a[5];
+    Lanes sum[rows][registers];
+#pragma GCC unroll 6
+    for (int i = 0; i < rows; ++i)
+#pragma GCC unroll 4
+        for (int j = 0; j < registers; ++j)
+            sum[i][j] = add ? load(sums + i * stride + j * lanes) : zero();
+    for (std::int64_t k = 0; k < depth; k += Maths::group) {
+        decltype(Maths::operand(b)) operands[registers];
+#pragma GCC unroll 4
+        for (int j = 0; j < registers; ++j)
+            operands[j] = Maths::operand(b + k * columns + j * Maths::group * lanes);
+        const Number* const at[rows] = {a0 + k, a1 + k, a2 + k, a3 + k, a4 + k, a5 + k};
+#pragma GCC unroll 6
+        for (int i = 0; i < rows; ++i) {
+            const auto factor = Maths::broadcast(at[i]);
+#pragma GCC unroll 4
+            for (int j = 0; j < registers; ++j)
+                sum[i][j] = Maths::multiply_add(factor, operands[j], sum[i][j]);
+        }
+    }
+#pragma GCC unroll 6
+    for (int i = 0; i < rows; ++i)
+#pragma GCC unroll 4
+        for (int j = 0; j < registers; ++j)
+            store(sums + i * stride + j * lanes, sum[i][j]);
+}
+
+/// The same for all columns of b, a multiple of 16 and no more than packed_columns.
+template <typename Weight>
+void multiply(std::int64_t columns, const Multiplied<Weight>* const* a, std::int64_t depth,
+              const Weight* b, float* sums, std::int64_t stride, bool add) {
+#ifdef __AVX512F__
+    switch (columns / lanes) {
+        case 1:
+            return multiply_registers<Weight, 1>(a, depth, b, 1 * lanes, sums, stride, add);
+        case 2:
+            return multiply_registers<Weight, 2>(a, depth, b, 2 * lanes, sums, stride, add);
+        case 3:
+            return multiply_registers<Weight, 3>(a, depth, b, 3 * lanes, sums, stride, add);
+        default:
+            return multiply_registers<Weight, 4>(a, depth, b, 4 * lanes, sums, stride, add);
+    }
+#else
+    constexpr int group = Arithmetic<Weight>::group;
+    for (std::int64_t first = 0; first < columns; first += lanes)
+        multiply_registers<Weight, 1>(a, depth, b + first * group, columns, sums + first, stride,
+                                      add);
+#endif
+}
+
+}  // namespace item3d::ITEM3D_INSTRUCTIONS

@@ -1,0 +1,37 @@
+// Weights from the types and orders that files have them in.
+#pragma once
+
+#include "item3d/kernels/cpu/dispatch.h"
+
+#include <cstdint>
+
+namespace item3d {
+
+/// To Number: float, BrainFloat or HalfFloat.
+template <typename Number>
+struct WeightKernel {
+    /// [rows, in, 3, 3] as stored -> [rows, 3, 3, in]; in is a multiple of 16.
+    template <typename Stored>
+    using OrderTaps = void(const Stored* weights, std::int64_t rows, std::int64_t in_channels,
+                           Number* ordered);
+    OrderTaps<float>* order_floats;
+    OrderTaps<BrainFloat>* order_brain_floats;
+    OrderTaps<HalfFloat>* order_halves;
+    /// To the nearest.
+    void (*convert_halves)(const HalfFloat* from, std::int64_t count, Number* to);
+};
+
+template <Instructions instructions, typename Number>
+WeightKernel<Number> weight_kernel();
+template <>
+WeightKernel<float> weight_kernel<Instructions::avx2, float>();
+template <>
+WeightKernel<HalfFloat> weight_kernel<Instructions::avx2, HalfFloat>();
+template <>
+WeightKernel<float> weight_kernel<Instructions::avx512, float>();
+template <>
+WeightKernel<HalfFloat> weight_kernel<Instructions::avx512, HalfFloat>();
+template <>
+WeightKernel<BrainFloat> weight_kernel<Instructions::avx512, BrainFloat>();
+
+}  // namespace item3d

@@ -1,0 +1,39 @@
+// The arithmetic of group_norm.h on plain memory. Maps are [pixels, channels]; channels are a
+// multiple of register_numbers; per-channel arrays have one number for each channel.
+#pragma once
+
+#include "item3d/kernels/cpu/dispatch.h"
+
+#include <cstdint>
+
+namespace item3d {
+
+template <typename Number>
+struct NormKernel {
+    /// Adds to sum and square, by channel, x - shift and its square. A shift near the mean spares
+    /// the variance the difference of two large numbers.
+    void (*add_channel_sums)(const Number* x, std::int64_t pixels, std::int64_t channels,
+                             const float* shift, double* sum, double* square);
+    /// y = f(scale x + offset), f being SiLU or nothing.
+    void (*apply)(const Number* x, std::int64_t pixels, std::int64_t channels, const float* scale,
+                  const float* offset, bool silu, Number* y);
+    /// With g = dy f'(scale x + offset): adds to sum and product, by channel, g and g (x - shift).
+    void (*add_gradient_sums)(const Number* x, const Number* dy, std::int64_t pixels,
+                              std::int64_t channels, const float* scale, const float* offset,
+                              const float* shift, bool silu, double* sum, double* product);
+    /// dx = scale g + constant + slope x.
+    void (*apply_gradient)(const Number* x, const Number* dy, std::int64_t pixels,
+                           std::int64_t channels, const float* scale, const float* offset,
+                           const float* constant, const float* slope, bool silu, Number* dx);
+};
+
+template <Instructions instructions, typename Number>
+NormKernel<Number> norm_kernel();
+template <>
+NormKernel<float> norm_kernel<Instructions::avx2, float>();
+template <>
+NormKernel<float> norm_kernel<Instructions::avx512, float>();
+template <>
+NormKernel<BrainFloat> norm_kernel<Instructions::avx512, BrainFloat>();
+
+}  // namespace item3d

@@ -1,0 +1,33 @@
+// Light from all around as glTF's EXT_lights_image_based has it.
+#pragma once
+
+#include "item3d/lighting/layout.h"
+#include "item3d/scene/image.h"
+
+#include <array>
+#include <vector>
+
+namespace item3d {
+
+/// +X, -X, +Y, -Y, +Z, -Z: the faces of OpenGL's cube maps, mirrored, as the extension wants them.
+/// They are then as seen from inside.
+extern const std::array<CubeFaceAxes, 6> gltf_face_axes;
+
+/// Real spherical harmonics of bands 0 to 2 in the direction d (unit), in the order and with the
+/// signs of Ramamoorthi and Hanrahan 2001, "An Efficient Representation for Irradiance Environment
+/// Maps": 1; y, z, x; xy, yz, 3z^2 - 1, xz, x^2 - y^2, each with its positive constant.
+std::array<float, 9> spherical_harmonics(Vec3 d);
+
+struct ImageBasedLight {
+    /// Irradiance on a surface that faces d is their sum, weighted by spherical_harmonics(d).
+    /// Linear RGB; a white surface has the radiance irradiance / pi.
+    std::array<Vec3, 9> irradiance;
+    /// Linear RGB radiance, prefiltered by GGX: level k of n for the roughness k / (n - 1), each
+    /// half as fine as the one before. Six faces in a row, gltf_face_axes.
+    std::vector<Image> specular;
+};
+
+/// light: equirectangular, height x width x 3.
+std::array<Vec3, 9> irradiance_harmonics(const Image& light);
+
+}  // namespace item3d

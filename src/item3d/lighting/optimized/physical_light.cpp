@@ -1,0 +1,168 @@
+#include "item3d/lighting/optimized/physical_light.h"
+
+#include "item3d/lighting/optimized/directions.h"
+#include "item3d/render/shade.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+enum Number { exposure, sun_share, sun_warmth, sky_warmth, ground, glow, elevation, azimuth };
+constexpr std::int64_t number_count = 8;
+
+struct Bounds {
+    float low, high;
+};
+/// Of all but the azimuth, which has none: stops, a share, mired, mired, ratios, degrees.
+constexpr std::array<Bounds, 7> bounds{
+    {{-3, 0.75f}, {0.03f, 0.85f}, {-110, 330}, {-110, 250}, {0.05f, 1}, {0, 3}, {3, 85}}};
+/// How hard each is held to its start. The sky is, so that it is the sun that grows warm, and what
+/// hardly any word says.
+constexpr std::array<float, number_count> firmness{3, 1, 2, 4, 1, 0.3f, 10, 10};
+/// What is as warm as a low sun is still day, and what is dark without being warm is the moon's
+/// light and the night sky's, which is cold. Without this, a small prior for which evenings are
+/// mostly dark makes them nights, and its nights are grey.
+constexpr Bounds warm_exposure{-1.2f, 0.75f};
+constexpr float dusk = -1.3f;  ///< stops
+constexpr float moonlight_mired = -60;
+/// A sun as warm as this many mired from white has come through twice the air.
+constexpr float warmth_of_low_sun = 40;
+/// A lobe that words asked for shall be seen to be there.
+constexpr float least_spoken_share = 0.25f;
+
+constexpr float lobe_radius = 5 * pi / 180;  ///< a few texels of the cube that is optimised on
+constexpr float horizon_softness = 0.06f;
+constexpr float glow_height = 0.25f;
+constexpr float white_mired = 1e6f / 6504;
+/// Natural logarithm of RGB per mired: c2 / lambda at 610, 550 and 465 nm, less green's.
+constexpr std::array<float, 3> log_color_per_mired{2.573e-3f, 0.0f, -4.782e-3f};
+
+torch::Tensor bounded(const torch::Tensor& number, Bounds range) {
+    return range.low + (range.high - range.low) * torch::sigmoid(number);
+}
+
+float unbounded(float value, Bounds range) {
+    // The ends themselves have no number; a tenth of the way there has some slope left.
+    const float part = std::clamp((value - range.low) / (range.high - range.low), 0.05f, 0.95f);
+    return std::log(part / (1 - part));
+}
+
+/// [3] linear RGB of luminance 1.
+torch::Tensor color_of(const torch::Tensor& mired_from_white) {
+    const torch::Tensor slope =
+        torch::tensor({log_color_per_mired[0], log_color_per_mired[1], log_color_per_mired[2]});
+    const torch::Tensor color = torch::exp(mired_from_white * slope);
+    const torch::Tensor weights = torch::tensor({0.2126f, 0.7152f, 0.0722f});
+    return color / (color * weights).sum();
+}
+
+}  // namespace
+
+PhysicalLight::PhysicalLight(const Image& light, const LightModelOptions& options)
+    : held_(options.from) {
+    const LightDescription description = describe_light(light);
+    const SkyAngles dominant = held_ ? *held_ : to_sky_angles(description.dominant_direction);
+    start_azimuth_ = dominant.azimuth * pi / 180;
+    const float warmth =
+        description.color_temperature
+            ? static_cast<float>(1e6 / *description.color_temperature) - white_mired
+            : 0.0f;
+    torch::Tensor numbers = torch::zeros({number_count});
+    const auto set = [&](Number number, float value) {
+        numbers[number] = unbounded(value, bounds[number]);
+    };
+    set(exposure, static_cast<float>(std::log2(description.peak_irradiance_over_pi)));
+    set(sun_share, 0.5f * static_cast<float>(description.directionality));
+    set(sun_warmth, warmth);
+    set(sky_warmth, warmth);
+    set(ground, 0.4f);
+    set(glow, 0.5f);
+    set(elevation, dominant.elevation);
+    start_ = numbers.clone();
+    numbers_ = numbers.set_requires_grad(true);
+}
+
+torch::Tensor PhysicalLight::sun_direction() const {
+    if (held_) {
+        const Vec3 d = to_direction(*held_);
+        return torch::tensor({d.x, d.y, d.z});
+    }
+    const torch::Tensor warmth = bounded(numbers_[sun_warmth], bounds[sun_warmth]);
+    const torch::Tensor air = 1 + torch::softplus(warmth / warmth_of_low_sun - 0.5f);
+    const torch::Tensor up = bounded(numbers_[elevation], bounds[elevation]) / air * (pi / 180);
+    const torch::Tensor around = start_azimuth_ + numbers_[azimuth];
+    return torch::stack({up.cos() * around.sin(), up.sin(), -(up.cos() * around.cos())});
+}
+
+torch::Tensor PhysicalLight::radiance(const torch::Tensor& directions) const {
+    const auto value = [&](Number number) { return bounded(numbers_[number], bounds[number]); };
+    const torch::Tensor sun = sun_direction();
+    // What follows from the numbers is no way to move them, hence the constants.
+    const torch::Tensor warm = torch::sigmoid((value(sun_warmth) - 50) / 20).detach();
+    const torch::Tensor dark = torch::sigmoid((dusk - value(exposure)) / 0.3f).detach();
+    const torch::Tensor moonlight = (1 - warm) * dark * moonlight_mired;
+    const torch::Tensor sun_color = color_of(value(sun_warmth) + moonlight);
+    const torch::Tensor sky_color = color_of(value(sky_warmth) + moonlight);
+    torch::Tensor share = value(sun_share);
+    if (held_) share = least_spoken_share + (1 - least_spoken_share) * share;
+
+    const torch::Tensor facing = (directions * sun).sum(-1, true);
+    const torch::Tensor up = directions.select(-1, 1).unsqueeze(-1);
+    // Of the sky's light near the horizon, what has come the long way through the air.
+    const torch::Tensor low =
+        torch::exp(-up.clamp_min(0) / glow_height) * (0.25f + 0.1875f * (1 + facing).square());
+    const torch::Tensor sky = (sky_color * (1 - low) + sun_color * low) * (1 + value(glow) * low);
+    const torch::Tensor earth =
+        value(ground) * (0.5f * sky_color + 0.5f * sun_color) * torch::ones_like(up);
+    const torch::Tensor above = torch::sigmoid(up / horizon_softness);
+    const torch::Tensor ambient = above * sky + (1 - above) * earth;
+
+    // A Gaussian in the angle, as much energy as a mean radiance of 1.
+    const float spread = 1 / (lobe_radius * lobe_radius);
+    const torch::Tensor lobe = (4 * spread) * torch::exp(2 * spread * (facing - 1)) * sun_color;
+    const torch::Tensor stops =
+        warm * bounded(numbers_[exposure], warm_exposure) + (1 - warm) * value(exposure);
+    return torch::exp2(stops) / (1 + 3 * share) * ((1 - share) * ambient + share * lobe);
+}
+
+torch::Tensor PhysicalLight::cube(int size) const {
+    return radiance(cube_directions(size));
+}
+
+Image PhysicalLight::image(int height) const {
+    const torch::NoGradGuard no_grad;
+    return to_image(radiance(map_directions(height)));
+}
+
+torch::Tensor PhysicalLight::regularization() const {
+    const torch::Tensor weights =
+        torch::tensor(std::vector<float>(firmness.begin(), firmness.end()));
+    return (weights * (numbers_ - start_).square()).sum();
+}
+
+std::vector<torch::Tensor> PhysicalLight::parameters() const {
+    return {numbers_};
+}
+
+PhysicalValues PhysicalLight::values() const {
+    const torch::NoGradGuard no_grad;
+    const auto value = [&](Number number) {
+        return bounded(numbers_[number], bounds[number]).item<float>();
+    };
+    const torch::Tensor d = sun_direction();
+    PhysicalValues values{value(exposure),
+                          value(sun_share),
+                          value(sun_warmth),
+                          value(sky_warmth),
+                          value(ground),
+                          value(glow),
+                          {}};
+    values.sun = to_sky_angles(Vec3(d[0].item<float>(), d[1].item<float>(), d[2].item<float>()));
+    if (held_) values.sun_share = least_spoken_share + (1 - least_spoken_share) * values.sun_share;
+    return values;
+}
+
+}  // namespace item3d

@@ -1,0 +1,56 @@
+// ControlNetModel of diffusers (Zhang et al. 2023): a copy of the U-Net's way down that sees a
+// picture, and adds what it makes of it to the U-Net's feature maps.
+#pragma once
+
+#include "item3d/networks/diffusion/unet.h"
+
+#include <torch/types.h>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace item3d {
+
+struct ControlNetConfig : UNetEncoderConfig {
+    int conditioning_channels = 3;
+    /// Of the small network that takes the picture to the latents' grid, halving it between each.
+    std::vector<int> conditioning_embedding_out_channels{16, 32, 96, 256};
+    bool reverse_channels = false;  ///< the picture's, for networks trained on BGR
+
+    /// Throws InputError that names the key for what is missing, inconsistent or unsupported.
+    static ControlNetConfig from_config(const Config& config);
+    /// Pixels of the picture for a latent cell, along one side.
+    int downscale() const;
+};
+
+class ControlNetImpl : public UNetEncoderImpl {
+  public:
+    explicit ControlNetImpl(const ControlNetConfig& config);
+    ~ControlNetImpl() override;
+
+    /// sample, timesteps, encoder_hidden_states, added: as the U-Net gets them; picture [N,
+    /// conditioning_channels, downscale() x H, downscale() x W] in [0, 1]. Residuals of the
+    /// weights' type, times `scale`.
+    UNetResiduals forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
+                          const torch::Tensor& encoder_hidden_states, const torch::Tensor& picture,
+                          double scale = 1, const AddedCondition& added = {});
+
+    const ControlNetConfig& config() const { return config_; }
+
+  private:
+    class PictureEmbedding;
+    void make_outputs();
+
+    ControlNetConfig config_;
+    std::shared_ptr<PictureEmbedding> picture_embedding_;
+    std::vector<torch::nn::Conv2d> down_outputs_;
+    torch::nn::Conv2d mid_output_{nullptr};
+};
+TORCH_MODULE(ControlNet);
+
+/// Reads FOLDER/config.json and FOLDER/diffusion_pytorch_model.* . Throws InputError.
+ControlNet load_controlnet(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
+                           torch::Dtype dtype = torch::kFloat32);
+
+}  // namespace item3d

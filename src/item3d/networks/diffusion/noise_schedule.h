@@ -1,0 +1,54 @@
+// The noise of training: how much of a picture is left at each timestep, and what a network's
+// output says about picture and noise.
+#pragma once
+
+#include "item3d/networks/diffusion/scheduler_config.h"
+
+#include <torch/types.h>
+
+#include <filesystem>
+
+namespace item3d {
+
+/// What a network's output means.
+struct Prediction {
+    torch::Tensor clean;
+    torch::Tensor noise;
+};
+
+/// x_t = sqrt(abar_t) x_0 + sqrt(1 - abar_t) eps, abar: alphas_cumprod (Ho et al. 2020).
+class NoiseSchedule {
+  public:
+    NoiseSchedule() : NoiseSchedule(SchedulerConfig{}) {}
+    /// As diffusers' class of that method: with rescale_betas_zero_snr Euler and DPM-Solver++ keep
+    /// a last abar of 2^-24, and PNDM does not know the key.
+    explicit NoiseSchedule(const SchedulerConfig& config);
+    /// Reads FOLDER/scheduler_config.json. Throws InputError.
+    static NoiseSchedule load(const std::filesystem::path& folder);
+
+    const SchedulerConfig& config() const { return config_; }
+    /// [num_train_timesteps] float32 on the CPU: the share of signal variance at each timestep.
+    const torch::Tensor& alphas_cumprod() const { return alphas_cumprod_; }
+    /// alphas_cumprod at integer `timesteps` [N], shaped [N, 1, 1, 1], on their device.
+    torch::Tensor alphas_at(const torch::Tensor& timesteps) const;
+    bool predicts_velocity() const { return config_.prediction_type == "v_prediction"; }
+
+    /// sqrt(a) sample + sqrt(1 - a) noise; sample [N, C, H, W], timesteps [N] integers.
+    torch::Tensor add_noise(const torch::Tensor& sample, const torch::Tensor& noise,
+                            const torch::Tensor& timesteps) const;
+    /// The target of v-prediction: sqrt(a) noise - sqrt(1 - a) sample.
+    torch::Tensor get_velocity(const torch::Tensor& sample, const torch::Tensor& noise,
+                               const torch::Tensor& timesteps) const;
+    /// A network's output of the configured type -> the noise that it means.
+    torch::Tensor to_noise(const torch::Tensor& model_output, const torch::Tensor& sample,
+                           const torch::Tensor& timesteps) const;
+    /// The same for one abar, and the picture that it means. `sample` is x_t.
+    Prediction interpret(const torch::Tensor& model_output, const torch::Tensor& sample,
+                         double alpha_cumprod) const;
+
+  private:
+    SchedulerConfig config_;
+    torch::Tensor alphas_cumprod_;
+};
+
+}  // namespace item3d

@@ -1,0 +1,65 @@
+// PNDM (Liu et al. 2022) without Runge-Kutta steps: the noise is extrapolated from up to four
+// predictions (Adams-Bashforth), and the first step is done twice, the second time with the mean of
+// the noise at both its ends.
+#include "item3d/networks/diffusion/samplers/methods.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+class Pndm : public TimestepSampler {
+  public:
+    Pndm(const NoiseSchedule& schedule, const SamplerOptions& options)
+        : TimestepSampler(schedule, options) {
+        if (timesteps_.size() > 1) timesteps_.insert(timesteps_.begin() + 1, timesteps_[1]);
+    }
+
+    torch::Tensor step(int i, const torch::Tensor& model_output, const torch::Tensor& sample,
+                       const torch::Tensor&) override {
+        if (i == 1) {  // from the first timestep again
+            const std::int64_t first = std::min<std::int64_t>(
+                whole_timestep(i) + stride_, schedule_.config().num_train_timesteps - 1);
+            return move(start_, (model_output + outputs_.back()) / 2, first, whole_timestep(i));
+        }
+        if (i == 0) start_ = sample;
+        if (outputs_.size() == 4) outputs_.erase(outputs_.begin());
+        outputs_.push_back(model_output);
+        return move(sample, extrapolate(), whole_timestep(i), whole_timestep(i) - stride_);
+    }
+
+  private:
+    torch::Tensor extrapolate() const {
+        const std::vector<torch::Tensor> e(outputs_.rbegin(), outputs_.rend());
+        switch (e.size()) {
+            case 1:
+                return e[0];
+            case 2:
+                return (3 * e[0] - e[1]) / 2;
+            case 3:
+                return (23 * e[0] - 16 * e[1] + 5 * e[2]) / 12;
+            default:
+                return (55 * e[0] - 59 * e[1] + 37 * e[2] - 9 * e[3]) / 24;
+        }
+    }
+
+    /// Eq. 9 of the paper, which is DDIM's step.
+    torch::Tensor move(const torch::Tensor& sample, const torch::Tensor& model_output,
+                       std::int64_t from, std::int64_t to) const {
+        const double alpha_next = alpha_or_final(to);
+        const auto [clean, noise] = schedule_.interpret(model_output, sample, alpha_at(from));
+        return std::sqrt(alpha_next) * clean + std::sqrt(1 - alpha_next) * noise;
+    }
+
+    torch::Tensor start_;
+    std::vector<torch::Tensor> outputs_;  ///< the last four at different timesteps
+};
+
+}  // namespace
+
+std::unique_ptr<Sampler> make_pndm(const NoiseSchedule& schedule, const SamplerOptions& options) {
+    return std::make_unique<Pndm>(schedule, options);
+}
+
+}  // namespace item3d

@@ -1,0 +1,50 @@
+// UNet2DConditionModel of diffusers: the noise predictor of Stable Diffusion 1, 2 and XL.
+#pragma once
+
+#include "item3d/core/config.h"
+#include "item3d/networks/diffusion/unet_blocks.h"
+#include "item3d/networks/diffusion/unet_config.h"
+#include "item3d/networks/diffusion/unet_encoder.h"
+#include "item3d/tensors/weights.h"
+
+#include <torch/types.h>
+
+#include <filesystem>
+#include <vector>
+
+namespace item3d {
+
+/// What a ControlNet adds to a U-Net of the same blocks.
+struct UNetResiduals {
+    std::vector<torch::Tensor> down;  ///< to each feature map of the way down, conv_in's first
+    torch::Tensor mid;                ///< to the output of the middle
+};
+
+class UNet2DConditionImpl : public UNetEncoderImpl {
+  public:
+    explicit UNet2DConditionImpl(const UNet2DConditionConfig& config);
+
+    /// sample [N, in_channels, H, W] (any H and W); timesteps [N] or one, integers or not;
+    /// encoder_hidden_states [N, S, cross_attention_dim] -> [N, out_channels, H, W] of the weights'
+    /// type (under autocast: what that gives). Inputs are converted to the weights' type.
+    torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
+                          const torch::Tensor& encoder_hidden_states,
+                          const AddedCondition& added = {}, const UNetResiduals& residuals = {});
+
+    const UNet2DConditionConfig& config() const { return config_; }
+
+  private:
+    void make_up_blocks();
+
+    UNet2DConditionConfig config_;
+    torch::nn::Conv2d conv_out_{nullptr};
+    torch::nn::GroupNorm conv_norm_out_{nullptr};
+    std::vector<UNetLevel> up_;
+};
+TORCH_MODULE(UNet2DCondition);
+
+/// Reads FOLDER/config.json and FOLDER/diffusion_pytorch_model.* . Throws InputError.
+UNet2DCondition load_unet(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
+                          torch::Dtype dtype = torch::kFloat32, WeightUse use = WeightUse::any);
+
+}  // namespace item3d

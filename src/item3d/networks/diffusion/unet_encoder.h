@@ -1,0 +1,70 @@
+// The way down and the middle of diffusers' U-Net, which a ControlNet has a copy of.
+#pragma once
+
+#include "item3d/networks/diffusion/unet_blocks.h"
+#include "item3d/networks/diffusion/unet_config.h"
+
+#include <torch/types.h>
+
+#include <memory>
+#include <vector>
+
+namespace item3d {
+
+/// SDXL's second condition; left empty for other models.
+struct AddedCondition {
+    torch::Tensor text_embeds;  ///< [N, P] pooled text
+    torch::Tensor time_ids;     ///< [N, 6] original size, crop corner, target size
+};
+
+/// [N] timesteps of any type -> [N, channels] float32 sinusoids (Vaswani et al. 2017).
+torch::Tensor sinusoidal_embedding(const torch::Tensor& timesteps, int channels,
+                                   bool flip_sin_to_cos, double freq_shift);
+
+/// One level of the down, the middle or the up path.
+struct UNetLevel {
+    std::vector<ResnetBlock> resnets;
+    std::vector<SpatialTransformer> attentions;
+    Downsample down{nullptr};
+    Upsample up{nullptr};
+
+    /// The level under diffusers' names, to be registered.
+    std::shared_ptr<torch::nn::Module> as_module() const;
+};
+
+class UNetEncoderImpl : public torch::nn::Module {
+  public:
+    explicit UNetEncoderImpl(const UNetEncoderConfig& config);
+
+    /// The two stages of the time embedding, [N, block_out_channels[0]] and [N, 4 x that].
+    torch::Tensor time_sinusoids(const torch::Tensor& timesteps) const;
+    torch::Tensor time_embedding(const torch::Tensor& sinusoids);
+
+  protected:
+    /// What every resnet gets: SiLU of the embedded timesteps ([N] or one) and, where the model has
+    /// it, of the added condition; [N, 4 x block_out_channels[0]].
+    torch::Tensor embed(const torch::Tensor& timesteps, std::int64_t rows,
+                        const AddedCondition& added);
+    /// The first convolution: [N, in_channels, H, W] -> [N, block_out_channels[0], H, W].
+    torch::Tensor enter(const torch::Tensor& sample) { return conv_in_(sample); }
+    /// x after the first convolution -> the feature map after every layer of the way down, x
+    /// itself first; the last one is what goes into the middle.
+    std::vector<torch::Tensor> descend(torch::Tensor x, const torch::Tensor& time,
+                                       const torch::Tensor& context);
+    torch::Tensor run_middle(torch::Tensor x, const torch::Tensor& time,
+                             const torch::Tensor& context);
+    torch::Dtype dtype() const { return conv_in_->weight.scalar_type(); }
+
+  private:
+    void make_down_blocks();
+    void make_mid_block();
+
+    UNetEncoderConfig encoder_config_;
+    torch::nn::Conv2d conv_in_{nullptr};
+    torch::nn::Linear time_linear_1_{nullptr}, time_linear_2_{nullptr};
+    torch::nn::Linear add_linear_1_{nullptr}, add_linear_2_{nullptr};
+    std::vector<UNetLevel> down_;
+    UNetLevel mid_;
+};
+
+}  // namespace item3d

@@ -1,0 +1,63 @@
+// BERT's transformer layer (Devlin et al. 2019), with cross-attention where it is asked for: what
+// BLIP's text decoder and BLIP-2's Q-Former are stacks of.
+#pragma once
+
+#include "item3d/networks/layers/key_value_cache.h"
+#include "item3d/networks/layers/packable_linear.h"
+
+#include <torch/nn/modules/embedding.h>
+#include <torch/nn/modules/normalization.h>
+#include <torch/types.h>
+
+#include <string>
+
+namespace item3d {
+
+struct BertLayerOptions {
+    int width = 768;
+    int intermediate = 3072;
+    int heads = 12;
+    double epsilon = 1e-12;  ///< of the layer norms
+    int memory_width = 0;    ///< channels of what cross-attention reads; 0: there is none
+    // How the files call its parts: "attention.NAME.query", "intermediateSUFFIX.dense".
+    std::string attention_name = "self";
+    std::string suffix;
+};
+
+/// Attention, sum, norm.
+class BertAttentionImpl : public torch::nn::Module {
+  public:
+    BertAttentionImpl(const BertLayerOptions& options, int source_width);
+    /// Keys and values of source [N, T, source_width].
+    KeyValues read(const torch::Tensor& source);
+    /// x [N, S, width]; mask: empty, or additive and broadcastable to [N, heads, S, T].
+    torch::Tensor forward(const torch::Tensor& x, const KeyValues& source,
+                          const torch::Tensor& mask = {});
+
+  private:
+    int heads_;
+    PackableLinear query_{nullptr}, key_{nullptr}, value_{nullptr}, output_{nullptr};
+    torch::nn::LayerNorm norm_{nullptr};
+};
+TORCH_MODULE(BertAttention);
+
+class BertLayerImpl : public torch::nn::Module {
+  public:
+    explicit BertLayerImpl(const BertLayerOptions& options);
+
+    /// What cross-attention reads of a picture's tokens [M, T, memory_width]; empty without.
+    KeyValues read_memory(const torch::Tensor& memory);
+    /// x [N, S, width]. cache: keys and values of the tokens before x, to which those of x are
+    /// added; null: x is all there is. memory [M, T, width] with M a divisor of N: rows i*N/M to
+    /// (i+1)*N/M of x look at picture i.
+    torch::Tensor forward(torch::Tensor x, const torch::Tensor& mask, KeyValues* cache,
+                          const KeyValues& memory);
+
+  private:
+    BertAttention self_{nullptr}, cross_{nullptr};
+    PackableLinear feed_in_{nullptr}, feed_out_{nullptr};
+    torch::nn::LayerNorm norm_{nullptr};
+};
+TORCH_MODULE(BertLayer);
+
+}  // namespace item3d

@@ -1,0 +1,140 @@
+#include "item3d/networks/layers/direct_convolution.h"
+
+#include "item3d/kernels/cpu/conv/direct_kernel.h"
+#include "item3d/kernels/cpu/linear/unit_kernel.h"
+
+#include <ATen/Parallel.h>
+
+#include <algorithm>
+
+namespace item3d {
+namespace {
+
+using std::int64_t;
+
+template <typename Weight>
+const auto& kernel() {
+    return kernel_for_this_processor<Multiplied<Weight>>(
+        []<Instructions instructions> { return direct_kernel<instructions, Weight>(); });
+}
+
+template <typename Weight>
+void convolve_any(const ConvolutionShape& shape, const torch::Tensor& x,
+                  const torch::Tensor& packed, const float* bias, const torch::Tensor& y) {
+    using Number = Multiplied<Weight>;
+    // As many as keep a column's sums and their inputs in a core's cache, beside its weights.
+    constexpr int64_t most_pixels = 384;
+    const int64_t pixels = shape.pictures * shape.height * shape.width;
+    const int64_t ranges = (pixels + most_pixels - 1) / most_pixels;
+    const int64_t each = (pixels + ranges - 1) / ranges;
+    const int64_t columns = columns_of(shape.out_channels);
+    at::parallel_for(0, ranges * columns, 1, [&](int64_t first, int64_t last) {
+        const torch::Tensor scratch =
+            torch::empty({kernel<Weight>()->scratch(each, shape.in_channels)}, torch::kUInt8);
+        for (int64_t task = first; task < last; ++task) {
+            PixelPart part;
+            part.first_pixel = task % ranges * each;
+            part.last_pixel = std::min(pixels, part.first_pixel + each);
+            part.first_channel = task / ranges * packed_columns;
+            part.last_channel = std::min(shape.out_channels, part.first_channel + packed_columns);
+            kernel<Weight>()->convolve(shape, static_cast<const Number*>(x.data_ptr()),
+                                       static_cast<const Weight*>(packed.data_ptr()), bias,
+                                       static_cast<Number*>(y.data_ptr()), part,
+                                       scratch.data_ptr());
+        }
+    });
+}
+
+/// x [N, H, W, C] three times, as convolve_taps_in_units() wants it.
+torch::Tensor shifted_maps(const torch::Tensor& x) {
+    const int64_t pictures = x.size(0), height = x.size(1), width = x.size(2), channels = x.size(3);
+    constexpr int64_t beyond = 16;
+    const torch::Tensor all =
+        torch::zeros({(3 * pictures * (height + 2) * width + beyond) * channels}, x.options());
+    const torch::Tensor maps = all.narrow(0, 0, 3 * pictures * (height + 2) * width * channels)
+                                   .view({3, pictures, height + 2, width, channels})
+                                   .narrow(2, 1, height);
+    maps[0].narrow(2, 1, width - 1).copy_(x.narrow(2, 0, width - 1));
+    maps[1].copy_(x);
+    maps[2].narrow(2, 0, width - 1).copy_(x.narrow(2, 1, width - 1));
+    return all;
+}
+
+void convolve_in_units(const ConvolutionShape& shape, const torch::Tensor& x,
+                       const torch::Tensor& packed, const float* bias, const torch::Tensor& y) {
+    // As many as keep a column's sums in a core's cache, beside its weights.
+    constexpr int64_t most_tiles = 32;
+    const int64_t tiles = unit_tiles(shape);
+    const int64_t ranges = (tiles + most_tiles - 1) / most_tiles;
+    const int64_t each = (tiles + ranges - 1) / ranges;
+    const torch::Tensor shifted = shifted_maps(x.permute({0, 2, 3, 1}));
+    at::parallel_for(
+        0, ranges * (shape.out_channels / packed_columns), 1, [&](int64_t first, int64_t last) {
+            const torch::Tensor scratch = torch::empty({unit_taps_scratch(each)}, torch::kUInt8);
+            for (int64_t task = first; task < last; ++task) {
+                TilePart part;
+                part.first_tile = task % ranges * each;
+                part.last_tile = std::min(tiles, part.first_tile + each);
+                part.first_channel = task / ranges * packed_columns;
+                part.last_channel = part.first_channel + packed_columns;
+                convolve_taps_in_units(shape, static_cast<const BrainFloat*>(shifted.data_ptr()),
+                                       static_cast<const BrainFloat*>(packed.data_ptr()), bias,
+                                       static_cast<BrainFloat*>(y.data_ptr()), part,
+                                       scratch.data_ptr());
+            }
+        });
+}
+
+/// Weights that were rounded to float16 stay so: half the memory, and not a bit less.
+torch::Dtype type_of_packed(const torch::Tensor& weight, torch::Dtype maps) {
+    const bool rounded = weight.scalar_type() == torch::kFloat16 && maps == torch::kFloat32;
+    return rounded ? torch::kFloat16 : maps;
+}
+
+template <typename Weight>
+void pack_any(const void* weights, int64_t out_channels, int64_t in_channels, int64_t column,
+              void* packed) {
+    kernel<Weight>()->pack(static_cast<const Weight*>(weights), out_channels, in_channels, column,
+                           static_cast<Weight*>(packed));
+}
+
+}  // namespace
+
+bool DirectConvolution::gains(const torch::Tensor& x, const torch::Tensor& weight) {
+    return fits(x, weight);
+}
+
+DirectConvolution::DirectConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget)
+    : FrozenConvolution(weight, dtype, type_of_packed(weight, dtype), std::move(forget)) {
+    pack_forward();
+}
+
+std::vector<int64_t> DirectConvolution::turned_points() const {
+    return {8, 7, 6, 5, 4, 3, 2, 1, 0};
+}
+
+void DirectConvolution::pack_column(const void* weights, int64_t out_channels, int64_t in_channels,
+                                    int64_t column, void* packed) const {
+    const auto pack = packed_dtype() == torch::kBFloat16  ? pack_any<BrainFloat>
+                      : packed_dtype() == torch::kFloat16 ? pack_any<HalfFloat>
+                                                          : pack_any<float>;
+    pack(weights, out_channels, in_channels, column, packed);
+}
+
+torch::Tensor DirectConvolution::convolve(const torch::Tensor& x, const torch::Tensor& packed,
+                                          int64_t out_channels, const torch::Tensor& bias) const {
+    const ConvolutionShape shape{x.size(0), x.size(2), x.size(3), x.size(1), out_channels};
+    const torch::Tensor y =
+        torch::empty({shape.pictures, out_channels, shape.height, shape.width},
+                     x.options().memory_format(torch::MemoryFormat::ChannelsLast));
+    const float* added = bias.defined() ? bias.data_ptr<float>() : nullptr;
+    const bool in_units = packed_dtype() == torch::kBFloat16 && matrix_units_run();
+    const auto run = in_units                             ? convolve_in_units
+                     : packed_dtype() == torch::kBFloat16 ? convolve_any<BrainFloat>
+                     : packed_dtype() == torch::kFloat16  ? convolve_any<HalfFloat>
+                                                          : convolve_any<float>;
+    run(shape, x, packed, added, y);
+    return y;
+}
+
+}  // namespace item3d

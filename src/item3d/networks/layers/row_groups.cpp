@@ -1,0 +1,96 @@
+#include "item3d/networks/layers/row_groups.h"
+
+#include <ATen/Parallel.h>
+#include <torch/csrc/autograd/autograd.h>
+#include <torch/csrc/autograd/custom_function.h>
+#include <torch/custom_class.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+using torch::autograd::AutogradContext;
+using torch::autograd::tensor_list;
+
+/// Rows of one group, with the graph of what became of them.
+struct RowGroup {
+    std::int64_t first, count;
+    torch::Tensor text, result;
+};
+
+/// At least two, for one row alone takes more than half the time of two; and not very many groups.
+std::vector<RowGroup> make_groups(std::int64_t rows) {
+    constexpr std::int64_t fewest_rows = 2, most_groups = 16;
+    const std::int64_t each = std::max(fewest_rows, (rows + most_groups - 1) / most_groups);
+    std::vector<RowGroup> groups;
+    for (std::int64_t first = 0; first < rows; first += each)
+        groups.push_back({first, std::min(each, rows - first), {}, {}});
+    return groups;
+}
+
+template <typename Function>
+void for_each_group(std::vector<RowGroup>& groups, const Function& f) {
+    const auto count = static_cast<std::int64_t>(groups.size());
+    at::parallel_for(0, count, 1, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i)
+            f(groups[static_cast<std::size_t>(i)]);
+    });
+}
+
+void run_groups(std::vector<RowGroup>& groups, const torch::Tensor& text, const RowFunction& f,
+                bool differentiable) {
+    for_each_group(groups, [&](RowGroup& group) {
+        const torch::AutoGradMode mode(differentiable);  // each thread has its own
+        group.text = text.detach().narrow(0, group.first, group.count);
+        if (differentiable) group.text = group.text.detach().requires_grad_(true);
+        group.result = f(group.first, group.count, group.text);
+    });
+}
+
+torch::Tensor joined(const std::vector<RowGroup>& groups, torch::Tensor RowGroup::*part) {
+    std::vector<torch::Tensor> parts;
+    for (const RowGroup& group : groups)
+        parts.push_back((group.*part).detach());
+    return torch::cat(parts);
+}
+
+struct GroupsHolder : torch::CustomClassHolder {
+    explicit GroupsHolder(std::vector<RowGroup> held) : groups(std::move(held)) {}
+    std::vector<RowGroup> groups;
+};
+
+struct GroupsStep : torch::autograd::Function<GroupsStep> {
+    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& text,
+                                 const RowFunction& f) {
+        std::vector<RowGroup> groups = make_groups(text.size(0));
+        run_groups(groups, text, f, true);
+        const torch::Tensor result = joined(groups, &RowGroup::result);
+        context->saved_data["groups"] =
+            c10::IValue::make_capsule(c10::intrusive_ptr<torch::CustomClassHolder>(
+                c10::make_intrusive<GroupsHolder>(std::move(groups))));
+        return result;
+    }
+    static tensor_list backward(AutogradContext* context, tensor_list gradients) {
+        const auto holder = context->saved_data["groups"].toCapsule();
+        std::vector<RowGroup> groups = static_cast<const GroupsHolder&>(*holder).groups;
+        for_each_group(groups, [&](RowGroup& group) {
+            const torch::Tensor gradient = gradients[0].narrow(0, group.first, group.count);
+            group.text = torch::autograd::grad({group.result}, {group.text}, {gradient},
+                                               /*retain_graph=*/true)[0];
+        });
+        return {joined(groups, &RowGroup::text), torch::Tensor()};
+    }
+};
+
+}  // namespace
+
+torch::Tensor in_row_groups(const torch::Tensor& text, const RowFunction& f) {
+    if (torch::GradMode::is_enabled() && text.requires_grad()) return GroupsStep::apply(text, f);
+    std::vector<RowGroup> groups = make_groups(text.size(0));
+    run_groups(groups, text, f, false);
+    return joined(groups, &RowGroup::result);
+}
+
+}  // namespace item3d

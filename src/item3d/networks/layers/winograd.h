@@ -1,0 +1,30 @@
+// 3x3 convolutions with fewer multiplications (Lavin & Gray 2016, "Fast Algorithms for
+// Convolutional Neural Networks"), for networks that only run: they take half the time of
+// the library's direct ones in bfloat16 (AVX-512) and a third to two fifths in float32.
+#pragma once
+
+#include "item3d/networks/layers/frozen_convolution.h"
+
+namespace item3d {
+
+/// Within float32's rounding errors of the direct convolution; bfloat16's error is about twice the
+/// direct one's, for the transformed numbers are rounded too. The packed weights take 16/9 of the
+/// weights' memory each way in bfloat16, four times in float32.
+class WinogradConvolution : public FrozenConvolution {
+  public:
+    /// Whether these can be convolved so, and faster: enough pixels to be worth the memory.
+    static bool gains(const torch::Tensor& x, const torch::Tensor& weight);
+
+    /// See FrozenConvolution::make().
+    WinogradConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget = {});
+
+  private:
+    std::int64_t points() const override;
+    std::vector<std::int64_t> turned_points() const override;
+    void pack_column(const void* weights, std::int64_t out_channels, std::int64_t in_channels,
+                     std::int64_t column, void* packed) const override;
+    torch::Tensor convolve(const torch::Tensor& x, const torch::Tensor& packed,
+                           std::int64_t out_channels, const torch::Tensor& bias) const override;
+};
+
+}  // namespace item3d

@@ -1,0 +1,86 @@
+// BLIP's captioning network (Li et al. 2022) as transformers' BlipForConditionalGeneration lays it
+// out: a vision transformer, and a BERT that reads its tokens by cross-attention and writes.
+#pragma once
+
+#include "item3d/networks/layers/bert_layer.h"
+#include "item3d/networks/vision_language/blip_vision.h"
+#include "item3d/networks/vision_language/decoding.h"
+
+#include <torch/types.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace item3d {
+
+struct BlipConfig {
+    BlipVisionConfig vision;
+    int vocab_size = 30524;
+    int hidden_size = 768;
+    int intermediate_size = 3072;
+    int num_hidden_layers = 12;
+    int num_attention_heads = 12;  ///< "num_attention_heads" of text_config
+    int max_position_embeddings = 512;
+    double layer_norm_eps = 1e-12;
+    int bos_token_id = 30522;
+    int sep_token_id = 102;  ///< ends a caption
+    int pad_token_id = 0;
+
+    static BlipConfig from_config(const Config& config);
+    nlohmann::json to_json() const;
+    double least_parameters() const;
+};
+
+class BlipModelImpl : public torch::nn::Module {
+  public:
+    explicit BlipModelImpl(const BlipConfig& config);
+
+    /// pixel_values [N, 3, S, S] -> the picture's tokens [N, T, D].
+    torch::Tensor image_embeds(const torch::Tensor& pixel_values) { return vision_(pixel_values); }
+    /// What each decoder layer's cross-attention reads of them.
+    std::vector<KeyValues> read_image(const torch::Tensor& image_embeds);
+
+    /// The decoder's states [N, S, D] of tokens [N, S] that follow those in `cache` (may be null).
+    /// visible [N, before + S]: 0 for padding. image: of read_image, for M pictures, M a divisor of
+    /// N (see BertLayer).
+    torch::Tensor decode(const torch::Tensor& tokens, const torch::Tensor& visible,
+                         const std::vector<KeyValues>& image, KeyValueCache* cache = nullptr);
+    /// States -> logits of the next token [N, S, vocab_size].
+    torch::Tensor logits(const torch::Tensor& states);
+
+    /// From now on the network, in float32, only runs: linear layers multiply at this precision
+    /// (packable_linear.h).
+    void pack(torch::Dtype dtype);
+
+    const BlipConfig& config() const { return config_; }
+
+  private:
+    BlipConfig config_;
+    BlipVisionModel vision_{nullptr};
+    torch::nn::Embedding words_{nullptr}, positions_{nullptr};
+    torch::nn::LayerNorm embedding_norm_{nullptr}, head_norm_{nullptr};
+    std::vector<BertLayer> layers_;
+    PackableLinear head_{nullptr};
+    torch::Tensor head_bias_;
+    std::optional<PackedMatrix> packed_words_;  ///< for logits
+};
+TORCH_MODULE(BlipModel);
+
+/// Reads FOLDER/config.json and FOLDER/model.*, with or without the tied head's tensors. Throws
+/// InputError.
+BlipModel load_blip(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
+                    torch::Dtype dtype = torch::kFloat32);
+
+/// Writes FOLDER/config.json and FOLDER/model.safetensors, without the tied head's tensors.
+void save_blip(const std::filesystem::path& folder, const BlipModel& model,
+               torch::Dtype dtype = torch::kHalf);
+
+/// A caption for each of N pictures. prompt [N or 1, S] int64: what captions begin with,
+/// bos_token_id first. options: beams, max_new_tokens and length_penalty; the tokens are the
+/// network's own. Throws InputError when prompt and caption are longer than the network can count.
+Decoded write_captions(const BlipModel& model, const torch::Tensor& pixel_values,
+                       const torch::Tensor& prompt, DecodingOptions options);
+
+}  // namespace item3d

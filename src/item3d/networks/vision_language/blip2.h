@@ -1,0 +1,78 @@
+// BLIP-2 with OPT (Li et al. 2023) as transformers' Blip2ForConditionalGeneration lays it out: a
+// vision transformer, a Q-Former that sums its tokens up in a few, and a language model that reads
+// those before its prompt.
+#pragma once
+
+#include "item3d/networks/layers/bert_layer.h"
+#include "item3d/networks/vision_language/blip_vision.h"
+#include "item3d/networks/vision_language/decoding.h"
+#include "item3d/networks/vision_language/opt.h"
+
+#include <torch/types.h>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace item3d {
+
+struct QFormerConfig {
+    int hidden_size = 768;
+    int intermediate_size = 3072;
+    int num_hidden_layers = 12;
+    int num_attention_heads = 12;
+    int cross_attention_frequency = 2;  ///< layers 0, f, 2f, ... look at the picture
+    double layer_norm_eps = 1e-12;
+};
+
+struct Blip2Config {
+    BlipVisionConfig vision;
+    QFormerConfig qformer;
+    OptConfig text;
+    int num_query_tokens = 32;
+    int image_token_index = 50265;  ///< the prompt's places for the picture
+
+    static Blip2Config from_config(const Config& config);
+    double least_parameters() const;
+};
+
+class Blip2ModelImpl : public torch::nn::Module {
+  public:
+    explicit Blip2ModelImpl(const Blip2Config& config);
+
+    /// pixel_values [N, 3, S, S] -> the picture's tokens [N, T, D].
+    torch::Tensor image_embeds(const torch::Tensor& pixel_values) { return vision_(pixel_values); }
+    /// Those -> the Q-Former's [N, Q, D'], Q = num_query_tokens.
+    torch::Tensor query_image(const torch::Tensor& image_embeds);
+    /// Those -> embeddings that the language model reads [N, Q, D''].
+    torch::Tensor project(const torch::Tensor& queried) { return projection_(queried); }
+    /// ids [N, S] -> embeddings, with the picture's [N, Q, D''] in place of image_token_index, of
+    /// which each row must have Q.
+    torch::Tensor embed(const torch::Tensor& ids, const torch::Tensor& picture);
+
+    OptModel language_model() const { return language_model_; }
+    const Blip2Config& config() const { return config_; }
+
+  private:
+    Blip2Config config_;
+    BlipVisionModel vision_{nullptr};
+    torch::Tensor query_tokens_;
+    torch::nn::LayerNorm query_norm_{nullptr};
+    std::vector<BertLayer> query_layers_;
+    torch::nn::Linear projection_{nullptr};
+    OptModel language_model_{nullptr};
+};
+TORCH_MODULE(Blip2Model);
+
+/// Reads FOLDER/config.json and FOLDER/model.*, with or without the tied head. Throws InputError.
+Blip2Model load_blip2(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
+                      torch::Dtype dtype = torch::kFloat32);
+
+/// As write_captions of blip.h. prompt [N or 1, S] int64: Q times image_token_index, bos_token_id,
+/// text; visible, of its shape: 0 for padding, which stands on the left; undefined: there is none.
+/// end_token of `options` counts, as published models differ there from their config.
+Decoded write_captions(const Blip2Model& model, const torch::Tensor& pixel_values,
+                       const torch::Tensor& prompt, const torch::Tensor& visible,
+                       DecodingOptions options);
+
+}  // namespace item3d

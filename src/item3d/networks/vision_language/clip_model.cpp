@@ -1,0 +1,127 @@
+#include "item3d/networks/vision_language/clip_model.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/tensors/weights.h"
+
+namespace item3d {
+namespace nn = torch::nn;
+namespace {
+
+torch::Tensor unit_length(const torch::Tensor& features) {
+    return features / features.norm(2, {-1}, /*keepdim=*/true).clamp_min(1e-12);
+}
+
+}  // namespace
+
+ClipConfig ClipConfig::from_config(const Config& config) {
+    for (const std::string& name : config.texts("architectures", {}))
+        if (name != "CLIPModel") config.fail("architectures", "CLIPModel");
+    ClipConfig result;
+    result.text = ClipTextConfig::from_config(config.part("text_config"));
+    result.vision = ClipVisionConfig::from_config(config.part("vision_config"));
+    result.projection_dim = config.size("projection_dim", result.projection_dim);
+    return result;
+}
+
+nlohmann::json ClipConfig::to_json() const {
+    nlohmann::json text_json = text.to_json();
+    text_json.erase("architectures");
+    return {{"architectures", {"CLIPModel"}},
+            {"model_type", "clip"},
+            {"projection_dim", projection_dim},
+            {"text_config", text_json},
+            {"vision_config", vision.to_json()}};
+}
+
+ClipModelImpl::ClipModelImpl(const ClipConfig& config) : config_(config) {
+    config_.text.with_projection = false;  // it stands beside the text model here
+    text_ = register_module("text_model", ClipTextModel(config_.text));
+    vision_ = register_module("vision_model", ClipVisionModel(config_.vision));
+    const auto projection = [&](int width) {
+        return nn::Linear(nn::LinearOptions(width, config_.projection_dim).bias(false));
+    };
+    text_projection_ = register_module("text_projection", projection(config_.text.hidden_size));
+    visual_projection_ =
+        register_module("visual_projection", projection(config_.vision.hidden_size));
+    logit_scale_ = register_parameter("logit_scale", torch::zeros({}));
+}
+
+torch::Tensor ClipModelImpl::image_features(const torch::Tensor& pixel_values) {
+    return visual_projection_(vision_->pooled(pixel_values));
+}
+
+torch::Tensor ClipModelImpl::text_features(const torch::Tensor& input_ids,
+                                           const torch::Tensor& attention_mask) {
+    return text_projection_(text_(input_ids, attention_mask).pooled);
+}
+
+ClipModel load_clip_model(const std::filesystem::path& folder, torch::Device device,
+                          torch::Dtype dtype) {
+    const auto config = ClipConfig::from_config(Config::read(folder / "config.json"));
+    Weights weights = Weights::open(folder, "model");
+    weights.rename([](const std::string& name) -> std::string {
+        return name.ends_with("embeddings.position_ids") ? "" : name;  // a constant of old files
+    });
+    check_plausible(weights, config.text.least_parameters() + config.vision.least_parameters());
+    auto model = without_initial_values([&] { return ClipModel(config); });
+    load_parameters(*model, weights, device, dtype);
+    model->eval();
+    return model;
+}
+
+void save_clip_model(const std::filesystem::path& folder, const ClipModel& model,
+                     torch::Dtype dtype) {
+    write_atomically(folder / "config.json", model->config().to_json().dump(2) + "\n");
+    save_safetensors(folder / "model.safetensors", module_tensors(*model, dtype),
+                     {{"format", "pt"}});
+}
+
+Clip Clip::load(const std::filesystem::path& folder, torch::Device device, torch::Dtype dtype) {
+    // The small files first: what they lack is found before gigabytes are read.
+    const auto config = ClipConfig::from_config(Config::read(folder / "config.json"));
+    Clip clip;
+    clip.device_ = device;
+    clip.tokenizer = std::make_shared<ClipTokenizer>(ClipTokenizer::load(folder));
+    clip.processor =
+        std::make_shared<ImageProcessor>(ImageProcessor::load(folder, config.vision.image_size));
+    if (clip.tokenizer->largest_id() >= config.text.vocab_size)
+        throw InputError((folder / "vocab.json").string(),
+                         fmt::format("has id {}, but the text model knows {} tokens",
+                                     clip.tokenizer->largest_id(), config.text.vocab_size),
+                         "the tokenizer does not belong to this model");
+    clip.model = load_clip_model(folder, device, dtype);
+    return clip;
+}
+
+Clip Clip::load_to_run(const std::filesystem::path& folder, torch::Device device,
+                       torch::Dtype dtype) {
+    const bool packs = PackedMatrix::runs(device, dtype);
+    Clip clip = load(folder, device, packs ? torch::kFloat32 : dtype);
+    if (packs) pack_linear_layers(*clip.model, dtype);
+    return clip;
+}
+
+int Clip::text_length() const {
+    return std::min(tokenizer->model_max_length(), model->config().text.max_position_embeddings);
+}
+
+void Clip::warn_of_lost_words(const std::string& subject, const std::string& text) const {
+    item3d::warn_of_lost_words(*tokenizer, subject, text, text_length());
+}
+
+torch::Tensor Clip::embed_texts(const std::vector<std::string>& texts) const {
+    const torch::NoGradGuard no_grad;
+    ClipModel network = model;
+    const torch::Tensor ids = tokenizer->encode_batch(texts, text_length()).to(device_);
+    return unit_length(network->text_features(ids).to(torch::kFloat32));
+}
+
+torch::Tensor Clip::embed_images(const torch::Tensor& images) const {
+    ClipModel network = model;
+    const torch::Tensor pixel_values = processor->process_differentiably(images.to(device_));
+    return unit_length(network->image_features(pixel_values).to(torch::kFloat32));
+}
+
+}  // namespace item3d

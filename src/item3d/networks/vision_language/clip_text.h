@@ -1,0 +1,88 @@
+// CLIP's text encoder (Radford et al. 2021) as transformers' CLIPTextModel lays it out.
+#pragma once
+
+#include "item3d/core/config.h"
+#include "item3d/networks/layers/clip_layer.h"
+
+#include <torch/nn/modules/container/modulelist.h>
+#include <torch/nn/modules/embedding.h>
+#include <torch/nn/modules/linear.h>
+#include <torch/nn/modules/normalization.h>
+#include <torch/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+struct ClipTextConfig {
+    int vocab_size = 49408;
+    int hidden_size = 512;
+    int intermediate_size = 2048;
+    int num_hidden_layers = 12;
+    int num_attention_heads = 8;
+    int max_position_embeddings = 77;
+    std::string hidden_act = "quick_gelu";  ///< or "gelu"
+    double layer_norm_eps = 1e-5;
+    int bos_token_id = 49406;
+    /// 2 is what old configs say: the end of the text is then the largest id of a row.
+    int eos_token_id = 49407;
+    int pad_token_id = 1;
+    int projection_dim = 512;
+    bool with_projection = false;  ///< CLIPTextModelWithProjection
+
+    static ClipTextConfig from_config(const Config& config);
+    static ClipTextConfig from_json(const nlohmann::json& json,
+                                    const std::string& subject = "text_encoder/config.json");
+    nlohmann::json to_json() const;
+    double least_parameters() const;
+};
+
+/// [N, S, D] each.
+struct ClipTextOutput {
+    torch::Tensor last_hidden_state;  ///< after the final layer norm
+    /// The embeddings, then what each layer gave, before the final layer norm.
+    std::vector<torch::Tensor> hidden_states;
+    torch::Tensor pooled;       ///< [N, D] last_hidden_state at the end of each text
+    torch::Tensor text_embeds;  ///< [N, projection_dim], with a projection only
+};
+
+class ClipTextModelImpl : public torch::nn::Module {
+  public:
+    explicit ClipTextModelImpl(const ClipTextConfig& config);
+
+    /// input_ids [N, S] integers, S <= max_position_embeddings; attention_mask [N, S] of 1 (read)
+    /// and 0, or empty to read all (which is what diffusers does, padding included).
+    ClipTextOutput forward(const torch::Tensor& input_ids,
+                           const torch::Tensor& attention_mask = {});
+
+    /// What diffusers gives for clip_skip = `skip` (0: the last hidden state).
+    torch::Tensor skip_layers(const ClipTextOutput& output, int skip);
+
+    /// Sets the embeddings of the tokens from `first_id` on, [count, hidden_size]; the table grows
+    /// where it ends before.
+    void set_token_embeddings(std::int64_t first_id, const torch::Tensor& rows);
+
+    const ClipTextConfig& config() const { return config_; }
+
+  private:
+    ClipTextConfig config_;
+    torch::nn::Embedding token_embedding_{nullptr}, position_embedding_{nullptr};
+    std::vector<ClipLayer> layers_;
+    torch::nn::LayerNorm final_layer_norm_{nullptr};
+    torch::nn::Linear text_projection_{nullptr};
+};
+TORCH_MODULE(ClipTextModel);
+
+/// Reads FOLDER/config.json and FOLDER/model.*, with or without the "text_model." before names.
+/// Throws InputError.
+ClipTextModel load_clip_text(const std::filesystem::path& folder,
+                             torch::Device device = torch::kCPU,
+                             torch::Dtype dtype = torch::kFloat32);
+
+/// Parameters under their published names ("text_model." before all but the projection).
+std::vector<std::pair<std::string, torch::Tensor>> published_tensors(
+    const ClipTextModel& model, torch::Dtype dtype = torch::kFloat32);
+
+}  // namespace item3d

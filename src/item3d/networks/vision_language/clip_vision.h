@@ -1,0 +1,77 @@
+// CLIP's image encoder (Radford et al. 2021) as transformers' CLIPVisionModelWithProjection lays it
+// out: a vision transformer (Dosovitskiy et al. 2021) whose class token becomes the image's
+// feature.
+#pragma once
+
+#include "item3d/networks/layers/clip_layer.h"
+#include "item3d/networks/vision_language/vision_shape.h"
+
+#include <torch/nn/modules/conv.h>
+#include <torch/nn/modules/embedding.h>
+#include <torch/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+struct ClipVisionConfig : VisionShape {
+    int num_channels = 3;
+    std::string hidden_act = "quick_gelu";  ///< or "gelu"
+    int projection_dim = 512;
+
+    static ClipVisionConfig from_config(const Config& config);
+    nlohmann::json to_json() const;
+};
+
+/// S = tokens(), D = hidden_size.
+struct ClipVisionOutput {
+    torch::Tensor last_hidden_state;  ///< [N, S, D], before the final layer norm
+    /// [N, S, D] each: what the first layer reads, then what each layer gave.
+    std::vector<torch::Tensor> hidden_states;
+    torch::Tensor pooled;  ///< [N, D] the class token after the final layer norm
+};
+
+class ClipVisionModelImpl : public torch::nn::Module {
+  public:
+    explicit ClipVisionModelImpl(const ClipVisionConfig& config);
+    /// pixel_values [N, 3, image_size, image_size] as ImageProcessor makes them; differentiable.
+    ClipVisionOutput forward(const torch::Tensor& pixel_values);
+    /// The `pooled` of forward() alone, which needs one token of the last layer.
+    torch::Tensor pooled(const torch::Tensor& pixel_values);
+    const ClipVisionConfig& config() const { return config_; }
+
+  private:
+    /// What the layers read, [N, S, D].
+    torch::Tensor embed(const torch::Tensor& pixel_values);
+
+    ClipVisionConfig config_;
+    torch::Tensor class_embedding_;
+    torch::nn::Conv2d patch_embedding_{nullptr};
+    torch::nn::Embedding position_embedding_{nullptr};
+    torch::nn::LayerNorm pre_norm_{nullptr}, post_norm_{nullptr};
+    std::vector<ClipLayer> layers_;
+};
+TORCH_MODULE(ClipVisionModel);
+
+/// With the projection into the space that images and texts share.
+class ClipVisionWithProjectionImpl : public torch::nn::Module {
+  public:
+    explicit ClipVisionWithProjectionImpl(const ClipVisionConfig& config);
+    ClipVisionOutput forward(const torch::Tensor& pixel_values) { return vision_(pixel_values); }
+    /// [N, projection_dim], not normalised.
+    torch::Tensor project(const ClipVisionOutput& output) { return projection_(output.pooled); }
+
+  private:
+    ClipVisionModel vision_{nullptr};
+    torch::nn::Linear projection_{nullptr};
+};
+TORCH_MODULE(ClipVisionWithProjection);
+
+/// Reads FOLDER/config.json and FOLDER/model.*. Throws InputError.
+ClipVisionWithProjection load_clip_vision(const std::filesystem::path& folder,
+                                          torch::Device device = torch::kCPU,
+                                          torch::Dtype dtype = torch::kFloat32);
+
+}  // namespace item3d

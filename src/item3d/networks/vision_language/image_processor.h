@@ -1,0 +1,65 @@
+// Pictures as vision networks want them, as transformers' CLIPImageProcessor and BlipImageProcessor
+// make them: bicubic resize, centre crop, normalisation.
+#pragma once
+
+#include "item3d/core/config.h"
+
+#include <torch/types.h>
+
+#include <array>
+#include <filesystem>
+
+namespace item3d {
+
+/// preprocessor_config.json.
+struct ImageProcessorConfig {
+    /// The shorter edge, where `height` is 0; else the exact size.
+    int shortest_edge = 224;
+    int height = 0;
+    int width = 0;
+    bool center_crop = true;
+    int crop_height = 224;
+    int crop_width = 224;
+    double rescale_factor = 1.0 / 255;
+    std::array<double, 3> mean{0.48145466, 0.4578275, 0.40821073};
+    std::array<double, 3> deviation{0.26862954, 0.26130258, 0.27577711};
+
+    static ImageProcessorConfig from_config(const Config& config);
+};
+
+class ImageProcessor {
+  public:
+    explicit ImageProcessor(const ImageProcessorConfig& config) : config_(config) {}
+    /// Reads FOLDER/preprocessor_config.json. Throws InputError, also for options that are not
+    /// supported (another filter than bicubic).
+    static ImageProcessor load(const std::filesystem::path& folder);
+    /// The same for a network that reads squares of `image_size` pixels; InputError, too, when some
+    /// pictures would not become such.
+    static ImageProcessor load(const std::filesystem::path& folder, int image_size);
+
+    /// Bytes [H, W, C] (grey or RGB; with alpha, composed over white) -> [1, 3, h, w] float32,
+    /// exactly as Pillow resizes them (resize_bicubic).
+    torch::Tensor process(const torch::Tensor& bytes) const;
+    /// The resized bytes [h, w, 3] before cropping and normalising.
+    torch::Tensor resize(const torch::Tensor& bytes) const;
+
+    /// The same for pictures that need gradients: [N, 3, H, W] sRGB in [0, 1] -> [N, 3, h, w],
+    /// without rounding to bytes (which moves values by less than 1 / 255). Differentiable.
+    torch::Tensor process_differentiably(const torch::Tensor& images) const;
+
+    const ImageProcessorConfig& config() const { return config_; }
+
+  private:
+    std::array<int, 2> resized_size(int height, int width) const;
+    std::array<int, 2> output_size(int height, int width) const;
+    torch::Tensor crop_and_normalize(const torch::Tensor& planes) const;
+
+    ImageProcessorConfig config_;
+};
+
+/// Pillow's bicubic resize (a = -0.5, widened when shrinking) of bytes [H, W, C] to [height, width,
+/// C]: two passes, weights in 22-bit fixed point, rounded to bytes after each. Horizontal first,
+/// but (since Pillow 13) where more than twice as many rows go as columns do.
+torch::Tensor resize_bicubic(const torch::Tensor& bytes, int height, int width);
+
+}  // namespace item3d

@@ -1,0 +1,60 @@
+// The OPT language model (Zhang et al. 2022) as transformers' OPTForCausalLM lays it out, with the
+// layer norm before each block (all published sizes but 350M).
+#pragma once
+
+#include "item3d/core/config.h"
+#include "item3d/networks/layers/key_value_cache.h"
+
+#include <torch/nn/modules/embedding.h>
+#include <torch/nn/modules/linear.h>
+#include <torch/nn/modules/normalization.h>
+#include <torch/types.h>
+
+#include <memory>
+#include <vector>
+
+namespace item3d {
+
+struct OptConfig {
+    int vocab_size = 50272;
+    int hidden_size = 768;
+    int ffn_dim = 3072;
+    int num_hidden_layers = 12;
+    int num_attention_heads = 12;
+    int max_position_embeddings = 2048;
+    int bos_token_id = 2;
+    int eos_token_id = 2;
+    int pad_token_id = 1;
+
+    static OptConfig from_config(const Config& config);
+    double least_parameters() const;
+};
+
+class OptModelImpl : public torch::nn::Module {
+  public:
+    explicit OptModelImpl(const OptConfig& config);
+
+    /// ids [N, S] -> [N, S, hidden_size].
+    torch::Tensor embed(const torch::Tensor& ids) { return words_(ids); }
+    /// Embeddings [N, S, hidden_size] of tokens that follow those in `cache` (may be null) ->
+    /// states of the same shape. visible [N, before + S] int64: 1, or 0 for padding, which no token
+    /// sees and which counts no position.
+    torch::Tensor forward(const torch::Tensor& embeddings, const torch::Tensor& visible,
+                          KeyValueCache* cache = nullptr);
+    /// States -> logits of the next token [N, S, vocab_size].
+    torch::Tensor logits(const torch::Tensor& states) const {
+        return at::linear(states, words_->weight);
+    }
+
+    const OptConfig& config() const { return config_; }
+
+  private:
+    class Layer;
+    OptConfig config_;
+    torch::nn::Embedding words_{nullptr}, positions_{nullptr};
+    std::vector<std::shared_ptr<Layer>> layers_;
+    torch::nn::LayerNorm final_norm_{nullptr};
+};
+TORCH_MODULE(OptModel);
+
+}  // namespace item3d

@@ -1,0 +1,66 @@
+// Training pairs: a random material and light on a random view, with its caption.
+#pragma once
+
+#include "item3d/prior/data/labels.h"
+#include "item3d/prior/data/lights.h"
+#include "item3d/prior/data/materials/materials.h"
+#include "item3d/prior/data/views.h"
+
+#include <torch/types.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// Of the pictures of shapes that have parts, so many show one in a material of its own.
+inline constexpr double two_part_share = .4;
+
+/// A picture with its caption and what is on it.
+struct Example {
+    torch::Tensor image;    ///< [S, S, 3] float32, sRGB in [0, 1]
+    torch::Tensor cells;    ///< as ShapeView::cells
+    torch::Tensor covered;  ///< [S, S] float32, part of the pixel that is object
+    std::string caption;
+    PictureFacts facts;
+    std::string material;  ///< ProceduralMaterial::kind
+    std::string light;     ///< TrainingLight::kind
+};
+
+/// What an example should show; what is not said is drawn at random.
+struct ExampleWish {
+    MaterialWish material;
+    const TrainingLight* light = nullptr;
+    bool plain_background = false;  ///< an even light grey
+    /// Name of a part that gets a material of its own, where the shape has it; "none" for none.
+    std::string part;
+    MaterialWish part_material;
+};
+
+/// Indices into view.parts of those that can be seen well enough to be talked about.
+std::vector<std::size_t> visible_parts(const ShapeView& view);
+
+/// Draws an example of that view: its material and, unless the wish names one, its light.
+Example draw_example(Random& random, const ShapeView& view,
+                     const std::vector<TrainingLight>& lights, const ExampleWish& wish = {});
+
+/// Draws examples from views and lights; safe to use from several threads.
+class ExampleSource {
+  public:
+    ExampleSource(std::vector<ShapeView> views, std::vector<TrainingLight> lights,
+                  std::uint64_t seed, float pattern_weight = 1);
+
+    /// The example of that index depends on the seed and the index alone.
+    Example draw(std::int64_t index) const;
+
+    const std::vector<ShapeView>& views() const { return views_; }
+
+  private:
+    std::vector<ShapeView> views_;
+    std::vector<TrainingLight> lights_;
+    std::uint64_t seed_;
+    ExampleWish wish_;
+};
+
+}  // namespace item3d

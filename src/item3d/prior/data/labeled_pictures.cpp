@@ -1,0 +1,78 @@
+#include "item3d/prior/data/labeled_pictures.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/progress.h"
+#include "item3d/prior/data/workers.h"
+#include "item3d/tensors/safetensors.h"
+
+#include <atomic>
+#include <mutex>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path images_file(const fs::path& folder, const std::string& name) {
+    return folder / (name + ".safetensors");
+}
+
+fs::path facts_file(const fs::path& folder, const std::string& name) {
+    return folder / (name + ".json");
+}
+
+}  // namespace
+
+torch::Tensor LabeledPictures::pixel_values(const std::vector<std::int64_t>& rows) const {
+    return images.index_select(0, torch::tensor(rows))
+        .permute({0, 3, 1, 2})
+        .to(torch::kFloat32)
+        .div(127.5)
+        .sub(1);
+}
+
+LabeledPictures draw_labeled(const ExampleSource& source, std::int64_t count, int threads) {
+    LabeledPictures result;
+    result.images = torch::empty({count, picture_size, picture_size, 3}, torch::kUInt8);
+    result.facts.resize(static_cast<std::size_t>(count));
+    Progress progress("pictures", count);
+    std::atomic<std::int64_t> done = 0;
+    std::mutex mutex;
+    run_workers(count, threads, [&](std::int64_t i) {
+        Example example = source.draw(i);
+        result.images[i].copy_((example.image * 255).round());
+        result.facts[static_cast<std::size_t>(i)] = std::move(example.facts);
+        const std::lock_guard lock(mutex);
+        progress.update(++done);
+    });
+    return result;
+}
+
+void save_labeled(const fs::path& folder, const std::string& name,
+                  const LabeledPictures& pictures) {
+    fs::remove(facts_file(folder, name));
+    save_safetensors(images_file(folder, name), {{"images", pictures.images}});
+    write_atomically(facts_file(folder, name), nlohmann::json(pictures.facts).dump() + "\n");
+}
+
+bool has_labeled(const fs::path& folder, const std::string& name) {
+    return fs::exists(facts_file(folder, name));
+}
+
+LabeledPictures load_labeled(const fs::path& folder, const std::string& name) {
+    LabeledPictures result;
+    result.images = SafeTensors::open(images_file(folder, name)).tensor("images");
+    const fs::path file = facts_file(folder, name);
+    try {
+        nlohmann::json::parse(read_text(file)).get_to(result.facts);
+    } catch (const nlohmann::json::exception& error) {
+        throw InputError(file.string(), error.what(), "train without --resume");
+    }
+    if (static_cast<std::int64_t>(result.facts.size()) != result.count())
+        throw InputError(file.string(), "does not belong to the pictures beside it",
+                         "train without --resume");
+    return result;
+}
+
+}  // namespace item3d

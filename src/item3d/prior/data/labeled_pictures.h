@@ -1,0 +1,33 @@
+// Training pictures with what is true of them, kept in a file.
+#pragma once
+
+#include "item3d/prior/data/dataset.h"
+#include "item3d/prior/data/labels.h"
+
+#include <torch/types.h>
+
+#include <filesystem>
+#include <vector>
+
+namespace item3d {
+
+struct LabeledPictures {
+    torch::Tensor images;             ///< [N, picture_size, picture_size, 3] uint8 sRGB
+    std::vector<PictureFacts> facts;  ///< N
+
+    std::int64_t count() const { return images.size(0); }
+    /// Rows [R] as networks want them: [R, 3, picture_size, picture_size] float32 in [-1, 1].
+    torch::Tensor pixel_values(const std::vector<std::int64_t>& rows) const;
+};
+
+/// The source's first `count` examples, on `threads` threads. Incomplete after an interrupt.
+LabeledPictures draw_labeled(const ExampleSource& source, std::int64_t count, int threads);
+
+/// FOLDER/NAME.safetensors and FOLDER/NAME.json; the json last, so that both are whole where it is.
+void save_labeled(const std::filesystem::path& folder, const std::string& name,
+                  const LabeledPictures& pictures);
+bool has_labeled(const std::filesystem::path& folder, const std::string& name);
+/// Throws InputError for files that do not belong together.
+LabeledPictures load_labeled(const std::filesystem::path& folder, const std::string& name);
+
+}  // namespace item3d

@@ -1,0 +1,138 @@
+// What the files of this folder share: each returns the kinds of one theme.
+//
+// Scales: an object of radius 1 is 25 to 30 pixels of a picture of 64, so a wave of frequency f
+// (radians a unit) is 170 / f pixels long, and a cell of a pattern with f cells a unit is 27 / f
+// wide. Nothing here is meant to be seen that is finer than four pixels.
+#pragma once
+
+#include "item3d/prior/data/materials/materials.h"
+#include "item3d/prior/data/shapes/noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace item3d::paint {
+
+struct MaterialKind {
+    std::string name;
+    double share;  ///< of the training data, as a weight
+    ProceduralMaterial (*make)(Random&, const MaterialWish&);
+    std::vector<MaterialWord> words;
+};
+
+std::vector<MaterialKind> plain_materials();
+std::vector<MaterialKind> metal_materials();
+std::vector<MaterialKind> wood_materials();
+std::vector<MaterialKind> stone_materials();
+std::vector<MaterialKind> craft_materials();
+std::vector<MaterialKind> fabric_materials();
+std::vector<MaterialKind> nature_materials();
+std::vector<MaterialKind> food_materials();
+std::vector<MaterialKind> fur_patterns();
+std::vector<MaterialKind> geometric_patterns();
+std::vector<MaterialKind> ornament_patterns();
+
+/// The word of a kind that has one alone: its caption is "a {word} {o}" unless given.
+MaterialWord word_of(const std::string& group, const std::string& kind, const std::string& word,
+                     const std::vector<std::string>& spellings = {},
+                     const std::string& caption = "");
+inline MaterialWord material_word(const std::string& kind, const std::string& word,
+                                  const std::vector<std::string>& spellings = {}) {
+    return word_of("materials", kind, word, spellings);
+}
+inline MaterialWord pattern_word(const std::string& kind, const std::string& word,
+                                 const std::vector<std::string>& spellings = {}) {
+    return word_of("patterns", kind, word, spellings);
+}
+
+/// The same with a caption that says its colours.
+inline MaterialWord colored(MaterialWord word, const std::string& caption) {
+    word.colored_caption = caption;
+    return word;
+}
+
+inline float draw(Random& random, double low, double high) {
+    return static_cast<float>(random.uniform(low, high));
+}
+inline Vec3 mix(const Vec3& a, const Vec3& b, float weight) {
+    return a + (b - a) * weight;
+}
+inline float smooth_step(float x, float low, float high) {
+    const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
+    return t * t * (3 - 2 * t);
+}
+inline float fraction(float x) {
+    return x - std::floor(x);
+}
+inline bool odd(float whole_number) {
+    return fraction(whole_number * .5f) > .25f;
+}
+inline Vec3 limit(const Vec3& color) {
+    return glm::clamp(color, Vec3(0.0f), Vec3(1.0f));
+}
+
+/// A colour somewhat like the given one: brighter or darker, and each channel a little.
+Vec3 vary(Random& random, const Vec3& color, double spread = .12);
+
+Vec3 color_named(const std::string& name);
+/// A plain colour, as wished or at random.
+std::string one_color(Random& random, const MaterialWish& wish);
+/// Two different ones.
+std::pair<std::string, std::string> two_colors(Random& random, const MaterialWish& wish);
+
+/// How captions speak of something that comes in any colours or in those that it is known by: they
+/// name the first and not the second, so that a sentence without colours means something.
+struct Wording {
+    std::vector<std::string> phrases, also_true;  ///< ProceduralMaterial
+};
+inline Wording wording(bool named, const std::vector<std::string>& with_colors,
+                       const std::vector<std::string>& without) {
+    return named ? Wording{with_colors, without} : Wording{without, with_colors};
+}
+
+/// 0 .. 1, the same for the same cell.
+float cell_value(float x, float y, float z = 0);
+
+/// The two nearest of one random point a unit cell (Worley 1996, "A Cellular Texture Basis
+/// Function").
+struct NearPoints {
+    float first, second;  ///< distances
+    float value;          ///< cell_value of the nearest's cell
+};
+NearPoints near_points(const Vec3& p);
+
+/// Of patterns that lie in one place on every object, so that the network can know it: half a unit
+/// each, 13 pixels.
+inline constexpr float cells_a_unit = 2;
+
+/// Coordinates on the plane that the normal faces most: for bricks and other flat patterns.
+inline Vec2 flat_coordinates(const Vec3& p, const Vec3& n) {
+    const Vec3 a = glm::abs(n);
+    if (a.x >= a.y && a.x >= a.z) return Vec2(p.z, p.y);
+    if (a.y >= a.z) return Vec2(p.x, p.z);
+    return Vec2(p.x, p.y);
+}
+/// A slope on that plane as one in space.
+inline Vec3 flat_slope(const Vec2& slope, const Vec3& n) {
+    const Vec3 a = glm::abs(n);
+    if (a.x >= a.y && a.x >= a.z) return Vec3(0, slope.y, slope.x);
+    if (a.y >= a.z) return Vec3(slope.x, 0, slope.y);
+    return Vec3(slope.x, slope.y, 0);
+}
+
+/// Two tones mixed by noise, with relief: stone, moss, leather, ...
+struct Grain {
+    Vec3 dark, light;
+    float frequency;  ///< of the noise, radians a unit
+    int octaves = 2;
+    float spread = 1.3f;  ///< noise from -spread to spread runs dark to light
+    float rough_dark = .85f, rough_light = .85f;
+    float relief = 0;    ///< steepest slope, about
+    Vec3 stretch{1.0f};  ///< of the noise's coordinates
+};
+std::function<MaterialValue(const Vec3&, const Vec3&)> grained(Random& random, const Grain& grain);
+
+}  // namespace item3d::paint

@@ -1,0 +1,50 @@
+// What the files of this folder share: each returns the classes of one theme.
+#pragma once
+
+#include "item3d/core/random.h"
+#include "item3d/prior/data/shapes/lathe.h"
+#include "item3d/prior/data/shapes/shapes.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace item3d {
+
+/// Draws the numbers of a variant.
+class Draw {
+  public:
+    explicit Draw(Random random) : random_(random) {}
+    float operator()(double low, double high) {
+        return static_cast<float>(random_.uniform(low, high));
+    }
+    int pick(int count) { return static_cast<int>(random_.index(count)); }
+
+  private:
+    Random random_;
+};
+
+struct ShapeMaker {
+    ShapeClass shape;
+    Shape (*make)(Draw&);
+};
+
+std::vector<ShapeMaker> vessel_shapes();
+std::vector<ShapeMaker> furniture_shapes();
+std::vector<ShapeMaker> vehicle_shapes();
+std::vector<ShapeMaker> food_shapes();
+std::vector<ShapeMaker> animal_shapes();
+std::vector<ShapeMaker> figure_shapes();
+std::vector<ShapeMaker> thing_shapes();
+std::vector<ShapeMaker> solid_shapes();
+
+/// A shape of one piece.
+inline Shape whole(SignedDistance distance) {
+    return {{{"", std::move(distance)}}};
+}
+
+inline SignedDistance turned(const Lathe& lathe) {
+    return [lathe](const Vec3& p) { return lathe.distance(p); };
+}
+
+}  // namespace item3d

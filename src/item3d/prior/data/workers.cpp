@@ -1,0 +1,62 @@
+#include "item3d/prior/data/workers.h"
+
+#include "item3d/core/progress.h"
+
+#include <ATen/Parallel.h>
+#include <malloc.h>
+#include <omp.h>
+#include <torch/types.h>
+
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace item3d {
+
+void run_ranks(int threads, const std::function<void(int)>& body) {
+    const int torch_threads = at::get_num_threads();
+    std::exception_ptr first;
+    std::mutex mutex;
+    std::vector<std::thread> running;
+    for (int rank = 0; rank < threads; ++rank) {
+        running.emplace_back([&, rank] {
+            try {
+                at::set_num_threads(1);
+                omp_set_num_threads(1);
+                body(rank);
+            } catch (...) {
+                const std::lock_guard lock(mutex);
+                if (!first) first = std::current_exception();
+            }
+        });
+    }
+    for (std::thread& thread : running)
+        thread.join();
+    at::set_num_threads(torch_threads);
+    if (first) std::rethrow_exception(first);
+}
+
+void run_workers(std::int64_t count, int threads, const std::function<void(std::int64_t)>& work) {
+    std::atomic<std::int64_t> next = 0;
+    run_ranks(threads, [&](int) {
+        torch::NoGradGuard no_grad;
+        try {
+            for (std::int64_t i = next++; i < count && !interrupted(); i = next++)
+                work(i);
+        } catch (...) {
+            next = count;
+            throw;
+        }
+    });
+}
+
+void keep_freed_memory() {
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+    mallopt(M_TOP_PAD, 64 << 20);
+}
+
+}  // namespace item3d

@@ -1,0 +1,249 @@
+#include "item3d/prior/evaluation/evaluation.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/io/save.h"
+#include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/prior/evaluation/classifier.h"
+#include "item3d/prior/evaluation/vision_language_accuracy.h"
+#include "item3d/prior/training/export.h"
+#include "item3d/prior/training/train.h"
+#include "item3d/prior/training/vision_language.h"
+#include "item3d/report/animation.h"
+#include "item3d/report/contact_sheet.h"
+#include "item3d/report/html.h"
+#include "item3d/report/picture.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int shown_edge = 128;
+constexpr int one_a_row = 900;  ///< least width of a sheet, in pixels of the page
+constexpr int model_views = 4;  ///< that a model's caption is made from, as `item3d caption` does
+
+Image sample_sheet(const SampleGrid& grid) {
+    std::vector<Tile> tiles;
+    for (std::size_t i = 0; i < grid.pictures.size(); ++i)
+        tiles.push_back({resize(grid.pictures[i], shown_edge, shown_edge), grid.prompts[i]});
+    ContactSheetOptions options;
+    options.columns = static_cast<int>(grid.objects.size());
+    return contact_sheet(tiles, options);
+}
+
+Image reconstruction_sheet(const ReconstructionMeasure& measure) {
+    std::vector<Tile> tiles;
+    for (const auto* row : {&measure.pictures, &measure.reconstructions})
+        for (const Image& picture : *row)
+            tiles.push_back({resize(picture, shown_edge, shown_edge), ""});
+    ContactSheetOptions options;
+    options.columns = static_cast<int>(measure.pictures.size());
+    return contact_sheet(tiles, options);
+}
+
+void stop_if_asked() {
+    if (interrupted()) throw Interrupted("nothing was written");
+}
+
+/// What its own CLIP and captioner make of held-out pictures.
+nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>& clip,
+                               const EvaluationOptions& options) {
+    nlohmann::json measured = nlohmann::json::object();
+    const bool captioner = fs::exists(folder / captioner_folder / "config.json");
+    if (!clip && !captioner) return measured;
+    const LabeledPictures pictures =
+        draw_held_out(mix_bits(options.seed + 5), options.labeled_pictures, 4, 64, options.threads);
+    stop_if_asked();
+    if (clip) measured["retrieval"] = measure_retrieval(*clip, pictures);
+    if (captioner) {
+        const auto model = load_captioner(folder / captioner_folder);
+        measured["captions"] = measure_captions(*model, pictures, options.threads);
+        measured["model_captions"] = measure_model_captions(
+            *model,
+            draw_held_out_models(mix_bits(options.seed + 6), options.labeled_models, model_views,
+                                 options.threads),
+            options.threads);
+        measured["model_captions"]["views"] = model_views;
+    }
+    return measured;
+}
+
+/// For prior.json: what it has of the readers' training, with what they reach now.
+nlohmann::json readers_record(const fs::path& folder, const nlohmann::json& readers) {
+    const nlohmann::json prior = read_prior_json(folder);
+    nlohmann::json record = nlohmann::json::object();
+    for (const auto& [part, reached] :
+         {std::pair{"clip", "retrieval"}, std::pair{"captioner", "captions"},
+          std::pair{"captioner", "model_captions"}}) {
+        if (!readers.contains(reached)) continue;
+        if (!record.contains(part)) record[part] = prior.value(part, nlohmann::json::object());
+        record[part][reached] = readers[reached];
+    }
+    return record;
+}
+
+/// What the prior's own file says of its words.
+nlohmann::json earlier_measurement(const fs::path& folder) {
+    const fs::path file = folder / "prior.json";
+    nlohmann::json prior;
+    if (fs::exists(file)) prior = nlohmann::json::parse(read_text(file), nullptr, false);
+    nlohmann::json measured = nlohmann::json::object();
+    for (const char* member : {"accuracy", "kinds", "vocabulary"}) {
+        if (!prior.is_object() || !prior.contains(member))
+            throw InputError(file.string(), "says nothing of how well words are known",
+                             "ask for one picture of each word or more");
+        measured[member] = prior[member];
+    }
+    return measured;
+}
+
+std::string percent(const nlohmann::json& value) {
+    return fmt::format("{:.0f} %", 100 * value.get<double>());
+}
+
+/// The words of a kind, those it knows least first.
+std::string word_bars(const nlohmann::json& words) {
+    std::vector<ReportPart> parts;
+    for (const nlohmann::json& word : words)
+        parts.push_back({word.at("word"), word.at("accuracy"),
+                         word.contains("most_confused_with")
+                             ? "taken for " + word["most_confused_with"].get<std::string>()
+                             : ""});
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const auto& a, const auto& b) { return a.value < b.value; });
+    return html_parts(parts);
+}
+
+TableRows summary_rows(const nlohmann::json& evaluation) {
+    TableRows rows;
+    for (const auto& [kind, summary] : evaluation.at("kinds").items()) {
+        std::string text = percent(summary.at("accuracy")) +
+                           fmt::format(" of {} words' pictures", summary.at("words").get<int>());
+        if (summary.contains("on_new_classes"))
+            text += ", " + percent(summary["on_new_classes"]) + " on classes never trained on";
+        rows.emplace_back(kind, text);
+    }
+    const nlohmann::json& autoencoder = evaluation.at("autoencoder");
+    rows.emplace_back("autoencoder", fmt::format("{:.1f} dB, on objects {:.1f} dB",
+                                                 autoencoder.at("psnr").get<double>(),
+                                                 autoencoder.at("object_psnr").get<double>()));
+    for (const char* kind : {"samples", "samples_in_shape"}) {
+        if (!evaluation.contains(kind)) continue;
+        const nlohmann::json& samples = evaluation[kind];
+        rows.emplace_back(
+            kind == std::string("samples") ? "samples from text" : "samples in given shapes",
+            fmt::format("CLIP finds the object of {}, the material of {}, both of {} ({} pictures)",
+                        percent(samples.at("object_right")), percent(samples.at("material_right")),
+                        percent(samples.at("right")), samples.at("pictures").get<int>()));
+    }
+    const nlohmann::json& readers = evaluation.at("readers");
+    if (readers.contains("retrieval"))
+        rows.emplace_back(
+            "CLIP", "finds the right one of " + readers["retrieval"].at("candidates").dump() +
+                        " captions for " + percent(readers["retrieval"].at("picture_to_caption")));
+    for (const auto& [member, what] :
+         {std::pair{"captions", "captioner, a picture in any light"},
+          std::pair{"model_captions", "captioner, a model from four sides in a studio"}}) {
+        if (!readers.contains(member)) continue;
+        const nlohmann::json& named = readers[member];
+        rows.emplace_back(what, "names the object of " + percent(named.at("object")) +
+                                    ", the material of " + percent(named.at("material")) +
+                                    ", both of " + percent(named.at("both")) +
+                                    "; object and the material's name of " +
+                                    percent(named.at("object_and_name")));
+    }
+    if (!evaluation.contains("edits")) return rows;
+    for (const auto& [group, total] : evaluation["edits"].at("groups").items())
+        rows.emplace_back(
+            "edits: " + group,
+            fmt::format("{}{}, {:.0f} s each, detail kept {:.2f}",
+                        total.contains("right") ? total["right"].dump() + " right of " : "",
+                        total.at("edits").dump(), total.at("seconds").get<double>(),
+                        total.at("kept").get<double>()));
+    return rows;
+}
+
+}  // namespace
+
+std::string evaluation_page(const nlohmann::json& evaluation,
+                            const std::vector<std::pair<std::string, Bytes>>& sheets) {
+    const auto prior = evaluation.at("prior").get<std::string>();
+    std::string body = html_header("item3d prior evaluate", prior);
+    body += html_section("In numbers", html_table(summary_rows(evaluation)));
+    std::vector<std::string> pictures;
+    for (const auto& [caption, bytes] : sheets)
+        pictures.push_back(html_figure({caption, bytes}));
+    body += html_section("In pictures", html_gallery(pictures, one_a_row));
+    for (const auto& [kind, words] : evaluation.at("vocabulary").items())
+        body += html_section("Words: " + kind, word_bars(words));
+    return html_page("What " + prior + " knows", body);
+}
+
+nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
+                              const EvaluationOptions& options) {
+    nlohmann::json measured;
+    if (options.word_pictures == 0) measured = earlier_measurement(folder);
+    make_output_folder(output);
+    const Pipeline pipeline = Pipeline::load(folder);
+    MeasureOptions measure;
+    measure.pictures = options.word_pictures;
+    measure.words = trained_words(folder, *pipeline.tokenizer);
+    measure.seed = options.seed;
+    measure.threads = options.threads;
+    const std::vector<ShapeView> views = held_out_views(pipeline, options.seed, options.threads);
+    stop_if_asked();
+    const ReconstructionMeasure autoencoder =
+        measure_autoencoder(pipeline, views, options.pictures, options.seed);
+    stop_if_asked();
+    std::optional<Clip> clip;
+    if (fs::exists(folder / clip_folder / "config.json")) clip = Clip::load(folder / clip_folder);
+    std::vector<std::pair<std::string, Image>> sheets;
+    nlohmann::json evaluation{{"prior", folder.string()}, {"seed", options.seed}};
+    for (const bool with_shape : {false, true}) {
+        if (with_shape && !takes_shape(pipeline)) continue;
+        const SampleGrid grid =
+            draw_samples(folder, pipeline, measure.words, 8, with_shape, options.seed);
+        const std::string name = with_shape ? "samples_in_shape" : "samples";
+        if (clip) evaluation[name] = score_samples(*clip, grid);
+        sheets.emplace_back(name, sample_sheet(grid));
+    }
+    sheets.emplace_back("autoencoder", reconstruction_sheet(autoencoder));
+    evaluation["autoencoder"] = {{"psnr", autoencoder.psnr},
+                                 {"object_psnr", autoencoder.object_psnr},
+                                 {"pictures", options.pictures}};
+    evaluation["readers"] = measure_readers(folder, clip, options);
+    if (options.word_pictures > 0) measured = measure_prior(pipeline, views, measure);
+    evaluation.update(measured);
+
+    measured["words"] = measure.words;
+    measured.update(readers_record(folder, evaluation["readers"]));
+    update_prior_json(folder, measured);
+    static const std::map<std::string, std::string> captions{
+        {"samples", "Drawn from the prompts alone"},
+        {"samples_in_shape", "Drawn in the shape of objects that it never saw"},
+        {"autoencoder", "Held-out pictures, and below what the autoencoder leaves of them"}};
+    std::vector<std::pair<std::string, Bytes>> encoded;
+    for (const auto& [name, image] : sheets) {
+        save_image(output / (name + ".png"), image);
+        encoded.emplace_back(captions.at(name), encode_webp(image));
+    }
+    const auto write = [&] {
+        write_atomically(output / "evaluate.json", evaluation.dump(2) + "\n");
+        write_atomically(output / "evaluate.html", evaluation_page(evaluation, encoded));
+    };
+    write();  // edits may take an hour
+    if (options.edits) {
+        evaluation["edits"] = options.edits();
+        write();
+    }
+    return evaluation;
+}
+
+}  // namespace item3d

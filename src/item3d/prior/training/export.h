@@ -1,0 +1,35 @@
+// The prior as a folder in the diffusers layout, weights in fp16.
+#pragma once
+
+#include "item3d/networks/diffusion/autoencoder.h"
+#include "item3d/networks/diffusion/scheduler_config.h"
+#include "item3d/networks/diffusion/unet.h"
+#include "item3d/networks/vision_language/clip_text.h"
+#include "item3d/text/clip_tokenizer.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+namespace item3d {
+
+/// Writes tokenizer/, vae/ and model_index.json.
+void export_autoencoder(const std::filesystem::path& folder, const AutoencoderTiny& autoencoder,
+                        const ClipTokenizer& tokenizer);
+
+/// Writes unet/, text_encoder/, scheduler/ and prior.json with `train` as its "train" (what else an
+/// existing prior.json says is kept). resolution: of its pictures, in pixels. Every file is written
+/// atomically.
+void export_diffusion(const std::filesystem::path& folder, const UNet2DCondition& unet,
+                      const ClipTextModel& text, const SchedulerConfig& scheduler, int resolution,
+                      const nlohmann::json& train);
+
+/// The folder's prior.json; an empty object where there is none or no object in it.
+nlohmann::json read_prior_json(const std::filesystem::path& folder);
+
+/// Puts these members into the folder's prior.json, which is made if there is none; others are
+/// kept. Returns what it then holds.
+nlohmann::json update_prior_json(const std::filesystem::path& folder,
+                                 const nlohmann::json& members);
+
+}  // namespace item3d

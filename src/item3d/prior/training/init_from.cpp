@@ -1,0 +1,141 @@
+#include "item3d/prior/training/init_from.h"
+
+#include "item3d/core/config.h"
+#include "item3d/core/error.h"
+#include "item3d/prior/training/export.h"
+#include "item3d/prior/training/train.h"
+#include "item3d/prior/training/vision_language.h"
+#include "item3d/text/caption_tokenizer.h"
+#include "item3d/text/clip_tokenizer.h"
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* another_size = "is of a network of another size than this training's";
+constexpr const char* size_hint =
+    "give the --widths, --resolution and --condition that the prior was trained with";
+constexpr const char* reader_hint = "train this part without --begin-with";
+
+/// A U-Net that was told less than `to` gets weights of 0 for the rest: it begins as it was.
+torch::Tensor with_more_inputs(const torch::Tensor& weight, const torch::Tensor& to) {
+    const std::int64_t more = to.size(1) - weight.size(1);
+    return more > 0 ? torch::constant_pad_nd(weight, {0, 0, 0, 0, 0, more}) : weight;
+}
+
+void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::nn::Module& to,
+                  const char* hint = size_hint) {
+    const torch::NoGradGuard no_grad;
+    auto given = from.named_parameters();
+    auto wanted = to.named_parameters();
+    if (torch::Tensor* input = given.find("conv_in.weight"))
+        *input = with_more_inputs(*input, wanted["conv_in.weight"]);
+    bool fits = given.size() == wanted.size();
+    for (const auto& item : wanted) {
+        const torch::Tensor* value = given.find(item.key());
+        fits = fits && value && value->sizes() == item.value().sizes();
+    }
+    if (!fits) throw InputError(folder.string(), another_size, hint);
+    for (auto& item : wanted)
+        item.value().copy_(given[item.key()]);
+}
+
+void check_not_overwritten(const fs::path& taken, const TrainSettings& settings) {
+    if (fs::exists(settings.output) && fs::equivalent(taken, settings.output))
+        throw InputError(settings.output.string(), "would be overwritten while it is read",
+                         "give another folder with -o");
+}
+
+}  // namespace
+
+void check_begin_with(const TrainSettings& settings) {
+    if (!settings.autoencoder.empty()) {
+        if (!settings.begin_with.empty())
+            throw InputError("--autoencoder", "the prior to begin with has an autoencoder",
+                             "give --begin-with or --autoencoder");
+        check_not_overwritten(settings.autoencoder, settings);
+        begin_with_autoencoder(settings.autoencoder, settings.resolution);
+    }
+    if (settings.begin_with.empty()) return;
+    check_not_overwritten(settings.begin_with, settings);
+    const fs::path file = settings.begin_with / "unet" / "config.json";
+    auto given = UNet2DConditionConfig::from_config(Config::read(file));
+    const UNet2DConditionConfig wanted = prior_unet_config(settings);
+    if (given.in_channels < wanted.in_channels) given.in_channels = wanted.in_channels;
+    if (given.to_json() != wanted.to_json())
+        throw InputError(file.string(), another_size, size_hint);
+    begin_with_autoencoder(settings.begin_with, settings.resolution);
+}
+
+std::shared_ptr<AutoencoderTiny> begin_with_autoencoder(const fs::path& folder, int resolution) {
+    const auto model = std::dynamic_pointer_cast<AutoencoderTiny>(load_autoencoder(folder / "vae"));
+    AutoencoderTinyConfig wanted = prior_autoencoder_config(resolution);
+    if (model) wanted.scaling_factor = model->scaling_factor();
+    if (!model || model->config_json() != wanted.to_json())
+        throw InputError((folder / "vae").string(),
+                         "is not an autoencoder as this training's data needs it",
+                         "begin with a prior that 'item3d prior train' made, and its --resolution");
+    return model;
+}
+
+nlohmann::json autoencoder_record(const fs::path& folder) {
+    const nlohmann::json train = read_prior_json(folder).value("train", nlohmann::json());
+    nlohmann::json record = nlohmann::json::object();
+    for (const char* name : {"psnr", "object_psnr"})
+        if (train.is_object() && train.contains(name)) record[name] = train.at(name);
+    return record;
+}
+
+nlohmann::json begin_with_record(const fs::path& folder) {
+    nlohmann::json record = autoencoder_record(folder);
+    const nlohmann::json train = read_prior_json(folder).value("train", nlohmann::json());
+    if (train.is_object()) record["begun_with"] = train;
+    return record;
+}
+
+void begin_with_weights(const fs::path& folder, UNet2DCondition& unet, ClipTextModel& text) {
+    copy_weights(folder / "unet", *load_unet(folder / "unet"), *unet);
+    copy_weights(folder / "text_encoder", *load_clip_text(folder / "text_encoder"), *text);
+}
+
+fs::path begin_with_part(const TrainSettings& settings, const char* part) {
+    if (settings.begin_with.empty()) return {};
+    const fs::path folder = settings.begin_with / part;
+    return fs::exists(folder / "config.json") ? folder : fs::path{};
+}
+
+// Everything is read once, so that no file turns out to be broken after the pictures are drawn.
+void check_begin_with_readers(const TrainSettings& settings, bool clip, bool captioner) {
+    if (settings.begin_with.empty()) return;
+    check_not_overwritten(settings.begin_with, settings);
+    const auto check = [](const fs::path& folder, const auto& given, const auto& wanted) {
+        if (given.to_json() != wanted.to_json())
+            throw InputError((folder / "config.json").string(), another_size, reader_hint);
+    };
+    if (const fs::path folder = begin_with_part(settings, captioner_folder);
+        captioner && !folder.empty()) {
+        const BlipModel given = load_blip(folder);
+        BlipConfig wanted = prior_captioner_config(0);
+        wanted.vocab_size = given->config().vocab_size;
+        check(folder, given->config(), wanted);
+        BertTokenizer::load(folder);
+    }
+    if (const fs::path folder = begin_with_part(settings, clip_folder); clip && !folder.empty()) {
+        const ClipModel given = load_clip_model(folder);
+        const ClipTextConfig& text = given->config().text;
+        check(folder, given->config(),
+              prior_clip_config(text.vocab_size, text.bos_token_id, text.eos_token_id));
+        ClipTokenizer::load(folder);
+    }
+}
+
+void begin_with_captioner(const fs::path& folder, BlipModel& model) {
+    copy_weights(folder, *load_blip(folder), *model, reader_hint);
+}
+
+void begin_with_clip(const fs::path& folder, ClipModel& model) {
+    copy_weights(folder, *load_clip_model(folder), *model, reader_hint);
+}
+
+}  // namespace item3d

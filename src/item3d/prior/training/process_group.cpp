@@ -1,0 +1,260 @@
+#include "item3d/prior/training/process_group.h"
+
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+
+#include <c10/util/Logging.h>
+#include <nlohmann/json.hpp>
+
+// The precompiled header does without it.
+#define USE_C10D_GLOO
+#include <torch/csrc/distributed/c10d/PrefixStore.hpp>
+#include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
+#include <torch/csrc/distributed/c10d/TCPStore.hpp>
+
+#include <charconv>
+#include <csignal>
+#include <cstdlib>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Of a single message. What takes longer (making data) is waited for by wait_for_first().
+constexpr std::chrono::minutes message_timeout{30};
+/// How long process 0 waits for others to see what they asked for; one that has died never does.
+constexpr std::chrono::seconds farewell{30};
+
+/// c10d's messages go on with a stack trace, and Gloo's begin with "[its/source.cc:123] ".
+std::string first_line(const std::string& text) {
+    const std::string line = text.substr(0, text.find('\n'));
+    const std::size_t place = line.find(".cc:");
+    const std::size_t end = line.find("] ");
+    return line[0] == '[' && place < end && end != std::string::npos ? line.substr(end + 2) : line;
+}
+
+std::optional<std::string> variable(const char* name) {
+    const char* value = std::getenv(name);
+    return value && *value ? std::optional<std::string>(value) : std::nullopt;
+}
+
+int number(const char* name, int lowest, int highest, const std::string& hint) {
+    const auto text = variable(name);
+    if (!text) throw InputError(name, "is not set, but others of RANK and WORLD_SIZE are", hint);
+    int value = 0;
+    const char* end = text->data() + text->size();
+    const auto [stopped, error] = std::from_chars(text->data(), end, value);
+    if (error != std::errc() || stopped != end || value < lowest || value > highest)
+        throw InputError(name,
+                         fmt::format("expected a whole number from {} to {}, found '{}'", lowest,
+                                     highest, *text),
+                         hint);
+    return value;
+}
+
+/// What the environment says.
+struct Place {
+    int rank = 0;
+    int size = 1;
+    std::string address;
+    std::uint16_t port = 0;
+    /// torchrun holds the store itself, and keeps one after a restart.
+    bool store_is_there = false;
+    std::string attempt = "0";
+
+    std::string where() const {
+        return fmt::format("MASTER_ADDR={} MASTER_PORT={}", address, port);
+    }
+};
+
+Place place_from_environment() {
+    const std::string hint =
+        "start by torchrun, or set RANK, WORLD_SIZE, MASTER_ADDR and MASTER_PORT for each process";
+    Place place;
+    if (!variable("WORLD_SIZE") && !variable("RANK")) return place;
+    place.size = number("WORLD_SIZE", 1, 4096, hint);
+    place.rank = variable("RANK") || place.size > 1 ? number("RANK", 0, place.size - 1, hint) : 0;
+    if (place.size == 1) return place;
+    const auto address = variable("MASTER_ADDR");
+    if (!address)
+        throw InputError("MASTER_ADDR", "is not set, but WORLD_SIZE is more than 1",
+                         "set it to the name or address of the machine of process 0");
+    if (!variable("MASTER_PORT"))
+        throw InputError("MASTER_PORT", "is not set, but WORLD_SIZE is more than 1",
+                         "set it to a free port of the machine of process 0, as 29500");
+    place.address = *address;
+    place.port = static_cast<std::uint16_t>(number("MASTER_PORT", 1, 65535, hint));
+    place.store_is_there = variable("TORCHELASTIC_USE_AGENT_STORE") == "True";
+    place.attempt = variable("TORCHELASTIC_RESTART_COUNT").value_or("0");
+    return place;
+}
+
+/// What c10d logs comes as an exception too; a user who sets its own variable sees it all.
+void silence_c10d() {
+    if (!variable("TORCH_CPP_LOG_LEVEL")) FLAGS_caffe2_log_level = 3;  // fatal errors
+}
+
+template <class Function>
+void exchange(Function&& function) {
+    try {
+        function();
+    } catch (const std::exception& error) {
+        if (interrupted())
+            throw Interrupted(
+                "the other processes have ended; the same command with --resume, "
+                "for all of them, goes on");
+        throw LostProcess(first_line(error.what()));
+    }
+}
+
+/// The bytes of a contiguous tensor.
+torch::Tensor bytes_of(const torch::Tensor& tensor) {
+    return torch::from_blob(tensor.data_ptr(), {static_cast<std::int64_t>(tensor.nbytes())},
+                            torch::kUInt8);
+}
+
+}  // namespace
+
+LostProcess::LostProcess(const std::string& reason)
+    : ResourceError(fmt::format("another process of this training is gone ({}); see what the "
+                                "others said, then start all of them again with --resume",
+                                reason)) {}
+
+struct ProcessGroup::Connection {
+    c10::intrusive_ptr<c10d::Store> store;
+    c10::intrusive_ptr<c10d::ProcessGroupGloo> gloo;
+    std::int64_t waits = 0;  ///< wait_for_first() so far
+
+    void broadcast(const torch::Tensor& tensor) const {
+        std::vector<torch::Tensor> message{tensor};
+        gloo->broadcast(message)->wait();
+    }
+};
+
+ProcessGroup ProcessGroup::from_environment(std::chrono::seconds patience) {
+    const Place place = place_from_environment();
+    ProcessGroup group;
+    group.rank_ = place.rank;
+    group.size_ = place.size;
+    if (place.size == 1) return group;
+
+    silence_c10d();
+    // Writing to a process that is gone is to be an error, not the end.
+    std::signal(SIGPIPE, SIG_IGN);
+    const auto connection = std::make_shared<Connection>();
+    const std::string hint =
+        "start all processes, and see that the address is that of process 0's machine and the port "
+        "is free and not behind a firewall";
+    try {
+        c10d::TCPStoreOptions options;
+        options.port = place.port;
+        options.isServer = place.rank == 0 && !place.store_is_there;
+        options.waitWorkers = false;
+        options.timeout = patience;
+        connection->store = c10::make_intrusive<c10d::PrefixStore>(
+            "item3d/" + place.attempt, c10::make_intrusive<c10d::TCPStore>(place.address, options));
+        const auto give_up = Clock::now() + patience;
+        std::int64_t here = connection->store->add("here", 1);
+        while (here < place.size && Clock::now() < give_up && !interrupted()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            here = connection->store->add("here", 0);
+        }
+        if (interrupted()) throw Interrupted("not all processes had come");
+        if (here < place.size)
+            throw InputError(place.where(),
+                             fmt::format("{} of {} processes have come after {} s", here,
+                                         place.size, patience.count()),
+                             hint);
+        connection->gloo = c10::make_intrusive<c10d::ProcessGroupGloo>(
+            connection->store, place.rank, place.size,
+            c10d::ProcessGroupGloo::Options::create_default(message_timeout));
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw InputError(place.where(),
+                         fmt::format("process {} of {} cannot join the others ({})", place.rank,
+                                     place.size, first_line(error.what())),
+                         hint);
+    }
+    group.connection_ = connection;
+    return group;
+}
+
+void ProcessGroup::sum(torch::Tensor tensor) const {
+    if (!connection_) return;
+    ITEM3D_CHECK(tensor.scalar_type() == torch::kFloat32 && tensor.is_contiguous(),
+                 "processes add up contiguous float32 tensors");
+    exchange([&] {
+        std::vector<torch::Tensor> message{tensor};
+        connection_->gloo->allreduce(message)->wait();
+    });
+}
+
+std::string ProcessGroup::broadcast(const std::string& text) const {
+    if (!connection_) return text;
+    std::string result = text;
+    exchange([&] {
+        torch::Tensor length = torch::tensor({static_cast<std::int64_t>(text.size())});
+        connection_->broadcast(length);
+        result.resize(static_cast<std::size_t>(length.item<std::int64_t>()));
+        if (!result.empty())
+            connection_->broadcast(torch::from_blob(
+                result.data(), {static_cast<std::int64_t>(result.size())}, torch::kUInt8));
+    });
+    return result;
+}
+
+NamedTensors ProcessGroup::broadcast(const NamedTensors& tensors) const {
+    if (!connection_) return tensors;
+    nlohmann::json header = nlohmann::json::array();
+    for (const auto& [name, tensor] : tensors)
+        if (first())
+            header.push_back(nlohmann::json::array(
+                {name, static_cast<int>(tensor.scalar_type()), tensor.sizes().vec()}));
+    header = nlohmann::json::parse(broadcast(header.dump()));
+    NamedTensors result;
+    for (std::size_t i = 0; i < header.size(); ++i) {
+        const auto shape = header[i][2].get<std::vector<std::int64_t>>();
+        const auto dtype = static_cast<torch::Dtype>(header[i][1].get<int>());
+        result.emplace_back(header[i][0].get<std::string>(),
+                            first() ? tensors[i].second.contiguous() : torch::empty(shape, dtype));
+        if (result[i].second.numel() == 0) continue;
+        exchange([&] { connection_->broadcast(bytes_of(result[i].second)); });
+    }
+    return result;
+}
+
+void ProcessGroup::barrier() const {
+    if (!connection_) return;
+    exchange([&] { connection_->gloo->barrier()->wait(); });
+}
+
+void ProcessGroup::wait_for_first() const {
+    if (!connection_) return;
+    exchange([&] {
+        const std::string key = fmt::format("first/{}", connection_->waits++);
+        if (first()) connection_->store->set(key, std::vector<std::uint8_t>{1});
+        // A message that waits could not be given up at an interrupt; a question can.
+        const auto ask_until = [&](auto&& answered) {
+            while (!answered()) {
+                if (interrupted()) throw std::runtime_error("interrupted");
+                std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            }
+        };
+        ask_until([&] { return connection_->store->check({key}); });
+        // The store is process 0's: it must not end before all have seen its answer.
+        const std::string seen = key + "/seen";
+        connection_->store->add(seen, 1);
+        const auto give_up = Clock::now() + farewell;
+        if (first())
+            ask_until([&] {
+                return connection_->store->add(seen, 0) >= size_ || Clock::now() > give_up;
+            });
+    });
+}
+
+}  // namespace item3d

@@ -1,0 +1,383 @@
+#include "item3d/prior/training/train.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/prior/data/workers.h"
+#include "item3d/prior/evaluation/classifier.h"
+#include "item3d/prior/training/export.h"
+#include "item3d/prior/training/init_from.h"
+#include "item3d/prior/training/replicas.h"
+#include "item3d/prior/training/settings_check.h"
+#include "item3d/prior/training/tokenizer_training.h"
+#include "item3d/prior/training/training_loop.h"
+#include "item3d/tensors/precision.h"
+#include "item3d/tensors/safetensors.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Streams of the seed for each use.
+enum Stream : std::uint64_t {
+    vocabulary_stream = 11,
+    light_stream,
+    view_stream,
+    example_stream,
+    held_out_stream
+};
+
+std::uint64_t seed_of(const TrainSettings& settings, Stream stream) {
+    return mix_bits(settings.seed * 1000 + stream);
+}
+
+void stop_if_interrupted(const TrainSettings& settings) {
+    if (interrupted())
+        throw Interrupted("what was finished is in " + settings.work.string() +
+                          "; the same command with --resume goes on");
+}
+
+ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLight> lights,
+                          bool held_out) {
+    std::vector<ShapeView> views =
+        make_view_pool(held_out, settings.shape_variants, settings.views_each,
+                       seed_of(settings, held_out ? held_out_stream : view_stream),
+                       settings.replicas, settings.resolution);
+    stop_if_interrupted(settings);
+    return ExampleSource(std::move(views), std::move(lights),
+                         seed_of(settings, held_out ? held_out_stream : example_stream),
+                         settings.pattern_weight);
+}
+
+PictureData draw_pictures(const ExampleSource& source, std::int64_t count,
+                          const TrainSettings& settings) {
+    PictureData data;
+    const int size = settings.resolution;
+    data.images = torch::empty({count, size, size, 3}, torch::kUInt8);
+    data.covered = torch::empty({count, size, size}, torch::kUInt8);
+    Progress progress("pictures", count);
+    std::atomic<std::int64_t> done = 0;
+    std::mutex mutex;
+    run_workers(count, settings.replicas, [&](std::int64_t i) {
+        const Example example = source.draw(i);
+        data.images[i].copy_((example.image * 255).round());
+        data.covered[i].copy_((example.covered * 255).round());
+        const std::lock_guard lock(mutex);
+        progress.update(++done);
+    });
+    stop_if_interrupted(settings);
+    return data;
+}
+
+LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencoder,
+                        const ClipTokenizer& tokenizer, const TrainSettings& settings) {
+    constexpr std::int64_t at_once = 32;
+    const std::int64_t count = settings.data_samples / at_once * at_once;
+    LatentData data;
+    data.latents = torch::empty({count, latent_channels, latent_size, latent_size}, torch::kHalf);
+    data.cells = torch::empty({count, shape_cell_channels, latent_size, latent_size}, torch::kHalf);
+    data.tokens = torch::empty({count, text_length}, torch::kInt16);
+    data.empty_tokens = tokenizer.encode_batch({""}, text_length)[0].to(torch::kInt16);
+    Progress progress("examples", count);
+    std::atomic<std::int64_t> done = 0;
+    std::mutex mutex;
+    run_workers(count / at_once, settings.replicas, [&](std::int64_t job) {
+        std::vector<torch::Tensor> images, cells;
+        std::vector<std::string> captions;
+        for (std::int64_t i = job * at_once; i < (job + 1) * at_once; ++i) {
+            Example example = source.draw(i);
+            images.push_back(std::move(example.image));
+            cells.push_back(std::move(example.cells));
+            captions.push_back(std::move(example.caption));
+        }
+        // [N, H, W, 3] seen as [N, 3, H, W] is channels-last already.
+        const torch::Tensor pictures = torch::stack(images).permute({0, 3, 1, 2}) * 2 - 1;
+        torch::Tensor latents;
+        {
+            const Autocast autocast;
+            latents = autoencoder.encode(pictures);
+        }
+        latents = latents.to(torch::kFloat32) * autoencoder.scaling_factor();
+        const auto rows = [&](torch::Tensor& all) {
+            return all.slice(0, job * at_once, (job + 1) * at_once);
+        };
+        rows(data.latents).copy_(latents);
+        rows(data.cells).copy_(torch::stack(cells));
+        rows(data.tokens).copy_(tokenizer.encode_batch(captions, text_length));
+        const std::lock_guard lock(mutex);
+        progress.update(done += at_once);
+    });
+    stop_if_interrupted(settings);
+    return data;
+}
+
+/// What the data depends on: a work folder made with other settings is not gone on with. Replicas
+/// are those of all processes, so that a training may go on with them spread otherwise.
+nlohmann::json fingerprint(const TrainSettings& s) {
+    return {{"version", 9},
+            {"seed", s.seed},
+            {"begin_with", s.begin_with.string()},
+            {"autoencoder", s.autoencoder.string()},
+            {"resolution", s.resolution},
+            {"data_samples", s.data_samples},
+            {"autoencoder_samples", s.autoencoder_samples},
+            {"autoencoder_pictures", s.autoencoder_pictures},
+            {"shape_variants", s.shape_variants},
+            {"views_each", s.views_each},
+            {"lights", s.lights},
+            {"pattern_weight", as_written(s.pattern_weight)},
+            {"replicas", s.replicas * s.processes.size()},
+            {"batch", s.batch}};
+}
+
+void open_work_folder(const TrainSettings& settings) {
+    make_output_folder(settings.work);
+    const fs::path file = settings.work / "settings.json";
+    if (settings.resume && fs::exists(file)) {
+        check_settings(file, read_work_json(file), fingerprint(settings));
+        return;
+    }
+    for (const char* stale : {"autoencoder.safetensors", "pictures.safetensors", "data.safetensors",
+                              "checkpoint.safetensors", "autoencoder.json"})
+        fs::remove(settings.work / stale);
+    write_atomically(file, fingerprint(settings).dump(2) + "\n");
+}
+
+struct Prepared {
+    LatentData data;
+    nlohmann::json record;  ///< for prior.json's "train"
+    ClipTextConfig text;
+};
+
+Prepared read_prepared(const TrainSettings& settings, const ClipTokenizer& tokenizer) {
+    const fs::path file = settings.work / "data.safetensors";
+    Prepared prepared;
+    prepared.data =
+        LatentData::from_tensors(SafeTensors::open(file).tensors(),
+                                 static_cast<std::size_t>(tokenizer.largest_id()) + 1, file);
+    prepared.record = read_work_json(settings.work / "autoencoder.json");
+    return prepared;
+}
+
+TrainedAutoencoder draw_and_train_autoencoder(const ExampleSource& source,
+                                              const std::vector<TrainingLight>& lights,
+                                              const TrainSettings& settings) {
+    const fs::path pictures_file = settings.work / "pictures.safetensors";
+    if (!settings.resume || !fs::exists(pictures_file)) {
+        const ExampleSource held_out = make_source(settings, lights, true);
+        const PictureData seen = draw_pictures(source, settings.autoencoder_pictures, settings);
+        const PictureData unseen = draw_pictures(
+            held_out, std::min<std::int64_t>(512, settings.autoencoder_pictures), settings);
+        save_safetensors(pictures_file, {{"images", seen.images},
+                                         {"covered", seen.covered},
+                                         {"held_out_images", unseen.images},
+                                         {"held_out_covered", unseen.covered}});
+    }
+    const SafeTensors file = SafeTensors::open(pictures_file);
+    TrainedAutoencoder autoencoder = train_autoencoder(
+        {file.tensor("images"), file.tensor("covered")},
+        {file.tensor("held_out_images"), file.tensor("held_out_covered")}, settings);
+    note(fmt::format(
+        "autoencoder: held-out PSNR {:.2f} dB, on objects {:.2f} dB, scaling factor {:.4f}",
+        autoencoder.psnr, autoencoder.object_psnr, autoencoder.model->scaling_factor()));
+    return autoencoder;
+}
+
+Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) {
+    const std::vector<TrainingLight> lights =
+        make_training_lights(seed_of(settings, light_stream), settings.lights, settings.replicas);
+    stop_if_interrupted(settings);
+    const ExampleSource source = make_source(settings, lights, false);
+    Prepared prepared;
+    std::shared_ptr<AutoencoderTiny> autoencoder;
+    if (!settings.begin_with.empty()) {
+        autoencoder = begin_with_autoencoder(settings.begin_with, settings.resolution);
+        prepared.record = begin_with_record(settings.begin_with);
+    } else if (!settings.autoencoder.empty()) {
+        autoencoder = begin_with_autoencoder(settings.autoencoder, settings.resolution);
+        prepared.record = autoencoder_record(settings.autoencoder);
+    } else {
+        const TrainedAutoencoder trained = draw_and_train_autoencoder(source, lights, settings);
+        autoencoder = trained.model;
+        prepared.record = {{"psnr", trained.psnr}, {"object_psnr", trained.object_psnr}};
+    }
+    export_autoencoder(settings.output, *autoencoder, tokenizer);
+    write_atomically(settings.work / "autoencoder.json", prepared.record.dump(2) + "\n");
+    prepared.data = draw_latents(source, *autoencoder, tokenizer, settings);
+    save_safetensors(settings.work / "data.safetensors", prepared.data.tensors());
+    return prepared;
+}
+
+/// Token numbers are rows of the text encoder: data that is gone on with keeps its tokenizer.
+ClipTokenizer read_tokenizer(const TrainSettings& settings) {
+    const fs::path folder = settings.output / "tokenizer";
+    if (!fs::exists(folder / "vocab.json"))
+        throw InputError(folder.string(),
+                         "is missing, but the data in " + settings.work.string() +
+                             " was made with the tokenizer in it",
+                         "give the -o that the training began with, or train without --resume");
+    return ClipTokenizer::load(folder);
+}
+
+/// What process 0 does before all train together.
+Prepared prepare_or_read(const TrainSettings& settings) {
+    check_begin_with(settings);
+    make_output_folder(settings.output);
+    open_work_folder(settings);
+    const std::vector<WordCount> counted = prior_words(settings);
+    const bool prepared_before = settings.resume && fs::exists(settings.work / "data.safetensors");
+    const ClipTokenizer tokenizer = prepared_before ? read_tokenizer(settings)
+                                    : settings.begin_with.empty()
+                                        ? train_tokenizer(counted, text_length)
+                                        : ClipTokenizer::load(settings.begin_with / "tokenizer");
+    if (!prepared_before) {
+        std::set<std::string> words;
+        for (const WordCount& word : counted)
+            words.insert(word.word);
+        if (!settings.begin_with.empty()) words = trained_words(settings.begin_with, tokenizer);
+        update_prior_json(settings.output, {{"words", words}, {"resolution", settings.resolution}});
+    }
+    Prepared prepared =
+        prepared_before ? read_prepared(settings, tokenizer) : prepare(settings, tokenizer);
+    prepared.text = prior_text_config(static_cast<int>(tokenizer.size()), tokenizer.bos_id(),
+                                      tokenizer.eos_id());
+    return prepared;
+}
+
+/// The same in all processes.
+Prepared hand_on(const ProcessGroup& processes, Prepared prepared) {
+    if (processes.size() == 1) return prepared;
+    processes.wait_for_first();
+    const ClipTextConfig& text = prepared.text;
+    const auto numbers = nlohmann::json::parse(processes.broadcast(
+        nlohmann::json{text.vocab_size, text.bos_token_id, text.eos_token_id}.dump()));
+    prepared.text =
+        prior_text_config(numbers[0].get<int>(), numbers[1].get<int>(), numbers[2].get<int>());
+    const NamedTensors data =
+        processes.broadcast(processes.first() ? prepared.data.tensors() : NamedTensors{});
+    prepared.data = LatentData::from_tensors(
+        data, static_cast<std::size_t>(prepared.text.vocab_size), "the data of process 0");
+    return prepared;
+}
+
+}  // namespace
+
+NamedTensors LatentData::tensors() const {
+    return {
+        {"latents", latents}, {"cells", cells}, {"tokens", tokens}, {"empty_tokens", empty_tokens}};
+}
+
+LatentData LatentData::from_tensors(const NamedTensors& tensors, std::size_t vocabulary,
+                                    const fs::path& file) {
+    const std::string hint = "train without --resume, or in another --work folder";
+    const auto take = [&](const char* wanted, torch::Dtype dtype) {
+        for (const auto& [name, tensor] : tensors)
+            if (name == wanted && tensor.scalar_type() == dtype) return tensor;
+        throw InputError(file.string(), fmt::format("has no '{}' of the right type", wanted), hint);
+    };
+    const LatentData data{take("latents", torch::kHalf), take("cells", torch::kHalf),
+                          take("tokens", torch::kInt16), take("empty_tokens", torch::kInt16)};
+    const std::int64_t rows = data.latents.dim() > 0 ? data.latents.size(0) : 0;
+    const auto has = [](const torch::Tensor& tensor, const std::vector<std::int64_t>& shape) {
+        return tensor.sizes().vec() == shape;
+    };
+    if (rows == 0 || !has(data.latents, {rows, latent_channels, latent_size, latent_size}) ||
+        !has(data.cells, {rows, shape_cell_channels, latent_size, latent_size}) ||
+        !has(data.tokens, {rows, text_length}) || !has(data.empty_tokens, {text_length}))
+        throw InputError(file.string(), "its tensors do not have the shapes of this program's data",
+                         hint);
+    const auto lowest = std::min(data.tokens.min().item<std::int16_t>(),
+                                 data.empty_tokens.min().item<std::int16_t>());
+    const auto highest = std::max(data.tokens.max().item<std::int16_t>(),
+                                  data.empty_tokens.max().item<std::int16_t>());
+    if (lowest < 0 || static_cast<std::size_t>(highest) >= vocabulary)
+        throw InputError(file.string(),
+                         fmt::format("has tokens from {} to {}, but the tokenizer has {}", lowest,
+                                     highest, vocabulary),
+                         hint);
+    return data;
+}
+
+int global_rank(const TrainSettings& settings, int rank) {
+    return settings.processes.rank() * settings.replicas + rank;
+}
+
+nlohmann::json settings_json(const TrainSettings& settings) {
+    nlohmann::json all = fingerprint(settings);
+    all.update({{"samples", settings.samples},
+                {"clip_samples", settings.clip_samples},
+                {"captioner_samples", settings.captioner_samples},
+                {"labeled_samples", settings.labeled_samples},
+                {"labeled_variants", settings.labeled_variants},
+                {"widths", settings.widths},
+                {"condition", settings.condition},
+                {"prediction_type", settings.prediction_type},
+                {"optimizer", settings.optimizer},
+                {"learning_rate", as_written(settings.learning_rate)},
+                // Each process steps its own copy of the weights: rounded otherwise, they part.
+                {"precision", precision_name(choose_precision("auto", torch::kCPU))},
+                {"resume", settings.resume},
+                {"stop_after", settings.stop_after}});
+    return all;
+}
+
+LoopOptions loop_options(const TrainSettings& settings, const std::string& label,
+                         const std::string& checkpoint) {
+    LoopOptions options;
+    options.label = label;
+    options.checkpoint = settings.work / checkpoint;
+    options.learning_rate = settings.learning_rate;
+    options.seed = settings.seed;
+    options.resume = settings.resume;
+    options.stop_after = settings.stop_after;
+    options.checkpoint_seconds = settings.checkpoint_seconds;
+    options.export_seconds = settings.export_seconds;
+    options.processes = settings.processes;
+    return options;
+}
+
+std::vector<WordCount> prior_words(const TrainSettings& settings) {
+    return caption_vocabulary(seed_of(settings, vocabulary_stream));
+}
+
+void train_prior(const TrainSettings& settings) {
+    keep_freed_memory();
+    const ProcessGroup& processes = settings.processes;
+    check_same_settings(processes, settings_json(settings));
+    const Prepared prepared =
+        hand_on(processes, processes.first() ? prepare_or_read(settings) : Prepared{});
+    train_diffusion(prepared.data, settings, {prior_unet_config(settings), prepared.text},
+                    prepared.record);
+    if (processes.first())
+        write_measurement(settings.output, settings.word_pictures, settings.replicas);
+    processes.wait_for_first();
+}
+
+std::set<std::string> trained_words(const fs::path& folder, const ClipTokenizer& tokenizer) {
+    auto words = read_prior_json(folder).value("words", std::set<std::string>{});
+    if (!words.empty()) return words;
+    for (const WordCount& word : caption_vocabulary(1))
+        if (tokenizer.encode(word.word).size() == 3) words.insert(word.word);
+    return words;
+}
+
+nlohmann::json write_measurement(const fs::path& folder, int word_pictures, int threads) {
+    const Pipeline pipeline = Pipeline::load(folder);
+    MeasureOptions options;
+    options.pictures = word_pictures;
+    options.threads = threads;
+    options.words = trained_words(folder, *pipeline.tokenizer);
+    const auto views = held_out_views(pipeline, options.seed, threads);
+    nlohmann::json measured = measure_prior(pipeline, views, options);
+    measured["words"] = options.words;
+    return update_prior_json(folder, measured);
+}
+
+}  // namespace item3d

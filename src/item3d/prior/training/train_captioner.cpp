@@ -1,0 +1,176 @@
+#include "item3d/core/files.h"
+#include "item3d/core/random.h"
+#include "item3d/prior/data/captions.h"
+#include "item3d/prior/training/export.h"
+#include "item3d/prior/training/init_from.h"
+#include "item3d/prior/training/replicas.h"
+#include "item3d/prior/training/training_loop.h"
+#include "item3d/prior/training/vision_language.h"
+#include "item3d/text/caption_tokenizer.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace item3d {
+namespace {
+
+constexpr int captioner_batch = 64;
+/// Times the U-Net's highest learning rate: a step is of twice as many pictures.
+constexpr float captioner_rate = 2;
+/// What a vocabulary begins with; their places are their ids.
+constexpr const char* special_tokens[] = {"[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]"};
+constexpr int pad_id = 0, begin_id = 2, end_id = 3;
+
+/// A token a line.
+std::string vocabulary_of(const std::vector<WordCount>& words) {
+    std::string lines;
+    for (const char* token : special_tokens)
+        lines += std::string(token) + "\n";
+    // The words are as CLIP's tokenizer splits them, to which "3d" is two; d alone never comes.
+    for (const WordCount& word : words)
+        lines += (word.word == "d" ? "3d" : word.word) + "\n";
+    return lines;
+}
+
+void write_tokenizer(const std::filesystem::path& folder, const std::string& vocabulary) {
+    write_atomically(folder / "vocab.txt", vocabulary);
+    const nlohmann::json config{{"tokenizer_class", "BertTokenizer"},
+                                {"do_lower_case", true},
+                                {"model_max_length", text_length},
+                                {"unk_token", "[UNK]"},
+                                {"cls_token", "[CLS]"},
+                                {"sep_token", "[SEP]"},
+                                {"pad_token", "[PAD]"},
+                                {"mask_token", "[MASK]"}};
+    write_atomically(folder / "tokenizer_config.json", config.dump(2) + "\n");
+}
+
+/// As load() gives it after write_tokenizer(), for a process that may not write to the output.
+BertTokenizer tokenizer_without_folder(const std::string& vocabulary) {
+    const auto folder =
+        std::filesystem::temp_directory_path() / ("item3d_tokenizer_" + std::to_string(::getpid()));
+    make_output_folder(folder);
+    write_tokenizer(folder, vocabulary);
+    BertTokenizer tokenizer = BertTokenizer::load(folder);
+    std::filesystem::remove_all(folder);
+    return tokenizer;
+}
+
+BlipModel make_captioner(const TrainSettings& settings, const BlipConfig& config) {
+    torch::manual_seed(static_cast<std::int64_t>(settings.seed) + 3);
+    BlipModel model(config);
+    const torch::NoGradGuard no_grad;
+    for (auto& item : model->named_parameters()) {
+        const auto is = [&](const char* part) {
+            return item.key().find(part) != std::string::npos;
+        };
+        if (is("_embedding")) item.value().normal_(0, .05);
+        if (item.key() == "text_decoder.cls.predictions.bias") item.value().zero_();
+    }
+    return model;
+}
+
+/// Cross-entropy of each next word of the plain caption, of the whole: a part with a material of
+/// its own has few pixels here, and one wrong word makes a sentence wrong.
+torch::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
+                           const BertTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
+                           Random random) {
+    std::vector<std::vector<int>> texts;
+    std::size_t longest = 0;
+    for (const std::int64_t row : rows) {
+        const Claim claim = whole_claim(data.facts[static_cast<std::size_t>(row)]);
+        texts.push_back(tokenizer.encode(claim.text(draw_frame(random))));
+        longest = std::max(longest, texts.back().size());
+    }
+    constexpr std::int64_t ignored = -100;
+    const auto count = static_cast<std::int64_t>(rows.size());
+    const auto length = static_cast<std::int64_t>(longest) - 1;
+    torch::Tensor tokens = torch::full({count, length}, pad_id, torch::kInt64);
+    torch::Tensor next = torch::full({count, length}, ignored, torch::kInt64);
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+        auto* token = tokens[static_cast<std::int64_t>(i)].data_ptr<std::int64_t>();
+        auto* target = next[static_cast<std::int64_t>(i)].data_ptr<std::int64_t>();
+        for (std::size_t k = 0; k + 1 < texts[i].size(); ++k) {
+            token[k] = texts[i][k];
+            target[k] = texts[i][k + 1];
+        }
+    }
+    torch::Tensor logits;
+    {
+        const Autocast autocast;
+        const torch::Tensor image = model->image_embeds(augment(data.pixel_values(rows), random));
+        // A token sees those before it alone, so padding behind a text needs no mask.
+        const torch::Tensor states =
+            model->decode(tokens, torch::ones_like(tokens), model->read_image(image));
+        logits = model->logits(states);
+    }
+    return torch::cross_entropy_loss(logits.to(torch::kFloat32).flatten(0, 1), next.flatten(), {},
+                                     at::Reduction::Mean, ignored);
+}
+
+}  // namespace
+
+BlipConfig prior_captioner_config(int words) {
+    BlipConfig config;
+    static_cast<VisionShape&>(config.vision) = prior_vision_shape;
+    config.vocab_size = words + static_cast<int>(std::size(special_tokens));
+    config.hidden_size = 192;
+    config.intermediate_size = 768;
+    config.num_hidden_layers = 2;
+    config.num_attention_heads = 6;
+    config.max_position_embeddings = 64;
+    config.bos_token_id = begin_id;
+    config.sep_token_id = end_id;
+    config.pad_token_id = pad_id;
+    return config;
+}
+
+nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings& settings,
+                               const std::vector<WordCount>& words, BlipConfig config) {
+    const auto folder = settings.output / captioner_folder;
+    const auto begin = begin_with_part(settings, captioner_folder);
+    // Token numbers are rows of the embeddings: who begins with weights keeps their vocabulary.
+    const std::string vocabulary =
+        begin.empty() ? vocabulary_of(words) : read_text(begin / "vocab.txt");
+    if (!begin.empty())
+        config.vocab_size = BlipConfig::from_config(Config::read(begin / "config.json")).vocab_size;
+    if (settings.processes.first()) {
+        make_output_folder(folder);
+        write_tokenizer(folder, vocabulary);
+        write_preprocessor(folder, "BlipImageProcessor");
+    }
+    const BertTokenizer tokenizer = settings.processes.first()
+                                        ? BertTokenizer::load(folder)
+                                        : tokenizer_without_folder(vocabulary);
+
+    std::vector<LoopReplica> replicas;
+    for (int rank = 0; rank < settings.replicas; ++rank) {
+        BlipModel model = make_captioner(settings, config);
+        if (!begin.empty()) begin_with_captioner(begin, model);
+        const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));
+        replicas.push_back({{model.ptr()}, [&, model, stream](const auto& rows, auto step) {
+                                const Random random(settings.seed, 0xb11900 + stream,
+                                                    static_cast<std::uint64_t>(step) * 65536);
+                                return caption_loss(model, data, tokenizer, rows, random);
+                            }});
+    }
+    LoopOptions options =
+        vision_language_loop("captioner", settings, settings.captioner_samples, data);
+    options.batch = captioner_batch;
+    options.learning_rate *= captioner_rate;
+    TrainingLoop loop(options, std::move(replicas));
+
+    const BlipModel exported = make_captioner(settings, config);
+    FlatModel flat({exported.ptr()});
+    nlohmann::json train;
+    loop.run([&](const torch::Tensor& average, const LoopRecord& record) {
+        flat.values.copy_(average);
+        save_blip(folder, exported);
+        train = loop_summary(record, loop.parameters(), settings);
+    });
+    return train;
+}
+
+}  // namespace item3d

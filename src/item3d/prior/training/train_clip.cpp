@@ -1,0 +1,170 @@
+#include "item3d/core/files.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/random.h"
+#include "item3d/prior/training/export.h"
+#include "item3d/prior/training/init_from.h"
+#include "item3d/prior/training/replicas.h"
+#include "item3d/prior/training/shared_vision.h"
+#include "item3d/prior/training/training_loop.h"
+#include "item3d/prior/training/vision_language.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int clip_batch = 48;
+/// Sentences about other pictures, beside those about the batch's: to read them costs little.
+constexpr int more_sentences = 80;
+
+ClipModel make_clip(const TrainSettings& settings, const ClipConfig& config) {
+    torch::manual_seed(static_cast<std::int64_t>(settings.seed) + 2);
+    ClipModel model(config);
+    const torch::NoGradGuard no_grad;
+    for (auto& item : model->named_parameters()) {
+        const auto is = [&](const char* part) {
+            return item.key().find(part) != std::string::npos;
+        };
+        if (is("token_embedding")) item.value().normal_(0, .3);
+        if (is("position_embedding") || is("class_embedding")) item.value().normal_(0, .05);
+        if (is("logit_scale")) item.value().fill_(2.6592);  // 1 / 0.07, as in the paper
+    }
+    return model;
+}
+
+/// [N, S] int64, S as long as the longest needs.
+torch::Tensor read_sentences(const ClipTokenizer& tokenizer,
+                             const std::vector<std::string>& texts) {
+    std::vector<std::vector<int>> rows;
+    std::size_t longest = 0;
+    for (const std::string& text : texts) {
+        rows.push_back(tokenizer.encode(text));
+        longest = std::max(longest, rows.back().size());
+    }
+    const auto length = std::min<std::int64_t>(static_cast<std::int64_t>(longest), text_length);
+    return tokenizer.encode_batch(texts, static_cast<int>(length));
+}
+
+torch::Tensor unit(const torch::Tensor& features) {
+    const torch::Tensor x = features.to(torch::kFloat32);
+    return x / x.norm(2, {-1}, true).clamp_min(1e-6);
+}
+
+/// Cross-entropy of each row's softmax with all that is true of it, in equal parts.
+torch::Tensor true_share_loss(const torch::Tensor& logits, const torch::Tensor& truth) {
+    const torch::Tensor wanted = truth / truth.sum(1, true);
+    return -(wanted * logits.log_softmax(1)).sum(1).mean();
+}
+
+/// CLIP's symmetric loss, but what is true of several pictures is right for all of them.
+torch::Tensor clip_loss(ClipModel model, const LabeledPictures& data,
+                        const ClipTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
+                        Random random) {
+    std::vector<Claim> claims;
+    std::vector<std::string> texts;
+    const auto say = [&](std::int64_t row) {
+        claims.push_back(draw_claim(random, data.facts[static_cast<std::size_t>(row)]));
+        texts.push_back(claims.back().text(draw_frame(random)));
+    };
+    for (const std::int64_t row : rows)
+        say(row);
+    for (int i = 0; i < more_sentences; ++i)
+        say(random.index(data.count()));
+
+    const auto pictures = static_cast<std::int64_t>(rows.size());
+    torch::Tensor truth = torch::zeros({pictures, static_cast<std::int64_t>(claims.size())});
+    auto* value = truth.data_ptr<float>();
+    for (const std::int64_t row : rows)
+        for (const Claim& claim : claims)
+            *value++ = holds(claim, data.facts[static_cast<std::size_t>(row)]) ? 1.0f : 0.0f;
+
+    torch::Tensor images, sentences;
+    {
+        const Autocast autocast;
+        images = model->image_features(augment(data.pixel_values(rows), random));
+        sentences = model->text_features(read_sentences(tokenizer, texts));
+    }
+    const torch::Tensor logits =
+        model->logit_scale().clamp_max(100) * unit(images).mm(unit(sentences).t());
+    const auto of_pictures = [&](const torch::Tensor& all) {
+        return all.narrow(1, 0, pictures).t();
+    };
+    return .5 * (true_share_loss(logits, truth) +
+                 true_share_loss(of_pictures(logits), of_pictures(truth)));
+}
+
+/// A few pictures as the network reads them.
+torch::Tensor first_pictures(const LabeledPictures& data, std::uint64_t seed) {
+    std::vector<std::int64_t> rows(
+        static_cast<std::size_t>(std::min<std::int64_t>(64, data.count())));
+    std::iota(rows.begin(), rows.end(), 0);
+    Random random(seed, 0xc11800);
+    return augment(data.pixel_values(rows), random);
+}
+
+}  // namespace
+
+ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text) {
+    ClipConfig config;
+    config.projection_dim = 128;
+    config.text = prior_text_config(vocabulary, start_of_text, end_of_text);
+    config.text.hidden_size = 128;
+    config.text.intermediate_size = 512;
+    config.text.num_hidden_layers = 2;
+    config.text.num_attention_heads = 4;
+    config.text.projection_dim = 128;
+    static_cast<VisionShape&>(config.vision) = prior_vision_shape;
+    config.vision.hidden_act = "gelu";  // the captioner's
+    config.vision.projection_dim = 128;
+    return config;
+}
+
+nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& settings,
+                          const ClipTokenizer& tokenizer, const ClipConfig& config) {
+    const auto begin = begin_with_part(settings, clip_folder);
+    BlipModel captioner{nullptr};
+    // The others get their first values from process 0.
+    if (begin.empty() && settings.processes.first() &&
+        fs::exists(settings.output / captioner_folder / "config.json"))
+        captioner = load_blip(settings.output / captioner_folder);
+    const torch::Tensor sample = first_pictures(data, settings.seed);
+    bool warm = false;
+    std::vector<LoopReplica> replicas;
+    for (int rank = 0; rank < settings.replicas; ++rank) {
+        ClipModel model = make_clip(settings, config);
+        if (!begin.empty()) begin_with_clip(begin, model);
+        if (captioner) warm = copy_vision(captioner, model, sample);
+        const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));
+        replicas.push_back({{model.ptr()}, [&, model, stream](const auto& rows, auto step) {
+                                const Random random(settings.seed, 0xc11900 + stream,
+                                                    static_cast<std::uint64_t>(step) * 65536);
+                                return clip_loss(model, data, tokenizer, rows, random);
+                            }});
+    }
+    LoopOptions options = vision_language_loop("clip", settings, settings.clip_samples, data);
+    options.batch = clip_batch;
+    if (warm) note("clip: its vision transformer starts as the captioner's");
+    TrainingLoop loop(options, std::move(replicas));
+
+    const auto folder = settings.output / clip_folder;
+    if (settings.processes.first()) {
+        make_output_folder(folder);
+        tokenizer.save(folder);
+        write_preprocessor(folder, "CLIPImageProcessor");
+    }
+    const ClipModel exported = make_clip(settings, config);
+    FlatModel flat({exported.ptr()});
+    nlohmann::json train;
+    loop.run([&](const torch::Tensor& average, const LoopRecord& record) {
+        flat.values.copy_(average);
+        save_clip_model(folder, exported);
+        train = loop_summary(record, loop.parameters(), settings);
+    });
+    return train;
+}
+
+}  // namespace item3d

@@ -1,0 +1,190 @@
+#include "item3d/core/error.h"
+#include "item3d/core/random.h"
+#include "item3d/networks/diffusion/noise_schedule.h"
+#include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/prior/training/export.h"
+#include "item3d/prior/training/init_from.h"
+#include "item3d/prior/training/replicas.h"
+#include "item3d/prior/training/train.h"
+#include "item3d/prior/training/training_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+/// Parts of the pictures. With the shape kept from 15 % only, a network that is told the surface
+/// learnt little about what things look like.
+constexpr double without_shape = 0.30;
+constexpr double without_sentence = 0.10;
+
+/// One replica's networks.
+struct Networks {
+    UNet2DCondition unet{nullptr};
+    ClipTextModel text{nullptr};
+
+    std::vector<std::shared_ptr<torch::nn::Module>> modules() const {
+        return {unet.ptr(), text.ptr()};
+    }
+};
+
+Networks make_networks(const TrainSettings& settings, const DiffusionConfig& config) {
+    torch::manual_seed(static_cast<std::int64_t>(settings.seed) + 1);
+    Networks networks{UNet2DCondition(config.unet), ClipTextModel(config.text)};
+    // A small vocabulary learns sooner when its words start far apart.
+    const torch::NoGradGuard no_grad;
+    for (auto& item : networks.text->named_parameters()) {
+        if (item.key().find("token_embedding") != std::string::npos) item.value().normal_(0, .3);
+        if (item.key().find("position_embedding") != std::string::npos)
+            item.value().normal_(0, .05);
+    }
+    return networks;
+}
+
+/// [N, 1, h, w]: what the object covers counts four times as much as the background, which captions
+/// say nothing about. depth: depth_condition(), -1 where there is nothing.
+torch::Tensor object_weights(const torch::Tensor& depth) {
+    const torch::Tensor covered = ((depth + 1) / 1.2).clamp(0, 1);
+    const torch::Tensor weights = covered * 3 + 1;
+    return weights / weights.mean();
+}
+
+/// The denoising loss on the pictures of one replica's batch. Everything random depends on
+/// (seed, step, rank) alone.
+torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
+                             const NoiseSchedule& schedule, const std::vector<std::int64_t>& rows,
+                             std::uint64_t seed, std::int64_t step, int rank) {
+    const auto count = static_cast<std::int64_t>(rows.size());
+    Random random(seed, 0xd1ff00 + static_cast<std::uint64_t>(rank),
+                  static_cast<std::uint64_t>(step) * 4096);
+    const torch::Tensor index = torch::tensor(rows);
+    const torch::Tensor latents = data.latents.index_select(0, index).to(torch::kFloat32);
+    const torch::Tensor cells = data.cells.index_select(0, index).to(torch::kFloat32);
+    const torch::Tensor weights = object_weights(cells.slice(1, 0, 1));
+    const auto more = static_cast<int>(networks.unet->config().in_channels - latents.size(1));
+    torch::Tensor condition = shape_condition(cells, more);
+    torch::Tensor tokens = data.tokens.index_select(0, index).to(torch::kInt64);
+    std::vector<std::int64_t> times;
+    for (std::int64_t i = 0; i < count; ++i) {
+        // Stratified: each batch covers the whole range of timesteps evenly.
+        const double t = (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
+        times.push_back(std::min<std::int64_t>(999, static_cast<std::int64_t>(t * 1000)));
+        if (random.chance(without_shape) && more > 0) condition[i].zero_();
+        if (random.chance(without_sentence)) tokens[i].copy_(data.empty_tokens);
+    }
+    const torch::Tensor timesteps = torch::tensor(times);
+    auto generator = at::detail::createCPUGenerator(random.bits());
+    const torch::Tensor noise = torch::randn(latents.sizes(), generator);
+    torch::Tensor input = schedule.add_noise(latents, noise, timesteps);
+    if (more > 0) input = torch::cat({input, condition}, 1);
+    input = input.contiguous(torch::MemoryFormat::ChannelsLast);
+    torch::Tensor prediction;
+    {
+        const Autocast autocast;
+        const torch::Tensor text = networks.text->forward(tokens).last_hidden_state;
+        prediction = networks.unet->forward(input, timesteps, text);
+    }
+    const torch::Tensor wanted =
+        schedule.predicts_velocity() ? schedule.get_velocity(latents, noise, timesteps) : noise;
+    return ((prediction.to(torch::kFloat32) - wanted).square() * weights).mean();
+}
+
+}  // namespace
+
+namespace {
+
+/// Heads of 24 channels where the width divides by that, else of 32, else of 16.
+int heads_of(int width) {
+    for (const int channels : {24, 32, 16})
+        if (width % channels == 0) return width / channels;
+    ITEM3D_CHECK(false, "widths are multiples of 16");
+    return 1;
+}
+
+int condition_channels_of(const std::string& condition) {
+    if (condition == "none") return 0;
+    if (condition == "depth") return 1;
+    ITEM3D_CHECK(condition == "surface", "a U-Net is told surface, depth or none");
+    return surface_condition_channels;
+}
+
+}  // namespace
+
+UNet2DConditionConfig prior_unet_config(const TrainSettings& settings) {
+    const std::vector<int>& widths = settings.widths;
+    UNet2DConditionConfig config;
+    config.sample_size = latent_size;
+    config.in_channels = latent_channels + condition_channels_of(settings.condition);
+    config.out_channels = latent_channels;
+    const std::size_t levels = widths.size();
+    config.block_out_channels = widths;
+    config.down_block_types.assign(levels, "CrossAttnDownBlock2D");
+    config.up_block_types.assign(levels, "CrossAttnUpBlock2D");
+    config.layers_per_block.assign(levels, 1);
+    config.attention_head_dim.clear();
+    for (const int width : widths)
+        config.attention_head_dim.push_back(heads_of(width));
+    config.transformer_layers_per_block.assign(levels, 1);
+    config.cross_attention_dim.assign(levels, 192);
+    config.norm_num_groups = 16;
+    return config;
+}
+
+ClipTextConfig prior_text_config(int vocabulary, int start_of_text, int end_of_text) {
+    ClipTextConfig config;
+    config.vocab_size = vocabulary;
+    config.hidden_size = 192;
+    config.intermediate_size = 768;
+    config.num_hidden_layers = 3;
+    config.num_attention_heads = 3;
+    config.max_position_embeddings = text_length;
+    config.bos_token_id = start_of_text;
+    config.eos_token_id = end_of_text;
+    config.pad_token_id = end_of_text;
+    config.projection_dim = 192;
+    return config;
+}
+
+nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& settings,
+                               const DiffusionConfig& config, const nlohmann::json& so_far) {
+    const SchedulerConfig scheduler = SchedulerConfig::stable_diffusion(settings.prediction_type);
+    const NoiseSchedule schedule(scheduler);
+    std::vector<LoopReplica> replicas;
+    for (int rank = 0; rank < settings.replicas; ++rank) {
+        Networks networks = make_networks(settings, config);
+        // The loop copies the first replica's values to all others.
+        if (rank == 0 && settings.processes.first() && !settings.begin_with.empty())
+            begin_with_weights(settings.begin_with, networks.unet, networks.text);
+        const int stream = global_rank(settings, rank);
+        replicas.push_back({networks.modules(), [&, networks, stream](const auto& rows, auto step) {
+                                return diffusion_loss(networks, data, schedule, rows, settings.seed,
+                                                      step, stream);
+                            }});
+    }
+    LoopOptions options = loop_options(settings, "prior", "checkpoint.safetensors");
+    options.samples = settings.samples;
+    options.rows = data.latents.size(0);
+    options.batch = settings.batch;
+    options.objective = settings.prediction_type;
+    options.orthogonal = settings.optimizer == "muon";
+    TrainingLoop loop(options, std::move(replicas));
+
+    const Networks exported = make_networks(settings, config);
+    FlatModel flat(exported.modules());
+    nlohmann::json train = so_far;
+    loop.run([&](const torch::Tensor& average, const LoopRecord& record) {
+        flat.values.copy_(average);
+        train["samples"] = record.seen;
+        train["seconds"] = std::round(record.seconds);
+        train["loss"] = record.loss;
+        train["seed"] = settings.seed;
+        train["resolution"] = settings.resolution;
+        train["parameters"] = loop.parameters();
+        export_diffusion(settings.output, exported.unet, exported.text, scheduler,
+                         settings.resolution, train);
+    });
+    return train;
+}
+
+}  // namespace item3d

@@ -1,0 +1,86 @@
+// The loop that all networks of the prior are trained by: replicas, the order of the data, learning
+// rate, checkpoints, progress.
+#pragma once
+
+#include "item3d/prior/training/process_group.h"
+#include "item3d/prior/training/replicas.h"
+
+#include <nlohmann/json.hpp>
+#include <torch/types.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+struct LoopOptions {
+    std::string label;                 ///< for progress and messages
+    std::filesystem::path checkpoint;  ///< a file
+    std::int64_t samples = 0;          ///< to be seen, repetitions counted
+    std::int64_t rows = 0;             ///< different ones
+    int batch = 32;                    ///< a step and replica
+    std::string objective;    ///< what the loss is about, where one network could learn several
+    bool orthogonal = false;  ///< OptimizerOptions::orthogonal
+    float learning_rate = 1e-3f;
+    double rise = 6000;  ///< samples until the highest learning rate
+    std::uint64_t seed = 1;
+    bool resume = false;
+    std::int64_t stop_after = 0;  ///< ends like an interrupt after so many samples; 0: never
+    double checkpoint_seconds = 120;
+    double export_seconds = 600;
+    ProcessGroup processes;  ///< each with as many replicas
+};
+
+/// One replica: what it trains, and the loss of rows of the data, random by (step, rank) alone,
+/// where ranks count the replicas of all processes: those of process 0 first.
+struct LoopReplica {
+    std::vector<std::shared_ptr<torch::nn::Module>> modules;
+    std::function<torch::Tensor(const std::vector<std::int64_t>& rows, std::int64_t step)> loss;
+};
+
+/// Loss and clock of the run, kept in checkpoints.
+struct LoopRecord {
+    std::int64_t seen = 0;
+    double seconds = 0;
+    double loss = 0;  ///< mean of about the last 100 steps
+};
+
+class TrainingLoop {
+  public:
+    /// Copies the first replica's values to the others; when resuming, reads the checkpoint if
+    /// there is one. Other processes get all of that from process 0. Throws InputError for a
+    /// checkpoint that is damaged, or of another network or other settings.
+    TrainingLoop(const LoopOptions& options, std::vector<LoopReplica> replicas);
+
+    std::int64_t parameters() const { return group_->average().numel(); }
+    /// Trains to the end. write_export gets the moving average of the parameters, in the order of
+    /// FlatModel, now and then and at the end, in process 0 alone. Throws Interrupted after a
+    /// checkpoint and an export, and LostProcess after a checkpoint.
+    using Export = std::function<void(const torch::Tensor& average, const LoopRecord& record)>;
+    void run(const Export& write_export);
+
+  private:
+    void train(int rank, const Export& write_export);
+    bool should_stop(std::int64_t seen) const;
+    NamedTensors state() const;
+    void load_state(const NamedTensors& state);
+    nlohmann::json checkpoint_settings() const;
+    void save_checkpoint() const;
+    void load_checkpoint();
+
+    LoopOptions options_;
+    std::vector<LoopReplica> replicas_;
+    std::unique_ptr<ReplicaGroup> group_;
+    LoopRecord record_;
+};
+
+/// The learning rate after `seen` of `total` samples, as a part of the highest: a short rise, a
+/// plateau, and a linear fall over the last 30 %. A function of counts alone, so that a longer
+/// training can go on from a shorter one's plateau.
+double learning_rate_part(std::int64_t seen, std::int64_t total, double rise = 6000);
+
+}  // namespace item3d

@@ -1,0 +1,45 @@
+// What a reconstruction leaves in its folder.
+#pragma once
+
+#include "item3d/core/stage_times.h"
+#include "item3d/reconstruct/outputs/scores.h"
+#include "item3d/reconstruct/reconstruct.h"
+
+#include <optional>
+#include <vector>
+
+namespace item3d {
+
+/// Bakes the field into the model's UV map, writes model.glb and reads it back: scores and pictures
+/// are of what was written.
+Model bake_and_save(const std::filesystem::path& file, const Model& model, Appearance& appearance,
+                    const ReconstructRequest& request);
+
+/// All that is known in the end.
+struct Reconstruction {
+    Reconstruction(const ReconstructRequest& asked, const Dataset& photographs,
+                   const StageTimes& begun)
+        : request(asked), dataset(photographs), times(begun) {}
+
+    const ReconstructRequest& request;
+    const Dataset& dataset;
+    Model model;  ///< as written
+    Image light;
+    std::optional<FoundShape> shape;  ///< none for a given mesh
+    RefineCurves refine;
+    std::vector<ScoredView> train, test;  ///< a few of the former
+    std::vector<ScoredView> test_without_shadows;
+    std::vector<ScoredView> relit, relit_scaled;
+    Vec3 relit_gain{1.0f};          ///< of the scaled ones
+    std::optional<double> chamfer;  ///< part of the reference's diagonal
+    StageTimes times;
+    std::vector<std::string> warnings;
+};
+
+/// The content of reconstruct.json.
+nlohmann::json summary_json(const Reconstruction& result);
+
+/// report.html, self-contained.
+std::string report_html(const Reconstruction& result);
+
+}  // namespace item3d

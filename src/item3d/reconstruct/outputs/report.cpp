@@ -1,0 +1,149 @@
+// report.html of a reconstruction.
+#include "item3d/core/format.h"
+#include "item3d/core/version.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/reconstruct/outputs/camera_plot.h"
+#include "item3d/reconstruct/outputs/outputs.h"
+#include "item3d/report/animation.h"
+#include "item3d/report/html.h"
+#include "item3d/report/model_pictures.h"
+#include "item3d/report/picture.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace item3d {
+
+namespace {
+
+constexpr std::size_t views_shown = 8;
+constexpr int model_picture_size = 320;
+
+/// Differences of eight bits of 255 are white.
+Image error_map(const ScoredView& view) {
+    Image map(view.truth.width, view.truth.height, 3);
+    for (std::size_t i = 0; i < map.pixels.size(); i += 3) {
+        float largest = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            largest =
+                std::max(largest, std::abs(view.truth.pixels[i + c] - view.picture.pixels[i + c]));
+        // From black over red and yellow to white.
+        for (std::size_t c = 0; c < 3; ++c)
+            map.pixels[i + c] =
+                std::clamp(largest * 255 / 32 * 3 - static_cast<float>(c), 0.0f, 1.0f);
+    }
+    return map;
+}
+
+std::string view_figures(const std::vector<ScoredView>& views) {
+    std::vector<std::string> figures;
+    for (std::size_t i = 0; i < std::min(views_shown, views.size()); ++i) {
+        const ScoredView& view = views[i];
+        figures.push_back(html_comparison({"photograph", encode_webp(view.truth)},
+                                          {"render", encode_webp(view.picture)},
+                                          fmt::format("{}: {:.2f} dB, SSIM {:.3f}", view.score.name,
+                                                      view.score.psnr, view.score.ssim)));
+        figures.push_back(
+            html_figure({"difference (white: 32 of 255)", encode_webp(error_map(view))}));
+    }
+    return html_gallery(figures, 230);
+}
+
+Image light_display(const Image& light) {
+    Image picture(light.width, light.height, 3);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        picture.pixels[i] = linear_to_srgb(light.pixels[i] / (1 + light.pixels[i]));
+    return resize(picture, 512, 256);
+}
+
+std::string model_figures(const Reconstruction& result) {
+    std::vector<std::string> figures;
+    const EnvironmentLight studio = prefilter(make_light_preset("studio"), 128);
+    const torch::Tensor pictures =
+        draw_pictures(result.model, studio, picture_cameras(result.model, 4), model_picture_size);
+    for (const torch::Tensor& picture : pictures.unbind(0))
+        figures.push_back(
+            html_figure({"", encode_webp(to_display(to_image(picture), Vec3(0.78f)))}));
+    for (const Texture& texture : result.model.textures)
+        figures.push_back(html_figure({texture.name, encode_webp(thumbnail(texture.image, 512))}));
+    figures.push_back(
+        html_figure({"light.hdr, compressed", encode_webp(light_display(result.light))}));
+    return html_gallery(figures, 240);
+}
+
+std::string scores_table(const Reconstruction& result) {
+    TableRows rows;
+    const auto add = [&](const std::string& name, const std::vector<ScoredView>& views) {
+        if (views.empty()) return;
+        const ViewScore mean = mean_score(views);
+        rows.emplace_back(fmt::format("{} ({} views)", name, views.size()),
+                          fmt::format("{:.2f} dB, SSIM {:.3f}, masks {:.4f}", mean.psnr, mean.ssim,
+                                      mean.mask_overlap));
+    };
+    add("Held-out views", result.test);
+    if (result.request.refine.shadows)
+        add("Held-out views, no shadows traced", result.test_without_shadows);
+    add("Training views", result.train);
+    add("In another light", result.relit);
+    add("In another light, one gain a channel", result.relit_scaled);
+    if (result.chamfer)
+        rows.emplace_back("Chamfer distance",
+                          fmt::format("{:.3f} % of the diagonal", 100 * *result.chamfer));
+    rows.emplace_back("Model", fmt::format("{} triangles", result.model.triangle_count()));
+    return html_table(rows);
+}
+
+std::string dataset_table(const Reconstruction& result) {
+    const Dataset& dataset = result.dataset;
+    const Image& first = dataset.train.front().image;
+    return html_table({{"Layout", dataset_kind_name(dataset.kind)},
+                       {"Views", fmt::format("{} to learn from, {} held out", dataset.train.size(),
+                                             dataset.test.size())},
+                       {"Size", fmt::format("{} x {}", first.width, first.height)},
+                       {"Masks", dataset.masks}});
+}
+
+std::string charts(const Reconstruction& result) {
+    std::string html;
+    const auto add = [&](const std::string& title, const RefineCurves& curves) {
+        Chart chart{title, "iteration", {{"difference, log-sRGB", curves.picture, 1, 1}}, true};
+        html += html_chart(chart);
+        html +=
+            html_chart({title + ": outline", "iteration", {{"coverage", curves.mask, 1, 1}}, true});
+    };
+    if (result.shape) {
+        add("Shape", result.shape->curves);
+        html += html_chart({"Shape: triangles",
+                            "iteration",
+                            {{"triangles", result.shape->triangles, 1, 1}},
+                            false});
+    }
+    add("Materials and light", result.refine);
+    return "<div class=\"charts\">\n" + html + "</div>\n";
+}
+
+}  // namespace
+
+std::string report_html(const Reconstruction& result) {
+    std::string warnings;
+    for (const std::string& warning : result.warnings)
+        warnings += "<li>" + html_escape(warning) + "</li>";
+    if (!warnings.empty()) warnings = "<ul class=\"warnings\">" + warnings + "</ul>\n";
+    std::string body =
+        html_header("item3d reconstruct", result.request.dataset.filename().string(), warnings);
+    body += html_section("Scores", scores_table(result));
+    body += html_section("Held-out views", view_figures(result.test));
+    body += html_section("Training views", view_figures(result.train));
+    body += html_section("In another light", view_figures(result.relit));
+    body += html_section("Model and light", model_figures(result));
+    body +=
+        html_section("Photographs and cameras",
+                     dataset_table(result) + camera_plot(result.dataset, result.model.bounds()));
+    body += html_section("How it went", charts(result));
+    body += html_section("Where the time went", html_timings(result.times.stages()));
+    body += "<footer><p><code>" + html_escape(result.request.command) + "</code></p><p>item3d " +
+            html_escape(version()) + "</p></footer>\n";
+    return html_page("item3d reconstruct", body);
+}
+
+}  // namespace item3d

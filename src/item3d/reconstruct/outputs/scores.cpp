@@ -1,0 +1,167 @@
+#include "item3d/reconstruct/outputs/scores.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/parallel.h"
+#include "item3d/metrics/image_quality.h"
+#include "item3d/render/textured.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace item3d {
+
+namespace {
+
+constexpr int light_cube = 128;
+
+/// [1, H, W, 4] premultiplied linear -> [1, 3, H, W] sRGB over white.
+torch::Tensor displayed_over_white(const torch::Tensor& image) {
+    const torch::Tensor color = image.narrow(3, 0, 3) + (1 - image.narrow(3, 3, 1));
+    return linear_to_srgb(color.clamp(0, 1)).permute({0, 3, 1, 2}).contiguous();
+}
+
+Image as_picture(const torch::Tensor& planes) {
+    return to_image(planes[0].permute({1, 2, 0}).contiguous());
+}
+
+std::vector<Vec3> points_on(const TriangleMesh& mesh, int count, Random& random) {
+    const torch::Tensor positions = mesh.positions.detach().contiguous();
+    const torch::Tensor triangles = mesh.triangles.contiguous();
+    const float* p = positions.const_data_ptr<float>();
+    const std::int64_t* t = triangles.const_data_ptr<std::int64_t>();
+    const auto corner = [&](std::int64_t i, int c) {
+        const float* at = p + 3 * t[3 * i + c];
+        return Vec3(at[0], at[1], at[2]);
+    };
+    std::vector<double> area;
+    double sum = 0;
+    for (std::int64_t i = 0; i < triangles.size(0); ++i) {
+        sum += glm::length(glm::cross(corner(i, 1) - corner(i, 0), corner(i, 2) - corner(i, 0)));
+        area.push_back(sum);
+    }
+    std::vector<Vec3> points;
+    for (int k = 0; k < count; ++k) {
+        const auto found = std::upper_bound(area.begin(), area.end(), random.uniform() * sum);
+        const auto i = std::min<std::int64_t>(found - area.begin(), triangles.size(0) - 1);
+        auto u = static_cast<float>(random.uniform()), v = static_cast<float>(random.uniform());
+        if (u + v > 1) {
+            u = 1 - u;
+            v = 1 - v;
+        }
+        points.push_back((1 - u - v) * corner(i, 0) + u * corner(i, 1) + v * corner(i, 2));
+    }
+    return points;
+}
+
+double mean_nearest(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+    std::vector<float> nearest(from.size());
+    parallel_for(
+        "mean_nearest", static_cast<std::int64_t>(from.size()),
+        [&](std::int64_t i) {
+            float least = std::numeric_limits<float>::max();
+            for (const Vec3& point : to) {
+                const Vec3 d = point - from[static_cast<std::size_t>(i)];
+                least = std::min(least, glm::dot(d, d));
+            }
+            nearest[static_cast<std::size_t>(i)] = std::sqrt(least);
+        },
+        64);
+    double sum = 0;
+    for (const float value : nearest)
+        sum += value;
+    return sum / static_cast<double>(from.size());
+}
+
+}  // namespace
+
+ViewScore mean_score(const std::vector<ScoredView>& views) {
+    ViewScore mean{"mean", 0, 0, 0};
+    for (const ScoredView& view : views) {
+        mean.psnr += view.score.psnr / static_cast<double>(views.size());
+        mean.ssim += view.score.ssim / static_cast<double>(views.size());
+        mean.mask_overlap += view.score.mask_overlap / static_cast<double>(views.size());
+    }
+    return mean;
+}
+
+ModelRenderer::ModelRenderer(const Model& model, const Image& light, bool shadows)
+    : geometry_(Geometry::from_model(model)),
+      materials_(model),
+      light_(prefilter(light, light_cube)) {
+    if (!shadows) return;
+    OcclusionOptions options;
+    options.light = light;
+    occlusion_ = std::make_shared<Occlusion>(geometry_, &model, options);
+}
+
+torch::Tensor ModelRenderer::draw(const TargetView& view) const {
+    const torch::NoGradGuard no_gradient;
+    RenderOptions options;
+    options.width = view.width();
+    options.height = view.height();
+    options.occlusion = occlusion_;
+    return render(geometry_, materials_, light_, {view.camera}, options);
+}
+
+std::vector<ScoredView> ModelRenderer::score(const std::vector<TargetView>& views,
+                                             Vec3 gain) const {
+    const torch::NoGradGuard no_gradient;
+    const torch::Tensor factors = torch::tensor({gain.x, gain.y, gain.z, 1.0f});
+    std::vector<ScoredView> scored;
+    for (const TargetView& view : views) {
+        const torch::Tensor drawn = draw(view) * factors;
+        const torch::Tensor picture = displayed_over_white(drawn);
+        const torch::Tensor truth = displayed_over_white(view.image);
+        const torch::Tensor a = drawn.select(3, 3), b = view.image.select(3, 3);
+        ScoredView result;
+        result.score = {view.name, psnr(picture, truth), ssim(picture, truth),
+                        torch::minimum(a, b).sum().item<double>() /
+                            std::max(1e-9, torch::maximum(a, b).sum().item<double>())};
+        result.truth = as_picture(truth);
+        result.picture = as_picture(picture);
+        scored.push_back(std::move(result));
+    }
+    return scored;
+}
+
+Vec3 ModelRenderer::best_gain(const std::vector<TargetView>& views) const {
+    const torch::NoGradGuard no_gradient;
+    torch::Tensor product = torch::zeros({3}, torch::kFloat64);
+    torch::Tensor square = torch::zeros({3}, torch::kFloat64);
+    for (const TargetView& view : views) {
+        const torch::Tensor drawn = draw(view).narrow(3, 0, 3).to(torch::kFloat64);
+        const torch::Tensor truth = view.image.narrow(3, 0, 3).to(torch::kFloat64);
+        const torch::Tensor both =
+            (view.image.narrow(3, 3, 1) > 0.99f).logical_and(truth.amax(3, true) < 0.99);
+        product += (drawn * truth * both).sum({0, 1, 2});
+        square += (drawn * drawn * both).sum({0, 1, 2});
+    }
+    const torch::Tensor gain = product / square.clamp_min(1e-12);
+    return {gain[0].item<float>(), gain[1].item<float>(), gain[2].item<float>()};
+}
+
+double chamfer_distance(const TriangleMesh& mesh, const TriangleMesh& reference, int points,
+                        std::uint64_t seed) {
+    Random random(seed, 0x6368616d);
+    const auto a = points_on(mesh, points, random), b = points_on(reference, points, random);
+    const torch::Tensor size =
+        std::get<0>(reference.positions.max(0)) - std::get<0>(reference.positions.min(0));
+    return 0.5 * (mean_nearest(a, b) + mean_nearest(b, a)) / size.norm().item<double>();
+}
+
+TriangleMesh mesh_of(const Model& model) {
+    std::vector<float> positions;
+    std::vector<std::int64_t> triangles;
+    for (const Primitive& primitive : model.primitives) {
+        const auto first = static_cast<std::int64_t>(positions.size() / 3);
+        for (const Vec3& p : primitive.positions)
+            positions.insert(positions.end(), {p.x, p.y, p.z});
+        for (const std::uint32_t index : primitive.indices)
+            triangles.push_back(first + index);
+    }
+    return {torch::tensor(positions).reshape({-1, 3}),
+            torch::tensor(triangles, torch::kInt64).reshape({-1, 3})};
+}
+
+}  // namespace item3d

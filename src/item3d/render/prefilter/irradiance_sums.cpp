@@ -1,0 +1,101 @@
+#include "item3d/render/prefilter/irradiance_sums.h"
+
+#include "item3d/core/error.h"
+#include "item3d/render/dispatch.h"
+#include "item3d/render/prefilter/specular_sums.h"
+
+#include <ATen/ops/topk.h>
+#include <ATen/ops/where.h>
+
+#include <algorithm>
+
+namespace item3d {
+
+namespace {
+
+using cuda::RenderTable;
+using kernels::BrightParameters;
+
+constexpr int coarse_size = irradiance_size / 2;
+constexpr std::int64_t most_bright = 64;
+constexpr float bright_share = 1e-3f;  ///< of all light
+
+BrightParameters bright_parameters(const torch::Tensor& bright, int size) {
+    BrightParameters p{};
+    p.texels = bright.const_data_ptr<std::int64_t>();
+    p.count = static_cast<int>(bright.numel());
+    p.size = size;
+    return p;
+}
+
+void set_bright(CubePlanes& planes, const torch::Tensor& bright, const float* values) {
+    BrightParameters p = bright_parameters(bright, planes.size());
+    p.out = planes.writable();
+    p.values = values;
+    dispatch<kernels::set_bright>(planes.device(), "set_bright", &RenderTable::set_bright, p,
+                                  p.count);
+}
+
+CubePlanes without(const CubePlanes& flux, const torch::Tensor& bright) {
+    CubePlanes rest = flux.clone();
+    set_bright(rest, bright, nullptr);
+    fill_halo(rest, CubePlanes::halo);
+    return rest;
+}
+
+/// Runs of the irradiance map's texels over six faces.
+std::int64_t irradiance_runs(int length) {
+    return static_cast<std::int64_t>(6) * irradiance_size * (irradiance_size / length);
+}
+
+}  // namespace
+
+torch::Tensor bright_texels(const CubePlanes& flux) {
+    const torch::Tensor light =
+        from_planes(flux, torch::ones({flux.size(), flux.size()}, flux.options()))
+            .sum(-1)
+            .flatten();
+    const torch::Tensor least = bright_share * light.clamp_min(0).sum();
+    const auto [brightest, texels] = at::topk(light, most_bright);
+    return at::where(brightest > least, texels, -1);
+}
+
+CubePlanes irradiance_sums(const CubePlanes& flux, const torch::Tensor& bright) {
+    const int size = flux.size();
+    ITEM3D_CHECK(size <= irradiance_size, "irradiance_sums: a map of at most 128 texels");
+    const CubePlanes rest = without(flux, bright);
+    CubePlanes coarse = size == irradiance_size ? cosine_sums(restricted(rest), coarse_size)
+                                                : cosine_sums(rest, coarse_size);
+    fill_halo(coarse, 1);
+    CubePlanes sums = upsampled(coarse);
+    BrightParameters p = bright_parameters(bright, size);
+    p.flux = flux.view();
+    p.out = sums.writable();
+    const int length = run_length(flux.device(), irradiance_size);
+    dispatch<kernels::add_bright<irradiance_size>>(flux.device(), "bright_irradiance",
+                                                   &RenderTable::add_bright, p,
+                                                   irradiance_runs(length), 16);
+    return sums;
+}
+
+CubePlanes irradiance_sums_transposed(const CubePlanes& gradient, int size,
+                                      const torch::Tensor& bright) {
+    CubePlanes coarse = cosine_sums(restricted(gradient), std::min(size, coarse_size));
+    if (size == irradiance_size) {
+        fill_halo(coarse, 1);
+        coarse = upsampled(coarse);
+    }
+    const int length = gradient.device().is_cuda() ? kernels::device_bright_run : irradiance_size;
+    const std::int64_t runs = irradiance_runs(length);
+    const torch::Tensor partial_sums = torch::empty({runs, bright.numel(), 3}, gradient.options());
+    BrightParameters p = bright_parameters(bright, size);
+    p.gradient = gradient.view();
+    p.partial_sums = partial_sums.data_ptr<float>();
+    dispatch<kernels::sum_bright<irradiance_size>>(gradient.device(), "bright_irradiance_gradient",
+                                                   &RenderTable::sum_bright, p, runs, 16);
+    const torch::Tensor sums = partial_sums.sum(0);
+    set_bright(coarse, bright, sums.const_data_ptr<float>());
+    return coarse;
+}
+
+}  // namespace item3d

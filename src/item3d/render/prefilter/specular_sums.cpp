@@ -1,0 +1,194 @@
+#include "item3d/render/prefilter/specular_sums.h"
+
+#include "item3d/core/math.h"
+#include "item3d/render/dispatch.h"
+#include "item3d/render/kernels/irradiance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace item3d {
+
+using cuda::RenderTable;
+using kernels::ConstPlanes;
+using kernels::FarParameters;
+using kernels::NearParameters;
+using kernels::NearSums;
+using kernels::row_tile;
+using kernels::ZonalKernel;
+
+namespace {
+
+/// The sums, which take most of the time, for the processor at hand.
+struct SumKernels {
+    void (*near)(const NearParameters&, const ConstPlanes* coarse, int row, int column, NearSums&);
+    void (*far)(const FarParameters&, std::int64_t index);
+    void (*far_absolute_cosine)(const FarParameters&, std::int64_t index);
+};
+
+#if defined(__x86_64__) && defined(__GNUC__)
+__attribute__((target("avx2,fma"))) void near_avx2(const NearParameters& p,
+                                                   const ConstPlanes* coarse, int row, int column,
+                                                   NearSums& sums) {
+    kernels::near_sums<8>(p, coarse, row, column, sums);
+}
+template <bool AbsoluteCosine>
+__attribute__((target("avx2,fma"))) void far_avx2(const FarParameters& p, std::int64_t index) {
+    kernels::far_sums<8, AbsoluteCosine>(p, index);
+}
+SumKernels sum_kernels() {
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        return {near_avx2, far_avx2<false>, far_avx2<true>};
+    return {kernels::near_sums<4>, kernels::far_sums<4, false>, kernels::far_sums<4, true>};
+}
+#else
+SumKernels sum_kernels() {
+    return {kernels::near_sums<4>, kernels::far_sums<4, false>, kernels::far_sums<4, true>};
+}
+#endif
+
+/// A map for far sums: FarParameters::source. Planes of [6 * S, S], rows and planes padded: three
+/// of the map, turned for each face of the output so that this face becomes face 0 (see
+/// turned_face), and perhaps the shared one.
+struct TurnedPlanes {
+    int size, count;
+    torch::Tensor values;
+};
+/// faces: to turn for, so many in steps of 6 / faces.
+TurnedPlanes turned_planes(const CubePlanes& map, int faces) {
+    const int size = map.size(), count = 3 * faces + (map.shared_plane() ? 1 : 0);
+    // Vectors read into the padding, with weights of 0.
+    TurnedPlanes turned{size, count,
+                        torch::zeros({count * kernels::far_plane(size)}, map.options())};
+    const kernels::TurnParameters p{map.view(), turned.values.data_ptr<float>(), faces,
+                                    run_length(map.device(), size)};
+    dispatch<kernels::turn_planes>(map.device(), "turn_planes", &RenderTable::turn_planes, p,
+                                   static_cast<std::int64_t>(6) * count * size * (size / p.length),
+                                   16);
+    return turned;
+}
+
+/// Of a turned map, to the planes of `out` from the first on.
+void sum_far(const TurnedPlanes& map, const ZonalKernel& kernel, CubePlanes& out) {
+    const int size = map.size, out_size = out.size();
+    const torch::Tensor centres =
+        (2 * torch::arange(size, out.options()) + 1) / static_cast<float>(size) - 1.0f;
+    const torch::Tensor squares = centres.square();
+    const torch::Tensor inverse_lengths = (1 + squares + squares.unsqueeze(1)).rsqrt();
+    const float reach = kernel.reach();
+    // The corners of a face are 54.7 degrees off its centre.
+    const float farthest = reach + 0.9554f;
+    const FarParameters p{kernel,
+                          map.values.const_data_ptr<float>(),
+                          size,
+                          map.count,
+                          out.writable(),
+                          centres.const_data_ptr<float>(),
+                          inverse_lengths.const_data_ptr<float>(),
+                          std::sin(std::min(reach, 0.5f * pi)),
+                          farthest < pi ? std::cos(farthest) : -1.0f};
+    const std::int64_t count = static_cast<std::int64_t>(out_size) * out_size;
+    if (out.device().is_cuda()) {
+        const RenderTable& table = cuda::render_table();
+        cuda::run(kernel.cosine ? table.far_absolute_cosine : table.far_sums, p, count,
+                  out.device());
+        return;
+    }
+    const SumKernels sums = sum_kernels();
+    const auto sum = kernel.cosine ? sums.far_absolute_cosine : sums.far;
+    parallel_for(
+        "far_sums", count, [&](std::int64_t i) { sum(p, i); }, 16);
+}
+
+/// map(d) + map(-d)
+CubePlanes folded(const CubePlanes& map) {
+    CubePlanes sums(map.size(), map.shared_plane(), map.device());
+    const kernels::FoldParameters p{map.view(), sums.writable(),
+                                    run_length(map.device(), map.size())};
+    dispatch<kernels::fold>(
+        map.device(), "fold", &RenderTable::fold, p,
+        static_cast<std::int64_t>(map.count()) * map.size() * (map.size() / p.length), 64);
+    return sums;
+}
+
+NearParameters near_parameters(const CubePlanes& source, const CubeDirections& directions,
+                               const ZonalKernel& kernel) {
+    return {kernel,        directions.data(),        directions.plane_step(),
+            source.view(), std::sin(kernel.reach()), {}};
+}
+
+}  // namespace
+
+CubeDirections::CubeDirections(int size, torch::Device device)
+    : row_(size + 2 * CubePlanes::halo),
+      values_(torch::empty({3, row_, row_},
+                           torch::TensorOptions().dtype(torch::kFloat32).device(device))) {
+    dispatch<kernels::halo_texel_direction>(
+        device, "cube_directions", &RenderTable::cube_directions,
+        kernels::DirectionParameters{values_.data_ptr<float>(), size}, row_ * row_, 4096);
+}
+
+const float* CubeDirections::data() const {
+    return values_.const_data_ptr<float>() + CubePlanes::halo * (row_ + 1);
+}
+
+void near_sums(const CubePlanes& source, const CubeDirections& directions,
+               const ZonalKernel& kernel, const CubePlanes* coarse, const RowSums& finish) {
+    const int size = source.size();
+    const NearParameters parameters = near_parameters(source, directions, kernel);
+    ConstPlanes coarse_view{};
+    if (coarse != nullptr) coarse_view = coarse->view();
+    const auto sum = sum_kernels().near;
+    // Columns of tiles: the next row's neighbourhood is in a core's cache for the most part.
+    parallel_for(
+        "near_sums", static_cast<std::int64_t>(size / row_tile) * (size / 2),
+        [&](std::int64_t i) {
+            const int row = static_cast<int>(i % (size / 2));
+            const int column = static_cast<int>(i / (size / 2)) * row_tile;
+            NearSums sums;
+            sum(parameters, coarse != nullptr ? &coarse_view : nullptr, row, column, sums);
+            finish(row, column, sums.rows[0][0]);
+            finish(size - 1 - row, column, sums.rows[1][0]);
+        },
+        16);
+}
+
+void add_near_sums(const CubePlanes& source, const CubeDirections& directions,
+                   const ZonalKernel& kernel, CubePlanes& to) {
+    NearParameters p = near_parameters(source, directions, kernel);
+    p.out = to.writable();
+    dispatch<kernels::add_near_sums>(source.device(), "near_sums", &RenderTable::add_near_sums, p,
+                                     static_cast<std::int64_t>(source.size()) * source.size());
+}
+
+CubePlanes far_sums(const CubePlanes& source, const ZonalKernel& kernel) {
+    CubePlanes out(source.size(), source.shared_plane(), source.device());
+    sum_far(turned_planes(source, 6), kernel, out);
+    return out;
+}
+
+CubePlanes cosine_sums(const CubePlanes& source, int out_size) {
+    ZonalKernel kernel{};
+    kernel.cosine = true;
+    kernel.outer = 2;
+    CubePlanes even(out_size, source.shared_plane(), source.device());
+    sum_far(turned_planes(folded(source), 3), kernel, even);
+
+    const std::int64_t rows = static_cast<std::int64_t>(6) * source.size();
+    const torch::Tensor row_moments = torch::empty({rows, 3, 3}, source.options());
+    dispatch<kernels::row_moments>(
+        source.device(), "row_moments", &RenderTable::row_moments,
+        kernels::MomentParameters{source.view(), row_moments.data_ptr<float>()}, rows, 16);
+    const torch::Tensor moments = row_moments.sum(0, false, torch::kFloat64).to(torch::kFloat32);
+
+    CubePlanes out(out_size, source.shared_plane(), source.device());
+    const kernels::CosineParameters p{even.view(), moments.const_data_ptr<float>(), out.writable(),
+                                      run_length(source.device(), out_size)};
+    dispatch<kernels::join_cosine>(
+        source.device(), "join_cosine", &RenderTable::join_cosine, p,
+        static_cast<std::int64_t>(source.shared_plane() ? 7 : 6) * out_size * (out_size / p.length),
+        64);
+    return out;
+}
+
+}  // namespace item3d

@@ -1,0 +1,174 @@
+#include "item3d/tensors/checkpoint.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/random.h"
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+
+namespace item3d {
+
+namespace {
+
+constexpr const char* begin_anew = "leave out --resume to begin anew";
+constexpr std::int64_t large = 65536;  ///< rows
+/// What a tensor of which a few rows are written becomes: [2] rows in all, of which there are; and
+/// those, by place.
+const std::string all_rows = "#all", row_places = "#rows", row_values = "#values";
+
+/// Appends the tensor, or the rows of it that are not 0.
+void append_rows(NamedTensors& tensors, const std::string& name, const torch::Tensor& tensor) {
+    if (tensor.dim() > 0 && tensor.size(0) >= large) {
+        const torch::Tensor used =
+            tensor.reshape({tensor.size(0), -1}).ne(0).any(1).nonzero().select(1, 0);
+        if (2 * used.size(0) < tensor.size(0)) {
+            tensors.emplace_back(name + all_rows, torch::tensor({tensor.size(0)}));
+            tensors.emplace_back(name + row_places, used);
+            tensors.emplace_back(name + row_values, tensor.index_select(0, used));
+            return;
+        }
+    }
+    tensors.emplace_back(name, tensor);
+}
+
+/// The tensors as they were before append_rows().
+NamedTensors whole_tensors(const SafeTensors& file) {
+    NamedTensors tensors;
+    for (const std::string& name : file.names()) {
+        if (name.ends_with(row_places) || name.ends_with(row_values)) continue;
+        if (!name.ends_with(all_rows)) {
+            tensors.emplace_back(name, file.tensor(name).clone());
+            continue;
+        }
+        const std::string own = name.substr(0, name.size() - all_rows.size());
+        const torch::Tensor values = file.tensor(own + row_values);
+        std::vector<std::int64_t> shape = values.sizes().vec();
+        shape.front() = file.tensor(name).item<std::int64_t>();
+        tensors.emplace_back(own, torch::zeros(shape, values.options())
+                                      .index_copy_(0, file.tensor(own + row_places), values));
+    }
+    return tensors;
+}
+
+}  // namespace
+
+void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
+    NamedTensors tensors;
+    for (const auto& [name, tensor] : checkpoint.tensors)
+        append_rows(tensors, name, tensor);
+    save_safetensors(path, tensors,
+                     {{"identity", checkpoint.identity.dump()},
+                      {"iteration", std::to_string(checkpoint.iteration)}});
+}
+
+std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path) {
+    if (!std::filesystem::exists(path)) return std::nullopt;
+    const SafeTensors file = SafeTensors::open(path);
+    const auto identity = file.metadata().find("identity");
+    const auto iteration = file.metadata().find("iteration");
+    if (identity == file.metadata().end() || iteration == file.metadata().end()) {
+        throw InputError(path.string(), "is not a checkpoint of item3d",
+                         "remove it, or leave out --resume");
+    }
+    Checkpoint checkpoint;
+    checkpoint.identity = nlohmann::json::parse(identity->second, nullptr, false);
+    checkpoint.iteration = std::strtoll(iteration->second.c_str(), nullptr, 10);
+    checkpoint.tensors = whole_tensors(file);
+    return checkpoint;
+}
+
+std::string hash_of_file(const std::filesystem::path& path) {
+    std::uint64_t hash = 0;
+    for (const std::uint8_t byte : read_bytes(path))
+        hash = mix_bits(hash ^ byte);
+    return fmt::format("{:016x}", hash);
+}
+
+std::string hash_of_weights(const std::filesystem::path& prior) {
+    std::vector<std::filesystem::path> files;
+    for (const char* part : {"unet", "text_encoder", "text_encoder_2", "vae"}) {
+        std::error_code ignored;  // of a prior that lacks one of them its loading says so
+        for (const auto& entry : std::filesystem::directory_iterator(prior / part, ignored))
+            if (entry.path().extension() == ".safetensors") files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    std::uint64_t hash = 0;
+    std::vector<std::uint64_t> words(1 << 17);
+    for (const auto& file : files) {
+        std::ifstream stream(file, std::ios::binary);
+        while (stream) {
+            std::fill(words.begin(), words.end(), 0);
+            stream.read(reinterpret_cast<char*>(words.data()),
+                        static_cast<std::streamsize>(words.size() * sizeof(words[0])));
+            const auto read = static_cast<std::size_t>(stream.gcount());
+            for (std::size_t i = 0; i * sizeof(words[0]) < read; ++i)
+                hash = mix_bits(hash ^ words[i]);
+        }
+    }
+    return fmt::format("{:016x}", hash);
+}
+
+void require_same_identity(const std::filesystem::path& path, const nlohmann::json& saved,
+                           const nlohmann::json& now,
+                           const std::map<std::string, std::string>& inputs) {
+    const auto reject = [&](const std::string& problem) {
+        throw InputError(path.string(), problem,
+                         "use the same command, or leave out --resume to begin anew");
+    };
+    const auto before = [&](const std::string& key) {
+        return saved.is_object() ? saved.value(key, nlohmann::json()) : nlohmann::json();
+    };
+    // First of all what settings follow from: without its --mesh a run has settings that one has
+    // not.
+    for (const auto& [key, problem] : inputs)
+        if (now.contains(key) && before(key) != now[key]) reject(problem);
+    for (const auto& [key, value] : now.items())
+        if (before(key) != value)
+            reject(fmt::format("was made with {} = {}, this command has {}", key,
+                               before(key).dump(), value.dump()));
+}
+
+void append_parameters(NamedTensors& tensors, const std::string& prefix,
+                       const torch::nn::Module& module) {
+    for (const auto& item : module.named_parameters())
+        tensors.emplace_back(prefix + item.key(), item.value().detach());
+}
+
+CheckpointReader::CheckpointReader(std::string subject, const NamedTensors& tensors)
+    : subject_(std::move(subject)) {
+    for (const auto& [name, tensor] : tensors)
+        tensors_[name] = tensor;
+}
+
+torch::Tensor CheckpointReader::get(const std::string& name) const {
+    const auto found = tensors_.find(name);
+    if (found == tensors_.end()) throw InputError(subject_, "has no tensor " + name, begin_anew);
+    return found->second;
+}
+
+void CheckpointReader::copy(const std::string& name, torch::Tensor target) const {
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor saved = get(name);
+    if (saved.sizes() != target.sizes())
+        throw InputError(subject_, "tensor " + name + " has another shape", begin_anew);
+    target.copy_(saved);
+}
+
+void CheckpointReader::parameters(const std::string& prefix, torch::nn::Module& module) const {
+    for (const auto& item : module.named_parameters())
+        copy(prefix + item.key(), item.value());
+}
+
+std::map<std::string, torch::Tensor> CheckpointReader::with_prefix(
+    const std::string& prefix) const {
+    std::map<std::string, torch::Tensor> found;
+    for (const auto& [name, tensor] : tensors_) {
+        if (name.starts_with(prefix)) found[name.substr(prefix.size())] = tensor;
+    }
+    return found;
+}
+
+}  // namespace item3d

@@ -1,0 +1,207 @@
+// The program as a user meets it: what it says, where, and its exit code.
+#include "support/program.h"
+
+namespace item3d::testing {
+namespace {
+
+TEST_F(Program, HelpAndVersionGoToStdout) {
+    const Result help = run("--help");
+    EXPECT_EQ(help.code, 0);
+    for (const char* command :
+         {"edit", "render", "generate", "caption", "score", "prior", "bench"}) {
+        EXPECT_NE(help.out.find(command), std::string::npos) << command;
+        EXPECT_EQ(run(std::string(command) + " --help").code, 0) << command;
+    }
+    const Result version = run("--version");
+    EXPECT_EQ(version.code, 0);
+    EXPECT_EQ(version.out.rfind("item3d ", 0), 0u) << version.out;
+}
+
+TEST_F(Program, GuidanceHelpListsTheMethods) {
+    const Result help = run("edit --guidance help");
+    EXPECT_EQ(help.code, 0);
+    for (const char* method : {"rdl", "sds", "dds", "pds", "nfsd", "csd", "ism", "sdi"})
+        EXPECT_NE(help.out.find(std::string("\n") + method + " "), std::string::npos) << method;
+    EXPECT_EQ(help.error, "");
+}
+
+TEST_F(Program, WrongUsageIsTwo) {
+    EXPECT_EQ(run("").code, 2);
+    EXPECT_EQ(run("no_such_command").code, 2);
+    EXPECT_EQ(run("render").code, 2);
+    EXPECT_EQ(run("render a.glb -o b.png --no-such-option").code, 2);
+    EXPECT_EQ(run("render a.glb -o b.png --threads 0").code, 2);
+    EXPECT_EQ(run("render a.glb -o b.png --device tpu").code, 2);
+    EXPECT_EQ(
+        run("render " + quoted(cube_) + " -o " + quoted(folder_ / "b.png") + " --size 0x0").code,
+        2);
+}
+
+TEST_F(Program, WhatCannotBeReadIsThreeAndNamed) {
+    const std::string to = " -o " + quoted(folder_ / "picture.png");
+    expect_error("render /nowhere/model.glb" + to, 3, "/nowhere/model.glb");
+    expect_error("render " + quoted(folder_) + to, 3, folder_.string());
+    expect_error("render " + quoted(cube_) + to + " --light /nowhere.hdr", 3, "/nowhere.hdr");
+    expect_error("render " + quoted(cube_) + to + " --cameras /nowhere.json", 3, "/nowhere.json");
+    std::ofstream(folder_ / "empty.glb").flush();
+    expect_error("render " + quoted(folder_ / "empty.glb") + to, 3, "empty.glb");
+    EXPECT_FALSE(fs::exists(folder_ / "picture.png"));
+}
+
+TEST_F(Program, WhatCannotBeWrittenIsNamed) {
+    expect_error("render " + quoted(cube_) + " -o " + quoted(cube_ / "below" / "p.png"), 3,
+                 "below");
+    // A limit on file sizes (4 KiB, blocks of 512 bytes) stands for a full disk.
+    expect_error("render " + quoted(cube_) + " --size 512x512 --background red -o " +
+                     quoted(folder_ / "full.exr"),
+                 4, "full.exr", "ulimit -f 8; ");
+    EXPECT_FALSE(fs::exists(folder_ / "full.exr"));
+}
+
+TEST_F(Program, ADeviceThatIsNotThereIsFour) {
+    // No device is visible to this run, whatever the machine has.
+    const std::string hidden = "CUDA_VISIBLE_DEVICES= ";
+    const std::string to = " --device cuda -o " + quoted(folder_ / "out");
+    expect_error("render " + quoted(cube_) + to, 4, "--device cuda", hidden);
+    expect_error("edit " + quoted(cube_) + " --from 'a grey cube' --to 'a red cube'" + to, 4,
+                 "--device cuda", hidden);
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(Program, QuietIsQuiet) {
+    const Result result =
+        run("render " + quoted(cube_) + " --quiet --size 32x32 -o " + quoted(folder_ / "p.png"));
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    EXPECT_TRUE(fs::exists(folder_ / "p.png"));
+}
+
+TEST_F(Program, JsonIsOneObjectOnStdout) {
+    const Result result =
+        run("render " + quoted(cube_) + " --json --size 32x32 -o " + quoted(folder_ / "p.png"));
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_EQ(result.out.front(), '{') << result.out;
+    EXPECT_EQ(result.out.substr(result.out.size() - 2), "}\n") << result.out;
+}
+
+// Malformed models and images of all kinds: refused (3) or read with a warning (0), in seconds.
+TEST_F(Program, MalformedFilesAreRefusedOrWarnedAbout) {
+    const fs::path bad = fs::path(ITEM3D_SHARED_DATA) / "data" / "bad";
+    if (!fs::is_directory(bad)) GTEST_SKIP() << "no " << bad;
+    const std::string to = " --quiet --size 16x16 -o " + quoted(folder_ / "bad.png");
+    for (const auto& entry : fs::directory_iterator(bad)) {
+        const std::string extension = entry.path().extension().string();
+        std::string arguments;
+        if (extension == ".glb" || extension == ".gltf" || extension == ".obj") {
+            arguments = "render " + quoted(entry.path()) + to;
+        } else if (extension == ".hdr" || extension == ".exr" || extension == ".png") {
+            arguments = "render " + quoted(cube_) + to + " --light " + quoted(entry.path());
+        } else {
+            continue;
+        }
+        const Result result = run(arguments);
+        EXPECT_TRUE(result.code == 0 || result.code == 3)
+            << entry.path().filename() << ": " << result.code << "\n"
+            << result.error;
+        EXPECT_FALSE(result.code == 3 && result.error.empty()) << entry.path().filename();
+    }
+}
+
+/// item3d edit with a prior of random weights that is small enough to run in a test.
+class EditProgram : public Program {
+  protected:
+    static std::string prior() { return ITEM3D_TEST_DATA "/models/pipeline_sd"; }
+    std::string edit(const std::string& rest, const std::string& prior_folder = prior()) const {
+        return "edit " + quoted(cube_) + " --prior '" + prior_folder +
+               "' --resolution 32 --batch 1 --iterations 3 --texture-size 64 " + rest;
+    }
+    std::string to(const std::string& name) const {
+        return " --from 'a red cube' --to 'a blue cube' -o " + quoted(folder_ / name);
+    }
+    /// A copy of the prior, to be broken.
+    fs::path copy_of_prior(const std::string& name) const {
+        fs::copy(prior(), folder_ / name, fs::copy_options::recursive);
+        return folder_ / name;
+    }
+};
+
+TEST_F(EditProgram, WhatItCannotUseIsThreeAndNothingIsLeft) {
+    expect_error(edit("--from '' --to 'a blue cube' -o " + quoted(folder_ / "out")), 3, "--from");
+    expect_error(edit("--from 'a red cube' --to ' ' -o " + quoted(folder_ / "out")), 3, "--to");
+    expect_error(edit(to("cube.obj/out")), 3, "out");
+    expect_error(edit(to("out") + " --material glass"), 3, "glass");
+    expect_error(edit(to("out") + " --keep everything"), 3, "--keep");
+    expect_error(edit(to("out") + " --light /nowhere.hdr"), 3, "/nowhere.hdr");
+    expect_error("generate ' ' -o " + quoted(folder_ / "p.png"), 3, "PROMPT");
+    std::ofstream(folder_ / "points.obj") << "v 0 0 0\nv 1 0 0\n";
+    std::ofstream(folder_ / "nan.obj") << "v 0 nan 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+    for (const char* name : {"points.obj", "nan.obj", "missing.obj"}) {
+        expect_error("edit " + quoted(folder_ / name) + " --prior '" + prior() + "'" + to("out"), 3,
+                     name);
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "model.glb"));
+}
+
+TEST_F(EditProgram, WhatIsAddedToThePriorIsNamedWhereItCannotBeUsed) {
+    expect_error(edit(to("out") + " --lora /nowhere.safetensors:0.5"), 3, "/nowhere.safetensors");
+    std::ofstream(folder_ / "word.pt") << "PK";
+    expect_error(edit(to("out") + " --embedding " + quoted(folder_ / "word.pt")), 3, "pickle");
+    expect_error(edit(to("out") + " --controlnet '" ITEM3D_TEST_DATA "/models/vae_tiny'"), 3,
+                 "ControlNetModel");
+    const std::string draw = "generate 'a duck' --steps 1 --size 32 -o " +
+                             quoted(folder_ / "p.png") + " --prior '" + prior() +
+                             "' --controlnet '" ITEM3D_TEST_DATA "/models/controlnet_depth'";
+    expect_error(draw, 3, "--like");
+    const Result drawn = run(draw + " --vae '" ITEM3D_TEST_DATA "/models/vae_tiny' --like " +
+                             quoted(cube_) + " --json");
+    EXPECT_EQ(drawn.code, 0) << drawn.error;
+    EXPECT_NE(drawn.out.find("vae_tiny"), std::string::npos) << drawn.out;
+}
+
+TEST_F(EditProgram, BrokenPriorsAreThreeAndNamed) {
+    expect_error(edit(to("out"), "/nowhere/prior"), 3, "/nowhere/prior");
+
+    const fs::path cut = copy_of_prior("cut");
+    const fs::path weights = cut / "unet" / "diffusion_pytorch_model.safetensors";
+    fs::resize_file(weights, fs::file_size(weights) / 2);
+    expect_error(edit(to("out"), cut.string()), 3, "diffusion_pytorch_model.safetensors");
+
+    const fs::path odd = copy_of_prior("odd");
+    const fs::path config = odd / "unet" / "config.json";
+    std::string text = read_file(config);
+    const std::size_t at = text.find("\"cross_attention_dim\": ");
+    ASSERT_NE(at, std::string::npos);
+    text.insert(text.find(':', at) + 2, "1");
+    std::ofstream(config) << text;
+    expect_error(edit(to("out"), odd.string()), 3, "unet");
+
+    const fs::path lost = copy_of_prior("lost");
+    fs::remove(lost / "vae" / "config.json");
+    expect_error(edit(to("out"), lost.string()), 3, "vae");
+}
+
+TEST_F(EditProgram, FullDiskIsFourAndLeavesNoHalfModel) {
+    // 64 KiB a file: too little for the checkpoint, which comes first.
+    expect_error(edit(to("out")), 4, "checkpoint", "ulimit -f 128; ");
+    for (const auto& entry : fs::directory_iterator(folder_ / "out"))
+        ADD_FAILURE() << "left behind: " << entry.path();
+}
+
+TEST_F(EditProgram, KilledEditGoesOnToTheSameBytes) {
+    ASSERT_EQ(run(edit(to("whole"))).code, 0);
+    // Killed as soon as there is something to go on from.
+    const std::string killed = "'" ITEM3D_PROGRAM "' " + edit(to("parts")) +
+                               " >/dev/null 2>&1 & pid=$!; while kill -0 $pid 2>/dev/null && "
+                               "! [ -e " +
+                               quoted(folder_ / "parts" / "checkpoint.safetensors") +
+                               " ]; do sleep 0.02; done; kill -9 $pid; wait $pid";
+    EXPECT_NE(std::system(killed.c_str()), 0);
+    EXPECT_FALSE(fs::exists(folder_ / "parts" / "model.glb"));
+    const Result resumed = run(edit(to("parts") + " --resume"));
+    ASSERT_EQ(resumed.code, 0) << resumed.error;
+    EXPECT_EQ(read_file(folder_ / "whole" / "model.glb"),
+              read_file(folder_ / "parts" / "model.glb"));
+}
+
+}  // namespace
+}  // namespace item3d::testing

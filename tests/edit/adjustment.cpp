@@ -1,0 +1,196 @@
+// Direction adjustment in a whole loop: what is recorded, that a captioner moves the source, and
+// that one which fails does no harm.
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/edit/optimize/optimize.h"
+#include "item3d/edit/scene.h"
+#include "support/edit.h"
+
+#include <functional>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Speech = std::function<std::vector<Caption>(int call)>;
+
+/// Says what it is told to, four views a call.
+class ScriptedCaptioner : public Captioner {
+  public:
+    explicit ScriptedCaptioner(Speech speech) : speech_(std::move(speech)) {}
+    std::vector<Caption> captions(const std::vector<torch::Tensor>& pictures,
+                                  const CaptionOptions&) const override {
+        EXPECT_EQ(pictures.size(), 4u);
+        EXPECT_EQ(pictures.front().scalar_type(), torch::kUInt8);
+        return speech_(calls++);
+    }
+    mutable int calls = 0;
+
+  private:
+    Speech speech_;
+};
+
+std::vector<Caption> four_times(const std::string& text, bool ended = true) {
+    return std::vector<Caption>(4, Caption{text, ended});
+}
+
+class AdjustmentTest : public testing::EditTest {
+  protected:
+    EditRequest captioned(const std::string& output, int iterations) const {
+        EditRequest edit = request(output, iterations);
+        edit.captioner = fs::path(ITEM3D_TEST_DATA) / "models" / "blip";
+        edit.settings.adjust = "caption";
+        edit.settings.adjust_every = 2;
+        fs::create_directories(edit.output);
+        return edit;
+    }
+    /// The loop alone, with this captioner in place of the request's.
+    static EditState run(const EditRequest& edit, const Speech& speech) {
+        EditScene scene = load_scene(edit);
+        scene.captioner = std::make_shared<ScriptedCaptioner>(speech);
+        EditState state = begin_or_resume(edit, scene);
+        optimize(edit, scene, state);
+        return state;
+    }
+};
+
+TEST_F(AdjustmentTest, records_captions_and_where_the_direction_points) {
+    const EditState state = run(captioned("out", 5), [](int call) {
+        return four_times(call < 2 ? "a red cube" : "a green cube");  // call 0: the unedited model
+    });
+    const auto& records = state.adjustment.records;
+    ASSERT_EQ(records.size(), 4u);  // before iterations 0, 2 and 4, and at the end
+    EXPECT_EQ(records[1].iteration, 2);
+    EXPECT_EQ(records[3].iteration, 5);
+    EXPECT_EQ(records[0].captions, std::vector<std::string>(4, "a red cube"));
+    EXPECT_EQ(records[0].text->angle, 0);
+    EXPECT_FALSE(records[0].direction);
+    EXPECT_EQ(records[2].captions.front(), "a green cube");
+    EXPECT_GT(records[2].text->angle, 1);
+    EXPECT_NEAR(*records[1].direction, (state.direction_length[0] + state.direction_length[1]) / 2,
+                1e-6);
+    EXPECT_GT(*records[1].source_loss, 0);
+    EXPECT_EQ(records[1].picture.sizes(), (std::vector<std::int64_t>{144, 144, 3}));
+    EXPECT_TRUE(state.adjustment.failure.empty());
+}
+
+TEST_F(AdjustmentTest, a_source_that_arrives_stops_the_edit_from_going_on) {
+    EditRequest edit = captioned("out", 4);
+    const EditState state =
+        run(edit, [](int call) { return four_times(call == 0 ? "a red cube" : "a blue cube"); });
+    // The captions changed as the sentences do, so nothing is left of the direction.
+    for (const float length : state.direction_length)
+        EXPECT_LT(length, 1e-4);
+}
+
+TEST_F(AdjustmentTest, a_captioner_that_fails_leaves_the_source_as_it_was) {
+    const std::vector<Speech> failures = {
+        [](int) -> std::vector<Caption> { throw InputError("caption", "too long"); },
+        [](int) -> std::vector<Caption> { throw std::runtime_error("out of memory\nat line 3"); },
+        [](int) { return four_times(""); },
+        [](int) { return four_times("cube cube cube cube cube", false); }};
+    const EditRequest edit = captioned("out", 6);
+    EditScene scene = load_scene(edit);
+    EditState state = begin_or_resume(edit, scene);
+    for (const Speech& failure : failures) {
+        state.iteration = 0;
+        state.adjustment = {};
+        state.direction_length.clear();
+        state.source_loss.clear();
+        const auto captioner = std::make_shared<ScriptedCaptioner>([&](int call) {
+            if (call < 2) return four_times("a red cube");
+            return call == 2 ? four_times("a green cube") : failure(call);
+        });
+        scene.captioner = captioner;
+        optimize(edit, scene, state);
+        EXPECT_EQ(captioner->calls, 4) << "asked again after it failed";
+        EXPECT_EQ(state.iteration, 6);
+        EXPECT_FALSE(state.adjustment.failure.empty());
+        EXPECT_EQ(state.adjustment.failure.find('\n'), std::string::npos);
+        EXPECT_GT(state.adjustment.records[1].text->angle, 1);
+        EXPECT_EQ(state.adjustment.records.back().text->angle,
+                  state.adjustment.records[1].text->angle);
+    }
+}
+
+TEST_F(AdjustmentTest, resumes_to_the_same_bytes) {
+    const Speech speech = [](int) { return four_times("a green cube, on the left"); };
+    EditRequest whole = captioned("whole", 5);
+    EditRequest parts = captioned("parts", 5);
+    const auto differently = [&](int call) {
+        return call == 0 ? four_times("a red cube") : speech(call);
+    };
+    const EditState expected = run(whole, differently);
+    const auto interrupted = [&](int call) {  // in the middle of what precedes iteration 4
+        return call < 3 ? differently(call) : throw Interrupted("while a text was written");
+    };
+    EXPECT_THROW(run(parts, interrupted), Interrupted);
+    parts.resume = true;
+    // What the unedited model was called is kept: it is not asked about again.
+    const EditState state = run(parts, speech);
+    EXPECT_TRUE(torch::equal(state.field->table(), expected.field->table()));
+    ASSERT_EQ(state.adjustment.records.size(), expected.adjustment.records.size());
+    for (std::size_t i = 0; i < state.adjustment.records.size(); ++i) {
+        EXPECT_EQ(nlohmann::json(state.adjustment.records[i]),
+                  nlohmann::json(expected.adjustment.records[i]));
+        EXPECT_TRUE(torch::equal(state.adjustment.records[i].picture,
+                                 expected.adjustment.records[i].picture));
+    }
+    EXPECT_EQ(read_bytes(whole.output / "checkpoint.safetensors").size(),
+              read_bytes(parts.output / "checkpoint.safetensors").size());
+    parts.captioner = "another";
+    EXPECT_THROW(load_scene(parts), InputError);
+}
+
+TEST_F(AdjustmentTest, a_whole_edit_with_a_captioner_of_random_weights) {
+    const EditRequest edit = captioned("out", 3);
+    const nlohmann::json summary = edit_model(edit);
+    const auto& adjustment = summary["adjustment"];
+    EXPECT_EQ(adjustment["captions_before"].size(), 4u);
+    EXPECT_EQ(adjustment["records"].size(), 3u);
+    EXPECT_EQ(adjustment["records"][0]["captions"].size(), 4u);
+    EXPECT_EQ(summary["iterations_done"], 3);
+    EXPECT_NE(read_text(edit.output / "report.html").find("class=\"timeline\""), std::string::npos);
+}
+
+TEST_F(AdjustmentTest, captions_need_a_captioner) {
+    EditRequest edit = captioned("out", 1);
+    edit.captioner.clear();
+    EXPECT_THROW(load_scene(edit), InputError);
+    edit.settings.guidance = "sds";  // has no source: no captioner is needed
+    EXPECT_FALSE(load_scene(edit).captioner);
+}
+
+TEST_F(AdjustmentTest, an_edit_that_has_settled_stops_and_resumes_to_the_same_bytes) {
+    EditRequest edit = captioned("whole", 200);
+    edit.settings.settle = 0.99f;
+    edit.settings.adjust_every = 50;
+    // From the third line on the direction is gone; the first window is of the whole direction.
+    const auto speech = [](int call) {
+        return four_times(call < 2 ? "a red cube" : "a blue cube");
+    };
+    const EditState whole = run(edit, speech);
+    EXPECT_LT(whole.direction_length.size(), 200u);
+    EXPECT_GE(whole.direction_length.size(), 170u);
+    EXPECT_EQ(whole.iteration, 200);
+    EXPECT_EQ(whole.adjustment.records.back().iteration,
+              static_cast<std::int64_t>(whole.direction_length.size()));
+
+    edit.output = folder_ / "parts";
+    fs::create_directories(edit.output);
+    edit.stop_after = 100;
+    EXPECT_THROW(run(edit, speech), Interrupted);
+    edit.stop_after = 0;
+    edit.resume = true;
+    const EditState resumed = run(edit, [](int) { return four_times("a blue cube"); });
+    EXPECT_EQ(resumed.direction_length, whole.direction_length);
+    EXPECT_TRUE(torch::equal(resumed.field->table(), whole.field->table()));
+    // Once more: nothing is left to do.
+    const EditState again = run(edit, speech);
+    EXPECT_EQ(again.direction_length.size(), whole.direction_length.size());
+    EXPECT_EQ(again.adjustment.records.size(), whole.adjustment.records.size());
+}
+
+}  // namespace
+}  // namespace item3d

@@ -1,0 +1,101 @@
+#include "item3d/edit/optimize/color_regularizer.h"
+
+#include "item3d/core/random.h"
+#include "support/edit.h"
+
+#include <ATen/CPUGeneratorImpl.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+using testing::EditTest;
+
+constexpr float scale = 0.25f;
+
+torch::Tensor random_rows(std::int64_t rows, std::int64_t columns, std::uint64_t stream) {
+    auto generator = at::detail::createCPUGenerator(Random(1, stream).bits());
+    return torch::rand({rows, columns}, generator, torch::kFloat64);
+}
+
+/// What Evenness::backward() goes down: the sum of Geman and McClure's norm of each departure.
+double unevenness(const torch::Tensor& change, const torch::Tensor& color) {
+    const Departures found = departures(change, color, scale);
+    const torch::Tensor squared = found.values.square().sum(1);
+    return (0.5 * squared / (1 + squared / (scale * scale))).sum().item<double>();
+}
+
+double spread(const Image& was, const Image& now) {
+    double sum = 0, squares = 0;
+    const auto count = static_cast<double>(was.pixels.size() / 3);
+    for (std::size_t i = 0; i < was.pixels.size(); i += 3) {
+        const double change = now.pixels[i + 2] - was.pixels[i + 2];
+        sum += change;
+        squares += change * change;
+    }
+    return std::sqrt(squares / count - sum / count * (sum / count));
+}
+
+}  // namespace
+
+TEST(Evenness, finds_nothing_in_a_recolouring) {
+    const torch::Tensor color = random_rows(500, 3, 1).round();
+    const torch::Tensor change =
+        0.2 + color.mm(torch::tensor({{-0.9, 0.1, 0.0}, {0.0, -0.5, 0.2}, {0.1, 0.0, 0.3}})
+                           .to(torch::kFloat64));
+    const Departures found = departures(change, color, scale);
+    EXPECT_LT(found.values.abs().max().item<double>(), 0.05);  // the ridge's share
+    EXPECT_GT(found.weights.min().item<double>(), 0.9);
+}
+
+TEST(Evenness, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
+    const torch::Tensor color = torch::full({1000, 3}, 0.5, torch::kFloat64);
+    torch::Tensor change = torch::full({1000, 3}, 0.3, torch::kFloat64);
+    change.narrow(0, 0, 100) += 0.05;   // a blotch
+    change.narrow(0, 100, 100) -= 0.7;  // a handle
+    const Departures found = departures(change, color, scale);
+    EXPECT_NEAR(found.values[0][0].item<double>(), 0.05, 0.01);
+    EXPECT_GT(found.weights[0][0].item<double>(), 0.8);
+    EXPECT_LT(found.weights[150][0].item<double>(), 0.01);
+    EXPECT_NEAR(found.values[900][0].item<double>(), 0.0, 0.01);
+}
+
+TEST(Evenness, its_gradient_is_that_of_the_robust_norm) {
+    // Plain, so that the ridge has no share in it; small, so that the refits have converged.
+    const torch::Tensor color = torch::full({64, 3}, 0.5, torch::kFloat64);
+    const torch::Tensor change = 0.1 * random_rows(64, 3, 3);
+    const Departures found = departures(change, color, scale);
+    const torch::Tensor gradient = found.values * found.weights;
+    for (const std::int64_t row : {0, 17, 63}) {
+        constexpr double step = 1e-4;
+        torch::Tensor moved = change.clone();
+        moved[row][1] += step;
+        const double above = unevenness(moved, color);
+        moved[row][1] -= 2 * step;
+        const double below = unevenness(moved, color);
+        const double expected = gradient[row][1].item<double>();
+        EXPECT_NEAR((above - below) / (2 * step), expected, 0.02 * std::abs(expected) + 1e-4);
+    }
+}
+
+TEST_F(EditTest, evenness_makes_the_change_even) {
+    EditRequest edit = request("uneven", 12);
+    edit_model(edit);
+    const Image was = base_color_of(edit.model);
+    const double uneven = spread(was, base_color_of(edit.output / "model.glb"));
+    edit.output = folder_ / "even";
+    edit.settings.evenness = 1e6f;
+    edit_model(edit);
+    const double even = spread(was, base_color_of(edit.output / "model.glb"));
+    EXPECT_LT(even, 0.7 * uneven);
+    // Where the target names detail there is none to be had.
+    edit.output = folder_ / "detail";
+    edit.settings.detail_words = {"blue"};
+    edit.settings.detail = "off";
+    edit_model(edit);
+    EXPECT_DOUBLE_EQ(spread(was, base_color_of(edit.output / "model.glb")), uneven);
+}
+
+}  // namespace item3d

@@ -1,0 +1,76 @@
+#include "item3d/edit/optimize/convergence.h"
+
+#include "item3d/core/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace item3d {
+namespace {
+
+/// Lengths that fall from 1 to `floor` with this time constant, times noise as drawn timesteps
+/// make it: a factor between 0.3 and 1.7.
+std::vector<float> curve(int count, double floor, double time, std::uint64_t seed) {
+    Random random(seed, 1);
+    std::vector<float> lengths;
+    for (int i = 0; i < count; ++i) {
+        const double length = floor + (1 - floor) * std::exp(-i / time);
+        lengths.push_back(static_cast<float>(length * random.uniform(0.3, 1.7)));
+    }
+    return lengths;
+}
+
+}  // namespace
+
+TEST(FixedPoint, is_found_where_the_direction_has_faded) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const auto settled = settled_at(curve(600, 0.1, 60, seed), 0.3);
+        ASSERT_TRUE(settled) << seed;
+        EXPECT_GE(*settled, 150);
+        EXPECT_LT(*settled, 400);
+    }
+}
+
+TEST(FixedPoint, is_not_found_in_noise) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed)
+        EXPECT_FALSE(settled_at(curve(600, 1, 60, seed), 0.4)) << seed;
+}
+
+TEST(FixedPoint, waits_while_the_direction_still_shrinks) {
+    std::vector<float> lengths;
+    for (int i = 0; i < 300; ++i)
+        lengths.push_back(std::exp(-static_cast<float>(i) / 50));
+    EXPECT_FALSE(settled_at(lengths, 0.5));
+    lengths.insert(lengths.end(), 100, lengths.back());
+    ASSERT_TRUE(settled_at(lengths, 0.5));
+    EXPECT_GT(*settled_at(lengths, 0.5), 300);
+}
+
+TEST(FixedPoint, stays_where_it_was_found) {
+    const std::vector<float> lengths = curve(600, 0.1, 60, 3);
+    const auto settled = settled_at(lengths, 0.3);
+    ASSERT_TRUE(settled);
+    const auto so_far = [&](std::int64_t count) {
+        return settled_at({lengths.begin(), lengths.begin() + count}, 0.3);
+    };
+    EXPECT_FALSE(so_far(*settled - 1));
+    EXPECT_EQ(so_far(*settled), settled);
+    EXPECT_EQ(so_far(*settled + 50), settled);
+}
+
+TEST(FixedPoint, takes_its_time_and_survives_what_is_not_finite) {
+    std::vector<float> lengths(50, 1.0f);
+    lengths.resize(149, 0.01f);
+    EXPECT_FALSE(settled_at(lengths, 0.5));
+    lengths.resize(200, 0.01f);
+    lengths[40] = std::numeric_limits<float>::quiet_NaN();
+    lengths[10] = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(settled_at(lengths, 0.5), 150);
+    EXPECT_FALSE(settled_at(lengths, 0));
+    EXPECT_FALSE(settled_at({}, 0.5));
+    EXPECT_FALSE(settled_at(std::vector<float>(200, std::numeric_limits<float>::quiet_NaN()), 0.5));
+}
+
+}  // namespace item3d

@@ -1,0 +1,52 @@
+// Edits that change the light: what they leave alone, and that they resume to the same bytes.
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "support/edit.h"
+
+#include <filesystem>
+#include <string>
+
+namespace item3d {
+namespace {
+
+using testing::EditTest;
+
+class EditLightTest : public EditTest {
+  protected:
+    EditRequest light_request(const std::string& output, const std::string& optimize,
+                              const std::string& kind) const {
+        EditRequest edit = request(output, 4);
+        edit.settings.optimize = optimize;
+        edit.settings.light_model = kind;
+        return edit;
+    }
+};
+
+TEST_F(EditLightTest, light_alone_leaves_the_model_byte_for_byte) {
+    const EditRequest edit = light_request("light", "light", "physical");
+    edit_model(edit);
+    EXPECT_EQ(read_bytes(edit.output / "model.glb"), read_bytes(edit.model));
+    EXPECT_GT(load_image(edit.output / "light.exr").height, 100);
+}
+
+TEST_F(EditLightTest, resumes_to_the_same_light_and_texture) {
+    for (const std::string kind : {"physical", "texels"}) {
+        EditRequest edit = light_request("whole-" + kind, "both", kind);
+        edit_model(edit);
+        const Bytes light = read_bytes(edit.output / "light.exr");
+        const Bytes model = read_bytes(edit.output / "model.glb");
+        EXPECT_NE(model, read_bytes(edit.model));
+
+        edit.output = folder_ / ("parts-" + kind);
+        edit.stop_after = 2;
+        EXPECT_THROW(edit_model(edit), Interrupted);
+        edit.resume = true;
+        edit.stop_after = 0;
+        edit_model(edit);
+        EXPECT_EQ(light, read_bytes(edit.output / "light.exr")) << kind;
+        EXPECT_EQ(model, read_bytes(edit.output / "model.glb")) << kind;
+    }
+}
+
+}  // namespace
+}  // namespace item3d

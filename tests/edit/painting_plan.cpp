@@ -1,0 +1,48 @@
+// What the views of the detail stage paint, on a cube.
+#include "item3d/edit/detail/painting_plan.h"
+
+#include "support/edit.h"
+
+#include <gtest/gtest.h>
+
+namespace item3d {
+namespace {
+
+using testing::EditTest;
+
+double fresh_share(const PaintingView& view) {
+    return 1 - view.known.mean().item<double>();
+}
+
+TEST_F(EditTest, later_painting_views_leave_what_earlier_ones_painted) {
+    EditRequest edit = request("out", 1);
+    edit.settings.resolution = 64;
+    const EditScene scene = load_scene(edit);
+    const std::vector<PaintingView> plan = plan_painting(scene, edit.settings);
+    ASSERT_EQ(plan.size(), 20u);
+    const auto pixels = [](const torch::Tensor& cells) {
+        return torch::upsample_nearest2d(cells, {64, 64});
+    };
+    // What the first sees is its own, but for cells that it has little of; the background is
+    // nobody's.
+    EXPECT_LT((pixels(plan[0].known) * plan[0].facing).sum().item<float>(),
+              0.05f * plan[0].facing.sum().item<float>());
+    EXPECT_EQ(plan[0].known[0][0][0][0].item<float>(), 1);
+    EXPECT_GT(fresh_share(plan[0]), 0.2);
+    double last = 0;
+    for (std::size_t i = 5; i < 8; ++i)
+        last += fresh_share(plan[i]) / 3;
+    EXPECT_LT(last, 0.3 * fresh_share(plan[0]));
+    EXPECT_EQ(plan[7].round, PaintingRound::begin);
+    // Each round paints everything.
+    EXPECT_EQ(plan[8].round, PaintingRound::again);
+    EXPECT_EQ(plan[13].first_of_round, 8);
+    EXPECT_GT(fresh_share(plan[8]), 0.2);
+    EXPECT_EQ(plan[14].round, PaintingRound::close_up);
+    EXPECT_EQ(plan[14].first_of_round, 14);
+    EXPECT_GT(fresh_share(plan[14]), 0.2);
+    EXPECT_TRUE(plan_painting(scene, edit.settings)[19].known.equal(plan[19].known));
+}
+
+}  // namespace
+}  // namespace item3d

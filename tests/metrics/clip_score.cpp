@@ -1,0 +1,113 @@
+#include "item3d/metrics/clip_score.h"
+
+#include "item3d/report/model_pictures.h"
+#include "item3d/tensors/weights.h"
+
+#include <ATen/Parallel.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A CLIP of random weights that knows the letters a to d.
+class RandomClip : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        at::set_num_threads(1);  // so small a network gains nothing from more
+        folder_ = fs::temp_directory_path() / ("item3d-clip-" + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+        const nlohmann::json layers = {{"hidden_size", 16},
+                                       {"intermediate_size", 32},
+                                       {"num_hidden_layers", 2},
+                                       {"num_attention_heads", 2}};
+        nlohmann::json text = layers, vision = layers;
+        text.update({{"vocab_size", 8}, {"max_position_embeddings", 16}, {"eos_token_id", 1}});
+        vision.update({{"image_size", 32}, {"patch_size", 8}});
+        const nlohmann::json config = {
+            {"projection_dim", 12}, {"text_config", text}, {"vision_config", vision}};
+        write("config.json", config);
+        write("vocab.json", {{"<|startoftext|>", 0},
+                             {"<|endoftext|>", 1},
+                             {"a</w>", 2},
+                             {"b</w>", 3},
+                             {"c</w>", 4},
+                             {"d</w>", 5}});
+        std::ofstream(folder_ / "merges.txt") << "#version: 0.2\n";
+        write("preprocessor_config.json", {{"size", 32}, {"crop_size", 32}});
+        torch::manual_seed(11);
+        ClipModel model(ClipConfig::from_config(Config(config, "config.json")));
+        const torch::NoGradGuard no_grad;
+        for (auto& parameter : model->parameters())
+            parameter.normal_(0, 0.3);
+        save_safetensors(folder_ / "model.safetensors", module_tensors(*model));
+        clip_ = Clip::load(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    void write(const std::string& name, const nlohmann::json& json) const {
+        std::ofstream(folder_ / name) << json.dump();
+    }
+
+    fs::path folder_;
+    Clip clip_;
+};
+
+TEST_F(RandomClip, ScoresAreTheirFormulas) {
+    torch::manual_seed(12);
+    const torch::Tensor before = torch::rand({2, 3, 48, 48}), after = torch::rand({2, 3, 48, 48});
+    const ClipScores scores = clip_scores(clip_, before, after, "a b", "c d");
+    ASSERT_EQ(scores.views.size(), 2u);
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor was = clip_.embed_images(before)[1], is = clip_.embed_images(after)[1];
+    const torch::Tensor from = clip_.embed_texts({"a b"})[0], to = clip_.embed_texts({"c d"})[0];
+    const auto cosine = [](const torch::Tensor& a, const torch::Tensor& b) {
+        return a.dot(b).item<double>() / (a.norm() * b.norm()).item<double>();
+    };
+    EXPECT_NEAR(scores.views[1].global, cosine(is, to), 1e-5);
+    EXPECT_NEAR(scores.views[1].global_before, cosine(was, to), 1e-5);
+    EXPECT_NEAR(scores.views[1].directional, cosine(is - was, to - from), 1e-4);
+    EXPECT_NEAR(scores.mean.global, (scores.views[0].global + scores.views[1].global) / 2, 1e-9);
+}
+
+TEST_F(RandomClip, NothingChangedHasNoDirection) {
+    const torch::Tensor pictures = torch::rand({1, 3, 40, 60});
+    const ClipScores same = clip_scores(clip_, pictures, pictures, "a", "b");
+    EXPECT_EQ(same.mean.directional, 0);
+    EXPECT_EQ(same.mean.global, same.mean.global_before);
+    const torch::Tensor others = torch::rand({1, 3, 40, 60});
+    EXPECT_EQ(clip_scores(clip_, pictures, others, "a", "a").mean.directional, 0);
+    // Back again is the other way.
+    EXPECT_NEAR(clip_scores(clip_, pictures, others, "a", "b").mean.directional,
+                -clip_scores(clip_, others, pictures, "a", "b").mean.directional, 1e-6);
+}
+
+TEST_F(RandomClip, AscentOnThePixelsRaisesTheScore) {
+    torch::manual_seed(13);
+    const torch::Tensor target = clip_.embed_texts({"d"});
+    torch::Tensor picture = torch::rand({1, 3, 40, 40}).requires_grad_();
+    const torch::Tensor before = (clip_.embed_images(picture) * target).sum();
+    before.backward();
+    const torch::Tensor step = picture.grad() / picture.grad().norm();
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor after = (clip_.embed_images(picture + 0.05 * step) * target).sum();
+    EXPECT_GT(after.item<double>(), before.item<double>());
+}
+
+TEST(OverWhite, ComposesPremultipliedRadiance) {
+    torch::Tensor linear = torch::zeros({1, 1, 3, 4});
+    linear[0][0][1] = torch::tensor({0.25f, 0.0f, 0.0f, 0.5f});  // half covered by (0.5, 0, 0)
+    linear[0][0][2] = torch::tensor({2.0f, 1.0f, 0.0f, 1.0f});   // too bright for a picture
+    const torch::Tensor pictures = over_white(linear);
+    ASSERT_EQ(pictures.sizes(), (torch::IntArrayRef{1, 3, 1, 3}));
+    const torch::Tensor expected = linear_to_srgb(
+        torch::tensor({{1.0f, 1.0f, 1.0f}, {0.75f, 0.5f, 0.5f}, {1.0f, 1.0f, 0.0f}}));
+    EXPECT_LT((pictures[0].select(1, 0).t() - expected).abs().max().item<float>(), 1e-6f);
+}
+
+}  // namespace
+}  // namespace item3d

@@ -1,0 +1,243 @@
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/networks/vision_language/blip.h"
+#include "item3d/networks/vision_language/blip2.h"
+#include "item3d/networks/vision_language/captioner.h"
+#include "item3d/tensors/weights.h"
+#include "item3d/text/caption_tokenizer.h"
+#include "support/networks.h"
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::fixture;
+using testing::Golden;
+using testing::message_of;
+using testing::TemporaryFolder;
+
+void expect_tokens(const CaptionTokenizer& tokenizer, const fs::path& file) {
+    for (const auto& row : nlohmann::json::parse(read_text(file))) {
+        const auto text = row.at("text").get<std::string>();
+        const auto ids = row.at("ids").get<std::vector<int>>();
+        EXPECT_EQ(tokenizer.encode(text), ids) << text;
+        EXPECT_EQ(tokenizer.decode(ids), row.at("decoded").get<std::string>()) << text;
+    }
+}
+
+TEST(CaptionTokenizers, GiveTheReferencesIdsAndTexts) {
+    expect_tokens(BertTokenizer::load(fixture("blip")), fixture("blip") / "tokens.json");
+    expect_tokens(Gpt2Tokenizer::load(fixture("gpt2_tokenizer")),
+                  fixture("gpt2_tokenizer") / "tokens.json");
+}
+
+TEST(CaptionTokenizers, TakeTextThatIsNotUtf8) {
+    const auto bert = BertTokenizer::load(fixture("blip"));
+    EXPECT_EQ(bert.encode("a \xff\xfe"), bert.encode("a"));  // U+FFFD is a control character
+    const auto gpt2 = Gpt2Tokenizer::load(fixture("gpt2_tokenizer"));
+    EXPECT_EQ(gpt2.decode(gpt2.encode("a\xff")), "a\xef\xbf\xbd");
+    EXPECT_EQ(gpt2.decode({-1, 100000, 68}), "a");
+    EXPECT_EQ(bert.decode({-1, 100000, 5}), "a");
+}
+
+TEST(Blip, ReproducesTheReference) {
+    const torch::NoGradGuard no_grad;
+    const Golden golden("blip");
+    BlipModel model = load_blip(fixture("blip"));
+    const torch::Tensor embeds = model->image_embeds(golden.in("pixel_values"));
+    golden.expect("image_embeds", embeds);
+    golden.expect("logits",
+                  model->logits(model->decode(golden.in("input_ids"), golden.in("attention_mask"),
+                                              model->read_image(embeds))));
+}
+
+TEST(Blip, WritesTheReferencesCaptions) {
+    const Golden golden("blip");
+    const BlipModel model = load_blip(fixture("blip"));
+    const torch::Tensor pixels = golden.in("pixel_values");
+    const torch::Tensor begin = torch::tensor({{model->config().bos_token_id}}, torch::kInt64);
+    const torch::Tensor prompt = torch::cat({begin, golden.out("prompt_ids").slice(1, 1, -1)}, 1);
+    DecodingOptions options;
+    options.max_new_tokens = 12;
+    EXPECT_TRUE(
+        write_captions(model, pixels, begin, options).tokens.equal(golden.out("greedy_ids")));
+    EXPECT_TRUE(write_captions(model, pixels, prompt, options)
+                    .tokens.equal(golden.out("greedy_ids_prompt")));
+    options.beams = 3;
+    const Decoded beams = write_captions(model, pixels, begin, options);
+    EXPECT_TRUE(beams.tokens.equal(golden.out("beam_ids")));
+    golden.expect("beam_sequences_scores", beams.scores);
+    EXPECT_TRUE(
+        write_captions(model, pixels, prompt, options).tokens.equal(golden.out("beam_ids_prompt")));
+    options.max_new_tokens = 1000;
+    EXPECT_THROW(write_captions(model, pixels, begin, options), InputError);
+}
+
+TEST(Blip2, ReproducesTheReference) {
+    const torch::NoGradGuard no_grad;
+    const Golden golden("blip2");
+    Blip2Model model = load_blip2(fixture("blip2"));
+    const torch::Tensor picture =
+        model->project(model->query_image(model->image_embeds(golden.in("pixel_values"))));
+    golden.expect("language_projection", picture);
+    OptModel language_model = model->language_model();
+    golden.expect("logits",
+                  language_model->logits(language_model->forward(
+                      model->embed(golden.in("input_ids"), picture), golden.in("attention_mask"))));
+}
+
+TEST(Blip2, WritesTheReferencesCaptions) {
+    const Golden golden("blip2");
+    const Blip2Model model = load_blip2(fixture("blip2"));
+    const torch::Tensor pixels = golden.in("pixel_values");
+    const torch::Tensor visible = golden.out("prompt_mask");
+    DecodingOptions options;
+    options.max_new_tokens = 12;
+    options.end_token = model->config().text.eos_token_id;
+    for (const auto& [beams, name] : {std::pair{1, "greedy_ids_prompt"}, {3, "beam_ids_prompt"}}) {
+        options.beams = beams;
+        EXPECT_TRUE(write_captions(model, pixels, golden.out("prompt_ids"), visible, options)
+                        .tokens.equal(golden.out(name)))
+            << name;
+    }
+}
+
+/// For what must hold for any weights.
+Blip2Model random_blip2() {
+    const nlohmann::json layers = {{"hidden_size", 16},
+                                   {"intermediate_size", 24},
+                                   {"num_hidden_layers", 2},
+                                   {"num_attention_heads", 2}};
+    nlohmann::json vision = layers, qformer = layers, text = layers;
+    vision.update({{"image_size", 8}, {"patch_size", 4}});
+    qformer.update({{"encoder_hidden_size", 16}});
+    text.update({{"model_type", "opt"}, {"vocab_size", 40}, {"max_position_embeddings", 24}});
+    Blip2Model model(Blip2Config::from_config(Config({{"vision_config", vision},
+                                                      {"qformer_config", qformer},
+                                                      {"text_config", text},
+                                                      {"num_query_tokens", 3},
+                                                      {"image_token_index", 39}},
+                                                     "config.json")));
+    torch::manual_seed(4);
+    const torch::NoGradGuard no_grad;
+    for (auto& parameter : model->parameters())
+        parameter.normal_(0, 0.3);
+    return model;
+}
+
+TEST(Blip2, PaddingOnTheLeftChangesNothing) {
+    const Blip2Model model = random_blip2();
+    torch::manual_seed(5);
+    const torch::Tensor pixels = torch::randn({1, 3, 8, 8});
+    const torch::Tensor prompt = torch::tensor({{39, 39, 39, 2, 7, 11}});
+    const torch::Tensor padded = torch::constant_pad_nd(prompt, {4, 0}, 1);
+    const torch::Tensor visible = padded.ne(1).to(torch::kInt64);
+    DecodingOptions options;
+    options.max_new_tokens = 8;
+    options.end_token = 2;
+    for (const int beams : {1, 3}) {
+        options.beams = beams;
+        const torch::Tensor plain = write_captions(model, pixels, prompt, {}, options).tokens;
+        EXPECT_GT(plain.size(1), prompt.size(1) + 1);
+        EXPECT_TRUE(write_captions(model, pixels, padded, visible, options)
+                        .tokens.slice(1, 4)
+                        .equal(plain));
+    }
+}
+
+TEST(Blip2, TheCacheChangesNothing) {
+    const torch::NoGradGuard no_grad;
+    const Blip2Model model = random_blip2();
+    OptModel language_model = model->language_model();
+    const torch::Tensor ids = torch::tensor({{2, 5, 8, 13, 21}, {2, 6, 7, 8, 9}});
+    const torch::Tensor visible = torch::ones_like(ids);
+    const torch::Tensor whole = language_model->forward(language_model->embed(ids), visible);
+    KeyValueCache cache;
+    std::vector<torch::Tensor> pieces;
+    for (const auto& [begin, stop] : {std::pair{0, 3}, {3, 4}, {4, 5}})
+        pieces.push_back(language_model->forward(language_model->embed(ids.slice(1, begin, stop)),
+                                                 visible.slice(1, 0, stop), &cache));
+    EXPECT_LT(testing::largest_difference(torch::cat(pieces, 1), whole), 1e-5);
+    cache.select(torch::tensor({1, 1}));
+    EXPECT_TRUE(cache.layers[0].keys[0].equal(cache.layers[0].keys[1]));
+}
+
+class CaptionerFolder : public ::testing::Test {
+  protected:
+    CaptionerFolder() {
+        for (const auto& entry : fs::directory_iterator(fixture("blip")))
+            fs::copy_file(entry.path(), folder_.path() / entry.path().filename());
+        fs::permissions(folder_.path() / "model.safetensors", fs::perms::owner_all);
+    }
+    std::string failure() const {
+        return message_of<InputError>([&] { load_captioner(folder_.path()); });
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(CaptionerFolder, GivesSentences) {
+    const auto captioner = load_captioner(folder_.path());
+    torch::manual_seed(2);
+    const torch::Tensor bytes = torch::randint(256, {50, 70, 4}, torch::kUInt8);
+    CaptionOptions options;
+    options.max_new_tokens = 6;
+    options.beams = 2;
+    const std::string plain = captioner->caption(bytes, options);
+    EXPECT_EQ(captioner->caption(bytes, options), plain);
+    // Several at once are as each by itself.
+    const torch::Tensor other = torch::randint(256, {32, 32, 3}, torch::kUInt8);
+    const auto both = captioner->captions({bytes, other}, options);
+    ASSERT_EQ(both.size(), 2u);
+    EXPECT_EQ(both[0].text, plain);
+    EXPECT_EQ(both[1].text, captioner->caption(other, options));
+    options.prefix = "A picture of";
+    EXPECT_TRUE(captioner->caption(bytes, options).starts_with("a picture of"));
+    options.prefix = std::string(200, 'x') + " " + std::string(200, '!');
+    EXPECT_THROW(captioner->caption(bytes, options), InputError);
+}
+
+TEST_F(CaptionerFolder, TellsWhichCaptionsCameToAnEnd) {
+    const auto captioner = load_captioner(folder_.path());
+    torch::manual_seed(2);
+    std::vector<torch::Tensor> pictures;
+    for (int i = 0; i < 8; ++i)
+        pictures.push_back(torch::randint(256, {32, 32, 3}, torch::kUInt8));
+    CaptionOptions options;
+    const auto captions = captioner->captions(pictures, options);
+    options.max_new_tokens = 40;
+    const auto longer = captioner->captions(pictures, options);
+    int ended = 0;
+    for (std::size_t i = 0; i < captions.size(); ++i) {
+        ended += captions[i].ended ? 1 : 0;
+        EXPECT_EQ(captions[i].text == longer[i].text, captions[i].ended) << i;
+    }
+    EXPECT_GT(ended, 0);
+    EXPECT_LT(ended, 8);
+}
+
+TEST_F(CaptionerFolder, NamesWhatIsMissingOrWrong) {
+    fs::resize_file(folder_.path() / "model.safetensors", 200000);
+    EXPECT_NE(failure().find("model.safetensors"), std::string::npos);
+    testing::write_file(folder_.path() / "preprocessor_config.json", R"({"size": 32})");
+    EXPECT_NE(failure().find("does not bring"), std::string::npos);
+    fs::remove(folder_.path() / "vocab.txt");
+    EXPECT_NE(failure().find("vocab.txt"), std::string::npos);
+    testing::write_file(folder_.path() / "vocab.txt", "[PAD]\n[UNK]\n[CLS]\n[SEP]\n");
+    EXPECT_NE(failure().find("[MASK]"), std::string::npos);
+    testing::write_file(folder_.path() / "config.json",
+                        R"({"architectures": ["BlipForQuestionAnswering"]})");
+    EXPECT_NE(failure().find("BlipForConditionalGeneration"), std::string::npos);
+    EXPECT_EQ(failure().find('\n'), std::string::npos);
+}
+
+TEST(Captioners, RejectOtherLanguageModels) {
+    EXPECT_THROW(OptConfig::from_config(Config({{"model_type", "t5"}}, "config.json")), InputError);
+    EXPECT_THROW(OptConfig::from_config(Config(
+                     {{"model_type", "opt"}, {"do_layer_norm_before", false}}, "config.json")),
+                 InputError);
+    EXPECT_THROW(Blip2Config::from_config(Config(nlohmann::json::object(), "config.json")),
+                 InputError);
+}
+
+}  // namespace
+}  // namespace item3d

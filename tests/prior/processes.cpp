@@ -1,0 +1,238 @@
+// What processes that train together ask of their environment and of each other.
+#include "item3d/core/error.h"
+#include "item3d/prior/training/process_group.h"
+#include "item3d/prior/training/settings_check.h"
+#include "item3d/prior/training/training_loop.h"
+#include "support/prior.h"
+
+#include <gtest/gtest.h>
+#include <torch/nn/modules/linear.h>
+
+#include <functional>
+#include <list>
+#include <optional>
+
+namespace item3d {
+namespace {
+
+using testing::ScopedVariable;
+
+/// The message of the InputError, or what else happened.
+std::string input_error(const std::function<void()>& function) {
+    try {
+        function();
+    } catch (const InputError& error) {
+        return error.what();
+    } catch (const std::exception& error) {
+        return std::string("not an InputError: ") + error.what();
+    }
+    return "nothing was thrown";
+}
+
+using Variables = std::vector<std::pair<const char*, const char*>>;
+
+/// The group of an environment with these alone.
+ProcessGroup group_of(const Variables& variables) {
+    std::list<ScopedVariable> set;
+    for (const char* name : {"RANK", "WORLD_SIZE", "MASTER_ADDR", "MASTER_PORT"})
+        set.emplace_back(name, std::nullopt);
+    for (const auto& [name, value] : variables)
+        set.emplace_back(name, value);
+    return ProcessGroup::from_environment(std::chrono::seconds(1));
+}
+
+TEST(PriorProcesses, WithoutVariablesThereIsOne) {
+    for (const Variables& alone : {Variables{}, Variables{{"WORLD_SIZE", "1"}},
+                                   Variables{{"RANK", "0"}, {"WORLD_SIZE", "1"}}}) {
+        const ProcessGroup group = group_of(alone);
+        EXPECT_EQ(group.size(), 1);
+        EXPECT_TRUE(group.first());
+        torch::Tensor ones = torch::ones({3});
+        group.sum(ones);
+        group.barrier();
+        group.wait_for_first();
+        EXPECT_TRUE(torch::equal(ones, torch::ones({3})));
+        EXPECT_EQ(group.broadcast("text"), "text");
+    }
+}
+
+TEST(PriorProcesses, AnEnvironmentThatCannotBeIsAnInputError) {
+    const auto expect = [](const Variables& variables, const std::string& subject,
+                           const std::string& problem) {
+        const std::string message = input_error([&] { group_of(variables); });
+        EXPECT_EQ(message.find(subject + ": "), 0u) << message;
+        EXPECT_NE(message.find(problem), std::string::npos) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    };
+    expect({{"RANK", "0"}}, "WORLD_SIZE", "not set");
+    expect({{"WORLD_SIZE", "2"}}, "RANK", "not set");
+    expect({{"WORLD_SIZE", "two"}, {"RANK", "0"}}, "WORLD_SIZE", "found 'two'");
+    expect({{"WORLD_SIZE", "0"}, {"RANK", "0"}}, "WORLD_SIZE", "found '0'");
+    expect({{"WORLD_SIZE", "2"}, {"RANK", "2"}}, "RANK", "from 0 to 1, found '2'");
+    expect({{"WORLD_SIZE", "2"}, {"RANK", "-1"}}, "RANK", "found '-1'");
+    expect({{"WORLD_SIZE", "1"}, {"RANK", "1"}}, "RANK", "from 0 to 0, found '1'");
+    expect({{"WORLD_SIZE", "2"}, {"RANK", "0"}}, "MASTER_ADDR", "not set");
+    expect({{"WORLD_SIZE", "2"}, {"RANK", "0"}, {"MASTER_ADDR", "localhost"}}, "MASTER_PORT",
+           "not set");
+    const auto at = [](const char* rank, const std::string& port) {
+        return Variables{{"WORLD_SIZE", "2"},
+                         {"RANK", rank},
+                         {"MASTER_ADDR", "localhost"},
+                         {"MASTER_PORT", port.c_str()}};
+    };
+    expect(at("0", "70000"), "MASTER_PORT", "found '70000'");
+    expect(at("0", "29500x"), "MASTER_PORT", "found '29500x'");
+    // Nobody is there, or does not come.
+    const std::string port = std::to_string(testing::free_port());
+    const std::string where = "MASTER_ADDR=localhost MASTER_PORT=" + port;
+    expect(at("1", port), where, "cannot join");
+    expect(at("0", port), where, "1 of 2 processes have come after 1 s");
+}
+
+TEST(PriorProcesses, ExchangeNumbersTextsAndTensors) {
+    if (!testing::is_process()) {
+        const std::filesystem::path folder = std::filesystem::temp_directory_path() /
+                                             ("item3d_exchange_" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder);
+        for (const auto& result : testing::run_as_processes(folder))
+            EXPECT_EQ(result.code, 0) << result.output;
+        std::filesystem::remove_all(folder);
+        return;
+    }
+    const ProcessGroup group = ProcessGroup::from_environment();
+    ASSERT_EQ(group.size(), 2);
+    const auto rank = static_cast<float>(group.rank());
+    group.wait_for_first();
+    torch::manual_seed(4);
+    const torch::Tensor numbers = torch::randn({2, 30011});
+    torch::Tensor sum = numbers[group.rank()].clone();
+    group.sum(sum);
+    EXPECT_TRUE(torch::equal(sum, numbers[0] + numbers[1]));
+
+    EXPECT_EQ(group.broadcast(group.first() ? "of the first" : "another"), "of the first");
+    EXPECT_EQ(group.broadcast(std::string()), "");
+    const NamedTensors got = group.broadcast(
+        NamedTensors{{"half", torch::full({2, 3}, 5 + rank, torch::kHalf)},
+                     {"none", torch::empty({0, 4})},
+                     {"long", torch::scalar_tensor(7 + group.rank(), torch::kInt64)}});
+    ASSERT_EQ(got.size(), 3u);
+    EXPECT_TRUE(torch::equal(got[0].second, torch::full({2, 3}, 5, torch::kHalf)));
+    EXPECT_EQ(got[1].second.sizes(), (std::vector<std::int64_t>{0, 4}));
+    EXPECT_EQ(got[2].second.item<std::int64_t>(), 7);
+
+    const nlohmann::json settings{{"batch", 32 + group.rank()}, {"seed", 1}};
+    const std::string message = input_error([&] { check_same_settings(group, settings); });
+    if (group.first())
+        EXPECT_EQ(message, "nothing was thrown");
+    else
+        EXPECT_NE(message.find("process 1 of 2: has other settings than process 0: "
+                               "batch: 33 instead of 32;"),
+                  std::string::npos)
+            << message;
+    group.barrier();
+}
+
+/// A small training whose loss depends on the rows and on the global rank.
+struct Toy {
+    Toy(const std::filesystem::path& checkpoint, int count, const ProcessGroup& processes = {}) {
+        options.label = "toy";
+        options.checkpoint = checkpoint;
+        options.samples = 80;
+        options.rows = 16;
+        options.batch = 4;
+        options.processes = processes;
+        for (int rank = 0; rank < count; ++rank) {
+            torch::manual_seed(5 + processes.rank());  // all get process 0's values
+            layers.emplace_back(70, 70);
+        }
+    }
+    std::vector<LoopReplica> replicas() {
+        std::vector<LoopReplica> result;
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const auto count = static_cast<int>(layers.size());
+            const int rank = options.processes.rank() * count + static_cast<int>(i);
+            result.push_back({{layers[i].ptr()}, [this, i, rank](const auto& rows, auto step) {
+                                  if (step == dies_at && rank == 1) ::_exit(7);
+                                  return loss(layers[i], rows, rank);
+                              }});
+        }
+        return result;
+    }
+    static torch::Tensor loss(torch::nn::Linear layer, const std::vector<std::int64_t>& rows,
+                              int rank) {
+        const torch::Tensor columns = torch::arange(70) + .5f * static_cast<float>(rank);
+        const torch::Tensor x = torch::sin(torch::tensor(rows).unsqueeze(1) * columns);
+        return (layer(x) - x.flip(1)).square().mean();
+    }
+    void train(bool resume, std::int64_t stop_after = 0) {
+        options.resume = resume;
+        options.stop_after = stop_after;
+        TrainingLoop(options, replicas()).run([](const auto&, const auto&) {});
+    }
+
+    LoopOptions options;
+    std::vector<torch::nn::Linear> layers;
+    std::int64_t dies_at = -1;
+};
+
+/// Also when they stop and go on, when one of them alone is told to stop, and when they share no
+/// folder.
+TEST(PriorProcesses, TwoTrainAsTwoReplicasDo) {
+    if (testing::is_process()) {
+        const ProcessGroup processes = ProcessGroup::from_environment();
+        const auto folder = testing::process_folder();
+        const std::filesystem::path file =
+            folder / (processes.first() ? "two.safetensors" : "nobody/none.safetensors");
+        Toy toy(file, 1, processes);
+        EXPECT_THROW(toy.train(false, processes.first() ? 0 : 24), Interrupted);
+        Toy again(file, 1, processes);
+        again.train(true);
+        EXPECT_FALSE(std::filesystem::exists(folder / "nobody"));
+        return;
+    }
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("item3d_equal_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    Toy(folder / "one.safetensors", 2).train(false);
+    for (const auto& result : testing::run_as_processes(folder))
+        EXPECT_EQ(result.code, 0) << result.output;
+    const auto one = SafeTensors::open(folder / "one.safetensors");
+    const auto two = SafeTensors::open(folder / "two.safetensors");
+    for (const char* name : {"values", "average", "first_moment", "second_moment", "steps"})
+        EXPECT_TRUE(torch::equal(one.tensor(name), two.tensor(name))) << name;
+    EXPECT_EQ(two.tensor("record")[0].item<double>(), 80);
+    std::filesystem::remove_all(folder);
+}
+
+TEST(PriorProcesses, AProcessThatDiesIsSaidAndTheCheckpointKept) {
+    if (!testing::is_process()) {
+        const std::filesystem::path folder =
+            std::filesystem::temp_directory_path() / ("item3d_lost_" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder);
+        const auto results = testing::run_as_processes(folder);
+        EXPECT_EQ(results[0].code, 0) << results[0].output;
+        EXPECT_EQ(results[1].code, 7) << results[1].output;
+        const auto checkpoint = SafeTensors::open(folder / "checkpoint.safetensors");
+        EXPECT_EQ(checkpoint.tensor("steps").item<std::int64_t>(), 3);
+        EXPECT_EQ(checkpoint.tensor("record")[0].item<double>(), 3 * 2 * 4);
+        std::filesystem::remove_all(folder);
+        return;
+    }
+    Toy toy(testing::process_folder() / "checkpoint.safetensors", 1,
+            ProcessGroup::from_environment());
+    toy.dies_at = 3;
+    TrainingLoop loop(toy.options, toy.replicas());
+    try {
+        loop.run([](const auto&, const auto&) {});
+        FAIL() << "nobody was missed";
+    } catch (const LostProcess& error) {
+        EXPECT_EQ(error.code(), ExitCode::no_resource);
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("another process of this training is gone"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace item3d

@@ -1,0 +1,121 @@
+// Replicas that train together, on a network small enough for a test.
+#include "item3d/prior/training/replicas.h"
+
+#include "item3d/prior/data/workers.h"
+#include "item3d/prior/training/training_loop.h"
+
+#include <gtest/gtest.h>
+#include <torch/nn/modules/conv.h>
+#include <torch/nn/modules/linear.h>
+#include <torch/nn/pimpl.h>
+#include <torch/nn/utils/clip_grad.h>
+#include <torch/optim/adamw.h>
+
+#include <memory>
+#include <stdexcept>
+
+namespace item3d {
+namespace {
+
+struct Network : torch::nn::Module {
+    torch::nn::Conv2d convolution{nullptr};
+    torch::nn::Linear linear{nullptr};
+    Network() {
+        torch::manual_seed(3);
+        convolution = register_module("convolution", torch::nn::Conv2d(2, 3, 3));
+        linear = register_module("linear", torch::nn::Linear(12, 1));
+    }
+    torch::Tensor loss(const torch::Tensor& x) {
+        return linear(torch::tanh(convolution(x)).flatten(1)).square().mean();
+    }
+};
+
+/// Trains `ranks` replicas for some steps on equal parts of the same batches.
+torch::Tensor train_toy(int ranks, int steps) {
+    std::vector<std::shared_ptr<Network>> networks;
+    std::vector<std::unique_ptr<FlatModel>> flat;
+    for (int rank = 0; rank < ranks; ++rank) {
+        networks.push_back(std::make_shared<Network>());
+        flat.push_back(std::make_unique<FlatModel>(
+            std::vector<std::shared_ptr<torch::nn::Module>>{networks.back()}));
+    }
+    torch::manual_seed(9);
+    const torch::Tensor batch = torch::randn({8, 2, 4, 4});
+    ReplicaGroup group(std::move(flat), OptimizerOptions{});
+    run_ranks(ranks, [&](int rank) {
+        const auto part = 8 / ranks;
+        for (int step = 0; step < steps; ++step) {
+            networks[static_cast<std::size_t>(rank)]
+                ->loss(batch.slice(0, rank * part, (rank + 1) * part))
+                .backward();
+            group.step(rank, {.learning_rate = 1e-2f, .ema_decay = .9f});
+        }
+    });
+    for (int rank = 1; rank < ranks; ++rank)
+        EXPECT_TRUE(torch::equal(group.replica(0).values, group.replica(rank).values));
+    EXPECT_EQ(group.steps(), steps);
+    return group.replica(0).values.clone();
+}
+
+TEST(PriorReplicas, AveragedGradientsAreThoseOfTheWholeBatch) {
+    const torch::Tensor one = train_toy(1, 5), two = train_toy(2, 5), four = train_toy(4, 5);
+    EXPECT_LT((one - two).abs().max().item<float>(), 1e-5);
+    EXPECT_LT((one - four).abs().max().item<float>(), 1e-5);
+    EXPECT_TRUE(torch::equal(two, train_toy(2, 5)));  // no trace of timing
+}
+
+TEST(PriorReplicas, StepIsAdamW) {
+    auto ours = std::make_shared<Network>(), reference = std::make_shared<Network>();
+    std::vector<std::unique_ptr<FlatModel>> flat;
+    flat.push_back(
+        std::make_unique<FlatModel>(std::vector<std::shared_ptr<torch::nn::Module>>{ours}));
+    ReplicaGroup group(std::move(flat), OptimizerOptions{.clip_norm = .05f});
+    torch::optim::AdamW adam(reference->parameters(),
+                             torch::optim::AdamWOptions(1e-2).betas({.9, .99}).weight_decay(.01));
+    const torch::Tensor batch = torch::randn({4, 2, 4, 4});
+    for (int step = 0; step < 4; ++step) {
+        ours->loss(batch).backward();
+        group.step(0, {.learning_rate = 1e-2f});
+        adam.zero_grad();
+        reference->loss(batch).backward();
+        torch::nn::utils::clip_grad_norm_(reference->parameters(), .05);
+        adam.step();
+    }
+    for (const auto& item : reference->named_parameters())
+        EXPECT_LT((item.value() - ours->named_parameters()[item.key()]).abs().max().item<float>(),
+                  1e-5)
+            << item.key();
+}
+
+TEST(PriorReplicas, AFailingRankDoesNotLeaveTheOthersWaiting) {
+    std::vector<std::unique_ptr<FlatModel>> flat;
+    for (int rank = 0; rank < 2; ++rank)
+        flat.push_back(std::make_unique<FlatModel>(
+            std::vector<std::shared_ptr<torch::nn::Module>>{std::make_shared<Network>()}));
+    ReplicaGroup group(std::move(flat), OptimizerOptions{});
+    EXPECT_THROW(run_ranks(2,
+                           [&](int rank) {
+                               try {
+                                   group.step(rank, {});
+                                   if (rank == 1) throw std::logic_error("broken");
+                                   for (;;)
+                                       group.step(rank, {});
+                               } catch (...) {
+                                   group.fail();
+                                   throw;
+                               }
+                           }),
+                 std::exception);
+}
+
+TEST(PriorLearningRate, RisesStaysAndFalls) {
+    EXPECT_LT(learning_rate_part(0, 600000), .05);
+    EXPECT_DOUBLE_EQ(learning_rate_part(10000, 600000), 1);
+    // A longer training goes on where a shorter one still had its plateau.
+    EXPECT_DOUBLE_EQ(learning_rate_part(300000, 600000), learning_rate_part(300000, 900000));
+    EXPECT_NEAR(learning_rate_part(510000, 600000), .5, 1e-9);
+    EXPECT_NEAR(learning_rate_part(600000, 600000), .02, 1e-9);
+}
+
+}  // namespace
+}  // namespace item3d

@@ -1,0 +1,315 @@
+// Whole reconstructions of small pictures that our own renderer drew.
+#include "item3d/core/error.h"
+#include "item3d/io/load.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/reconstruct/outputs/scores.h"
+#include "item3d/reconstruct/outputs/stage_preview.h"
+#include "item3d/reconstruct/reconstruct.h"
+#include "item3d/reconstruct/surface/plain_model.h"
+#include "item3d/render/textured.h"
+#include "item3d/scene/sphere.h"
+#include "support/reconstruct.h"
+
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A sphere with broad stripes.
+Model striped_sphere() {
+    Model model = make_unit_sphere(24, 32);
+    for (Vec3& position : model.primitives.front().positions)
+        position *= 0.9f;
+    Material& material = model.materials.back();
+    material.metallic_factor = 0;
+    material.roughness_factor = 0.6f;
+    Texture stripes;
+    stripes.image = Image(64, 32, 3);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (int c = 0; c < 3; ++c)
+                stripes.image.at(x, y, c) = (x / 8) % 2 == 0 ? 0.8f : (c == 0 ? 0.7f : 0.2f);
+    model.textures.push_back(stripes);
+    material.base_color_texture = 0;
+    return model;
+}
+
+/// A NeRF-synthetic folder of the sphere in the light of noon, and sphere.glb.
+fs::path sphere_dataset(const std::string& name, int train, int test, int size) {
+    const torch::NoGradGuard no_gradient;
+    const fs::path folder = testing::fresh_folder(name);
+    const Model model = striped_sphere();
+    save_model(folder / "sphere.glb", model);
+    const Geometry geometry = Geometry::from_model(model);
+    const TexturedMaterials materials(model);
+    const EnvironmentLight light = prefilter(make_light_preset("noon", 64), 64);
+    RenderOptions options;
+    options.width = options.height = size;
+    for (const auto& [split, count] : {std::pair{"train", train}, std::pair{"test", test}}) {
+        fs::create_directories(folder / split);
+        nlohmann::json document{{"camera_angle_x", 0.7}, {"frames", nlohmann::json::array()}};
+        for (int i = 0; i < count; ++i) {
+            Camera camera =
+                orbit_camera(Vec3(0), 4, 2.4f * static_cast<float>(i) + (count == test ? 1.1f : 0),
+                             0.9f * std::sin(1.7f * static_cast<float>(i)), 0.7f);
+            const std::string file = std::string(split) + "/r_" + std::to_string(i);
+            const Image picture =
+                to_image(render(geometry, materials, light, {camera}, options)[0]);
+            Image straight = picture;
+            for (int p = 0; p < size * size; ++p) {
+                float* pixel = &straight.pixels[static_cast<std::size_t>(4 * p)];
+                for (int c = 0; c < 3; ++c)
+                    pixel[c] = pixel[3] > 0
+                                   ? linear_to_srgb(std::clamp(pixel[c] / pixel[3], 0.0f, 1.0f))
+                                   : 0.0f;
+            }
+            save_image(folder / (file + ".png"), straight);
+            document["frames"].push_back(
+                {{"file_path", "./" + file},
+                 {"transform_matrix",
+                  testing::rows_of(testing::y_up_to_z_up() * camera.camera_to_world)}});
+        }
+        write_atomically(folder / ("transforms_" + std::string(split) + ".json"),
+                         std::string_view(document.dump()));
+    }
+    return folder;
+}
+
+TEST(Reconstruct, MaterialsAndLightOfAGivenMesh) {
+    ReconstructRequest request;
+    request.dataset = sphere_dataset("mesh", 12, 3, 48);
+    request.output = testing::fresh_folder("mesh_out");
+    request.mesh = request.dataset / "sphere.glb";
+    request.reference = request.mesh;
+    request.move_vertices = false;
+    request.refine.iterations = 150;
+    request.refine.light_every = 3;  // most of a step's time is the light's
+    request.texture_size = 128;
+    const nlohmann::json summary = reconstruct(request);
+    EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 25);
+    EXPECT_GT(summary["scores"]["test"]["mask_overlap"].get<double>(), 0.97);
+    // The mesh is the given one.
+    EXPECT_LT(summary["scores"]["chamfer"].get<double>(), 0.01);
+
+    const Model model = load_model(request.output / "model.glb");
+    EXPECT_GE(model.materials[0].base_color_texture, 0);
+    EXPECT_GE(model.materials[0].metallic_roughness_texture, 0);
+    EXPECT_EQ(load_image(request.output / "light.hdr").width, 128);
+    const std::string report = read_text(request.output / "report.html");
+    EXPECT_NE(report.find("Held-out views"), std::string::npos);
+    EXPECT_EQ(report.find("http://"), std::string::npos);
+    EXPECT_EQ(nlohmann::json::parse(read_text(request.output / "reconstruct.json")), summary);
+}
+
+TEST(Reconstruct, ShapeFromPicturesAlone) {
+    ReconstructRequest request;
+    request.dataset = sphere_dataset("shape", 16, 3, 48);
+    request.output = testing::fresh_folder("shape_out");
+    request.reference = request.dataset / "sphere.glb";
+    request.shape.cells = {12, 24};
+    request.shape.iterations = 80;
+    request.shape.triangles = 2000;
+    request.refine.iterations = 60;
+    request.refine.light_every = 4;
+    request.texture_size = 128;
+    const nlohmann::json summary = reconstruct(request);
+    EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 22);
+    EXPECT_GT(summary["scores"]["test"]["mask_overlap"].get<double>(), 0.95);
+    // A cell of the finest grid is 0.04; so few, and so few steps, leave the shape about as rough.
+    EXPECT_LT(summary["scores"]["chamfer"].get<double>(), 0.06);
+    EXPECT_TRUE(summary["warnings"].empty());
+}
+
+/// A few steps of both stages.
+ReconstructRequest short_request(const fs::path& dataset, const std::string& output) {
+    ReconstructRequest request;
+    request.dataset = dataset;
+    request.output = testing::fresh_folder(output);
+    request.shape.cells = {8, 16};
+    request.shape.iterations = 9;  // three on the coarse lattice
+    request.shape.triangles = 600;
+    request.refine.iterations = 6;  // shadows are traced at every second
+    request.texture_size = 64;
+    request.command = "item3d reconstruct";
+    return request;
+}
+
+TEST(Reconstruct, ResumesToTheSameBytesInEitherStageAndBetween) {
+    const fs::path dataset = sphere_dataset("resume", 6, 2, 32);
+    const ReconstructRequest whole = short_request(dataset, "resume_whole");
+    const nlohmann::json summary = reconstruct(whole);
+
+    ReconstructRequest parts = short_request(dataset, "resume_parts");
+    // Where a lattice ends, in the next, where the shape ends, and after shadows were traced.
+    for (const int stop : {3, 5, 9, 12}) {
+        parts.stop_after = stop;
+        try {
+            reconstruct(parts);
+            FAIL() << "not interrupted at " << stop;
+        } catch (const Interrupted& error) {
+            EXPECT_STREQ(error.what(), ("iteration " + std::to_string(stop) +
+                                        " of 15 is kept; go on with: item3d reconstruct --resume")
+                                           .c_str());
+        }
+        EXPECT_FALSE(fs::exists(parts.output / "model.glb"));
+        parts.resume = true;
+    }
+    parts.stop_after = 0;
+    const nlohmann::json resumed = reconstruct(parts);
+    for (const char* file : {"model.glb", "light.hdr"})
+        EXPECT_EQ(read_bytes(whole.output / file), read_bytes(parts.output / file)) << file;
+    EXPECT_EQ(summary["scores"], resumed["scores"]);
+
+    ReconstructRequest other = parts;
+    other.shape.cells = {10, 20};
+    EXPECT_THROW(reconstruct(other), InputError);
+    other = parts;
+    other.dataset_options.longest_side = 24;
+    EXPECT_THROW(reconstruct(other), InputError);
+    other = parts;
+    other.mesh = dataset / "sphere.glb";
+    EXPECT_THROW(reconstruct(other), InputError);
+    Bytes broken = read_bytes(parts.output / "checkpoint.safetensors");
+    broken.resize(broken.size() / 2);
+    write_atomically(parts.output / "checkpoint.safetensors",
+                     std::span<const std::uint8_t>(broken));
+    EXPECT_THROW(reconstruct(parts), InputError);
+    EXPECT_EQ(read_bytes(whole.output / "model.glb"), read_bytes(parts.output / "model.glb"));
+}
+
+TEST(Reconstruct, ResumesWithAGivenMesh) {
+    const fs::path dataset = sphere_dataset("resume_mesh", 6, 2, 32);
+    ReconstructRequest whole = short_request(dataset, "resume_mesh_whole");
+    whole.mesh = dataset / "sphere.glb";
+    whole.move_vertices = false;
+    reconstruct(whole);
+    ReconstructRequest parts = whole;
+    parts.output = testing::fresh_folder("resume_mesh_parts");
+    parts.stop_after = 3;
+    EXPECT_THROW(reconstruct(parts), Interrupted);
+    parts.stop_after = 0;
+    parts.resume = true;
+    reconstruct(parts);
+    EXPECT_EQ(read_bytes(whole.output / "model.glb"), read_bytes(parts.output / "model.glb"));
+}
+
+TEST(Reconstruct, ThePreviewShowsPhotographsAndWhatThereIs) {
+    const fs::path dataset_folder = sphere_dataset("preview", 6, 2, 32);
+    const Dataset dataset = load_dataset(dataset_folder);
+    const fs::path picture = testing::fresh_folder("preview_out") / "preview.png";
+    StagePreview preview(picture, dataset);
+    const Model model = load_plain_model(dataset_folder / "sphere.glb");
+    const auto views = make_targets(dataset.train, model.bounds());
+    Appearance appearance = make_appearance(model.bounds(), views, 0);
+    MovableMesh mesh(model, false);
+    RefineOptions options;
+    options.shadows = false;
+    Refinement stage(appearance, mesh, model, views, options);
+    stage.step();
+    preview.update(stage);
+    const Image image = load_image(picture);
+    EXPECT_EQ(image.width, 3 * 32);
+    EXPECT_EQ(image.height, 3 * 32);
+    // The photograph and the drawing below it begin and end at the same places.
+    for (const int x : {0, 16, 31}) {
+        const float paper = image.at(0, 0, 0);
+        const bool in_photograph = std::abs(image.at(x, 16, 2) - paper) > 0.02f;
+        const bool in_drawing = std::abs(image.at(x, 48, 2) - paper) > 0.02f;
+        EXPECT_EQ(in_photograph, x == 16);
+        EXPECT_EQ(in_drawing, x == 16);
+    }
+    // A preview that cannot be written does not stop anything.
+    fs::remove_all(picture.parent_path());
+    StagePreview(picture / "below" / "nothing.png", dataset).update(stage);
+}
+
+TEST(Reconstruct, AConstantFieldIsTheMaterialOfThePlainModel) {
+    NeuralTextureOptions options;
+    options.ranges = reconstruction_ranges();
+    NeuralTexture field = constant_field(options);
+    Model model = striped_sphere();
+    set_constant_material(model, options.ranges);
+    const MaterialSample sample = field->forward(torch::rand({20, 3}) - 0.5f);
+    const Material& material = model.materials[0];
+    EXPECT_NEAR(sample.base_color.min().item<float>(), material.base_color_factor.x, 1e-5);
+    EXPECT_NEAR(sample.base_color.max().item<float>(), material.base_color_factor.x, 1e-5);
+    EXPECT_NEAR(sample.orm[7][1].item<float>(), material.roughness_factor, 1e-6);
+    EXPECT_NEAR(sample.orm[7][2].item<float>(), material.metallic_factor, 1e-6);
+    EXPECT_NEAR(sample.normal[3][2].item<float>(), 1, 1e-6);
+}
+
+TEST(Refine, LossesSeeWhatTheyShould) {
+    const torch::Tensor target = torch::full({1, 4, 4, 4}, 0.5f);
+    torch::Tensor same = target.clone();
+    const torch::Tensor background = torch::full({3}, 0.2f);
+    EXPECT_EQ(picture_loss(same, target, background).item<float>(), 0);
+    EXPECT_EQ(mask_loss(same, target).item<float>(), 0);
+    same.narrow(3, 0, 3).fill_(0.7f);
+    EXPECT_GT(picture_loss(same, target, background).item<float>(), 0.02f);
+    // What is brighter than a photograph can be is right where the photograph is white.
+    torch::Tensor white = torch::ones({1, 4, 4, 4}), brighter = white.clone();
+    brighter.narrow(3, 0, 3).fill_(5.0f);
+    EXPECT_EQ(picture_loss(brighter, white, background).item<float>(), 0);
+
+    TrainableLight light(16, 0.5f);
+    EXPECT_NEAR(light.whiteness_loss().item<float>(), 0, 1e-6);
+    {
+        const torch::NoGradGuard no_gradient;
+        light.parameters().front().select(2, 0).add_(1.0f);
+    }
+    EXPECT_GT(light.whiteness_loss().item<float>(), 0.1f);
+    light.prefiltered().diffuse.sum().backward();
+    for (const torch::Tensor& level : light.parameters())
+        EXPECT_GT(level.grad().abs().min().item<float>(), 0);
+}
+
+TEST(Refine, LightAloneIsComparedWithThePhotographsLargestChannel) {
+    const Model model = striped_sphere();
+    const Geometry geometry = Geometry::from_model(model);
+    TargetView view{"view", testing::ring_of_cameras(1).front(), torch::zeros({1, 24, 24, 4})};
+    fit_depth_range(view.camera, model.bounds());
+    Appearance appearance = make_appearance(model.bounds(), {view}, 0);
+    const EnvironmentLight light = appearance.light.prefiltered();
+    const RenderedView rendered = render_view(geometry, appearance.field, light, view);
+    MaterialSample white = rendered.shaded;
+    white.base_color = torch::ones_like(white.base_color);
+    white.orm = white.orm * torch::tensor({1.0f, 1.0f, 0.0f});
+    // Red paint, whose largest channel is that of paper.
+    const torch::Tensor lit = shade(rendered.surface, white, light).mean(1, true).detach() * 0.8f;
+    const torch::Tensor red = torch::cat({lit, 0.1f * lit, 0.2f * lit, torch::ones_like(lit)}, 1);
+    const auto picture = [&](float exposure) {
+        const torch::Tensor scale = torch::tensor({exposure, exposure, exposure, 1.0f});
+        return scatter(red * scale, rendered.surface, rendered.raster, torch::zeros({4}));
+    };
+    EXPECT_NEAR(demodulated_light_loss(rendered, light, picture(1)).item<float>(), 0, 1e-4);
+    const torch::Tensor darker = demodulated_light_loss(rendered, light, picture(0.5f));
+    EXPECT_GT(darker.item<float>(), 0.05f);
+    darker.backward();
+    // What is to be mended is the light, and not the base colour.
+    EXPECT_GT(appearance.light.parameters().front().grad().sum().item<float>(), 0);
+    EXPECT_EQ(demodulated_light_loss(rendered, light, view.image).item<float>(), 0);
+}
+
+TEST(MovableMesh, SeamsMoveAsOne) {
+    Model model = striped_sphere();
+    MovableMesh mesh(model, true);
+    const std::int64_t places = mesh.offsets().size(0);
+    EXPECT_LT(places, static_cast<std::int64_t>(model.primitives[0].positions.size()));
+    EXPECT_NEAR(mesh.crumpling().item<float>(), 0, 1e-9);
+    {
+        const torch::NoGradGuard no_gradient;
+        mesh.offsets().add_(torch::tensor({0.1f, 0.0f, 0.0f}));
+    }
+    EXPECT_NEAR(mesh.crumpling().item<float>(), 0, 1e-6);  // moved as one
+    const Model moved = mesh.apply(model);
+    for (std::size_t v = 0; v < moved.primitives[0].positions.size(); ++v)
+        EXPECT_NEAR(moved.primitives[0].positions[v].x, model.primitives[0].positions[v].x + 0.1f,
+                    1e-5);
+    mesh.geometry().positions.sum().backward();
+    EXPECT_GT(mesh.offsets().grad().min().item<float>(), 0);
+}
+
+}  // namespace
+}  // namespace item3d

@@ -1,0 +1,99 @@
+#include "support/render.h"
+
+namespace item3d {
+namespace {
+
+using testing::front_camera;
+using testing::make_geometry;
+using testing::make_quad;
+
+torch::Tensor coverage(const Geometry& geometry, const std::vector<Camera>& cameras, int size) {
+    const Raster raster = rasterize(geometry, cameras, size, size);
+    return antialias((raster.triangle >= 0).to(torch::kFloat32).unsqueeze(-1), raster, geometry);
+}
+
+TEST(Antialias, CoverageOfAnAxisAlignedQuadIsExact) {
+    // One unit spans 16 pixels at distance 1 / tan(0.5) of a field of view of 1.
+    constexpr int size = 32;
+    const float distance = 1 / std::tan(0.5f);
+    // Edges between pixel centres: 4.3 pixels left of the centre, 6.7 right, 3.2 below, 5.9 above.
+    Geometry quad = make_quad(1, 1);
+    quad.positions =
+        torch::tensor({-4.3f, -3.2f, 0.f, 6.7f, -3.2f, 0.f, 6.7f, 5.9f, 0.f, -4.3f, 5.9f, 0.f})
+            .reshape({4, 3}) /
+        16;
+    const torch::Tensor picture = coverage(quad, {front_camera(distance, 1.0f)}, size)[0];
+    const auto at = [&](int x, int y) { return picture[y][x][0].item<float>(); };
+    const int middle = 16;
+    EXPECT_NEAR(at(middle - 5, middle), 0.3, 1e-4);  // spans [-5, -4]
+    EXPECT_NEAR(at(middle + 6, middle), 0.7, 1e-4);  // spans [6, 7]
+    EXPECT_NEAR(at(middle, middle + 3), 0.2, 1e-4);
+    EXPECT_NEAR(at(middle, middle - 6), 0.9, 1e-4);
+    EXPECT_EQ(at(middle, middle), 1);
+    EXPECT_EQ(at(1, 1), 0);
+    // The inner diagonal is no silhouette.
+    EXPECT_EQ(picture.narrow(0, middle - 5, 7).narrow(1, middle - 3, 8).min().item<float>(), 1);
+}
+
+TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
+    constexpr int size = 64;
+    const std::vector<Camera> cameras{front_camera(1 / std::tan(0.5f), 1.0f)};
+    const Geometry triangle = make_geometry(
+        torch::tensor({-0.71f, -0.52f, 0.f, 0.83f, -0.31f, 0.f, 0.12f, 0.77f, 0.f}).reshape({3, 3}),
+        torch::tensor({0, 1, 2}).reshape({1, 3}));
+    const double area = 0.5 * (1.54 * 1.29 - 0.83 * 0.21) * (size / 2) * (size / 2);
+    // Each edge is blended along one axis: the sum is the area, whatever the slope.
+    EXPECT_NEAR(coverage(triangle, cameras, size).sum().item<double>(), area, 0.5);
+
+    // A sphere of triangles much smaller than pixels: its outline is still smoothed.
+    const Geometry sphere = Geometry::from_model(make_unit_sphere(200, 400));
+    const Camera camera = front_camera(4, 0.7f);
+    const double radius = 16 / std::tan(0.35) * std::tan(std::asin(0.25));
+    const torch::Tensor picture = coverage(sphere, {camera}, 32);
+    EXPECT_NEAR(picture.sum().item<double>(), M_PI * radius * radius, 1);
+    const torch::Tensor soft = (picture > 0.02f).logical_and(picture < 0.98f);
+    EXPECT_GT(soft.sum().item<int>(), 40);
+}
+
+TEST(Antialias, CreasesAndSeamsAreNotSilhouettes) {
+    // Two quads that meet at an edge with vertices of their own.
+    const Geometry folded = make_geometry(
+        torch::tensor({-1.f, -1.f, -.5f, 0.f, -1.f, 0.f,  0.f, 1.f, 0.f,  -1.f, 1.f, -.5f,  //
+                       0.f,  -1.f, 0.f,  1.f, -1.f, -.5f, 1.f, 1.f, -.5f, 0.f,  1.f, 0.f})
+            .reshape({8, 3}),
+        torch::tensor({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}).reshape({4, 3}));
+    const Raster raster = rasterize(folded, {front_camera(3, 0.3f)}, 16, 16);
+    ASSERT_GE(raster.triangle.min().item<int>(), 0);
+    torch::manual_seed(0);
+    const torch::Tensor picture = torch::rand({1, 16, 16, 3});
+    EXPECT_TRUE(torch::equal(antialias(picture, raster, folded), picture));
+}
+
+TEST(Antialias, Gradients) {
+    torch::manual_seed(4);
+    const torch::Tensor positions =
+        torch::tensor({-0.71f, -0.52f, 0.1f, 0.83f, -0.31f, 0.f, 0.12f, 0.77f, -0.2f,  //
+                       -0.4f, -0.7f, -1.f, 0.9f, 0.1f, -1.f, 0.5f, 0.9f, -1.f})
+            .reshape({6, 3});
+    const Geometry geometry =
+        make_geometry(positions, torch::tensor({0, 1, 2, 3, 4, 5}).reshape({2, 3}));
+    const std::vector<Camera> cameras{front_camera(3, 0.8f), front_camera(4, 0.6f)};
+    const torch::Tensor image = torch::rand({2, 24, 24, 3});
+    const Raster fixed = rasterize(geometry, cameras, 24, 24);
+    testing::check_gradient([&](const torch::Tensor& x) { return antialias(x, fixed, geometry); },
+                            image, 1e-2f, 1e-4);
+    // Visibility must stay the same between the two sides of a difference: a step that is small
+    // against the distance of the nearest pixel centre from an edge.
+    testing::check_gradient(
+        [&](const torch::Tensor& x) {
+            Geometry moved = geometry;
+            moved.positions = x;
+            Raster raster = rasterize(moved, cameras, 24, 24);
+            EXPECT_TRUE(torch::equal(raster.triangle, fixed.triangle));
+            return antialias(image, raster, moved);
+        },
+        positions, 2e-5f, 0.03);
+}
+
+}  // namespace
+}  // namespace item3d

@@ -1,0 +1,435 @@
+// The same operations on the CPU and on a CUDA device. Where there is no device those comparisons
+// are skipped, and what the device's way of summing and drawing must give is checked on the CPU.
+#include "item3d/core/error.h"
+#include "item3d/render/cuda/module.h"
+#include "item3d/render/textured.h"
+#include "item3d/render/topology.h"
+#include "support/render.h"
+
+#include <ATen/Context.h>
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+namespace item3d {
+namespace {
+
+using testing::front_camera;
+
+/// Asked before any test has LibTorch look for a device, which it does once.
+const bool has_device = cuda::cuda_available();
+
+#define SKIP_WITHOUT_DEVICE() \
+    if (!has_device)          \
+    GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with"
+
+/// Two layers of a sphere that lie over each other, and the cameras that look at them.
+struct Scene {
+    Geometry geometry;
+    std::vector<Camera> cameras{front_camera(3), front_camera(2.2f, 0.6f)};
+    int width = 96, height = 80;
+};
+
+Scene make_scene() {
+    Model model = make_unit_sphere(24, 48);
+    Primitive inner = model.primitives[0];
+    for (Vec3& position : inner.positions)
+        position = position * 0.7f + Vec3(0.5f, 0.1f, 0.4f);
+    model.primitives.push_back(inner);
+    Scene scene;
+    scene.geometry = Geometry::from_model(model);
+    scene.geometry.neighbours =
+        triangle_neighbours(scene.geometry.positions, scene.geometry.triangles);
+    return scene;
+}
+
+Geometry on_device(const Geometry& geometry) {
+    Geometry moved = geometry;
+    for (torch::Tensor* tensor :
+         {&moved.positions, &moved.normals, &moved.tangents, &moved.uvs, &moved.colors,
+          &moved.triangles, &moved.triangle_material, &moved.triangle_primitive, &moved.neighbours})
+        if (tensor->defined()) *tensor = tensor->to(torch::kCUDA);
+    return moved;
+}
+
+/// Differences relative to the largest value.
+double relative_error(const torch::Tensor& found, const torch::Tensor& expected) {
+    const torch::Tensor difference = (found.cpu().to(torch::kFloat64) - expected).abs().max();
+    return difference.item<double>() / std::max(1e-12, expected.abs().max().item<double>());
+}
+
+TEST(CudaModule, TableIsComplete) {
+#if !defined(ITEM3D_CUDA_MODULE)
+    GTEST_SKIP() << "built with ITEM3D_CUDA=OFF";
+#else
+    void* module = dlopen(ITEM3D_CUDA_MODULE, RTLD_NOW | RTLD_LOCAL);
+    ASSERT_NE(module, nullptr) << dlerror();
+    const auto function =
+        reinterpret_cast<const cuda::RenderTable* (*)()>(dlsym(module, "item3d_cuda_render"));
+    ASSERT_NE(function, nullptr) << dlerror();
+    const cuda::RenderTable* table = function();
+    EXPECT_EQ(table->header.version, cuda::table_version);
+    ASSERT_EQ(table->header.size, sizeof(cuda::RenderTable));
+    // After the header there are pointers to functions and nothing else.
+    std::vector<void*> entries((sizeof(cuda::RenderTable) - sizeof(cuda::TableHeader)) /
+                               sizeof(void*));
+    std::memcpy(entries.data(), &table->error_text, entries.size() * sizeof(void*));
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        EXPECT_NE(entries[i], nullptr) << "entry " << i;
+    // As the renderer opens it: beside the program.
+    EXPECT_EQ(cuda::render_table().header.size, sizeof(cuda::RenderTable));
+    EXPECT_THROW(cuda::find_table("item3d_cuda_nothing", 8), ResourceError);
+    EXPECT_THROW(cuda::find_table("item3d_cuda_render", 8), ResourceError);
+    if (cuda::cuda_available()) return;
+    // Without a device a launch says so.
+    const int error = table->finish_sums(FinishSumsParameters{}, 1, nullptr);
+    EXPECT_NE(error, 0);
+    EXPECT_GT(std::strlen(table->error_text(error)), 5u);
+#endif
+}
+
+/// Terms of very different sizes: in any order, the two passes give the same bytes, and they are
+/// those of the sum in double.
+TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
+    constexpr std::int64_t terms = 5000;
+    torch::manual_seed(5);
+    const torch::Tensor values =
+        (torch::randn({terms}) * torch::pow(10.0f, 6 * torch::randn({terms}))).contiguous();
+    const auto sum = [&](bool backwards) {
+        std::uint32_t largest = 0;
+        unsigned long long fixed = 0;
+        Accumulator accumulator;
+        accumulator.bits = accumulator_bits(terms);
+        accumulator.largest = &largest;
+        for (int pass = 0; pass < 2; ++pass) {
+            for (std::int64_t i = 0; i < terms; ++i)
+                accumulator.add(0, values.data_ptr<float>()[backwards ? terms - 1 - i : i]);
+            accumulator.fixed = &fixed;
+        }
+        float result = 0;
+        finish_sum({&largest, &fixed, accumulator.bits, &result}, 0);
+        return result;
+    };
+    EXPECT_EQ(sum(false), sum(true));
+    EXPECT_FLOAT_EQ(sum(false),
+                    static_cast<float>(values.to(torch::kFloat64).sum().item<double>()));
+
+    // As many equal terms as were announced, at the largest float there is, do not wrap around.
+    const float largest_float = std::numeric_limits<float>::max() / 4096;
+    std::uint32_t largest = 0;
+    unsigned long long fixed = 0;
+    Accumulator accumulator;
+    accumulator.bits = accumulator_bits(4096);
+    accumulator.largest = &largest;
+    accumulator.add(0, largest_float);
+    accumulator.fixed = &fixed;
+    for (int i = 0; i < 4096; ++i)
+        accumulator.add(0, largest_float);
+    float result = 0;
+    finish_sum({&largest, &fixed, accumulator.bits, &result}, 0);
+    EXPECT_FLOAT_EQ(result, 4096 * largest_float);
+
+    accumulator.fixed = nullptr;
+    accumulator.add(0, std::numeric_limits<float>::quiet_NaN());
+    finish_sum({&largest, &fixed, accumulator.bits, &result}, 0);
+    EXPECT_TRUE(std::isnan(result));
+}
+
+/// What the device draws in any order is what the CPU draws in order, to the last bit.
+TEST(CudaKernels, KeysGiveTheCpusRaster) {
+    const Scene scene = make_scene();
+    for (const bool second_layer : {false, true}) {
+        torch::Tensor behind;
+        if (second_layer) {
+            const torch::Tensor depth =
+                rasterize(scene.geometry, scene.cameras, scene.width, scene.height).depth;
+            behind = torch::where(depth > 0, depth, torch::full_like(depth, 1e30f));
+        }
+        const Raster expected =
+            rasterize(scene.geometry, scene.cameras, scene.width, scene.height, behind);
+        ASSERT_GT((expected.triangle >= 0).sum().item<int>(), 1000);
+
+        const std::int64_t triangles = scene.geometry.triangles.size(0);
+        std::vector<kernels::PixelBox> boxes(static_cast<std::size_t>(2 * triangles));
+        torch::Tensor barycentrics = torch::full_like(expected.barycentrics, 7);
+        torch::Tensor depth = torch::full_like(expected.depth, 7);
+        torch::Tensor triangle = torch::full_like(expected.triangle, 7);
+        std::vector<unsigned long long> keys(static_cast<std::size_t>(depth.numel()), 0);
+        const kernels::KeyedRasterParameters keyed{
+            {expected.positions_clip.const_data_ptr<float>(),
+             scene.geometry.triangles.const_data_ptr<std::int32_t>(), boxes.data(),
+             scene.geometry.positions.size(0), triangles, scene.width, scene.height,
+             barycentrics.data_ptr<float>(), depth.data_ptr<float>(),
+             triangle.data_ptr<std::int32_t>(),
+             behind.defined() ? behind.const_data_ptr<float>() : nullptr},
+            keys.data(),
+            2,
+            3};
+        for (std::int64_t i = 0; i < 2 * triangles; ++i)
+            kernels::bound_triangle(keyed.raster, i / keyed.raster.triangle_count,
+                                    i % keyed.raster.triangle_count);
+        for (std::int64_t i = 2 * triangles * keyed.bands; i-- > 0;)
+            kernels::rasterize_keys(keyed, i);
+        for (std::int64_t i = 0; i < depth.numel(); ++i)
+            kernels::resolve_key(keyed, i);
+        EXPECT_TRUE(torch::equal(triangle, expected.triangle));
+        EXPECT_TRUE(torch::equal(depth, expected.depth));
+        EXPECT_TRUE(torch::equal(barycentrics, expected.barycentrics));
+    }
+}
+
+/// Pixels that gather give what a list of crossings gives, to the last bit.
+TEST(CudaKernels, GatheredBlendsAreTheCpus) {
+    const Scene scene = make_scene();
+    const Raster raster = rasterize(scene.geometry, scene.cameras, scene.width, scene.height);
+    torch::manual_seed(2);
+    const torch::Tensor image =
+        torch::rand({2, scene.height, scene.width, 3}).set_requires_grad(true);
+    const torch::Tensor weights = torch::randn({2, scene.height, scene.width, 3});
+    Raster leaf = raster;
+    leaf.positions_clip = raster.positions_clip.detach().set_requires_grad(true);
+    Geometry geometry = scene.geometry;
+    const torch::Tensor expected = antialias(image, leaf, geometry);
+    ASSERT_GT((expected - image).abs().gt(1e-3f).sum().item<int>(), 200);
+    (expected * weights).sum().backward();
+
+    torch::Tensor blended = torch::empty_like(image), by_image = torch::empty_like(image);
+    torch::Tensor by_clip = torch::zeros_like(raster.positions_clip);
+    kernels::BlendParameters p{};
+    p.raster = {raster.positions_clip.const_data_ptr<float>(),
+                geometry.triangles.const_data_ptr<std::int32_t>(),
+                geometry.neighbours.const_data_ptr<std::int32_t>(),
+                raster.triangle.const_data_ptr<std::int32_t>(),
+                raster.depth.const_data_ptr<float>(),
+                geometry.positions.size(0),
+                scene.width,
+                scene.height};
+    p.image = image.const_data_ptr<float>();
+    p.channels = 3;
+    p.blended = blended.data_ptr<float>();
+    p.gradient = weights.const_data_ptr<float>();
+    p.image_gradient = by_image.data_ptr<float>();
+    p.clip_gradient.values = by_clip.data_ptr<float>();
+    for (std::int64_t pixel = 0; pixel < raster.triangle.numel(); ++pixel) {
+        kernels::blend_pixel(p, pixel);
+        kernels::blend_pixel_backward(p, pixel);
+    }
+    EXPECT_TRUE(torch::equal(blended, expected));
+    EXPECT_TRUE(torch::equal(by_image, image.grad()));
+    EXPECT_TRUE(torch::equal(by_clip, leaf.positions_clip.grad()));
+}
+
+/// Texels that many pixels look up, summed in two passes and from the last pixel to the first.
+TEST(CudaKernels, TexelGradientsInTwoPassesAreTheCpus) {
+    constexpr std::int64_t count = 600;
+    torch::manual_seed(6);
+    const torch::Tensor uv = 3 * torch::rand({count, 2}) - 1;
+    const torch::Tensor footprint = 0.2f * torch::randn({count, 4});
+    const torch::Tensor weights = torch::randn({count, 3});
+    std::vector<torch::Tensor> levels = texture_pyramid(torch::rand({16, 8, 3}));
+    for (torch::Tensor& level : levels)
+        level.set_requires_grad(true);
+    (sample_texture(levels, uv, footprint) * weights).sum().backward();
+
+    kernels::TextureParameters p{};
+    p.level_count = static_cast<int>(levels.size());
+    p.channels = 3;
+    p.uv = uv.const_data_ptr<float>();
+    p.footprint = footprint.const_data_ptr<float>();
+    std::vector<torch::Tensor> expected;
+    std::int64_t total = 0;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        p.levels[i] = {levels[i].const_data_ptr<float>(), static_cast<int>(levels[i].size(0)),
+                       static_cast<int>(levels[i].size(1)), total};
+        total += levels[i].numel();
+        expected.push_back(levels[i].grad().flatten());
+    }
+    std::vector<std::uint32_t> largest(static_cast<std::size_t>(total), 0);
+    std::vector<unsigned long long> fixed(static_cast<std::size_t>(total), 0);
+    Accumulator accumulator;
+    accumulator.bits = accumulator_bits(4 * kernels::most_texture_probes * count);
+    accumulator.largest = largest.data();
+    for (int pass = 0; pass < 2; ++pass) {
+        for (std::int64_t i = count; i-- > 0;)
+            kernels::texture_backward(p, i, weights.const_data_ptr<float>(), accumulator);
+        accumulator.fixed = fixed.data();
+    }
+    const torch::Tensor found = torch::empty({total});
+    for (std::int64_t i = 0; i < total; ++i)
+        finish_sum({largest.data(), fixed.data(), accumulator.bits, found.data_ptr<float>()}, i);
+    EXPECT_LT(relative_error(found, torch::cat(expected)), 1e-5);
+}
+
+/// Sets LibTorch's switch while it lives.
+struct Deterministic {
+    explicit Deterministic(bool on) {
+        // What LibTorch wants before it multiplies matrices in this mode.
+        setenv("CUBLAS_WORKSPACE_CONFIG", ":4096:8", 0);
+        at::globalContext().setDeterministicAlgorithms(on, false);
+    }
+    ~Deterministic() { at::globalContext().setDeterministicAlgorithms(false, false); }
+};
+
+TEST(CudaDevice, RasterIsTheCpus) {
+    SKIP_WITHOUT_DEVICE();
+    const Scene scene = make_scene();
+    const Raster cpu = rasterize(scene.geometry, scene.cameras, scene.width, scene.height);
+    const Raster device =
+        rasterize(on_device(scene.geometry), scene.cameras, scene.width, scene.height);
+    EXPECT_TRUE(torch::equal(device.triangle.cpu(), cpu.triangle));
+    EXPECT_LT(relative_error(device.depth, cpu.depth), 1e-4);
+    EXPECT_LT(relative_error(device.barycentrics, cpu.barycentrics), 1e-4);
+}
+
+/// Everything from vertices to antialiased pictures, with gradients by all that has one.
+struct Rendered {
+    torch::Tensor picture;
+    std::vector<torch::Tensor> gradients;
+};
+
+Rendered render_scene(const Scene& scene, torch::Device device) {
+    torch::manual_seed(9);
+    const torch::Tensor weights = torch::randn({2, scene.height, scene.width, 3}).to(device);
+    std::vector<torch::Tensor> light_maps{testing::smooth_cube(16), testing::smooth_cube(32, 4),
+                                          testing::smooth_cube(16, 5), testing::smooth_cube(16, 6),
+                                          testing::smooth_cube(16, 7)};
+    Geometry geometry = device.is_cuda() ? on_device(scene.geometry) : scene.geometry;
+    const auto leaf = [&](const torch::Tensor& tensor) {
+        return tensor.detach().clone().to(device).set_requires_grad(true);
+    };
+    geometry.positions = leaf(geometry.positions);
+    geometry.normals = leaf(geometry.normals);
+    for (torch::Tensor& map : light_maps)
+        map = leaf(map);
+    const Raster raster = rasterize(geometry, scene.cameras, scene.width, scene.height);
+    const Surface surface = interpolate_surface(geometry, raster, scene.cameras);
+    torch::manual_seed(10);
+    const std::int64_t count = surface.count();
+    MaterialSample material;
+    material.base_color = leaf(torch::rand({count, 3}));
+    material.orm = leaf(torch::rand({count, 3}) * 0.9f + 0.05f);
+    material.normal = leaf(
+        testing::unit_rows(torch::randn({count, 3}) * 0.2f + torch::tensor({0.0f, 0.0f, 1.0f})));
+    const EnvironmentLight light{
+        light_maps[0], {light_maps.begin() + 1, light_maps.end()}, {0.1f, 0.25f, 0.5f, 0.9f}};
+    const torch::Tensor radiance = shade(surface, material, light);
+    const torch::Tensor background = leaf(torch::rand({3}));
+    const torch::Tensor picture = scatter(radiance, surface, raster, background);
+    const torch::Tensor smooth = antialias(picture, raster, geometry);
+    (smooth * weights).sum().backward();
+    Rendered rendered{smooth.detach().cpu(), {}};
+    for (const torch::Tensor& input : {geometry.positions, geometry.normals, material.base_color,
+                                       material.orm, material.normal, background})
+        rendered.gradients.push_back(input.grad().cpu());
+    for (const torch::Tensor& map : light_maps)
+        rendered.gradients.push_back(map.grad().cpu());
+    return rendered;
+}
+
+TEST(CudaDevice, PicturesAndGradientsAreTheCpus) {
+    SKIP_WITHOUT_DEVICE();
+    const Scene scene = make_scene();
+    const Rendered cpu = render_scene(scene, torch::kCPU);
+    for (const bool deterministic : {false, true}) {
+        const Deterministic guard(deterministic);
+        const Rendered device = render_scene(scene, torch::Device(torch::kCUDA, 0));
+        EXPECT_LT(relative_error(device.picture, cpu.picture), 1e-4);
+        for (std::size_t i = 0; i < cpu.gradients.size(); ++i)
+            EXPECT_LT(relative_error(device.gradients[i], cpu.gradients[i]), 1e-3)
+                << "gradient " << i;
+        if (!deterministic) continue;
+        const Rendered again = render_scene(scene, torch::Device(torch::kCUDA, 0));
+        for (std::size_t i = 0; i < cpu.gradients.size(); ++i)
+            EXPECT_TRUE(torch::equal(device.gradients[i], again.gradients[i])) << "gradient " << i;
+    }
+}
+
+/// A texture, its mip levels, and lookups in them, with gradients by texels and by UV.
+Rendered sample_pyramid(torch::Device device) {
+    torch::manual_seed(12);
+    const auto leaf = [&](const torch::Tensor& tensor) {
+        return tensor.to(device).detach().clone().set_requires_grad(true);
+    };
+    const torch::Tensor texture = leaf(torch::rand({32, 64, 4}));
+    const torch::Tensor uv = leaf(3 * torch::rand({5000, 2}) - 1);
+    const torch::Tensor footprint = 0.05f * torch::randn({5000, 4});
+    const torch::Tensor weights = torch::randn({5000, 4});
+    const torch::Tensor values = sample_texture(texture_pyramid(texture), uv, footprint.to(device),
+                                                Wrap::repeat, Wrap::mirrored_repeat);
+    (values * weights.to(device)).sum().backward();
+    return {values.detach().cpu(), {texture.grad().cpu(), uv.grad().cpu()}};
+}
+
+TEST(CudaDevice, TextureLookupsAreTheCpus) {
+    SKIP_WITHOUT_DEVICE();
+    const Rendered cpu = sample_pyramid(torch::kCPU);
+    for (const bool deterministic : {false, true}) {
+        const Deterministic guard(deterministic);
+        const Rendered device = sample_pyramid(torch::Device(torch::kCUDA, 0));
+        EXPECT_LT(relative_error(device.picture, cpu.picture), 1e-4);
+        EXPECT_LT(relative_error(device.gradients[0], cpu.gradients[0]), 1e-3);
+        EXPECT_LT(relative_error(device.gradients[1], cpu.gradients[1]), 1e-3);
+    }
+}
+
+/// Two layers, one of them half transparent, of a texture whose size is no power of two.
+TEST(CudaDevice, PicturesOfTexturedModelsAreTheCpus) {
+    SKIP_WITHOUT_DEVICE();
+    torch::manual_seed(13);
+    Model model = make_unit_sphere(24, 48);
+    model.textures.push_back(
+        {"noise", to_image(torch::rand({30, 50, 4})), 8, Wrap::repeat, Wrap::clamp_to_edge});
+    Material glass;
+    glass.base_color_texture = 0;
+    glass.alpha = Material::Alpha::blend;
+    Material lamp;
+    lamp.emissive_factor = Vec3(0.2f, 0.1f, 0.0f);
+    lamp.metallic_roughness_texture = 0;
+    model.materials = {glass, lamp};
+    Primitive inner = model.primitives[0];
+    for (Vec3& position : inner.positions)
+        position = 0.6f * position;
+    model.primitives[0].material = 0;
+    inner.material = 1;
+    model.primitives.push_back(inner);
+    const EnvironmentLight light{testing::smooth_cube(16),
+                                 {testing::smooth_cube(32, 4), testing::smooth_cube(16, 5),
+                                  testing::smooth_cube(16, 6), testing::smooth_cube(16, 7)},
+                                 {0.1f, 0.25f, 0.5f, 0.9f}};
+    RenderOptions options;
+    options.width = 80;
+    options.height = 64;
+    options.background = Vec3(0.2f, 0.3f, 0.4f);
+    std::vector<torch::Tensor> pictures;
+    for (const torch::Device device :
+         {torch::Device(torch::kCPU), torch::Device(torch::kCUDA, 0)}) {
+        const torch::NoGradGuard no_gradients;
+        pictures.push_back(render(Geometry::from_model(model, device),
+                                  TexturedMaterials(model, device), light.to(device),
+                                  {front_camera(3), front_camera(2.2f, 0.6f)}, options)
+                               .cpu());
+    }
+    EXPECT_LT(relative_error(pictures[1], pictures[0]), 1e-3);
+}
+
+TEST(CudaDevice, EquirectangularMapsAreTheCpus) {
+    SKIP_WITHOUT_DEVICE();
+    torch::manual_seed(3);
+    const torch::Tensor map = torch::rand({32, 64, 3}), weights = torch::randn({6, 16, 16, 3});
+    std::vector<torch::Tensor> cubes, gradients;
+    for (const torch::Device device :
+         {torch::Device(torch::kCPU), torch::Device(torch::kCUDA, 0)}) {
+        const torch::Tensor leaf = map.to(device).detach().clone().set_requires_grad(true);
+        const torch::Tensor cube = equirectangular_to_cube(leaf, 16);
+        (cube * weights.to(device)).sum().backward();
+        cubes.push_back(cube.detach().cpu());
+        gradients.push_back(leaf.grad().cpu());
+    }
+    EXPECT_LT(relative_error(cubes[1], cubes[0]), 1e-4);
+    EXPECT_LT(relative_error(gradients[1], gradients[0]), 1e-3);
+}
+
+}  // namespace
+}  // namespace item3d

@@ -1,0 +1,244 @@
+#include "item3d/render/textured.h"
+
+#include "support/render.h"
+
+namespace item3d {
+namespace {
+
+using testing::front_camera;
+
+/// A quad in front of the camera whose UVs span the texture once; v falls with y.
+Model quad_model() {
+    Primitive quad;
+    quad.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    quad.normals.assign(4, Vec3(0, 0, 1));
+    quad.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    quad.indices = {0, 1, 2, 0, 2, 3};
+    Model model;
+    model.primitives.push_back(quad);
+    model.materials.emplace_back();
+    return model;
+}
+
+int add_texture(Model& model, const Image& image) {
+    Texture texture;
+    texture.image = image;
+    model.textures.push_back(texture);
+    return static_cast<int>(model.textures.size()) - 1;
+}
+
+Image uniform_image(std::vector<float> channels) {
+    Image image(2, 2, static_cast<int>(channels.size()));
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = channels[i % channels.size()];
+    return image;
+}
+
+struct Sampled {
+    Geometry geometry;
+    Surface surface;
+    MaterialSample material;
+};
+
+Sampled sample(const Model& model, int size = 16) {
+    Sampled result;
+    result.geometry = Geometry::from_model(model);
+    const std::vector<Camera> cameras{front_camera(3, 0.6f)};
+    result.surface = interpolate_surface(result.geometry,
+                                         rasterize(result.geometry, cameras, size, size), cameras);
+    result.material = TexturedMaterials(model).sample(result.surface);
+    return result;
+}
+
+void expect_rows(const torch::Tensor& rows, const std::vector<float>& expected) {
+    EXPECT_LT((rows - torch::tensor(expected)).abs().max().item<float>(), 1e-4)
+        << rows[0] << " instead of " << torch::tensor(expected);
+}
+
+TEST(SampleTexture, BilinearWithEachWrapMode) {
+    // One row of texels 0, 1, 2, 3; centres at u = 1/8, 3/8, 5/8, 7/8.
+    const torch::Tensor texture = torch::arange(4).to(torch::kFloat32).reshape({1, 4, 1});
+    const std::vector<float> u{0.125f, 0.25f, 0.0f, 1.0f, 1.125f, -0.375f, 1.375f, 7.25f};
+    const auto values = [&](Wrap wrap) {
+        const torch::Tensor uv = torch::stack({torch::tensor(u), torch::full({8}, 0.3f)}, 1);
+        return sample_texture(texture, uv, wrap, wrap).squeeze(1);
+    };
+    EXPECT_TRUE(torch::allclose(values(Wrap::repeat),
+                                torch::tensor({0.f, .5f, 1.5f, 1.5f, 0.f, 2.f, 1.f, .5f})));
+    EXPECT_TRUE(torch::allclose(values(Wrap::clamp_to_edge),
+                                torch::tensor({0.f, .5f, 0.f, 3.f, 3.f, 0.f, 3.f, 3.f})));
+    EXPECT_TRUE(torch::allclose(values(Wrap::mirrored_repeat),
+                                torch::tensor({0.f, .5f, 0.f, 3.f, 3.f, 1.f, 2.f, 2.5f})));
+}
+
+TEST(SampleTexture, SurvivesAbsurdCoordinates) {
+    const torch::Tensor texture = torch::rand({3, 5, 2});
+    const float infinity = std::numeric_limits<float>::infinity();
+    const torch::Tensor uv =
+        torch::tensor({1e30f, -1e30f, infinity, -infinity, std::nanf(""), 0.5f, 3e9f, -7e8f})
+            .reshape({4, 2});
+    for (const Wrap wrap : {Wrap::repeat, Wrap::mirrored_repeat, Wrap::clamp_to_edge})
+        EXPECT_TRUE(torch::isfinite(sample_texture(texture, uv, wrap, wrap)).all().item<bool>());
+}
+
+TEST(SampleTexture, GradientOfTheTexture) {
+    torch::manual_seed(1);
+    const torch::Tensor uv = torch::randn({50, 2});
+    for (const Wrap wrap : {Wrap::repeat, Wrap::mirrored_repeat, Wrap::clamp_to_edge})
+        testing::check_gradient(
+            [&](const torch::Tensor& x) { return sample_texture(x, uv, wrap, wrap); },
+            torch::rand({6, 7, 3}), 1e-2f, 1e-4);
+}
+
+TEST(TexturedMaterials, FactorsTexturesAndVertexColoursMultiply) {
+    Model model = quad_model();
+    Material& material = model.materials[0];
+    material.base_color_factor = Vec4(0.5f, 1, 1, 1);
+    material.base_color_texture = add_texture(model, uniform_image({0.5f, 1, 0, 1}));
+    material.metallic_factor = 0.5f;
+    material.roughness_factor = 0.8f;
+    material.metallic_roughness_texture = add_texture(model, uniform_image({0, 0.5f, 1}));
+    material.occlusion_texture = add_texture(model, uniform_image({0.4f}));
+    material.occlusion_strength = 0.5f;
+    material.emissive_factor = Vec3(2, 1, 0);
+    model.primitives[0].colors.assign(4, Vec4(1, 0.25f, 1, 1));
+    const MaterialSample material_sample = sample(model).material;
+    expect_rows(material_sample.base_color, {0.5f * srgb_to_linear(0.5f), 0.25f, 0});
+    expect_rows(material_sample.orm, {0.7f, 0.4f, 0.5f});
+    expect_rows(material_sample.emissive, {2, 1, 0});
+    EXPECT_FALSE(material_sample.normal.defined());
+    EXPECT_FALSE(material_sample.alpha.defined());
+}
+
+TEST(TexturedMaterials, DecodesBeforeFiltering) {
+    Model model = quad_model();
+    Image image(2, 1, 3);
+    for (int c = 0; c < 3; ++c)
+        image.at(1, 0, c) = 1;
+    model.materials[0].base_color_texture = add_texture(model, image);
+    const Sampled sampled = sample(model, 64);
+    const torch::Tensor u = sampled.surface.uv.select(1, 0);
+    const torch::Tensor middle = (u > 0.3f).logical_and(u < 0.7f);
+    const torch::Tensor expected = (u * 2 - 0.5f).masked_select(middle);
+    EXPECT_LT((sampled.material.base_color.select(1, 0).masked_select(middle) - expected)
+                  .abs()
+                  .max()
+                  .item<float>(),
+              1e-4);
+}
+
+TEST(TexturedMaterials, EachPointHasItsOwnMaterial) {
+    Model model = quad_model();
+    Primitive second = model.primitives[0];
+    model.primitives[0].positions = {{-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0}};
+    second.positions = {{0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0}};
+    second.material = 2;
+    model.primitives.push_back(second);
+    model.materials.resize(3);
+    model.materials[0].base_color_factor = Vec4(1, 0, 0, 1);
+    model.materials[2].base_color_factor = Vec4(0, 0, 1, 1);
+    model.materials[2].normal_texture = add_texture(model, uniform_image({0.5f, 0.5f, 1}));
+    const Sampled sampled = sample(model);
+    const torch::Tensor right = sampled.surface.position.select(1, 0) > 0;
+    EXPECT_TRUE(torch::equal(sampled.surface.material == 2, right));
+    EXPECT_TRUE(torch::equal(sampled.surface.primitive == 1, right));
+    EXPECT_TRUE(torch::equal(sampled.material.base_color.select(1, 2) > 0.5f, right));
+    EXPECT_TRUE(torch::equal(sampled.material.base_color.select(1, 0) > 0.5f, ~right));
+    expect_rows(sampled.material.normal, {0, 0, 1});
+}
+
+TEST(TexturedMaterials, TangentsFollowTheTextureAndGreenPointsUp) {
+    // A normal that leans to the picture's right and up leans to +X and +Y.
+    Model model = quad_model();
+    const Sampled sampled = sample(model);
+    expect_rows(sampled.surface.tangent, {1, 0, 0, 1});
+    // Mirrored in u: the tangent turns and so does the handedness.
+    for (Vec2& uv : model.primitives[0].uvs)
+        uv.x = 1 - uv.x;
+    expect_rows(sample(model).surface.tangent, {-1, 0, 0, -1});
+}
+
+EnvironmentLight white() {
+    return prefilter(torch::ones({6, 16, 16, 3}));
+}
+
+RenderOptions small_picture() {
+    RenderOptions options;
+    options.width = 24;
+    options.height = 16;
+    return options;
+}
+
+TEST(Render, CoverageAndBackground) {
+    Model model = quad_model();
+    model.materials[0].metallic_factor = 1;
+    const Geometry geometry = Geometry::from_model(model);
+    const TexturedMaterials materials(model);
+    const std::vector<Camera> cameras{front_camera(5, 0.8f), front_camera(8, 0.8f)};
+    RenderOptions options = small_picture();
+    const torch::Tensor open = render(geometry, materials, white(), cameras, options);
+    ASSERT_EQ(open.sizes(), (std::vector<std::int64_t>{2, 16, 24, 4}));
+    // Premultiplied white metal in a white furnace: all channels are the coverage.
+    EXPECT_TRUE(torch::allclose(open.narrow(3, 0, 3), open.narrow(3, 3, 1).expand({2, 16, 24, 3}),
+                                1e-4, 1e-4));
+    const double pixels_per_unit = 12 / std::tan(0.4) / 5;
+    EXPECT_NEAR(open[0].select(2, 3).sum().item<double>(), std::pow(2 * pixels_per_unit, 2), 0.5);
+
+    options.background = Vec3(0.1f, 0.2f, 0.3f);
+    const torch::Tensor over = render(geometry, materials, white(), cameras, options);
+    EXPECT_TRUE(torch::allclose(over.select(3, 3), torch::ones({2, 16, 24})));
+    const torch::Tensor expected =
+        open.narrow(3, 0, 3) + (1 - open.narrow(3, 3, 1)) * torch::tensor({0.1f, 0.2f, 0.3f});
+    EXPECT_TRUE(torch::allclose(over.narrow(3, 0, 3), expected, 1e-4, 1e-4));
+}
+
+TEST(Render, MaskedAndBlendedLayersShowWhatLiesBehind) {
+    // In front a quad whose alpha is 0.3, behind it an opaque one.
+    Model model = quad_model();
+    Primitive back = model.primitives[0];
+    for (Vec3& position : back.positions)
+        position.z = -0.5f;
+    back.material = 1;
+    model.primitives.push_back(back);
+    model.materials.resize(2);
+    model.materials[0].base_color_factor = Vec4(1, 1, 1, 0.3f);
+    model.materials[0].emissive_factor = Vec3(1, 0, 0);
+    model.materials[1].emissive_factor = Vec3(0, 1, 0);
+    const EnvironmentLight dark = prefilter(torch::zeros({6, 16, 16, 3}));
+    const auto centre = [&] {
+        const torch::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
+                                             dark, {front_camera(5, 0.5f)}, small_picture());
+        return picture[0][8][12];
+    };
+    expect_rows(centre().unsqueeze(0), {1, 0, 0, 1});
+    model.materials[0].alpha = Material::Alpha::blend;
+    expect_rows(centre().unsqueeze(0), {0.3f, 0.7f, 0, 1});
+    model.materials[0].alpha = Material::Alpha::mask;
+    expect_rows(centre().unsqueeze(0), {0, 1, 0, 1});
+    model.materials[0].alpha_cutoff = 0.2f;
+    expect_rows(centre().unsqueeze(0), {1, 0, 0, 1});
+}
+
+TEST(Render, UnlitMaterialsShowTheirBaseColorInAnyLight) {
+    Model model = quad_model();
+    model.materials[0].base_color_factor = Vec4(0.2f, 0.4f, 0.6f, 1);
+    model.materials[0].unlit = true;
+    for (const float radiance : {0.0f, 1.0f, 20.0f}) {
+        const EnvironmentLight light = prefilter(torch::full({6, 16, 16, 3}, radiance));
+        const torch::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
+                                             light, {front_camera(5, 0.5f)}, small_picture());
+        expect_rows(picture[0][8][12].unsqueeze(0), {0.2f, 0.4f, 0.6f, 1});
+    }
+}
+
+TEST(Render, AViewThatSeesNothingIsEmpty) {
+    const Model model = quad_model();
+    Camera away = front_camera(3);
+    away.camera_to_world[3] = Vec4(0, 0, -3, 1);
+    const torch::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
+                                         white(), {away}, small_picture());
+    EXPECT_EQ(picture.abs().max().item<float>(), 0);
+}
+
+}  // namespace
+}  // namespace item3d

@@ -1,0 +1,102 @@
+// What the tests of edits share: a small model and a request to edit it with a prior of random
+// weights.
+#pragma once
+
+#include "item3d/edit/edit.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+namespace item3d::testing {
+
+namespace fs = std::filesystem;
+
+class EditTest : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() /
+                  (std::string("item3d-edit-") +
+                   ::testing::UnitTest::GetInstance()->current_test_info()->name() + "-" +
+                   std::to_string(::getpid()));
+        fs::create_directories(folder_);
+        write_cube(folder_ / "cube.glb");
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    /// A cube whose six sides have places of their own in a checkered 64 x 64 texture.
+    static void write_cube(const fs::path& path) {
+        Model model;
+        Primitive cube;
+        for (int side = 0; side < 6; ++side) {
+            const int axis = side / 2;
+            const float sign = side % 2 == 0 ? 1.0f : -1.0f;
+            for (int corner = 0; corner < 4; ++corner) {
+                const float a = corner == 1 || corner == 2 ? 1.0f : -1.0f;
+                const float b = corner >= 2 ? 1.0f : -1.0f;
+                Vec3 position;
+                position[axis] = sign;
+                position[(axis + 1) % 3] = a * sign;
+                position[(axis + 2) % 3] = b;
+                Vec3 normal(0.0f);
+                normal[axis] = sign;
+                cube.positions.push_back(0.5f * position);
+                cube.normals.push_back(normal);
+                cube.uvs.emplace_back((static_cast<float>(side % 3) + 0.5f + 0.4f * a) / 3.0f,
+                                      (static_cast<float>(side / 3) + 0.5f + 0.4f * b) / 2.0f);
+            }
+            const auto first = static_cast<std::uint32_t>(4 * side);
+            for (const std::uint32_t index : {0u, 1u, 2u, 0u, 2u, 3u}) {
+                cube.indices.push_back(first + index);
+            }
+        }
+        model.primitives = {cube};
+        Image image(64, 64, 3);
+        for (int y = 0; y < 64; ++y) {
+            for (int x = 0; x < 64; ++x) {
+                image.at(x, y, 0) = (x / 8 + y / 8) % 2 == 0 ? 0.8f : 0.2f;
+                image.at(x, y, 1) = static_cast<float>(x) / 64.0f;
+                image.at(x, y, 2) = 0.3f;
+            }
+        }
+        model.textures.push_back({"checks", image, 8, Wrap::repeat, Wrap::repeat});
+        Material material;
+        material.name = "paint";
+        material.base_color_texture = 0;
+        material.metallic_factor = 0.0f;
+        model.materials = {material};
+        save_model(path, model);
+    }
+
+    EditRequest request(const std::string& output, int iterations) const {
+        EditRequest request;
+        request.model = folder_ / "cube.glb";
+        request.prior = fs::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd";
+        request.output = folder_ / output;
+        request.settings.from = "a red cube";
+        request.settings.to = "a blue cube";
+        request.settings.fit_steps = 30;
+        request.settings.iterations = iterations;
+        request.settings.batch = 1;
+        request.settings.resolution = 32;
+        request.settings.light_augment = "off";  // other lights take a second each edit
+        request.precision = "fp32";
+        request.picture_pixels = 32;
+        request.command = "item3d edit";
+        return request;
+    }
+
+    Image base_color_of(const fs::path& path) const {
+        const Model model = load_model(path);
+        return model.textures.at(static_cast<std::size_t>(model.materials.at(0).base_color_texture))
+            .image;
+    }
+
+    fs::path folder_;
+};
+
+}  // namespace item3d::testing

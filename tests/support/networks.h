@@ -1,0 +1,91 @@
+// What the tests of the networks share: recorded cases and temporary folders.
+#pragma once
+
+#include "item3d/tensors/safetensors.h"
+
+#include <ATen/Parallel.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace item3d::testing {
+
+/// The networks here are so small that more threads would only wait for one another.
+inline const bool one_thread = [] {
+    at::set_num_threads(1);
+    return true;
+}();
+
+inline std::filesystem::path fixture(const std::string& name) {
+    return std::filesystem::path(ITEM3D_TEST_DATA) / "models" / name;
+}
+
+/// Inputs and expected outputs of one recorded case.
+class Golden {
+  public:
+    explicit Golden(const std::string& name)
+        : io_(SafeTensors::open(fixture(name) / "io.safetensors")) {}
+    torch::Tensor in(const std::string& name) const { return io_.tensor("in." + name); }
+    torch::Tensor out(const std::string& name) const { return io_.tensor("out." + name); }
+    bool has(const std::string& tensor) const { return io_.contains(tensor); }
+
+    /// Within `tolerance` of "out.NAME", relative to max(1, max |expected|).
+    void expect(const std::string& name, const torch::Tensor& actual,
+                double tolerance = 2e-5) const {
+        const torch::Tensor wanted = out(name).to(torch::kFloat64);
+        ASSERT_EQ(actual.sizes(), wanted.sizes()) << name;
+        const double error =
+            (actual.detach().to(torch::kFloat64) - wanted).abs().max().item<double>();
+        EXPECT_LE(error, tolerance * std::max(1.0, wanted.abs().max().item<double>())) << name;
+    }
+
+  private:
+    SafeTensors io_;
+};
+
+/// A folder of its own for one test, removed at the end.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        static int count = 0;
+        path_ = std::filesystem::temp_directory_path() /
+                ("item3d-models-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+        std::filesystem::create_directories(path_);
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+inline void write_file(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+/// The message of the Error that `action` throws; fails the test when it throws none.
+template <typename Failure, typename Action>
+std::string message_of(const Action& action) {
+    try {
+        action();
+    } catch (const Failure& failure) {
+        return failure.what();
+    }
+    ADD_FAILURE() << "nothing was thrown";
+    return "";
+}
+
+inline double largest_difference(const torch::Tensor& a, const torch::Tensor& b) {
+    return (a.to(torch::kFloat64) - b.to(torch::kFloat64)).abs().max().item<double>();
+}
+
+}  // namespace item3d::testing
