@@ -1,6 +1,8 @@
-# make            set the machine up and build build/item3d
+# make            set the machine up and build all programs
 # make demo       edit the demo model and say where its report is
-# make test       check the format, test the loaders under sanitizers, test everything
+# make test       check format and layers, test the loaders under sanitizers, build and test everything
+# make check      the tests that run no whole edits, on a built tree
+# make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
 # make format     format all sources
 # make lint       run clang-tidy on all sources (needs clang-tidy and libomp-dev)
@@ -14,7 +16,11 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo test test-loaders bench format check-format lint install clean
+.PHONY: setup configure build demo check-format check-layers test-loaders test-build test check cuda \
+    bench format lint install clean
+BUILD := cmake --build --preset release --parallel $(JOBS)
+# nvcc is there for x86-64 alone.
+CUDA := $(if $(filter x86_64,$(shell uname -m)),cuda)
 
 setup:
 	@scripts/setup.sh
@@ -23,27 +29,43 @@ configure: setup
 	@cmake --preset release --log-level=WARNING
 
 build: configure
-	@cmake --build --preset release --parallel $(JOBS) --target item3d parity
+	@$(BUILD) --target item3d item3d-edit item3d-reconstruct item3d-train item3d-bench
 
-demo: build
+demo: configure
+	@$(BUILD) --target item3d item3d-edit
 	@build/item3d edit assets/demo/mug.glb --from "a red mug" --to "a golden mug" -o build/demo
 	@echo "Open $(CURDIR)/build/demo/report.html"
 
 check-format: setup
 	@scripts/format.sh --check
 
+check-layers:
+	@scripts/layers.py
+
 test-loaders: setup
 	@cmake --preset asan --log-level=WARNING
 	@cmake --build --preset asan --parallel $(JOBS)
 	@ctest --preset asan
 
-test: check-format test-loaders
-	@cmake --preset release --log-level=WARNING
-	@cmake --build --preset release --parallel $(JOBS)
+test-build:
+	@scripts/setup.sh $(CUDA)
+	@cmake --preset release --log-level=WARNING $(if $(CUDA),-DITEM3D_CUDA=ON)
+	@$(BUILD)
+
+test: check-format check-layers test-loaders test-build
 	@ctest --preset release
 
+check: configure
+	@$(BUILD)
+	@ctest --preset release --label-exclude whole
+
+cuda:
+	@scripts/setup.sh cuda
+	@cmake --preset release --log-level=WARNING -DITEM3D_CUDA=ON
+	@$(BUILD) --target item3d_cuda
+
 bench: configure
-	@cmake --build --preset release --parallel $(JOBS)
+	@$(BUILD) --target benches
 	@scripts/bench.sh build
 
 format: setup

@@ -5,8 +5,8 @@
 // Each finished edit leaves a file in DIR/results, and what is there is not done again; several
 // processes may work on one folder. What a process was at when it was killed stays in DIR/running
 // and is left out until that is removed. The report is of all results that are there.
-#include "ablation_edit.h"
-#include "ablation_report.h"
+#include "bench/ablation_edit.h"
+#include "bench/ablation_report.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"

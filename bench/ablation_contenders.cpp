@@ -1,4 +1,4 @@
-#include "ablation_contenders.h"
+#include "bench/ablation_contenders.h"
 
 namespace item3d {
 

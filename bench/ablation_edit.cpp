@@ -1,4 +1,4 @@
-#include "ablation_edit.h"
+#include "bench/ablation_edit.h"
 
 #include "item3d/core/files.h"
 #include "item3d/core/stage_times.h"
@@ -6,9 +6,10 @@
 #include "item3d/edit/outputs/surface_means.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
-#include "item3d/lighting/layout.h"
 #include "item3d/metrics/clip_score.h"
+#include "item3d/render/pictures.h"
 #include "item3d/report/model_pictures.h"
 #include "item3d/suite/look_by_clip.h"
 
@@ -45,7 +46,7 @@ EditRequest request_of(const Contender& contender, const SuiteCase& test, std::u
 }
 
 /// "right" and how that was found; nothing for stripes.
-json success(const SuiteCase& test, const SurfaceMeans& means, const torch::Tensor& pictures,
+json success(const SuiteCase& test, const SurfaceMeans& means, const at::Tensor& pictures,
              const AblationJudge& judge) {
     if (test.group == "stripes") return json::object();
     std::string found;
@@ -59,7 +60,7 @@ json success(const SuiteCase& test, const SurfaceMeans& means, const torch::Tens
     return {{"found", found}, {"right", found == test.word}};
 }
 
-void save_first(const std::filesystem::path& path, const torch::Tensor& pictures) {
+void save_first(const std::filesystem::path& path, const at::Tensor& pictures) {
     save_image(path, to_image(pictures[0].permute({1, 2, 0})));
 }
 
@@ -80,11 +81,11 @@ json run_ablation_edit(const Contender& contender, const SuiteCase& test, std::u
     const Model edited = bake_and_save(request, scene, state).model;
     times.end_stage("bake");
 
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const EnvironmentLight light = prefilter(load_light(request.settings.light), 64);
     const auto cameras = picture_cameras(scene.model, view_count);
-    const torch::Tensor was = draw_pictures(scene.model, light, cameras, view_pixels);
-    const torch::Tensor is = draw_pictures(edited, light, cameras, view_pixels);
+    const at::Tensor was = draw_pictures(scene.model, light, cameras, view_pixels);
+    const at::Tensor is = draw_pictures(edited, light, cameras, view_pixels);
     const ClipScores scores = clip_scores(judge.clip, over_white(was), over_white(is),
                                           request.settings.from, request.settings.to);
     const SurfaceMeans means = surface_means(edited, scene.materials);

@@ -1,7 +1,7 @@
 // One edit of the study, without the report and the pictures that an edit makes for people.
 #pragma once
 
-#include "ablation_contenders.h"
+#include "bench/ablation_contenders.h"
 #include "item3d/networks/vision_language/clip_model.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/suite/cases.h"

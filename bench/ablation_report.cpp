@@ -1,4 +1,4 @@
-#include "ablation_report.h"
+#include "bench/ablation_report.h"
 
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"

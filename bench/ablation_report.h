@@ -1,7 +1,7 @@
 // What the study found: a table, as JSON and as Markdown, and the pictures side by side.
 #pragma once
 
-#include "ablation_edit.h"
+#include "bench/ablation_edit.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,19 +2,19 @@
 // Arguments: surface points. Points lie on a sphere, in the order of a picture's pixels.
 #include "item3d/field/adam.h"
 #include "item3d/field/neural_texture.h"
+#include "item3d/tensors/tensor.h"
 
 #include <benchmark/benchmark.h>
-#include <torch/types.h>
 
 namespace item3d {
 namespace {
 
-torch::Tensor sphere_points(std::int64_t count) {
-    const torch::Tensor i = torch::arange(count).to(torch::kFloat32);
-    const torch::Tensor y = 1.0f - 2.0f * (i + 0.5f) / static_cast<float>(count);
-    const torch::Tensor r = torch::sqrt(1.0f - y * y);
-    const torch::Tensor angle = i * 0.05f;
-    return torch::stack({r * torch::cos(angle), y, r * torch::sin(angle)}, 1).contiguous();
+at::Tensor sphere_points(std::int64_t count) {
+    const at::Tensor i = at::arange(count).to(at::kFloat);
+    const at::Tensor y = 1.0f - 2.0f * (i + 0.5f) / static_cast<float>(count);
+    const at::Tensor r = at::sqrt(1.0f - y * y);
+    const at::Tensor angle = i * 0.05f;
+    return at::stack({r * at::cos(angle), y, r * at::sin(angle)}, 1).contiguous();
 }
 
 NeuralTextureOptions shape(std::int64_t levels, std::int64_t features) {
@@ -25,12 +25,12 @@ NeuralTextureOptions shape(std::int64_t levels, std::int64_t features) {
 }
 
 void encode_forward(benchmark::State& state) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const NeuralTextureOptions options = shape(state.range(1), state.range(2));
     const HashGrid grid = HashGrid::make(options.levels, options.features, options.log2_table_size,
                                          options.base_resolution, options.finest_resolution);
-    const torch::Tensor points = sphere_points(state.range(0)) * 0.5f + 0.5f;
-    const torch::Tensor table = torch::rand({grid.entries(), grid.features});
+    const at::Tensor points = sphere_points(state.range(0)) * 0.5f + 0.5f;
+    const at::Tensor table = at::rand({grid.entries(), grid.features});
     for (auto _ : state)
         benchmark::DoNotOptimize(encode(grid, points, table));
 }
@@ -39,13 +39,13 @@ void encode_backward(benchmark::State& state) {
     const NeuralTextureOptions options = shape(state.range(1), state.range(2));
     const HashGrid grid = HashGrid::make(options.levels, options.features, options.log2_table_size,
                                          options.base_resolution, options.finest_resolution);
-    const torch::Tensor points = sphere_points(state.range(0)) * 0.5f + 0.5f;
-    torch::Tensor table = torch::rand({grid.entries(), grid.features}).set_requires_grad(true);
-    const torch::Tensor seed = torch::rand({state.range(0), grid.output_width()});
+    const at::Tensor points = sphere_points(state.range(0)) * 0.5f + 0.5f;
+    at::Tensor table = at::rand({grid.entries(), grid.features}).set_requires_grad(true);
+    const at::Tensor seed = at::rand({state.range(0), grid.output_width()});
     for (auto _ : state) {
         state.PauseTiming();
-        table.mutable_grad() = torch::Tensor();
-        const torch::Tensor out = encode(grid, points, table);
+        table.mutable_grad() = at::Tensor();
+        const at::Tensor out = encode(grid, points, table);
         state.ResumeTiming();
         out.backward(seed);
     }
@@ -55,9 +55,9 @@ void encode_backward(benchmark::State& state) {
 void field_iteration(benchmark::State& state) {
     NeuralTexture field(shape(state.range(1), state.range(2)));
     Adam adam;
-    adam.add_group({field->table()}, {});
-    adam.add_group(field->network_parameters(), {});
-    const torch::Tensor points = sphere_points(state.range(0));
+    adam.add_group("table", {field->table()}, {});
+    adam.add_group("network", field->network_parameters(), {});
+    const at::Tensor points = sphere_points(state.range(0));
     for (auto _ : state) {
         adam.zero_grad();
         const MaterialSample sample = field->forward(points);
@@ -69,7 +69,7 @@ void field_iteration(benchmark::State& state) {
 void adam_step(benchmark::State& state) {
     NeuralTexture field(shape(state.range(1), state.range(2)));
     Adam adam;
-    adam.add_group({field->table()}, {});
+    adam.add_group("table", {field->table()}, {});
     field->forward(sphere_points(state.range(0))).base_color.sum().backward();
     for (auto _ : state)
         adam.step();

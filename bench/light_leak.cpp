@@ -15,10 +15,10 @@
 #include "item3d/field/surface_points.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/textured_materials.h"
 #include "item3d/report/model_pictures.h"
 #include "item3d/report/picture.h"
 #include "item3d/suite/models.h"
@@ -57,7 +57,7 @@ struct Leak {
 };
 
 Leak measure_leak(const Model& model, const std::string& light_name) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Image light = resize(load_light(light_name), 2 * light_height, light_height);
     std::vector<int> materials;
     for (std::size_t i = 0; i < model.materials.size(); ++i)
@@ -66,21 +66,21 @@ Leak measure_leak(const Model& model, const std::string& light_name) {
     const FieldSpace space(model, materials);
     Random random(0);
     const Surface surface = SurfaceSampler(geometry, space).sample(surface_points, random);
-    const torch::Tensor color = TexturedMaterials(model).sample(surface).base_color;
-    const torch::Tensor weights = torch::tensor({0.2126f, 0.7152f, 0.0722f});
-    const torch::Tensor painted = (color * weights).sum(1).clamp_min(1e-4).log();
-    const torch::Tensor normals = surface.normal.contiguous();
-    torch::Tensor received = torch::empty({normals.size(0)});
+    const at::Tensor color = TexturedMaterials(model).sample(surface).base_color;
+    const at::Tensor weights = at::tensor({0.2126f, 0.7152f, 0.0722f});
+    const at::Tensor painted = (color * weights).sum(1).clamp_min(1e-4).log();
+    const at::Tensor normals = surface.normal.contiguous();
+    at::Tensor received = at::empty({normals.size(0)});
     const float* n = normals.const_data_ptr<float>();
     float* out = received.data_ptr<float>();
     for (std::int64_t i = 0; i < normals.size(0); ++i) {
         const Vec3 rgb = irradiance_over_pi(light, Vec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]));
         out[i] = std::log(0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z);
     }
-    const torch::Tensor x = received - received.mean(), y = painted - painted.mean();
+    const at::Tensor x = received - received.mean(), y = painted - painted.mean();
     const double xy = (x * y).mean().item<double>(), xx = x.square().mean().item<double>(),
                  yy = y.square().mean().item<double>();
-    const torch::Tensor mean = color.mean(0);
+    const at::Tensor mean = color.mean(0);
     return {xy / std::sqrt(std::max(xx * yy, 1e-20)), xy / xx,
             Vec3(mean[0].item<float>(), mean[1].item<float>(), mean[2].item<float>())};
 }
@@ -94,9 +94,9 @@ double relit_difference(const Model& edited, const Vec3& mean_color, const std::
     }
     const EnvironmentLight prefiltered = prefilter(make_light_preset(light), 64);
     const auto cameras = picture_cameras(edited, 4);
-    const torch::Tensor a = draw_pictures(edited, prefiltered, cameras, 192);
-    const torch::Tensor b = draw_pictures(even, prefiltered, cameras, 192);
-    const torch::Tensor square = (over_white(a) - over_white(b)).square().sum();
+    const at::Tensor a = draw_pictures(edited, prefiltered, cameras, 192);
+    const at::Tensor b = draw_pictures(even, prefiltered, cameras, 192);
+    const at::Tensor square = (over_white(a) - over_white(b)).square().sum();
     return std::sqrt((square / (3 * a.select(3, 3).sum())).item<double>());
 }
 

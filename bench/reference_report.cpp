@@ -4,7 +4,7 @@
 //
 // Leaves report.md (the tables of docs/renderer.md), report.json and the pictures in the output
 // folder.
-#include "reference_report.h"
+#include "bench/reference_report.h"
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
@@ -12,7 +12,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
-#include "item3d/render/shade.h"
+#include "item3d/render/pictures.h"
 
 #include <CLI/CLI.hpp>
 
@@ -20,23 +20,23 @@
 
 namespace item3d::reference {
 
-Difference difference(const torch::Tensor& found, const torch::Tensor& expected) {
-    const torch::Tensor error = (found - expected).abs();
+Difference difference(const at::Tensor& found, const at::Tensor& expected) {
+    const at::Tensor error = (found - expected).abs();
     return {(error.mean() / expected.mean()).item<double>(),
             (error / expected.abs().clamp_min(1e-4f)).median().item<double>(),
             (found.sum() / expected.sum()).item<double>()};
 }
 
-torch::Tensor load_reference(const std::filesystem::path& path) {
+at::Tensor load_reference(const std::filesystem::path& path) {
     return to_tensor(load_image(path));
 }
 
 void save_tiles(const std::filesystem::path& path,
-                const std::vector<std::vector<torch::Tensor>>& tiles) {
-    std::vector<torch::Tensor> rows;
+                const std::vector<std::vector<at::Tensor>>& tiles) {
+    std::vector<at::Tensor> rows;
     for (const auto& row : tiles)
-        rows.push_back(torch::cat(row, 1));
-    save_image(path, to_image(linear_to_srgb(torch::cat(rows, 0).clamp(0, 1))));
+        rows.push_back(at::cat(row, 1));
+    save_image(path, to_image(linear_to_srgb(at::cat(rows, 0).clamp(0, 1))));
 }
 
 namespace {

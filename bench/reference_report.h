@@ -1,8 +1,9 @@
 // The renderer beside references that other software made: what each part measures and says.
 #pragma once
 
+#include "item3d/tensors/tensor.h"
+
 #include <nlohmann/json.hpp>
-#include <torch/types.h>
 
 #include <filesystem>
 #include <string>
@@ -31,13 +32,13 @@ struct Difference {
     double median;  ///< of the relative differences of single values
     double bias;    ///< sum of `found` over the sum of `expected`
 };
-Difference difference(const torch::Tensor& found, const torch::Tensor& expected);
+Difference difference(const at::Tensor& found, const at::Tensor& expected);
 
 /// [H, W, C], linear.
-torch::Tensor load_reference(const std::filesystem::path& path);
+at::Tensor load_reference(const std::filesystem::path& path);
 
 /// Pictures [H, W, 3], linear, side by side (rows of tiles) as one sRGB PNG.
-void save_tiles(const std::filesystem::path& path, const std::vector<std::vector<torch::Tensor>>&);
+void save_tiles(const std::filesystem::path& path, const std::vector<std::vector<at::Tensor>>&);
 
 Section sphere_section(const Folders& folders, const std::string& light);
 Section view_section(const Folders& folders);

@@ -1,13 +1,14 @@
 // Spheres over roughness and metallic. The error is split in three: what the split sum itself costs
 // (evaluated without our chain of levels, by summing over every texel of the map), what the choice
 // of reflectance model costs, and what our chain adds.
+#include "bench/reference_report.h"
+#include "bench/reference_split_sum.h"
 #include "item3d/core/format.h"
 #include "item3d/io/load.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/render.h"
+#include "item3d/render/textured_materials.h"
 #include "item3d/scene/sphere.h"
-#include "reference_report.h"
-#include "reference_split_sum.h"
 
 #include <array>
 #include <cmath>
@@ -24,7 +25,7 @@ struct PixelList {
     std::vector<Vec3> normal, view;
 };
 
-PixelList inner_pixels(const torch::Tensor& mask, const Camera& camera, int step) {
+PixelList inner_pixels(const at::Tensor& mask, const Camera& camera, int step) {
     PixelList list;
     const float tangent = std::tan(0.5f * camera.field_of_view_x);
     const Vec3 eye = camera.position();
@@ -58,11 +59,11 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
     Camera camera;
     camera.camera_to_world[3] = Vec4(0, 0, 4, 1);
     camera.field_of_view_x = 32 * pi / 180;
-    const torch::Tensor mask = load_reference(folder / "mask.png").select(2, 0);
+    const at::Tensor mask = load_reference(folder / "mask.png").select(2, 0);
     const PixelList pixels = inner_pixels(mask, camera, stride);
-    const torch::Tensor index = torch::tensor(pixels.pixel);
-    const torch::Tensor inner = torch::tensor(inner_pixels(mask, camera, 1).pixel);
-    const auto at = [&](const torch::Tensor& picture, const torch::Tensor& places) {
+    const at::Tensor index = at::tensor(pixels.pixel);
+    const at::Tensor inner = at::tensor(inner_pixels(mask, camera, 1).pixel);
+    const auto at = [&](const at::Tensor& picture, const at::Tensor& places) {
         return picture.reshape({sphere_size * sphere_size, -1})
             .index_select(0, places)
             .narrow(1, 0, 3);
@@ -89,7 +90,7 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
                        "models",
                        "energy",
                        "with multiple scattering"};
-    std::vector<std::vector<torch::Tensor>> tiles(3);
+    std::vector<std::vector<at::Tensor>> tiles(3);
     for (const int metallic : {0, 1}) {
         for (const auto& [name, roughness] :
              std::vector<std::pair<std::string, float>>{{"r0p1", 0.1f},
@@ -98,9 +99,9 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
                                                         {"r0p75", 0.75f},
                                                         {"r1", 1.0f}}) {
             const std::string file = fmt::format("_m{}_{}.exr", metallic, name);
-            const torch::Tensor traced = load_reference(folder / ("lambertggx" + file));
-            const torch::Tensor disney = load_reference(folder / ("principled" + file));
-            const torch::Tensor split =
+            const at::Tensor traced = load_reference(folder / ("lambertggx" + file));
+            const at::Tensor disney = load_reference(folder / ("principled" + file));
+            const at::Tensor split =
                 (roughness < 0.4f ? fine : coarse)
                     .radiance(pixels.normal, pixels.view,
                               std::vector<Vec3>(pixels.normal.size(), base_color),
@@ -116,7 +117,7 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
                 options.shade.multiple_scattering = multiple_scattering;
                 return render(geometry, TexturedMaterials(model), light, {camera}, options)[0];
             };
-            const torch::Tensor single = ours(false), multiple = ours(true);
+            const at::Tensor single = ours(false), multiple = ours(true);
             const Difference approximation = difference(split, at(traced, index));
             const Difference chain = difference(at(single, index), split);
             const Difference sampled = difference(at(single, index), at(traced, index));
@@ -141,7 +142,7 @@ Section sphere_section(const Folders& folders, const std::string& light_name) {
                 {"energy", all.bias},
                 {"energy_multiple_scattering", boosted.bias}};
             if (metallic == 0 && roughness != 0.5f) continue;
-            const torch::Tensor a = traced.narrow(2, 0, 3), b = single.narrow(2, 0, 3);
+            const at::Tensor a = traced.narrow(2, 0, 3), b = single.narrow(2, 0, 3);
             tiles[0].push_back(a);
             tiles[1].push_back(b);
             tiles[2].push_back((a - b).abs() * 4);

@@ -1,10 +1,10 @@
-#include "reference_split_sum.h"
+#include "bench/reference_split_sum.h"
 
 #include "item3d/core/parallel.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/render/kernels/shade.h"
-#include "item3d/render/prefilter/environment_light.h"
-#include "item3d/render/shade.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/prefilter/bsdf_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace item3d::reference {
 
 ExactSplitSum::ExactSplitSum(const Image& map, int finer) : map_(map) {
-    const torch::Tensor pixels = to_tensor(map);
+    const at::Tensor pixels = to_tensor(map);
     const auto source = pixels.accessor<float, 3>();
     const int height = map.height * finer, width = map.width * finer;
     for (int y = 0; y < height; ++y) {
@@ -54,13 +54,12 @@ Vec3 ExactSplitSum::prefiltered(Vec3 direction, float roughness) const {
     return Vec3(sum[0] / norm, sum[1] / norm, sum[2] / norm);
 }
 
-torch::Tensor ExactSplitSum::radiance(const std::vector<Vec3>& normals,
-                                      const std::vector<Vec3>& views,
-                                      const std::vector<Vec3>& base_colors, float metallic,
-                                      float roughness) const {
-    const torch::Tensor table = bsdf_table();
+at::Tensor ExactSplitSum::radiance(const std::vector<Vec3>& normals, const std::vector<Vec3>& views,
+                                   const std::vector<Vec3>& base_colors, float metallic,
+                                   float roughness) const {
+    const at::Tensor table = bsdf_table();
     const auto table_size = static_cast<int>(table.size(0));
-    torch::Tensor out = torch::empty({static_cast<std::int64_t>(normals.size()), 3});
+    at::Tensor out = at::empty({static_cast<std::int64_t>(normals.size()), 3});
     auto* values = out.data_ptr<float>();
     parallel_for(
         "exact_split_sum", out.size(0),

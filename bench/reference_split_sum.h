@@ -3,8 +3,7 @@
 
 #include "item3d/core/math.h"
 #include "item3d/scene/image.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <vector>
 
@@ -17,9 +16,9 @@ class ExactSplitSum {
     ExactSplitSum(const Image& map, int finer);
 
     /// Radiance [P, 3] at points with those unit normals and directions to the viewer.
-    torch::Tensor radiance(const std::vector<Vec3>& normals, const std::vector<Vec3>& views,
-                           const std::vector<Vec3>& base_colors, float metallic,
-                           float roughness) const;
+    at::Tensor radiance(const std::vector<Vec3>& normals, const std::vector<Vec3>& views,
+                        const std::vector<Vec3>& base_colors, float metallic,
+                        float roughness) const;
 
   private:
     /// Of GGX around a direction: Karis' first sum.

@@ -1,10 +1,14 @@
 // The BSDF table, a white furnace, irradiance, and a texture's gradient.
+#include "bench/reference_report.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/io/load.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/render/textured.h"
-#include "reference_report.h"
+#include "item3d/render/interpolate.h"
+#include "item3d/render/prefilter/bsdf_table.h"
+#include "item3d/render/scatter.h"
+#include "item3d/render/shade.h"
+#include "item3d/render/texture.h"
 
 #include <fstream>
 
@@ -12,19 +16,19 @@ namespace item3d::reference {
 namespace {
 
 /// Points that face the viewer at given angles.
-Surface surface_of(const torch::Tensor& normals, const torch::Tensor& view) {
+Surface surface_of(const at::Tensor& normals, const at::Tensor& view) {
     Surface surface;
-    surface.pixel = torch::arange(normals.size(0));
+    surface.pixel = at::arange(normals.size(0));
     surface.normal = normals.contiguous();
     surface.view = view.contiguous();
-    surface.tangent = torch::zeros({normals.size(0), 4});
+    surface.tangent = at::zeros({normals.size(0), 4});
     return surface;
 }
 
 MaterialSample white(std::int64_t count, float roughness, float metallic) {
     MaterialSample sample;
-    sample.base_color = torch::ones({count, 3});
-    sample.orm = torch::tensor({1.0f, roughness, metallic}).repeat({count, 1});
+    sample.base_color = at::ones({count, 3});
+    sample.orm = at::tensor({1.0f, roughness, metallic}).repeat({count, 1});
     return sample;
 }
 
@@ -38,19 +42,19 @@ Section furnace_section() {
         "angles of view, with and without the energy that bounces between microfacets.";
     section.columns = {"roughness", "single scattering, darkest",
                        "with multiple scattering, darkest", "brightest"};
-    const EnvironmentLight light = prefilter(torch::ones({6, 32, 32, 3}));
-    const torch::Tensor cosine = torch::linspace(0.05f, 1, 96);
-    const torch::Tensor view =
-        torch::stack({(1 - cosine.square()).sqrt(), torch::zeros_like(cosine), cosine}, 1);
-    const torch::Tensor normals = torch::tensor({0.0f, 0.0f, 1.0f}).repeat({96, 1});
+    const EnvironmentLight light = prefilter(at::ones({6, 32, 32, 3}));
+    const at::Tensor cosine = at::linspace(0.05f, 1, 96);
+    const at::Tensor view =
+        at::stack({(1 - cosine.square()).sqrt(), at::zeros_like(cosine), cosine}, 1);
+    const at::Tensor normals = at::tensor({0.0f, 0.0f, 1.0f}).repeat({96, 1});
     for (const float roughness : {0.1f, 0.25f, 0.5f, 0.75f, 1.0f}) {
         const Surface surface = surface_of(normals, view);
         const MaterialSample metal = white(96, roughness, 1);
         ShadeOptions options;
         options.multiple_scattering = false;
-        const torch::Tensor single = shade(surface, metal, light, options);
+        const at::Tensor single = shade(surface, metal, light, options);
         options.multiple_scattering = true;
-        const torch::Tensor multiple = shade(surface, metal, light, options);
+        const at::Tensor multiple = shade(surface, metal, light, options);
         section.rows.push_back({fmt::format("{:.2f}", roughness),
                                 fmt::format("{:.4f}", single.min().item<double>()),
                                 fmt::format("{:.4f}", multiple.min().item<double>()),
@@ -64,19 +68,19 @@ Section furnace_section() {
 }
 
 Section bsdf_section(const Folders& folders) {
-    torch::Tensor reference = torch::empty({256, 256, 2});
+    at::Tensor reference = at::empty({256, 256, 2});
     std::ifstream(folders.data / "dfg" / "dfg_correlated.bin", std::ios::binary)
         .read(reinterpret_cast<char*>(reference.data_ptr<float>()),
               reference.numel() * static_cast<std::int64_t>(sizeof(float)));
-    const torch::Tensor error = (bsdf_table() - reference).abs();
+    const at::Tensor error = (bsdf_table() - reference).abs();
     Section section;
     section.title = "BSDF table";
     section.text =
         "Our 256 x 256 table of scale A and bias B against one by midpoint quadrature (128 x 128 "
         "half vectors), and at nine points against the same with 2048 x 1024.";
     section.columns = {"where", "A, largest", "B, largest", "A, mean", "B, mean"};
-    const auto add = [&](const std::string& name, const torch::Tensor& part) {
-        const torch::Tensor flat = part.reshape({-1, 2});
+    const auto add = [&](const std::string& name, const at::Tensor& part) {
+        const at::Tensor flat = part.reshape({-1, 2});
         std::vector<std::string> row{name};
         for (const int c : {0, 1})
             row.push_back(fmt::format("{:.1e}", flat.select(1, c).max().item<double>()));
@@ -93,9 +97,9 @@ Section bsdf_section(const Folders& folders) {
 
     const auto fine = nlohmann::json::parse(
         read_text(folders.data / "dfg" / "dfg.json"))["correlated"]["samples"];
-    torch::Tensor differences = torch::zeros({static_cast<std::int64_t>(fine.size()), 2});
-    torch::Tensor of_table = torch::zeros_like(differences);
-    const auto bilinear = [](const torch::Tensor& table, double n_dot_v, double roughness) {
+    at::Tensor differences = at::zeros({static_cast<std::int64_t>(fine.size()), 2});
+    at::Tensor of_table = at::zeros_like(differences);
+    const auto bilinear = [](const at::Tensor& table, double n_dot_v, double roughness) {
         const double x = n_dot_v * 256 - 0.5, y = roughness * 256 - 0.5;
         const auto x0 = static_cast<std::int64_t>(x);
         const auto y0 = std::min<std::int64_t>(static_cast<std::int64_t>(y), 254);
@@ -106,7 +110,7 @@ Section bsdf_section(const Folders& folders) {
     std::int64_t i = 0;
     for (const auto& [name, value] : fine.items()) {
         const double n_dot_v = std::stod(name.substr(2)), roughness = std::stod(name.substr(7));
-        const torch::Tensor exact = torch::tensor({value[0].get<float>(), value[1].get<float>()});
+        const at::Tensor exact = at::tensor({value[0].get<float>(), value[1].get<float>()});
         differences[i] = (bilinear(bsdf_table(), n_dot_v, roughness) - exact).abs();
         of_table[i] = (bilinear(reference, n_dot_v, roughness) - exact).abs();
         ++i;
@@ -124,10 +128,10 @@ Section irradiance_section(const Folders& folders) {
     for (const std::string name : {"sky_noon", "studio"}) {
         const EnvironmentLight light =
             prefilter(load_image(folders.data / "env" / (name + ".hdr")));
-        const torch::Tensor reference =
+        const at::Tensor reference =
             load_reference(folders.data / "env" / (name + "_irradiance.exr")).narrow(2, 0, 3);
         const std::int64_t height = reference.size(0), width = reference.size(1);
-        torch::Tensor normals = torch::empty({height * width, 3});
+        at::Tensor normals = at::empty({height * width, 3});
         for (std::int64_t i = 0; i < height * width; ++i) {
             const Vec3 d = equirectangular_direction(
                 (static_cast<float>(i % width) + 0.5f) / static_cast<float>(width),
@@ -136,12 +140,12 @@ Section irradiance_section(const Folders& folders) {
                 normals[i][c] = d[c];
         }
         EnvironmentLight diffuse_only = light;
-        for (torch::Tensor& level : diffuse_only.specular)
-            level = torch::zeros_like(level);
-        const torch::Tensor found =
+        for (at::Tensor& level : diffuse_only.specular)
+            level = at::zeros_like(level);
+        const at::Tensor found =
             shade(surface_of(normals, normals), white(height * width, 1, 0), diffuse_only)
                 .reshape_as(reference);
-        const torch::Tensor error = (found - reference).abs();
+        const at::Tensor error = (found - reference).abs();
         const double mean = (error.mean() / reference.mean()).item<double>();
         const double largest = (error / reference).max().item<double>();
         section.rows.push_back(
@@ -169,17 +173,17 @@ Section gradient_section(const Folders& folders) {
     const Raster raster = rasterize(geometry, {camera}, size * grid, size * grid);
     const Surface surface = interpolate_surface(geometry, raster, {camera});
     EnvironmentLight light = prefilter(load_image(folders.data / "env" / "sky_noon.hdr"));
-    for (torch::Tensor& level : light.specular)
-        level = torch::zeros_like(level);
+    for (at::Tensor& level : light.specular)
+        level = at::zeros_like(level);
     const auto load = [&](const std::string& name) {
         return load_reference(folder / (name + ".exr")).narrow(2, 0, 3).contiguous();
     };
-    torch::Tensor texture = load("texture_now").set_requires_grad(true);
+    at::Tensor texture = load("texture_now").set_requires_grad(true);
     MaterialSample material;
     material.base_color = sample_texture(texture, surface.uv);
-    material.orm = torch::tensor({1.0f, 1.0f, 0.0f}).expand({surface.count(), 3});
-    const torch::Tensor picture =
-        scatter(shade(surface, material, light), surface, raster, torch::zeros({3}))[0]
+    material.orm = at::tensor({1.0f, 1.0f, 0.0f}).expand({surface.count(), 3});
+    const at::Tensor picture =
+        scatter(shade(surface, material, light), surface, raster, at::zeros({3}))[0]
             .reshape({size, grid, size, grid, 3})
             .mean({1, 3});
     (picture - load("ibl_target")).square().mean().backward();
@@ -191,7 +195,7 @@ Section gradient_section(const Folders& folders) {
         "on spot: without shadows (what we must match), and path traced with them.";
     section.columns = {"reference", "cosine", "relative difference", "picture"};
     for (const std::string kind : {"ibl", "path"}) {
-        const torch::Tensor expected = load(kind + "_gradient"), found = texture.grad();
+        const at::Tensor expected = load(kind + "_gradient"), found = texture.grad();
         const double cosine =
             ((found * expected).sum() / found.norm() / expected.norm()).item<double>();
         const double relative = ((found - expected).norm() / expected.norm()).item<double>();

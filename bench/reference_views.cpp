@@ -1,11 +1,13 @@
 // A textured model from eight views: what is seen where, and its radiance.
+#include "bench/reference_report.h"
+#include "bench/reference_split_sum.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/io/load.h"
 #include "item3d/render/occlusion/occlusion.h"
-#include "item3d/render/textured.h"
-#include "reference_report.h"
-#include "reference_split_sum.h"
+#include "item3d/render/render.h"
+#include "item3d/render/scatter.h"
+#include "item3d/render/textured_materials.h"
 
 #include <nlohmann/json.hpp>
 
@@ -54,34 +56,33 @@ Views load_views(const Folders& folders) {
 }
 
 /// Pixels whose neighbours all see the same as they do (object or nothing), [H, W] bool.
-torch::Tensor away_from_edges(const torch::Tensor& mask) {
-    const torch::Tensor m = mask.to(torch::kFloat32).reshape({1, 1, view_size, view_size});
-    const torch::Tensor most = torch::max_pool2d(m, 3, 1, 1);
-    const torch::Tensor least = -torch::max_pool2d(-m, 3, 1, 1);
+at::Tensor away_from_edges(const at::Tensor& mask) {
+    const at::Tensor m = mask.to(at::kFloat).reshape({1, 1, view_size, view_size});
+    const at::Tensor most = at::max_pool2d(m, 3, 1, 1);
+    const at::Tensor least = -at::max_pool2d(-m, 3, 1, 1);
     return (most == least).reshape({view_size, view_size});
 }
 
 /// Every few pixels of those chosen, at their centres: what the split sum itself gives there, in
 /// the light that arrives, and their places in the picture.
 struct SplitSumSample {
-    torch::Tensor radiance;  ///< [P, 3]
-    torch::Tensor pixel;     ///< [P]
+    at::Tensor radiance;  ///< [P, 3]
+    at::Tensor pixel;     ///< [P]
 };
-SplitSumSample split_sum_sample(const Views& views, const Camera& camera,
-                                const torch::Tensor& chosen, const Occlusion& occlusion,
-                                const ExactSplitSum& split_sum) {
+SplitSumSample split_sum_sample(const Views& views, const Camera& camera, const at::Tensor& chosen,
+                                const Occlusion& occlusion, const ExactSplitSum& split_sum) {
     constexpr std::int64_t every = 29;
     const Raster raster = rasterize(views.geometry, {camera}, view_size, view_size);
     const Surface surface = interpolate_surface(views.geometry, raster, {camera});
     const MaterialSample material = TexturedMaterials(views.model).sample(surface);
-    const torch::Tensor arriving = occlusion.at(raster, surface);
-    const torch::Tensor rows = chosen.flatten()
-                                   .index_select(0, surface.pixel)
-                                   .nonzero()
-                                   .flatten()
-                                   .slice(0, 0, std::nullopt, every);
-    const auto vectors = [&](const torch::Tensor& tensor) {
-        const torch::Tensor some = tensor.index_select(0, rows).contiguous();
+    const at::Tensor arriving = occlusion.at(raster, surface);
+    const at::Tensor rows = chosen.flatten()
+                                .index_select(0, surface.pixel)
+                                .nonzero()
+                                .flatten()
+                                .slice(0, 0, std::nullopt, every);
+    const auto vectors = [&](const at::Tensor& tensor) {
+        const at::Tensor some = tensor.index_select(0, rows).contiguous();
         const auto* values = some.const_data_ptr<float>();
         std::vector<Vec3> list;
         for (std::int64_t i = 0; i < some.size(0); ++i)
@@ -89,7 +90,7 @@ SplitSumSample split_sum_sample(const Views& views, const Camera& camera,
         return list;
     };
     const Material& constants = views.model.materials.front();
-    const torch::Tensor radiance = split_sum.radiance(
+    const at::Tensor radiance = split_sum.radiance(
         vectors(surface.normal), vectors(surface.view), vectors(material.base_color),
         constants.metallic_factor, constants.roughness_factor);
     return {radiance * arriving.index_select(0, rows).unsqueeze(1),
@@ -118,49 +119,46 @@ Section geometry_section(const Folders& folders) {
                        "coverage, 2 x 2",
                        "coverage, 4 x 4",
                        "coverage, 8 x 8"};
-    const EnvironmentLight light = prefilter(torch::ones({6, 16, 16, 3}));
+    const EnvironmentLight light = prefilter(at::ones({6, 16, 16, 3}));
     for (std::size_t v = 0; v < views.cameras.size(); ++v) {
         const int view = static_cast<int>(v);
         const std::vector<Camera> camera{views.cameras[v]};
         const Raster raster = rasterize(views.geometry, camera, view_size, view_size);
         const Surface surface = interpolate_surface(views.geometry, raster, camera);
-        const torch::Tensor seen = raster.triangle[0] >= 0;
-        const torch::Tensor mask = load_reference(views.file(view, "mask.png")).select(2, 0) > 0.5f;
-        const torch::Tensor both = seen.logical_and(mask);
-        const torch::Tensor depth = load_reference(views.file(view, "depth.exr")).select(2, 0);
+        const at::Tensor seen = raster.triangle[0] >= 0;
+        const at::Tensor mask = load_reference(views.file(view, "mask.png")).select(2, 0) > 0.5f;
+        const at::Tensor both = seen.logical_and(mask);
+        const at::Tensor depth = load_reference(views.file(view, "depth.exr")).select(2, 0);
         const double depth_error = ((raster.depth[0] - depth).abs() / depth.clamp_min(1e-6f))
                                        .masked_select(both)
                                        .max()
                                        .item<double>();
-        const torch::Tensor normals =
-            scatter(surface.normal, surface, raster, torch::zeros({3}))[0];
-        const torch::Tensor expected =
-            load_reference(views.file(view, "normal.exr")).narrow(2, 0, 3);
-        const torch::Tensor angle = torch::atan2(torch::linalg_cross(normals, expected).norm(2, 2),
-                                                 (normals * expected).sum(2))
-                                        .masked_select(both) *
-                                    (180 / pi);
+        const at::Tensor normals = scatter(surface.normal, surface, raster, at::zeros({3}))[0];
+        const at::Tensor expected = load_reference(views.file(view, "normal.exr")).narrow(2, 0, 3);
+        const at::Tensor angle =
+            at::atan2(at::linalg_cross(normals, expected).norm(2, 2), (normals * expected).sum(2))
+                .masked_select(both) *
+            (180 / pi);
         const double angle_99 =
             std::get<0>(
                 angle.sort())[static_cast<std::int64_t>(0.99 * static_cast<double>(angle.numel()))]
                 .item<double>();
 
-        const torch::Tensor coverage =
-            load_reference(views.file(view, "lambertggx.exr")).select(2, 3);
-        const torch::Tensor edge = ((coverage > 0.001f).logical_and(coverage < 0.999f));
+        const at::Tensor coverage = load_reference(views.file(view, "lambertggx.exr")).select(2, 3);
+        const at::Tensor edge = ((coverage > 0.001f).logical_and(coverage < 0.999f));
         std::vector<std::string> cells;
         nlohmann::json by_samples;
         for (const int samples : {1, 2, 4, 8}) {
             RenderOptions options;
             options.width = options.height = view_size;
             options.supersampling = samples;
-            const torch::Tensor alpha =
+            const at::Tensor alpha =
                 render(views.geometry, TexturedMaterials(views.model), light, camera, options)[0]
                     .select(2, 3);
-            const torch::Tensor error = (alpha - coverage).abs();
+            const at::Tensor error = (alpha - coverage).abs();
             const double largest = error.max().item<double>();
             const double within =
-                (error.masked_select(edge) <= 1.0f / 16).to(torch::kFloat32).mean().item<double>();
+                (error.masked_select(edge) <= 1.0f / 16).to(at::kFloat).mean().item<double>();
             cells.push_back(fmt::format("{:.3f}, {:.1f} %", largest, 100 * within));
             by_samples[std::to_string(samples)] = {{"largest", largest},
                                                    {"within_sixteenth", within}};
@@ -204,12 +202,12 @@ Section view_section(const Folders& folders) {
         nullptr, std::make_shared<Occlusion>(views.geometry),
         std::make_shared<Occlusion>(views.geometry, nullptr, of_light)};
     const ExactSplitSum split_sum(map, 1);
-    std::vector<std::vector<torch::Tensor>> tiles(4);
+    std::vector<std::vector<at::Tensor>> tiles(4);
     std::array<double, 3> means{};
     constexpr std::array<int, 4> shown = {0, 2, 4, 7};  // of the best and the worst
     for (std::size_t v = 0; v < views.cameras.size(); ++v) {
         const int view = static_cast<int>(v);
-        std::array<torch::Tensor, 3> pictures;
+        std::array<at::Tensor, 3> pictures;
         for (std::size_t i = 0; i < pictures.size(); ++i) {
             RenderOptions options;
             options.width = options.height = view_size;
@@ -218,17 +216,17 @@ Section view_section(const Folders& folders) {
             pictures[i] = render(views.geometry, TexturedMaterials(views.model), light,
                                  {views.cameras[v]}, options)[0];
         }
-        const torch::Tensor traced = load_reference(views.file(view, "lambertggx.exr"));
-        const torch::Tensor disney = load_reference(views.file(view, "principled.exr"));
-        const torch::Tensor mask = load_reference(views.file(view, "mask.png")).select(2, 0) > 0.5f;
-        const torch::Tensor inside = mask.logical_and(away_from_edges(mask));
-        const auto at = [&](const torch::Tensor& image, const torch::Tensor& pixels) {
+        const at::Tensor traced = load_reference(views.file(view, "lambertggx.exr"));
+        const at::Tensor disney = load_reference(views.file(view, "principled.exr"));
+        const at::Tensor mask = load_reference(views.file(view, "mask.png")).select(2, 0) > 0.5f;
+        const at::Tensor inside = mask.logical_and(away_from_edges(mask));
+        const auto at = [&](const at::Tensor& image, const at::Tensor& pixels) {
             return image.reshape({view_size * view_size, -1})
                 .index_select(0, pixels)
                 .narrow(1, 0, 3);
         };
         const auto chosen = [&, pixels = inside.flatten().nonzero().flatten()](
-                                const torch::Tensor& image) { return at(image, pixels); };
+                                const at::Tensor& image) { return at(image, pixels); };
         std::array<Difference, 3> ours{};
         for (std::size_t i = 0; i < ours.size(); ++i) {
             ours[i] = difference(chosen(pictures[i]), chosen(traced));
@@ -236,7 +234,7 @@ Section view_section(const Folders& folders) {
         }
         const SplitSumSample exact =
             split_sum_sample(views, views.cameras[v], inside, *occlusions.back(), split_sum);
-        const torch::Tensor traced_there = at(traced, exact.pixel);
+        const at::Tensor traced_there = at(traced, exact.pixel);
         const Difference approximation = difference(exact.radiance, traced_there);
         const Difference ours_there = difference(at(pictures[2], exact.pixel), traced_there);
         const Difference to_disney = difference(chosen(pictures[2]), chosen(disney));
@@ -257,7 +255,7 @@ Section view_section(const Folders& folders) {
             {"of_light_to_principled", to_disney.mean},
             {"models", models.mean}};
         if (std::ranges::find(shown, view) == shown.end()) continue;
-        const auto color = [](const torch::Tensor& image) { return image.narrow(2, 0, 3); };
+        const auto color = [](const at::Tensor& image) { return image.narrow(2, 0, 3); };
         tiles[0].push_back(color(traced));
         tiles[1].push_back(color(pictures[0]));
         tiles[2].push_back(color(pictures[2]));

@@ -15,10 +15,11 @@
 #include "item3d/io/gltf/document.h"
 #include "item3d/io/gltf/light.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/description.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
+#include "item3d/render/pictures.h"
 #include "item3d/render/prefilter/image_based_light.h"
 #include "item3d/report/contact_sheet.h"
 #include "item3d/report/model_pictures.h"
@@ -65,10 +66,10 @@ struct LitPicture {
 };
 
 LitPicture look(const Model& model, const Image& light) {
-    const torch::Tensor linear =
+    const at::Tensor linear =
         draw_pictures(model, prefilter(light, 128), picture_cameras(model, 3), picture_pixels);
-    const torch::Tensor weights = torch::tensor({0.2126f, 0.7152f, 0.0722f});
-    const torch::Tensor sum = (linear.narrow(3, 0, 3).clamp(0, 1) * weights).sum();
+    const at::Tensor weights = at::tensor({0.2126f, 0.7152f, 0.0722f});
+    const at::Tensor sum = (linear.narrow(3, 0, 3).clamp(0, 1) * weights).sum();
     return {to_display(to_image(linear[0]), Vec3(0.6f)),
             (sum / linear.select(3, 3).sum()).item<double>()};
 }

@@ -2,7 +2,11 @@
 // scanned object; ITEM3D_BENCH_MODEL names a model to use instead.
 
 #include "item3d/io/load.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/antialias.h"
+#include "item3d/render/interpolate.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/render.h"
+#include "item3d/render/textured_materials.h"
 #include "item3d/scene/sphere.h"
 
 #include <benchmark/benchmark.h>
@@ -24,18 +28,18 @@ const Scene& scene() {
     static const Scene made = [] {
         const char* path = std::getenv("ITEM3D_BENCH_MODEL");
         const Model model = path != nullptr ? load_model(path) : make_unit_sphere(54, 54);
-        torch::manual_seed(0);
+        at::manual_seed(0);
         return Scene{Geometry::from_model(model), turntable(model.bounds(), 1, 0.3f, 0.6f),
-                     prefilter(torch::rand({6, 64, 64, 3}))};
+                     prefilter(at::rand({6, 64, 64, 3}))};
     }();
     return made;
 }
 
 MaterialSample material(std::int64_t count) {
     MaterialSample sample;
-    sample.base_color = torch::rand({count, 3});
-    sample.orm = torch::rand({count, 3});
-    sample.normal = torch::rand({count, 3}) + 0.5f;
+    sample.base_color = at::rand({count, 3});
+    sample.orm = at::rand({count, 3});
+    sample.normal = at::rand({count, 3}) + 0.5f;
     sample.normal = sample.normal / sample.normal.norm(2, 1, true);
     return sample;
 }
@@ -83,11 +87,11 @@ void shade_forward_and_backward(benchmark::State& state) {
         scene().geometry, rasterize(scene().geometry, scene().cameras, size, size),
         scene().cameras);
     MaterialSample sample = material(surface.count());
-    for (torch::Tensor* tensor : {&sample.base_color, &sample.orm, &sample.normal})
+    for (at::Tensor* tensor : {&sample.base_color, &sample.orm, &sample.normal})
         tensor->set_requires_grad(true);
     EnvironmentLight light = scene().light;
     if (state.range(1) != 0)
-        for (torch::Tensor& level : light.specular)
+        for (at::Tensor& level : light.specular)
             level = level.detach().clone().set_requires_grad(true);
     for (auto _ : state)
         shade(surface, sample, light).sum().backward();
@@ -103,7 +107,7 @@ BENCHMARK(shade_forward_and_backward)
 void antialias_view(benchmark::State& state) {
     const int size = static_cast<int>(state.range(0));
     const Raster raster = rasterize(scene().geometry, scene().cameras, size, size);
-    const torch::Tensor image = torch::rand({1, size, size, 3});
+    const at::Tensor image = at::rand({1, size, size, 3});
     for (auto _ : state)
         benchmark::DoNotOptimize(antialias(image, raster, scene().geometry));
 }
@@ -111,13 +115,13 @@ BENCHMARK(antialias_view)->Arg(64)->Arg(512)->Unit(benchmark::kMillisecond);
 
 void prefilter_cube(benchmark::State& state) {
     const std::int64_t size = state.range(0);
-    torch::manual_seed(0);
-    torch::Tensor cube = torch::rand({6, size, size, 3}).set_requires_grad(state.range(1) != 0);
+    at::manual_seed(0);
+    at::Tensor cube = at::rand({6, size, size, 3}).set_requires_grad(state.range(1) != 0);
     for (auto _ : state) {
         const EnvironmentLight light = prefilter(cube);
         if (state.range(1) == 0) continue;
-        torch::Tensor sum = light.diffuse.sum();
-        for (const torch::Tensor& level : light.specular)
+        at::Tensor sum = light.diffuse.sum();
+        for (const at::Tensor& level : light.specular)
             sum = sum + level.sum();
         sum.backward();
     }
@@ -139,16 +143,16 @@ void preview_under_another_light(benchmark::State& state) {
     const Geometry geometry = Geometry::from_model(model);
     const TexturedMaterials materials(model);
     const auto cameras = turntable(model.bounds(), 1, 0.3f, 0.6f);
-    torch::manual_seed(0);
-    const std::array lights = {prefilter(torch::rand({6, 256, 256, 3})),
-                               prefilter(torch::rand({6, 256, 256, 3}))};
+    at::manual_seed(0);
+    const std::array lights = {prefilter(at::rand({6, 256, 256, 3})),
+                               prefilter(at::rand({6, 256, 256, 3}))};
     RenderOptions options;
     options.width = options.height = static_cast<int>(state.range(0));
     options.supersampling = 1;
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     std::size_t turn = 0;
     for (auto _ : state) {
-        const torch::Tensor picture =
+        const at::Tensor picture =
             render(geometry, materials, lights[turn++ % lights.size()], cameras, options);
         benchmark::DoNotOptimize(linear_to_srgb(picture.narrow(3, 0, 3).clamp(0, 1)));
     }

@@ -1,11 +1,7 @@
 # libitem3d_cuda.so: every kernel, compiled for CUDA devices by the nvcc that scripts/setup.sh fetched.
 # A module that the program opens when there is a device (src/item3d/render/cuda/module.h); nothing links it.
 # nvcc is called by itself: CMake's CUDA language wants a whole toolkit.
-set(ITEM3D_CUDA_DEFAULT OFF)
-if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64" AND NOT "$ENV{ITEM3D_CUDA}" STREQUAL "OFF")
-    set(ITEM3D_CUDA_DEFAULT ON)
-endif()
-option(ITEM3D_CUDA "Compile the kernels for CUDA as well (needs no device)" ${ITEM3D_CUDA_DEFAULT})
+option(ITEM3D_CUDA "Compile the kernels for CUDA as well (needs no device)" OFF)
 if(NOT ITEM3D_CUDA)
     return()
 endif()
@@ -13,7 +9,7 @@ endif()
 set(CUDA_ROOT ${ITEM3D_DEPS}/cuda)
 set(NVCC ${CUDA_ROOT}/bin/nvcc)
 if(NOT EXISTS ${NVCC})
-    message(FATAL_ERROR "The CUDA compiler is not at ${NVCC}: run scripts/setup.sh, or set -DITEM3D_CUDA=OFF")
+    message(FATAL_ERROR "The CUDA compiler is not at ${NVCC}: run `scripts/setup.sh cuda`, or set -DITEM3D_CUDA=OFF")
 endif()
 
 # Ampere and Hopper as machine code, and as PTX what newer devices compile for themselves.
@@ -56,5 +52,4 @@ set_target_properties(item3d_cuda PROPERTIES
     INSTALL_RPATH $ORIGIN)
 file(GLOB CUDA_RUNTIME ${CUDA_ROOT}/lib/libcudart.so.*)
 target_link_libraries(item3d_cuda PRIVATE ${CUDA_RUNTIME} -Wl,--no-undefined)
-add_dependencies(item3d item3d_cuda)
 install(TARGETS item3d_cuda LIBRARY DESTINATION lib/item3d)

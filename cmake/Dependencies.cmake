@@ -5,8 +5,24 @@ find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PkgConfig REQUIRED)
+find_package(OpenEXR REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+find_package(CURL REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(ICU REQUIRED COMPONENTS uc)
 find_package(draco CONFIG REQUIRED)
 find_package(meshoptimizer CONFIG REQUIRED)
+
+# LibTorch brings headers of another fmt, which the compiler would find first: ours goes before them.
+# The library of the system is compiled; LibTorch's headers would be compiled anew in every file.
+get_target_property(FMT_INCLUDE fmt::fmt INTERFACE_INCLUDE_DIRECTORIES)
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/fmt)
+file(CREATE_LINK ${FMT_INCLUDE}/fmt ${CMAKE_BINARY_DIR}/fmt/fmt SYMBOLIC)
+add_library(item3d_fmt INTERFACE)
+target_include_directories(item3d_fmt SYSTEM BEFORE INTERFACE
+    $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/fmt>)
+target_link_libraries(item3d_fmt INTERFACE fmt::fmt)
 
 # OpenMP by its flag alone: LibTorch brings a libgomp of its own, and a full path to the compiler's
 # would set two of the same name against each other.
@@ -14,17 +30,16 @@ add_library(item3d_openmp INTERFACE)
 target_compile_options(item3d_openmp INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fopenmp>)
 target_link_options(item3d_openmp INTERFACE -fopenmp)
 
+# How everything of ours is compiled.
 add_library(item3d_options INTERFACE)
-if(CMAKE_BUILD_TYPE STREQUAL "Release")
-    target_compile_options(item3d_options INTERFACE -O2)
-endif()
-
-add_library(item3d_warnings INTERFACE)
-target_link_libraries(item3d_warnings INTERFACE item3d_options)
-target_compile_options(item3d_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
+target_link_libraries(item3d_options INTERFACE item3d_openmp)
+target_compile_options(item3d_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
     # How vectors are passed between files; ours are inlined.
     -Wno-psabi)
 
 if(NOT ITEM3D_LOADERS_ONLY)
     include(LibTorch)
+    find_package(embree 3 REQUIRED)
+    pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp libwebpmux libwebpdemux)
+    pkg_check_modules(EXIF REQUIRED IMPORTED_TARGET libexif)
 endif()

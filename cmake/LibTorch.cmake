@@ -24,6 +24,8 @@ target_include_directories(item3d_torch SYSTEM INTERFACE
     ${ITEM3D_TORCH_ROOT}/include
     ${ITEM3D_TORCH_ROOT}/include/torch/csrc/api/include)
 target_link_libraries(item3d_torch INTERFACE item3d_torch_cpu item3d_c10)
+# ATen/core/Tensor.h without every operation's header: item3d/tensors/tensor.h has those that we use.
+target_compile_definitions(item3d_torch INTERFACE AT_PER_OPERATOR_HEADERS)
 # The wheel's libtorch_cpu.so needs the CUDA runtime's two small libraries beside it, nothing more.
 target_link_options(item3d_torch INTERFACE
     -Wl,-rpath-link,${ITEM3D_TORCH_ROOT}/lib

@@ -3,8 +3,9 @@
 # downloads of scripts/wheels.txt, unpacked into .deps/. Does nothing when all is there; goes on
 # where an interrupted run stopped. Works as root and as a user who may use sudo.
 #
+# usage: scripts/setup.sh [cuda]    cuda: the CUDA compiler too, for `make cuda` and `make test`
+#
 #   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
-#   ITEM3D_CUDA=OFF           do without the CUDA compiler; the kernels are then built for the CPU alone
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
@@ -163,7 +164,7 @@ else
     component site 'torch|nvidia-cuda-runtime|nvidia-cuda-cupti' unpack_site
 fi
 component xatlas xatlas unpack_xatlas
-if [[ ${ITEM3D_CUDA:-ON} != OFF && $(uname -m) == x86_64 ]]; then
+if [[ ${1:-} == cuda ]]; then
     component cuda 'nvidia-cuda-nvcc|nvidia-cuda-crt|nvidia-nvvm|nvidia-cuda-runtime|nvidia-nvtx' \
         unpack_cuda
 fi

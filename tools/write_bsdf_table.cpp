@@ -1,6 +1,5 @@
 // Writes the table of bsdf_table(): the build runs this, so that no program has to compute it.
 #include "item3d/render/kernels/bsdf.h"
-#include "item3d/render/kernels/bsdf_table_size.h"
 
 #include <array>
 #include <cmath>
@@ -10,7 +9,7 @@
 namespace item3d {
 namespace {
 
-constexpr int size = bsdf_table_size;
+constexpr int size = kernels::bsdf_table_size;
 constexpr int rule_size = 10;
 constexpr int azimuths = 16;
 

@@ -1,5 +1,6 @@
-#include "command.h"
+#include "apps/item3d/command.h"
 
+#include "apps/item3d/commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/find_prior.h"
@@ -19,8 +20,8 @@ namespace {
 
 /// A CUDA device is of use where there are both LibTorch's half for it and our own kernels. A
 /// module that is missing, or from another build, is an error only where the user asked for it.
-torch::Device choose_device(const std::string& name) {
-    const torch::Device cpu(torch::kCPU), first_cuda(torch::kCUDA, 0);
+at::Device choose_device(const std::string& name) {
+    const at::Device cpu(at::kCPU), first_cuda(at::kCUDA, 0);
     if (name == "cpu") return cpu;
     if (!cuda::cuda_available()) {
         if (name == "auto") return cpu;
@@ -35,6 +36,12 @@ torch::Device choose_device(const std::string& name) {
         return cpu;
     }
     return first_cuda;
+}
+
+std::string described(const std::string& name) {
+    const CommandEntry* entry = find_command(name);
+    ITEM3D_CHECK(entry, "a command that commands.h does not list");
+    return std::string(entry->description);
 }
 
 }  // namespace
@@ -56,7 +63,15 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
     return command;
 }
 
-torch::Device start_command(const CommonOptions& options) {
+CLI::App* add_command(CLI::App& app, const std::string& name, CommonOptions& options) {
+    return add_command(app, name, described(name), options);
+}
+
+CLI::App* add_command_group(CLI::App& app, const std::string& name) {
+    return app.add_subcommand(name, described(name));
+}
+
+at::Device start_command(const CommonOptions& options) {
     set_verbosity(options.quiet ? Verbosity::quiet : Verbosity::normal);
     // LibTorch and our own kernels share OpenMP's threads; both are told the same number.
     const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();

@@ -1,23 +1,26 @@
-// What the commands share: common options, results on stdout, and how main() finds a command.
+// What the commands share: common options, results on stdout.
 //
-// A command is one file of this folder, apps/item3d/<command>.cpp, with one function that adds it:
+// A command is one file of its family's folder, apps/item3d/FAMILY/COMMAND.cpp, with one function
+// that adds it:
 //
 //     struct RenderOptions : CommonOptions { std::string model; };
 //
 //     void add_render_command(CLI::App& app) {
 //         auto options = std::make_shared<RenderOptions>();
-//         CLI::App* command = add_command(app, "render", "Draw a model", *options);
+//         CLI::App* command = add_command(app, "render", *options);
 //         command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
 //         command->callback([options] { run_render(*options, start_command(*options)); });
 //     }
 //
-// Its name goes into the list in apps/CMakeLists.txt. Errors are thrown (core/error.h); main()
-// turns them into one line on stderr and the exit code.
+// Its name and description go into commands.h, its function into FAMILY/commands.h and
+// FAMILY/main.cpp. Errors are thrown (core/error.h); run_program() turns them into one line on
+// stderr and the exit code.
 #pragma once
+
+#include "item3d/tensors/tensor.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <torch/types.h>
 
 #include <string>
 
@@ -31,14 +34,18 @@ struct CommonOptions {
     std::string device = "auto";  ///< cpu, cuda, or auto: cuda where this build and machine have it
 };
 
-/// Adds a subcommand that takes the common options into `options`, which must live as long as `app`
-/// (a shared pointer in the command's callback does).
-CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description,
+/// Adds a command of commands.h that takes the common options into `options`, which must live as
+/// long as `app` (a shared pointer in the command's callback does).
+CLI::App* add_command(CLI::App& app, const std::string& name, CommonOptions& options);
+/// Adds a command of commands.h that has commands of its own.
+CLI::App* add_command_group(CLI::App& app, const std::string& name);
+/// Adds such a command of a group.
+CLI::App* add_command(CLI::App& group, const std::string& name, const std::string& description,
                       CommonOptions& options);
 
 /// Applies the common options to the process (verbosity, threads), installs the interrupt handler,
 /// and returns the device to compute on. Throws ResourceError when that device is not there.
-torch::Device start_command(const CommonOptions& options);
+at::Device start_command(const CommonOptions& options);
 
 /// The command line as typed, quoted for a shell.
 std::string command_line();

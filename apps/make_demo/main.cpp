@@ -1,7 +1,7 @@
 // Writes the demo model that `make demo` edits: make_demo FILE.glb
+#include "apps/make_demo/mug.h"
 #include "item3d/core/error.h"
 #include "item3d/io/save.h"
-#include "mug.h"
 
 #include <cstdio>
 #include <exception>

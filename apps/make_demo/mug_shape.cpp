@@ -1,4 +1,4 @@
-#include "mug.h"
+#include "apps/make_demo/mug.h"
 
 #include <algorithm>
 #include <array>

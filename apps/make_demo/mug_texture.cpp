@@ -1,6 +1,6 @@
+#include "apps/make_demo/mug.h"
 #include "item3d/core/parallel.h"
 #include "item3d/core/random.h"
-#include "mug.h"
 
 #include <algorithm>
 #include <cmath>

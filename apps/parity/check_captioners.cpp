@@ -1,9 +1,10 @@
+#include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/networks/vision_language/blip.h"
 #include "item3d/networks/vision_language/blip2.h"
-#include "item3d/text/caption_tokenizer.h"
-#include "parity.h"
+#include "item3d/text/bert_tokenizer.h"
+#include "item3d/text/gpt2_tokenizer.h"
 
 namespace item3d::parity {
 namespace {
@@ -25,8 +26,8 @@ void compare_tokens(Case& golden, const CaptionTokenizer& tokenizer) {
     golden.compare_texts("tokens.json decoded", count, different_texts);
 }
 
-torch::Tensor row(const std::vector<int>& ids) {
-    return torch::tensor(std::vector<std::int64_t>(ids.begin(), ids.end())).unsqueeze(0);
+at::Tensor row(const std::vector<int>& ids) {
+    return at::tensor(std::vector<std::int64_t>(ids.begin(), ids.end())).unsqueeze(0);
 }
 
 }  // namespace
@@ -34,22 +35,22 @@ torch::Tensor row(const std::vector<int>& ids) {
 void check_blip(Case& golden) {
     const Config meta = golden.meta();
     BlipModel model = load_blip(golden.folder());
-    const torch::Tensor pixels = golden.input("pixel_values"), ids = golden.input("input_ids");
-    const torch::Tensor embeds = model->image_embeds(pixels);
+    const at::Tensor pixels = golden.input("pixel_values"), ids = golden.input("input_ids");
+    const at::Tensor embeds = model->image_embeds(pixels);
     golden.compare("image_embeds", embeds, within::one_pass);
     const auto image = model->read_image(embeds);
-    const auto logits = [&](const torch::Tensor& visible) {
+    const auto logits = [&](const at::Tensor& visible) {
         return model->logits(model->decode(ids, visible, image));
     };
     golden.compare("logits", logits(golden.input("attention_mask")), within::one_pass);
-    golden.compare("logits_nomask", logits(torch::ones_like(ids)), within::one_pass);
+    golden.compare("logits_nomask", logits(at::ones_like(ids)), within::one_pass);
 
     const BertTokenizer tokenizer = BertTokenizer::load(golden.folder());
     compare_tokens(golden, tokenizer);
-    torch::Tensor prompt = row(tokenizer.encode(meta.text("prompt", "")));
+    at::Tensor prompt = row(tokenizer.encode(meta.text("prompt", "")));
     golden.compare("prompt_ids", prompt, within::exact);
-    const torch::Tensor begin = torch::full({1, 1}, model->config().bos_token_id, torch::kInt64);
-    prompt = torch::cat({begin, prompt.slice(1, 1, -1)}, 1);
+    const at::Tensor begin = at::full({1, 1}, model->config().bos_token_id, at::kLong);
+    prompt = at::cat({begin, prompt.slice(1, 1, -1)}, 1);
     for (const std::string kind : {"greedy", "beam"}) {
         DecodingOptions options;
         options.max_new_tokens = meta.size("max_new_tokens", 1);
@@ -68,12 +69,12 @@ void check_blip2(Case& golden) {
     const Config meta = golden.meta();
     Blip2Model model = load_blip2(golden.folder());
     const Blip2Config& config = model->config();
-    const torch::Tensor pixels = golden.input("pixel_values"), ids = golden.input("input_ids");
-    const torch::Tensor embeds = model->image_embeds(pixels);
+    const at::Tensor pixels = golden.input("pixel_values"), ids = golden.input("input_ids");
+    const at::Tensor embeds = model->image_embeds(pixels);
     golden.compare("vision_last_hidden_state", embeds, within::one_pass);
-    const torch::Tensor queried = model->query_image(embeds);
+    const at::Tensor queried = model->query_image(embeds);
     golden.compare("qformer_last_hidden_state", queried, within::one_pass);
-    const torch::Tensor picture = model->project(queried);
+    const at::Tensor picture = model->project(queried);
     golden.compare("language_projection", picture, within::one_pass);
     OptModel language_model = model->language_model();
     golden.compare("logits",
@@ -91,16 +92,16 @@ void check_blip2(Case& golden) {
         result.insert(result.end(), tokens.begin(), tokens.end());
         return row(result);
     };
-    const torch::Tensor longer = with_picture(meta.text("prompt", ""));
-    const torch::Tensor shorter = with_picture("a photo of");
+    const at::Tensor longer = with_picture(meta.text("prompt", ""));
+    const at::Tensor shorter = with_picture("a photo of");
     const auto padding = longer.size(1) - shorter.size(1);
-    const torch::Tensor prompts = torch::cat(
-        {longer, torch::constant_pad_nd(shorter, {padding, 0}, config.text.pad_token_id), longer});
-    torch::Tensor visible = torch::ones_like(prompts);
+    const at::Tensor prompts = at::cat(
+        {longer, at::constant_pad_nd(shorter, {padding, 0}, config.text.pad_token_id), longer});
+    at::Tensor visible = at::ones_like(prompts);
     visible[1].narrow(0, 0, padding).zero_();
     golden.compare("prompt_ids", prompts, within::exact);
     golden.compare("prompt_mask", visible, within::exact);
-    const torch::Tensor begin = with_picture("");
+    const at::Tensor begin = with_picture("");
     for (const std::string kind : {"greedy", "beam"}) {
         DecodingOptions options;
         options.max_new_tokens = meta.size("max_new_tokens", 1);

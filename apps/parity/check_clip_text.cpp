@@ -1,6 +1,6 @@
+#include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/networks/vision_language/clip_text.h"
-#include "parity.h"
 
 #include <charconv>
 
@@ -21,7 +21,7 @@ int number_of(const Case& golden, const std::string& text, int least, int most) 
 
 void check_clip_text(Case& golden) {
     ClipTextModel model = load_clip_text(golden.folder());
-    const torch::Tensor ids = golden.input("input_ids");
+    const at::Tensor ids = golden.input("input_ids");
     const ClipTextOutput output = model(ids);
     const int layers = static_cast<int>(output.hidden_states.size()) - 1;
 
@@ -46,7 +46,7 @@ void check_clip_text(Case& golden) {
         golden.compare("last_hidden_state_masked",
                        model(ids, golden.input("attention_mask")).last_hidden_state,
                        within::one_pass);
-    model->to(torch::kBFloat16);
+    model->to(at::kBFloat16);
     golden.orient("last_hidden_state_bf16", model(ids).last_hidden_state, "last_hidden_state");
 }
 

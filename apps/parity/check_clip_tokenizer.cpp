@@ -1,15 +1,15 @@
+#include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/text/clip_tokenizer.h"
-#include "parity.h"
 
 namespace item3d::parity {
 namespace {
 
 namespace fs = std::filesystem;
 
-torch::Tensor int32(const std::vector<int>& values) {
-    return torch::tensor(values, torch::kInt32);
+at::Tensor int32(const std::vector<int>& values) {
+    return at::tensor(values, at::kInt);
 }
 
 /// Ids padded to their full length, and a mask that ends with the text.
@@ -18,10 +18,10 @@ void compare_padded(Case& golden, const std::string& variant, const ClipTokenize
     const std::string name = variant + ".input_ids";
     if (!golden.has("out." + name)) return;
     const int length = static_cast<int>(golden.expected(name).size(-1));
-    const torch::Tensor ids = tokenizer.encode_batch(texts, length);
+    const at::Tensor ids = tokenizer.encode_batch(texts, length);
     golden.compare(name, ids, within::exact);
 
-    torch::Tensor mask = torch::zeros_like(ids);
+    at::Tensor mask = at::zeros_like(ids);
     for (std::size_t i = 0; i < texts.size(); ++i)
         mask[static_cast<std::int64_t>(i)]
             .slice(0, 0, static_cast<std::int64_t>(tokenizer.encode(texts[i]).size()))

@@ -1,6 +1,6 @@
+#include "apps/parity/parity.h"
 #include "item3d/networks/vision_language/clip_model.h"
 #include "item3d/networks/vision_language/clip_vision.h"
-#include "parity.h"
 
 namespace item3d::parity {
 
@@ -16,26 +16,26 @@ void check_clip_vision(Case& golden) {
 
 void check_clip_model(Case& golden) {
     ClipModel model = load_clip_model(golden.folder());
-    const auto unit = [](const torch::Tensor& x) { return x / x.norm(2, {-1}, true); };
-    const torch::Tensor ids = golden.input("input_ids");
-    const torch::Tensor text = model->text_features(ids);
+    const auto unit = [](const at::Tensor& x) { return x / x.norm(2, {-1}, true); };
+    const at::Tensor ids = golden.input("input_ids");
+    const at::Tensor text = model->text_features(ids);
     golden.compare("text_features", text, within::one_pass);
     golden.compare("text_features_masked",
                    model->text_features(ids, golden.input("attention_mask")), within::one_pass);
     golden.compare("text_embeds", unit(text), within::one_pass);
 
-    torch::Tensor pixels = golden.input("pixel_values").clone();
+    at::Tensor pixels = golden.input("pixel_values").clone();
     {
-        const torch::AutoGradMode gradients(true);
+        const at::AutoGradMode gradients(true);
         pixels.requires_grad_();
-        const torch::Tensor embeds = unit(model->image_features(pixels));
+        const at::Tensor embeds = unit(model->image_features(pixels));
         (embeds * golden.input("cotangent")).sum().backward();
     }
     golden.compare("grad_pixel_values", pixels.grad(), within::one_pass);
-    const torch::Tensor image = model->image_features(pixels);
+    const at::Tensor image = model->image_features(pixels);
     golden.compare("image_features", image, within::one_pass);
     golden.compare("image_embeds", unit(image), within::one_pass);
-    const torch::Tensor logits = model->logit_scale() * unit(image).matmul(unit(text).t());
+    const at::Tensor logits = model->logit_scale() * unit(image).matmul(unit(text).t());
     golden.compare("logits_per_image", logits, within::one_pass);
     golden.compare("logits_per_text", logits.t(), within::one_pass);
     golden.compare("logit_scale_exp", model->logit_scale().reshape({1}), within::one_pass);
@@ -48,7 +48,7 @@ void check_clip_model(Case& golden) {
     if (golden.has("out.png_image_features")) {
         const auto count = golden.expected("png_image_features").size(0);
         golden.compare("png_image_features",
-                       model->image_features(torch::cat(pictures).narrow(0, 0, count)),
+                       model->image_features(at::cat(pictures).narrow(0, 0, count)),
                        within::one_pass);
     }
 }

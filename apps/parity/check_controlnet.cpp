@@ -1,14 +1,14 @@
+#include "apps/parity/parity.h"
 #include "item3d/networks/diffusion/controlnet.h"
-#include "parity.h"
 
 namespace item3d::parity {
 
 void check_controlnet(Case& golden) {
     ControlNet controlnet = load_controlnet(golden.folder() / "controlnet");
     UNet2DCondition unet = load_unet(golden.folder() / "unet");
-    const torch::Tensor sample = golden.input("sample"), timesteps = golden.input("timesteps");
-    const torch::Tensor context = golden.input("encoder_hidden_states");
-    const torch::Tensor picture = golden.input("controlnet_cond");
+    const at::Tensor sample = golden.input("sample"), timesteps = golden.input("timesteps");
+    const at::Tensor context = golden.input("encoder_hidden_states");
+    const at::Tensor picture = golden.input("controlnet_cond");
     const double scale = golden.input("conditioning_scale").item<double>();
 
     for (std::int64_t i = 0; i < timesteps.size(0); ++i) {

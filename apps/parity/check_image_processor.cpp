@@ -1,31 +1,31 @@
+#include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/io/load.h"
 #include "item3d/networks/vision_language/image_processor.h"
-#include "item3d/render/shade.h"
-#include "parity.h"
+#include "item3d/render/pictures.h"
 
 namespace item3d::parity {
 namespace {
 
 /// A recorded picture as bytes [H, W, C].
-torch::Tensor read_bytes_of(const std::filesystem::path& path) {
-    return (to_tensor(load_image(path)) * 255).round().to(torch::kUInt8);
+at::Tensor read_bytes_of(const std::filesystem::path& path) {
+    return (to_tensor(load_image(path)) * 255).round().to(at::kByte);
 }
 
 }  // namespace
 
-std::vector<torch::Tensor> compare_image_processors(Case& golden) {
+std::vector<at::Tensor> compare_image_processors(Case& golden) {
     const Config meta = golden.meta();
     const auto names = meta.texts("images", {});
     if (!meta.has("processors")) meta.fail("processors", "an object");
-    std::vector<torch::Tensor> pictures;  // of the first processor, the one without a name
+    std::vector<at::Tensor> pictures;  // of the first processor, the one without a name
     for (const auto& [tag, chosen] : meta.json().at("processors").items()) {
         const ImageProcessor processor = ImageProcessor::load(golden.folder() / tag);
         for (std::size_t i = 0; i < names.size(); ++i) {
             const std::string suffix = (tag.empty() ? "" : tag + ".") + std::to_string(i);
             if (!golden.has("out.pixel_values." + suffix)) continue;
-            const torch::Tensor bytes = read_bytes_of(golden.folder() / "images" / names[i]);
-            const torch::Tensor pixel_values = processor.process(bytes);
+            const at::Tensor bytes = read_bytes_of(golden.folder() / "images" / names[i]);
+            const at::Tensor pixel_values = processor.process(bytes);
             golden.compare("pixel_values." + suffix, pixel_values, within::scheduler_step);
             golden.compare("resized_u8." + suffix,
                            processor.resize(bytes).permute({2, 0, 1}).unsqueeze(0), within::exact);

@@ -1,6 +1,6 @@
+#include "apps/parity/parity.h"
 #include "item3d/core/format.h"
 #include "item3d/networks/diffusion/lora.h"
-#include "parity.h"
 
 namespace item3d::parity {
 

@@ -1,7 +1,8 @@
+#include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/networks/diffusion/generate.h"
 #include "item3d/networks/diffusion/pipeline.h"
-#include "parity.h"
 
 namespace item3d::parity {
 
@@ -27,7 +28,7 @@ void check_pipeline(Case& golden) {
         const auto compare_text = [&](const std::string& prefix, const std::string& pooled,
                                       const std::string& prompt, const TextEmbedding& text) {
             golden.compare(prefix + "prompt_ids" + number,
-                           pipeline.tokenizer->encode_batch({prompt}), within::exact);
+                           pipeline.tokenizer().encode_batch({prompt}), within::exact);
             golden.compare(prefix + "prompt_embeds" + number, text.states, within::one_pass);
             if (pipeline.is_sdxl()) golden.compare(pooled + number, text.pooled, within::one_pass);
         };
@@ -36,9 +37,9 @@ void check_pipeline(Case& golden) {
         compare_text(
             "negative_", "negative_pooled", negative,
             options.negative_prompt ? pipeline.encode_text({negative}) : pipeline.encode_no_text());
-        const torch::Tensor latents = generate_latents(pipeline, options);
+        const at::Tensor latents = generate_latents(pipeline, options);
         golden.compare("latents" + number, latents, within::several_steps);
-        const torch::Tensor decoded = pipeline.decode_image(latents);
+        const at::Tensor decoded = pipeline.decode_image(latents);
         golden.compare("decoded" + number, decoded, within::several_steps);
         golden.compare("image" + number, (decoded / 2 + 0.5).clamp(0, 1).permute({0, 2, 3, 1}),
                        within::image);

@@ -1,5 +1,5 @@
+#include "apps/parity/parity.h"
 #include "item3d/networks/diffusion/unet.h"
-#include "parity.h"
 
 namespace item3d::parity {
 namespace {
@@ -14,9 +14,9 @@ AddedCondition added_condition(const Case& golden, std::int64_t rows) {
 
 void check_unet(Case& golden) {
     UNet2DCondition unet = load_unet(golden.folder());
-    const torch::Tensor sample = golden.input("sample");
-    const torch::Tensor timesteps = golden.input("timesteps");
-    const torch::Tensor context = golden.input("encoder_hidden_states");
+    const at::Tensor sample = golden.input("sample");
+    const at::Tensor timesteps = golden.input("timesteps");
+    const at::Tensor context = golden.input("encoder_hidden_states");
     const auto rows = sample.size(0), runs = timesteps.size(0);
     const AddedCondition added = added_condition(golden, rows);
 
@@ -32,11 +32,11 @@ void check_unet(Case& golden) {
                        unet(golden.input("sample_odd"), timesteps[runs - 1][-1].reshape({1}),
                             context.slice(0, 0, 1), added_condition(golden, 1)),
                        within::one_pass);
-    const torch::Tensor sinusoids = unet->time_sinusoids(timesteps[runs - 1]);
+    const at::Tensor sinusoids = unet->time_sinusoids(timesteps[runs - 1]);
     golden.compare("time_proj", sinusoids, within::one_pass);
     golden.compare("time_embedding", unet->time_embedding(sinusoids), within::one_pass);
 
-    unet->to(torch::kBFloat16);
+    unet->to(at::kBFloat16);
     golden.orient("sample_bf16_0", unet(sample, timesteps[0], context, added), "sample_0");
 }
 

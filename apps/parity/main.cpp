@@ -1,9 +1,9 @@
 // parity CASE_DIR: computes what the reference libraries recorded in a folder and compares.
 // One JSON object on stdout; exit code 0 when all is within tolerance, 1 when not, 3 when the
 // folder cannot be used.
+#include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
-#include "parity.h"
 
 #include <cstdio>
 #include <exception>
@@ -92,7 +92,7 @@ int run(const fs::path& folder) {
     if (!fs::is_directory(folder))
         throw InputError(folder.string(), "no such folder", "name the folder of a case");
     Case golden(folder);
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     check(golden);
     fmt::print("{}\n", golden.report().dump(1));
     return golden.passed() ? 0 : 1;

@@ -1,4 +1,4 @@
-#include "parity.h"
+#include "apps/parity/parity.h"
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
@@ -19,11 +19,11 @@ Config Case::meta() const {
     return Config::read(folder_ / "meta.json");
 }
 
-torch::Tensor Case::input(const std::string& name) const {
+at::Tensor Case::input(const std::string& name) const {
     return io_.tensor("in." + name);
 }
 
-torch::Tensor Case::expected(const std::string& name) const {
+at::Tensor Case::expected(const std::string& name) const {
     return io_.tensor("out." + name);
 }
 
@@ -40,12 +40,12 @@ std::vector<std::string> Case::outputs_with_prefix(const std::string& prefix) co
     return result;
 }
 
-void Case::compare(const std::string& name, const torch::Tensor& actual, double tolerance,
+void Case::compare(const std::string& name, const at::Tensor& actual, double tolerance,
                    const std::string& reported_as) {
     if (!has("out." + name)) return;
     seen_.insert(name);
     compared_ = true;
-    const torch::Tensor wanted = expected(name).to(torch::kFloat64);
+    const at::Tensor wanted = expected(name).to(at::kDouble);
     nlohmann::json result = {{"name", reported_as.empty() ? name : reported_as},
                              {"tolerance", tolerance}};
     bool pass = false;
@@ -56,7 +56,7 @@ void Case::compare(const std::string& name, const torch::Tensor& actual, double 
     } else if (wanted.numel() == 0) {
         pass = true;
     } else {
-        const torch::Tensor difference = (actual.detach().to(torch::kFloat64) - wanted).abs();
+        const at::Tensor difference = (actual.detach().to(at::kDouble) - wanted).abs();
         const double largest = difference.max().item<double>();
         const double relative = largest / std::max(1.0, wanted.abs().max().item<double>());
         pass = relative <= tolerance;  // false for NaN
@@ -69,14 +69,14 @@ void Case::compare(const std::string& name, const torch::Tensor& actual, double 
     results_.push_back(std::move(result));
 }
 
-void Case::orient(const std::string& name, const torch::Tensor& actual,
+void Case::orient(const std::string& name, const at::Tensor& actual,
                   const std::string& float32_name) {
     if (!has("out." + name) || !has("out." + float32_name)) return;
     seen_.insert(name);
-    const torch::Tensor wanted = expected(name), reference = expected(float32_name);
+    const at::Tensor wanted = expected(name), reference = expected(float32_name);
     if (wanted.sizes() != actual.sizes()) return;
     const double norm = std::max(wanted.norm().item<double>(), 1e-30);
-    const double distance = (actual.to(torch::kFloat32) - wanted).norm().item<double>() / norm;
+    const double distance = (actual.to(at::kFloat) - wanted).norm().item<double>() / norm;
     const double advised = 2 * (reference - wanted).norm().item<double>() / norm;
     results_.push_back({{"name", name},
                         {"relative_l2", distance},

@@ -3,9 +3,9 @@
 
 #include "item3d/core/config.h"
 #include "item3d/tensors/safetensors.h"
+#include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>
-#include <torch/types.h>
 
 #include <filesystem>
 #include <set>
@@ -36,22 +36,21 @@ class Case {
     bool has_meta() const;
     bool has(const std::string& tensor) const { return io_.contains(tensor); }
     /// "in.NAME". Throws InputError when it is not there.
-    torch::Tensor input(const std::string& name) const;
+    at::Tensor input(const std::string& name) const;
     /// Names of all recorded outputs, without "out.".
     std::vector<std::string> outputs() const;
-    torch::Tensor expected(const std::string& name) const;
+    at::Tensor expected(const std::string& name) const;
     /// NAME of each output PREFIX<NAME>.
     std::vector<std::string> outputs_with_prefix(const std::string& prefix) const;
 
     void set_class(const std::string& name) { class_ = name; }
     /// Compares with "out.NAME", reported as `name` (or `reported_as`); does nothing where the case
     /// has no such output.
-    void compare(const std::string& name, const torch::Tensor& actual, double tolerance,
+    void compare(const std::string& name, const at::Tensor& actual, double tolerance,
                  const std::string& reported_as = "");
     /// A bfloat16 run, for orientation: its relative L2 distance to "out.NAME" beside twice the
     /// distance between that and the float32 output. Does not decide.
-    void orient(const std::string& name, const torch::Tensor& actual,
-                const std::string& float32_name);
+    void orient(const std::string& name, const at::Tensor& actual, const std::string& float32_name);
     /// Counts differing strings; `count` were compared.
     void compare_texts(const std::string& name, std::int64_t count, std::int64_t different);
     /// Outputs that start with this are known and left out, for this reason.
@@ -74,7 +73,7 @@ class Case {
 
 /// The pictures that meta.json lists through each of its image processors; returns what the one in
 /// the case's own folder gave, [1, 3, h, w] each.
-std::vector<torch::Tensor> compare_image_processors(Case& golden);
+std::vector<at::Tensor> compare_image_processors(Case& golden);
 
 void check_unet(Case& golden);
 void check_autoencoder_kl(Case& golden);

@@ -1,5 +1,5 @@
 // item3d bench: the numbers that it prints are there and are times.
-#include "support/program.h"
+#include "tests/support/program.h"
 
 #include <nlohmann/json.hpp>
 

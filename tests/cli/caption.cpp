@@ -1,5 +1,5 @@
 // item3d caption and item3d score.
-#include "support/program.h"
+#include "tests/support/program.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 // The program as a user meets it: what it says, where, and its exit code.
-#include "support/program.h"
+#include "tests/support/program.h"
 
 namespace item3d::testing {
 namespace {

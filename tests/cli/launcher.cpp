@@ -1,5 +1,5 @@
 // What people start becomes the program beside it, and says how its threads are to wait.
-#include "support/program.h"
+#include "tests/support/program.h"
 
 namespace item3d::testing {
 namespace {

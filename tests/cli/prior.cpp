@@ -1,6 +1,6 @@
 // item3d prior pull, verify and list, and priors by name.
-#include "support/hub_server.h"
-#include "support/program.h"
+#include "tests/support/hub_server.h"
+#include "tests/support/program.h"
 
 #include <map>
 

@@ -1,5 +1,5 @@
 // item3d light and relight: what they write, and what they say to mistakes.
-#include "support/program.h"
+#include "tests/support/program.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 // item3d render --occlusion and --samples: off or usual unless asked for, and of use where
 // something is hidden or has edges.
-#include "support/program.h"
+#include "tests/support/program.h"
 
 namespace item3d::testing {
 namespace {

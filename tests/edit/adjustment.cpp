@@ -4,7 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/scene.h"
-#include "support/edit.h"
+#include "tests/support/edit.h"
 
 #include <functional>
 
@@ -19,10 +19,10 @@ using Speech = std::function<std::vector<Caption>(int call)>;
 class ScriptedCaptioner : public Captioner {
   public:
     explicit ScriptedCaptioner(Speech speech) : speech_(std::move(speech)) {}
-    std::vector<Caption> captions(const std::vector<torch::Tensor>& pictures,
+    std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
                                   const CaptionOptions&) const override {
         EXPECT_EQ(pictures.size(), 4u);
-        EXPECT_EQ(pictures.front().scalar_type(), torch::kUInt8);
+        EXPECT_EQ(pictures.front().scalar_type(), at::kByte);
         return speech_(calls++);
     }
     mutable int calls = 0;
@@ -129,13 +129,13 @@ TEST_F(AdjustmentTest, resumes_to_the_same_bytes) {
     parts.resume = true;
     // What the unedited model was called is kept: it is not asked about again.
     const EditState state = run(parts, speech);
-    EXPECT_TRUE(torch::equal(state.field->table(), expected.field->table()));
+    EXPECT_TRUE(at::equal(state.field->table(), expected.field->table()));
     ASSERT_EQ(state.adjustment.records.size(), expected.adjustment.records.size());
     for (std::size_t i = 0; i < state.adjustment.records.size(); ++i) {
         EXPECT_EQ(nlohmann::json(state.adjustment.records[i]),
                   nlohmann::json(expected.adjustment.records[i]));
-        EXPECT_TRUE(torch::equal(state.adjustment.records[i].picture,
-                                 expected.adjustment.records[i].picture));
+        EXPECT_TRUE(
+            at::equal(state.adjustment.records[i].picture, expected.adjustment.records[i].picture));
     }
     EXPECT_EQ(read_bytes(whole.output / "checkpoint.safetensors").size(),
               read_bytes(parts.output / "checkpoint.safetensors").size());
@@ -185,7 +185,7 @@ TEST_F(AdjustmentTest, an_edit_that_has_settled_stops_and_resumes_to_the_same_by
     edit.resume = true;
     const EditState resumed = run(edit, [](int) { return four_times("a blue cube"); });
     EXPECT_EQ(resumed.direction_length, whole.direction_length);
-    EXPECT_TRUE(torch::equal(resumed.field->table(), whole.field->table()));
+    EXPECT_TRUE(at::equal(resumed.field->table(), whole.field->table()));
     // Once more: nothing is left to do.
     const EditState again = run(edit, speech);
     EXPECT_EQ(again.direction_length.size(), whole.direction_length.size());

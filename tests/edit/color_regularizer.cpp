@@ -1,7 +1,7 @@
 #include "item3d/edit/optimize/color_regularizer.h"
 
 #include "item3d/core/random.h"
-#include "support/edit.h"
+#include "tests/support/edit.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 #include <gtest/gtest.h>
@@ -15,15 +15,15 @@ using testing::EditTest;
 
 constexpr float scale = 0.25f;
 
-torch::Tensor random_rows(std::int64_t rows, std::int64_t columns, std::uint64_t stream) {
+at::Tensor random_rows(std::int64_t rows, std::int64_t columns, std::uint64_t stream) {
     auto generator = at::detail::createCPUGenerator(Random(1, stream).bits());
-    return torch::rand({rows, columns}, generator, torch::kFloat64);
+    return at::rand({rows, columns}, generator, at::kDouble);
 }
 
 /// What Evenness::backward() goes down: the sum of Geman and McClure's norm of each departure.
-double unevenness(const torch::Tensor& change, const torch::Tensor& color) {
+double unevenness(const at::Tensor& change, const at::Tensor& color) {
     const Departures found = departures(change, color, scale);
-    const torch::Tensor squared = found.values.square().sum(1);
+    const at::Tensor squared = found.values.square().sum(1);
     return (0.5 * squared / (1 + squared / (scale * scale))).sum().item<double>();
 }
 
@@ -41,18 +41,19 @@ double spread(const Image& was, const Image& now) {
 }  // namespace
 
 TEST(Evenness, finds_nothing_in_a_recolouring) {
-    const torch::Tensor color = random_rows(500, 3, 1).round();
-    const torch::Tensor change =
-        0.2 + color.mm(torch::tensor({{-0.9, 0.1, 0.0}, {0.0, -0.5, 0.2}, {0.1, 0.0, 0.3}})
-                           .to(torch::kFloat64));
+    const at::Tensor color = random_rows(500, 3, 1).round();
+    const at::Tensor change =
+        0.2 + color.mm(at::tensor({-0.9, 0.1, 0.0, 0.0, -0.5, 0.2, 0.1, 0.0, 0.3}, at::kFloat)
+                           .view({3, 3})
+                           .to(at::kDouble));
     const Departures found = departures(change, color, scale);
     EXPECT_LT(found.values.abs().max().item<double>(), 0.05);  // the ridge's share
     EXPECT_GT(found.weights.min().item<double>(), 0.9);
 }
 
 TEST(Evenness, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
-    const torch::Tensor color = torch::full({1000, 3}, 0.5, torch::kFloat64);
-    torch::Tensor change = torch::full({1000, 3}, 0.3, torch::kFloat64);
+    const at::Tensor color = at::full({1000, 3}, 0.5, at::kDouble);
+    at::Tensor change = at::full({1000, 3}, 0.3, at::kDouble);
     change.narrow(0, 0, 100) += 0.05;   // a blotch
     change.narrow(0, 100, 100) -= 0.7;  // a handle
     const Departures found = departures(change, color, scale);
@@ -64,13 +65,13 @@ TEST(Evenness, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
 
 TEST(Evenness, its_gradient_is_that_of_the_robust_norm) {
     // Plain, so that the ridge has no share in it; small, so that the refits have converged.
-    const torch::Tensor color = torch::full({64, 3}, 0.5, torch::kFloat64);
-    const torch::Tensor change = 0.1 * random_rows(64, 3, 3);
+    const at::Tensor color = at::full({64, 3}, 0.5, at::kDouble);
+    const at::Tensor change = 0.1 * random_rows(64, 3, 3);
     const Departures found = departures(change, color, scale);
-    const torch::Tensor gradient = found.values * found.weights;
+    const at::Tensor gradient = found.values * found.weights;
     for (const std::int64_t row : {0, 17, 63}) {
         constexpr double step = 1e-4;
-        torch::Tensor moved = change.clone();
+        at::Tensor moved = change.clone();
         moved[row][1] += step;
         const double above = unevenness(moved, color);
         moved[row][1] -= 2 * step;

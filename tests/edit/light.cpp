@@ -1,7 +1,7 @@
 // Edits that change the light: what they leave alone, and that they resume to the same bytes.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "support/edit.h"
+#include "tests/support/edit.h"
 
 #include <filesystem>
 #include <string>

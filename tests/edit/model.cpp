@@ -5,7 +5,7 @@
 #include "item3d/edit/material_source.h"
 #include "item3d/edit/metals.h"
 #include "item3d/render/cuda/module.h"
-#include "support/edit.h"
+#include "tests/support/edit.h"
 
 #include <ATen/Context.h>
 #include <gtest/gtest.h>
@@ -161,8 +161,8 @@ TEST_F(EditTest, a_checkpoint_of_other_weights_is_refused) {
 TEST_F(EditTest, what_is_added_to_the_prior_changes_the_edit_and_is_kept_in_mind) {
     const std::string lora = (folder_ / "style.safetensors").string();
     const std::string layer = "lora_unet_mid_block_attentions_0_proj_in";
-    save_safetensors(lora, {{layer + ".lora_down.weight", torch::ones({1, 16})},
-                            {layer + ".lora_up.weight", torch::ones({16, 1})}});
+    save_safetensors(lora, {{layer + ".lora_down.weight", at::ones({1, 16})},
+                            {layer + ".lora_up.weight", at::ones({16, 1})}});
     const fs::path models = fs::path(ITEM3D_TEST_DATA) / "models";
     EditRequest edit = request("out", 2);
     edit.settings.detail = "always";
@@ -246,8 +246,7 @@ TEST_F(EditTest, a_device_edits_as_the_cpu_does) {
         GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with";
     at::globalContext().setAllowTF32CuDNN(false);
     std::vector<Image> colors;
-    for (const torch::Device device :
-         {torch::Device(torch::kCPU), torch::Device(torch::kCUDA, 0)}) {
+    for (const at::Device device : {at::Device(at::kCPU), at::Device(at::kCUDA, 0)}) {
         EditRequest edit = request(device.is_cuda() ? "cuda" : "cpu", 2);
         edit.device = device;
         edit.settings.detail = "always";

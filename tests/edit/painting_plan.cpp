@@ -1,7 +1,7 @@
 // What the views of the detail stage paint, on a cube.
 #include "item3d/edit/detail/painting_plan.h"
 
-#include "support/edit.h"
+#include "tests/support/edit.h"
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ TEST_F(EditTest, later_painting_views_leave_what_earlier_ones_painted) {
     const EditScene scene = load_scene(edit);
     const std::vector<PaintingView> plan = plan_painting(scene, edit.settings);
     ASSERT_EQ(plan.size(), 20u);
-    const auto pixels = [](const torch::Tensor& cells) {
-        return torch::upsample_nearest2d(cells, {64, 64});
+    const auto pixels = [](const at::Tensor& cells) {
+        return at::upsample_nearest2d(cells, {64, 64});
     };
     // What the first sees is its own, but for cells that it has little of; the background is
     // nobody's.

@@ -8,16 +8,16 @@ namespace item3d {
 namespace {
 
 TEST(Adam, MatchesTorchOnDenseGradients) {
-    torch::manual_seed(1);
-    torch::Tensor ours = torch::randn({5, 3});
-    torch::Tensor theirs = ours.clone();
+    at::manual_seed(1);
+    at::Tensor ours = at::randn({5, 3});
+    at::Tensor theirs = ours.clone();
     ours.set_requires_grad(true);
     theirs.set_requires_grad(true);
     Adam adam;
-    adam.add_group({ours}, {.learning_rate = 0.05, .beta1 = 0.9, .beta2 = 0.99, .epsilon = 1e-8});
+    adam.add_group("group", {ours}, {.learning_rate = 0.05, .beta1 = 0.9, .beta2 = 0.99, .epsilon = 1e-8});
     torch::optim::Adam reference(
         {theirs}, torch::optim::AdamOptions(0.05).betas(std::make_tuple(0.9, 0.99)).eps(1e-8));
-    const torch::Tensor goal = torch::randn({5, 3});
+    const at::Tensor goal = at::randn({5, 3});
     for (int i = 0; i < 50; ++i) {
         adam.zero_grad();
         reference.zero_grad();
@@ -29,17 +29,17 @@ TEST(Adam, MatchesTorchOnDenseGradients) {
     EXPECT_LT((ours - theirs).abs().max().item<float>(), 1e-5f);
 }
 
-torch::Tensor sparse_gradient(std::vector<std::int64_t> rows, const torch::Tensor& values,
-                              std::int64_t size) {
-    const torch::Tensor index = torch::tensor(rows, torch::kInt64).unsqueeze(0);
-    return torch::sparse_coo_tensor(index, values, {size, values.size(1)});
+at::Tensor sparse_gradient(std::vector<std::int64_t> rows, const at::Tensor& values,
+                           std::int64_t size) {
+    const at::Tensor index = at::tensor(rows, at::kLong).unsqueeze(0);
+    return at::sparse_coo_tensor(index, values, {size, values.size(1)});
 }
 
 TEST(Adam, TouchesOnlyTheRowsOfASparseGradient) {
-    torch::Tensor table = torch::ones({6, 2}).set_requires_grad(true);
+    at::Tensor table = at::ones({6, 2}).set_requires_grad(true);
     Adam adam;
-    adam.add_group({table}, {.learning_rate = 0.1});
-    table.mutable_grad() = sparse_gradient({1, 4}, torch::full({2, 2}, 3.0f), 6);
+    adam.add_group("group", {table}, {.learning_rate = 0.1});
+    table.mutable_grad() = sparse_gradient({1, 4}, at::full({2, 2}, 3.0f), 6);
     adam.step();
     for (int row = 0; row < 6; ++row) {
         const float wanted = row == 1 || row == 4 ? 0.9f : 1.0f;
@@ -47,21 +47,21 @@ TEST(Adam, TouchesOnlyTheRowsOfASparseGradient) {
     }
     // A row's first update is a full step of the learning rate, however late it comes.
     for (int i = 0; i < 30; ++i) {
-        table.mutable_grad() = sparse_gradient({1}, torch::full({1, 2}, 3.0f), 6);
+        table.mutable_grad() = sparse_gradient({1}, at::full({1, 2}, 3.0f), 6);
         adam.step();
     }
-    table.mutable_grad() = sparse_gradient({2}, torch::full({1, 2}, 1e-3f), 6);
+    table.mutable_grad() = sparse_gradient({2}, at::full({1, 2}, 1e-3f), 6);
     adam.step();
     EXPECT_NEAR(table[2][1].item<float>(), 0.9f, 1e-4f);
 }
 
 TEST(Adam, StepsOfRowsAreMultipliedByTheirFactors) {
-    torch::Tensor table = torch::ones({4, 2}).set_requires_grad(true);
+    at::Tensor table = at::ones({4, 2}).set_requires_grad(true);
     AdamOptions options{.learning_rate = 0.1};
-    options.row_factors = torch::tensor({1.0f, 0.5f, 0.0f, 1.0f});
+    options.row_factors = at::tensor({1.0f, 0.5f, 0.0f, 1.0f});
     Adam adam;
-    adam.add_group({table}, options);
-    table.mutable_grad() = sparse_gradient({0, 1, 2}, torch::full({3, 2}, 3.0f), 4);
+    adam.add_group("group", {table}, options);
+    table.mutable_grad() = sparse_gradient({0, 1, 2}, at::full({3, 2}, 3.0f), 4);
     adam.step();
     const std::vector<float> wanted{0.9f, 0.95f, 1.0f, 1.0f};
     for (int row = 0; row < 4; ++row)
@@ -69,29 +69,29 @@ TEST(Adam, StepsOfRowsAreMultipliedByTheirFactors) {
 }
 
 TEST(Adam, SumsRepeatedRows) {
-    torch::Tensor a = torch::zeros({3, 1}).set_requires_grad(true);
-    torch::Tensor b = torch::zeros({3, 1}).set_requires_grad(true);
+    at::Tensor a = at::zeros({3, 1}).set_requires_grad(true);
+    at::Tensor b = at::zeros({3, 1}).set_requires_grad(true);
     Adam adam;
-    adam.add_group({a, b}, {.learning_rate = 0.1, .epsilon = 1.0});
-    a.mutable_grad() = sparse_gradient({2, 2}, torch::ones({2, 1}), 3);
-    b.mutable_grad() = sparse_gradient({2}, torch::full({1, 1}, 2.0f), 3);
+    adam.add_group("group", {a, b}, {.learning_rate = 0.1, .epsilon = 1.0});
+    a.mutable_grad() = sparse_gradient({2, 2}, at::ones({2, 1}), 3);
+    b.mutable_grad() = sparse_gradient({2}, at::full({1, 1}, 2.0f), 3);
     adam.step();
     EXPECT_LT(a[2].item<float>(), 0.0f);
-    EXPECT_TRUE(torch::equal(a, b));
+    EXPECT_TRUE(at::equal(a, b));
 }
 
 TEST(Adam, GoesOnFromASavedState) {
     const auto run = [](int stop) {
-        torch::Tensor x = torch::tensor({{1.0f, -2.0f}, {0.5f, 3.0f}}).set_requires_grad(true);
+        at::Tensor x = at::tensor({1.0f, -2.0f, 0.5f, 3.0f}).view({2, 2}).set_requires_grad(true);
         auto adam = std::make_unique<Adam>();
-        adam->add_group({x}, {});
+        adam->add_group("group", {x}, {});
         for (int i = 0; i < 20; ++i) {
             if (i == stop) {
-                std::map<std::string, torch::Tensor> kept;
+                std::map<std::string, at::Tensor> kept;
                 for (const auto& [name, tensor] : adam->state())
                     kept[name] = tensor.clone();
                 adam = std::make_unique<Adam>();
-                adam->add_group({x}, {});
+                adam->add_group("group", {x}, {});
                 adam->load_state(kept);
             }
             adam->zero_grad();
@@ -100,17 +100,33 @@ TEST(Adam, GoesOnFromASavedState) {
         }
         return x.detach();
     };
-    EXPECT_TRUE(torch::equal(run(-1), run(7)));
+    EXPECT_TRUE(at::equal(run(-1), run(7)));
 }
 
 TEST(Adam, RefusesAStateThatDoesNotFit) {
-    torch::Tensor x = torch::zeros({4, 2}).set_requires_grad(true);
+    at::Tensor x = at::zeros({4, 2}).set_requires_grad(true);
     Adam adam;
-    adam.add_group({x}, {});
+    adam.add_group("group", {x}, {});
     EXPECT_THROW(adam.load_state({}), std::logic_error);
     auto state = adam.state();
-    state["0.0.momentum"] = torch::zeros({3, 2});
+    state["group.0.momentum"] = at::zeros({3, 2});
     EXPECT_THROW(adam.load_state(state), std::logic_error);
+}
+
+TEST(Adam, FindsGroupsByName) {
+    at::Tensor a = at::zeros({2}).set_requires_grad(true);
+    at::Tensor b = at::zeros({2}).set_requires_grad(true);
+    Adam adam;
+    adam.add_group("first", {a}, {.learning_rate = 0.1});
+    adam.add_group("second", {b}, {.learning_rate = 0.1});
+    adam.options("second").learning_rate = 0;
+    (a + b).sum().backward();
+    adam.step();
+    EXPECT_LT(a[0].item<float>(), 0);
+    EXPECT_EQ(b[0].item<float>(), 0);
+    EXPECT_TRUE(adam.state().contains("second.0.momentum"));
+    EXPECT_THROW(adam.options("third"), std::logic_error);
+    EXPECT_THROW(adam.add_group("first", {b}, {}), std::logic_error);
 }
 
 }  // namespace

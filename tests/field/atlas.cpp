@@ -4,7 +4,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/field/atlas/unwrap.h"
 #include "item3d/field/bake/fill.h"
-#include "support/field_models.h"
+#include "tests/support/field_models.h"
 
 #include <gtest/gtest.h>
 
@@ -187,8 +187,8 @@ TEST_F(AtlasTest, InstancesAreUnwrappedOnceAndLieInTheFirstOnesPlace) {
     EXPECT_LT(space.bounds()[1].x, 1.01f);
     const Geometry geometry = Geometry::from_model(model);
     const std::int64_t triangles = static_cast<std::int64_t>(copy.indices.size() / 3);
-    const torch::Tensor which = torch::arange(0, triangles, 7, torch::kInt64);
-    const torch::Tensor weights = torch::full({which.size(0), 2}, 0.3f);
+    const at::Tensor which = at::arange(0, triangles, 7, at::kLong);
+    const at::Tensor weights = at::full({which.size(0), 2}, 0.3f);
     const Surface first = surface_at(geometry, which, weights);
     const Surface second = surface_at(geometry, which + triangles, weights);
     EXPECT_GT((first.position - second.position).abs().max().item<float>(), 1.0f);

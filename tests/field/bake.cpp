@@ -5,7 +5,8 @@
 #include "item3d/core/progress.h"
 #include "item3d/field/adam.h"
 #include "item3d/field/fit.h"
-#include "support/field_models.h"
+#include "item3d/render/pictures.h"
+#include "tests/support/field_models.h"
 
 #include <gtest/gtest.h>
 
@@ -69,11 +70,11 @@ struct Fitted {
     /// Turns the field's colour to blue by training, as an edit does.
     void paint_blue() {
         Adam adam;
-        adam.add_group({field->table()}, {.learning_rate = 0.02});
-        adam.add_group(field->network_parameters(), {.learning_rate = 0.005});
+        adam.add_group("table", {field->table()}, {.learning_rate = 0.02});
+        adam.add_group("network", field->network_parameters(), {.learning_rate = 0.005});
         const SurfaceSampler sampler(geometry, space);
         Random random(5);
-        const torch::Tensor goal = torch::tensor({0.05f, 0.1f, 0.8f});
+        const at::Tensor goal = at::tensor({0.05f, 0.1f, 0.8f});
         for (int i = 0; i < 100; ++i) {
             const MaterialSample sample =
                 field->forward(space.positions(sampler.sample(1024, random)));
@@ -103,36 +104,35 @@ TEST(NeuralTexture, GradientsOfTheNetworkMatchFiniteDifferences) {
     options.finest_resolution = 40;
     NeuralTexture field(options);
     {
-        const torch::NoGradGuard no_grad;
-        torch::manual_seed(3);
+        const at::NoGradGuard no_grad;
+        at::manual_seed(3);
         field->table().normal_(0.0, 0.5);
     }
-    const torch::Tensor positions = torch::rand({40, 3}) * 1.8f - 0.9f;
-    const torch::Tensor weight = torch::randn({40, 9});
+    const at::Tensor positions = at::rand({40, 3}) * 1.8f - 0.9f;
+    const at::Tensor weight = at::randn({40, 9});
     const auto value = [&] {
         const MaterialSample s = field->forward(positions);
-        return (torch::cat({s.base_color, s.orm, s.normal}, 1) * weight).sum();
+        return (at::cat({s.base_color, s.orm, s.normal}, 1) * weight).sum();
     };
     value().backward();
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     Random random(1);
     int checked = 0;
-    for (const auto& entry : field->named_parameters()) {
-        torch::Tensor parameter = entry.value();
-        const torch::Tensor gradient = parameter.grad().to_dense().view(-1);
+    for (const auto& [name, parameter] : field->named_parameters()) {
+        const at::Tensor gradient = parameter.grad().to_dense().view(-1);
         for (int k = 0; k < 60; ++k) {
             const std::int64_t at = random.index(parameter.numel());
             const float wanted = gradient[at].item<float>();
             if (std::abs(wanted) < 0.01f) continue;
             const float step = 3e-4f;  // a larger one meets kinks of relu
-            const torch::Tensor flat = parameter.view(-1);
+            const at::Tensor flat = parameter.view(-1);
             flat[at] += step;
             const float above = value().item<float>();
             flat[at] -= 2.0f * step;
             const float below = value().item<float>();
             flat[at] += step;
             EXPECT_NEAR((above - below) / (2.0f * step), wanted, 0.02f + 0.03f * std::abs(wanted))
-                << entry.key();
+                << name;
             ++checked;
         }
     }
@@ -145,10 +145,10 @@ TEST(NeuralTexture, StaysInItsRanges) {
     options.ranges.roughness = {0.08f, 0.7f};
     options.ranges.metallic = {0.0f, 0.0f};
     NeuralTexture field(options);
-    const torch::NoGradGuard no_grad;
-    torch::manual_seed(4);
+    const at::NoGradGuard no_grad;
+    at::manual_seed(4);
     field->table().normal_(0.0, 50.0);
-    const MaterialSample sample = field->forward(torch::rand({500, 3}) * 2.0f - 1.0f);
+    const MaterialSample sample = field->forward(at::rand({500, 3}) * 2.0f - 1.0f);
     EXPECT_NEAR(linear_to_srgb(sample.base_color).min().item<float>(), 0.2f, 1e-3f);
     EXPECT_NEAR(linear_to_srgb(sample.base_color).max().item<float>(), 0.6f, 1e-3f);
     EXPECT_NEAR(sample.orm.select(1, 1).max().item<float>(), 0.7f, 1e-5f);
@@ -164,7 +164,7 @@ TEST(Fit, ReachesTheTexturesOnASphere) {
 
 TEST(Fit, ShiftsMetallicToAMean) {
     Fitted sphere(make_model(make_sphere()), 50);
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const auto sample = [&] {
         Random random(3);
         const Surface surface = SurfaceSampler(sphere.geometry, sphere.space).sample(2000, random);
@@ -175,8 +175,8 @@ TEST(Fit, ShiftsMetallicToAMean) {
         shift_metallic(sphere.field, sphere.geometry, sphere.space, mean);
         EXPECT_NEAR(sample().orm.select(1, 2).mean().item<float>(), mean, 0.02f);
     }
-    EXPECT_TRUE(torch::equal(sample().base_color, before.base_color));
-    EXPECT_TRUE(torch::equal(sample().orm.select(1, 1), before.orm.select(1, 1)));
+    EXPECT_TRUE(at::equal(sample().base_color, before.base_color));
+    EXPECT_TRUE(at::equal(sample().orm.select(1, 1), before.orm.select(1, 1)));
 }
 
 TEST(Fit, LeavesTheTableOfAPlainSurfaceAlmostEmpty) {
@@ -194,7 +194,7 @@ TEST(Fit, LeavesTheTableOfAPlainSurfaceAlmostEmpty) {
 TEST(Fit, IsDeterministic) {
     const Fitted one(make_model(make_quad()), 20);
     const Fitted two(make_model(make_quad()), 20);
-    EXPECT_TRUE(torch::equal(one.field->table(), two.field->table()));
+    EXPECT_TRUE(at::equal(one.field->table(), two.field->table()));
 }
 
 TEST(Bake, ReturnsTheSourceWhenNothingChanged) {
@@ -408,9 +408,9 @@ TEST(Bake, NewUvMapShowsTheSourceWithoutSeams) {
     const Surface before = sampler.sample(20000, random);
     const Surface after = SurfaceSampler(geometry, sphere.space).sample(20000, same);
     ASSERT_LT((before.position - after.position).abs().max().item<float>(), 1e-5f);
-    const torch::Tensor wanted = linear_to_srgb(sphere.materials.sample(before).base_color);
-    const torch::Tensor found = linear_to_srgb(TexturedMaterials(remade).sample(after).base_color);
-    const torch::Tensor error = (wanted - found).abs();
+    const at::Tensor wanted = linear_to_srgb(sphere.materials.sample(before).base_color);
+    const at::Tensor found = linear_to_srgb(TexturedMaterials(remade).sample(after).base_color);
+    const at::Tensor error = (wanted - found).abs();
     EXPECT_GT(-10.0 * std::log10(error.square().mean().item<double>()), 35.0);
     EXPECT_LT(error.max().item<float>(), 0.15f);  // a seam would show the background
 }

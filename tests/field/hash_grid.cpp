@@ -9,10 +9,10 @@
 namespace item3d {
 namespace {
 
-torch::Tensor random_tensor(std::vector<std::int64_t> shape, double low, double high,
-                            std::uint64_t seed) {
+at::Tensor random_tensor(std::vector<std::int64_t> shape, double low, double high,
+                         std::uint64_t seed) {
     Random random(seed);
-    torch::Tensor tensor = torch::empty(shape, torch::kFloat32);
+    at::Tensor tensor = at::empty(shape, at::kFloat);
     for (std::int64_t i = 0; i < tensor.numel(); ++i) {
         tensor.data_ptr<float>()[i] = static_cast<float>(random.uniform(low, high));
     }
@@ -35,7 +35,7 @@ TEST(HashGrid, LevelsRiseGeometricallyAndCoarseOnesAreNotHashed) {
 TEST(HashGrid, InterpolatesALinearFunctionExactly) {
     // Every vertex of a dense level holds 2x - 3y + z + 0.5; trilinear interpolation returns it.
     const HashGrid grid = HashGrid::make(1, 1, 14, 16, 16);
-    torch::Tensor table = torch::empty({grid.entries(), 1});
+    at::Tensor table = at::empty({grid.entries(), 1});
     float* entry = table.data_ptr<float>();
     for (int z = 0; z <= 16; ++z) {
         for (int y = 0; y <= 16; ++y) {
@@ -47,21 +47,19 @@ TEST(HashGrid, InterpolatesALinearFunctionExactly) {
             }
         }
     }
-    const torch::Tensor points = random_tensor({500, 3}, 0.0, 1.0, 1);
-    const torch::Tensor wanted =
-        torch::matmul(points, torch::tensor({2.0f, -3.0f, 1.0f}).view({3, 1})) + 0.5f;
+    const at::Tensor points = random_tensor({500, 3}, 0.0, 1.0, 1);
+    const at::Tensor wanted =
+        at::matmul(points, at::tensor({2.0f, -3.0f, 1.0f}).view({3, 1})) + 0.5f;
     EXPECT_LT((encode(grid, points, table) - wanted).abs().max().item<float>(), 1e-5f);
 }
 
 TEST(HashGrid, ClampsPointsOutsideTheCube) {
     const HashGrid grid = HashGrid::make(3, 2, 10, 4, 32);
-    const torch::Tensor table = random_tensor({grid.entries(), 2}, -1.0, 1.0, 2);
-    const torch::Tensor outside =
-        torch::tensor({-3.0f, 0.4f, 7.0f, 1.5f, -0.1f, 0.25f}).view({2, 3});
-    EXPECT_TRUE(
-        torch::equal(encode(grid, outside, table), encode(grid, outside.clamp(0, 1), table)));
+    const at::Tensor table = random_tensor({grid.entries(), 2}, -1.0, 1.0, 2);
+    const at::Tensor outside = at::tensor({-3.0f, 0.4f, 7.0f, 1.5f, -0.1f, 0.25f}).view({2, 3});
+    EXPECT_TRUE(at::equal(encode(grid, outside, table), encode(grid, outside.clamp(0, 1), table)));
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_TRUE(torch::isfinite(encode(grid, torch::full({1, 3}, nan), table)).all().item<bool>());
+    EXPECT_TRUE(at::isfinite(encode(grid, at::full({1, 3}, nan), table)).all().item<bool>());
 }
 
 class HashGridGradient : public ::testing::TestWithParam<int> {};
@@ -69,21 +67,21 @@ class HashGridGradient : public ::testing::TestWithParam<int> {};
 TEST_P(HashGridGradient, OfTheTableMatchesFiniteDifferences) {
     // The encoding is linear in the table, so any step is exact up to rounding.
     const HashGrid grid = HashGrid::make(4, GetParam(), 9, 3, 40);
-    const torch::Tensor points = random_tensor({60, 3}, -0.05, 1.05, 3);
-    torch::Tensor table = random_tensor({grid.entries(), grid.features}, -1.0, 1.0, 4);
-    const torch::Tensor weight = random_tensor({60, grid.output_width()}, -1.0, 1.0, 5);
+    const at::Tensor points = random_tensor({60, 3}, -0.05, 1.05, 3);
+    at::Tensor table = random_tensor({grid.entries(), grid.features}, -1.0, 1.0, 4);
+    const at::Tensor weight = random_tensor({60, grid.output_width()}, -1.0, 1.0, 5);
     table.set_requires_grad(true);
     (encode(grid, points, table) * weight).sum().backward();
     ASSERT_TRUE(table.grad().is_sparse());
-    const torch::Tensor rows = table.grad()._indices().select(0, 0);
+    const at::Tensor rows = table.grad()._indices().select(0, 0);
     ASSERT_TRUE((rows.diff() > 0).all().item<bool>());
-    const torch::Tensor gradient = table.grad().to_dense();
-    const torch::NoGradGuard no_grad;
+    const at::Tensor gradient = table.grad().to_dense();
+    const at::NoGradGuard no_grad;
     Random random(6);
     int nonzero = 0;
     for (int i = 0; i < 200; ++i) {
         const std::int64_t at = random.index(table.numel());
-        torch::Tensor moved = table.detach().clone();
+        at::Tensor moved = table.detach().clone();
         moved.view(-1)[at] += 0.5f;
         const float wanted =
             2.0f * ((encode(grid, points, moved) - encode(grid, points, table)) * weight)
@@ -99,18 +97,18 @@ TEST_P(HashGridGradient, OfThePointsMatchesFiniteDifferences) {
     const HashGrid grid = HashGrid::make(3, GetParam(), 9, 3, 20);
     // Points in the middle of the finest cells: the step does not cross a lattice plane of it, and
     // those of the coarser levels are avoided by the check below.
-    torch::Tensor points = random_tensor({200, 3}, 0.02, 0.98, 7);
-    const torch::Tensor table = random_tensor({grid.entries(), grid.features}, -1.0, 1.0, 8);
-    const torch::Tensor weight = random_tensor({200, grid.output_width()}, -1.0, 1.0, 9);
+    at::Tensor points = random_tensor({200, 3}, 0.02, 0.98, 7);
+    const at::Tensor table = random_tensor({grid.entries(), grid.features}, -1.0, 1.0, 8);
+    const at::Tensor weight = random_tensor({200, grid.output_width()}, -1.0, 1.0, 9);
     points.set_requires_grad(true);
     (encode(grid, points, table) * weight).sum().backward();
-    const torch::Tensor gradient = points.grad();
-    const torch::NoGradGuard no_grad;
+    const at::Tensor gradient = points.grad();
+    const at::NoGradGuard no_grad;
     const float step = 1e-3f;
     for (int axis = 0; axis < 3; ++axis) {
-        torch::Tensor offset = torch::zeros({1, 3});
+        at::Tensor offset = at::zeros({1, 3});
         offset[0][axis] = step;
-        const torch::Tensor difference =
+        const at::Tensor difference =
             ((encode(grid, points + offset, table) - encode(grid, points - offset, table)) * weight)
                 .sum(1) /
             (2.0f * step);
@@ -134,12 +132,12 @@ INSTANTIATE_TEST_SUITE_P(Features, HashGridGradient, ::testing::Values(1, 2, 4, 
 
 TEST(HashGrid, GradientsDoNotDependOnThreads) {
     const HashGrid grid = HashGrid::make(6, 4, 10, 8, 200);
-    const torch::Tensor weight = random_tensor({3000, grid.output_width()}, -1.0, 1.0, 10);
+    const at::Tensor weight = random_tensor({3000, grid.output_width()}, -1.0, 1.0, 10);
     const auto gradients = [&](int threads) {
         const int before = omp_get_max_threads();
         omp_set_num_threads(threads);
-        torch::Tensor points = random_tensor({3000, 3}, 0.0, 1.0, 11);
-        torch::Tensor table = random_tensor({grid.entries(), 4}, -1.0, 1.0, 12);
+        at::Tensor points = random_tensor({3000, 3}, 0.0, 1.0, 11);
+        at::Tensor table = random_tensor({grid.entries(), 4}, -1.0, 1.0, 12);
         points.set_requires_grad(true);
         table.set_requires_grad(true);
         (encode(grid, points, table) * weight).sum().backward();
@@ -148,8 +146,8 @@ TEST(HashGrid, GradientsDoNotDependOnThreads) {
     };
     const auto one = gradients(1);
     const auto three = gradients(3);
-    EXPECT_TRUE(torch::equal(one.first, three.first));
-    EXPECT_TRUE(torch::equal(one.second, three.second));
+    EXPECT_TRUE(at::equal(one.first, three.first));
+    EXPECT_TRUE(at::equal(one.second, three.second));
 }
 
 }  // namespace

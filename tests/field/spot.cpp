@@ -4,7 +4,9 @@
 #include "item3d/field/fit.h"
 #include "item3d/io/load.h"
 #include "item3d/lighting/environment.h"
+#include "item3d/render/pictures.h"
 #include "item3d/render/prefilter/environment_light.h"
+#include "item3d/render/scatter.h"
 
 #include <gtest/gtest.h>
 
@@ -15,19 +17,19 @@ namespace item3d {
 namespace {
 
 /// sRGB pictures [N, H, W, 3] on grey, one sample a pixel.
-torch::Tensor picture(const Geometry& geometry, const std::vector<Camera>& cameras, int size,
-                      const EnvironmentLight& light,
-                      const std::function<MaterialSample(const Surface&)>& materials) {
-    const torch::NoGradGuard no_grad;
+at::Tensor picture(const Geometry& geometry, const std::vector<Camera>& cameras, int size,
+                   const EnvironmentLight& light,
+                   const std::function<MaterialSample(const Surface&)>& materials) {
+    const at::NoGradGuard no_grad;
     const Raster raster = rasterize(geometry, cameras, size, size);
     const Surface surface = interpolate_surface(geometry, raster, cameras);
-    const torch::Tensor radiance = shade(surface, materials(surface), light);
-    const torch::Tensor image = scatter(radiance, surface, raster, torch::full({3}, 0.2f));
-    const torch::Tensor encoded = linear_to_srgb(image.clamp(0.0f, 1.0f));
-    return torch::round(encoded * 255.0f) / 255.0f;
+    const at::Tensor radiance = shade(surface, materials(surface), light);
+    const at::Tensor image = scatter(radiance, surface, raster, at::full({3}, 0.2f));
+    const at::Tensor encoded = linear_to_srgb(image.clamp(0.0f, 1.0f));
+    return at::round(encoded * 255.0f) / 255.0f;
 }
 
-double psnr(const torch::Tensor& a, const torch::Tensor& b) {
+double psnr(const at::Tensor& a, const at::Tensor& b) {
     return -10.0 * std::log10(std::max(1e-12, (a - b).square().mean().item<double>()));
 }
 

@@ -2,7 +2,7 @@
 
 #include "item3d/guidance/prediction.h"
 #include "item3d/guidance/rdl.h"
-#include "support/guidance.h"
+#include "tests/support/guidance.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ const std::string source_prompt = "a red toy duck";
 const std::string target_prompt = "a blue toy duck";
 
 /// e(to) - e(from), one row.
-torch::Tensor difference(const Pipeline& pipeline, const std::string& from, const std::string& to) {
+at::Tensor difference(const Pipeline& pipeline, const std::string& from, const std::string& to) {
     return pipeline.encode_text({to}).states - pipeline.encode_text({from}).states;
 }
 
@@ -52,9 +52,9 @@ TEST(CaptionSource, moves_by_the_mean_difference_of_the_captions_embeddings) {
     const auto before = captions({"a red duck", "a red duck", "a duck"});
     const auto now = captions({"a green duck", "a red duck", "a table"});
     // The last one does not mention the object and counts a quarter.
-    const torch::Tensor expected = 0.5 / 3 *
-                                   (difference(*pipeline, "a red duck", "a green duck") +
-                                    0.25 * difference(*pipeline, "a duck", "a table"));
+    const at::Tensor expected = 0.5 / 3 *
+                                (difference(*pipeline, "a red duck", "a green duck") +
+                                 0.25 * difference(*pipeline, "a duck", "a table"));
     const double most = difference(*pipeline, source_prompt, target_prompt).norm().item<double>();
     ASSERT_LT(expected.norm().item<double>(), most);
 
@@ -88,14 +88,14 @@ TEST(CaptionSource, has_no_use_for_captions_that_are_empty_or_cut_off) {
     // One of two that is good counts as one of two.
     const auto shift = source.shift(before, {{"a blue duck", true}, {"duck duck", false}});
     ASSERT_TRUE(shift);
-    const torch::Tensor expected = 0.5 * difference(*pipeline, "a red duck", "a blue duck");
+    const at::Tensor expected = 0.5 * difference(*pipeline, "a red duck", "a blue duck");
     EXPECT_LT(relative_error(shift->states, expected), 1e-6);
 }
 
 TEST(RelativeDirection, goes_from_a_source_that_was_shifted) {
     const auto pipeline = load_pipeline();
     GuidanceOptions options;
-    options.adjust = "caption";
+    options.adjust = Adjustment::caption;
     const auto guidance = make_guidance(pipeline, source_prompt, target_prompt, options);
     const GuidanceInput input = random_input(4);
     guidance->step(input, 0);
@@ -117,7 +117,7 @@ TEST(RelativeDirection, goes_from_a_source_that_was_shifted) {
 
     const auto resumed = make_guidance(pipeline, source_prompt, target_prompt, options);
     resumed->load_state(guidance->state());
-    EXPECT_TRUE(torch::equal(resumed->step(input, 3).latents_gradient, output.latents_gradient));
+    EXPECT_TRUE(at::equal(resumed->step(input, 3).latents_gradient, output.latents_gradient));
     EXPECT_EQ(resumed->text_direction()->angle, guidance->text_direction()->angle);
     EXPECT_GT(guidance->text_direction()->angle, 1);
 }
@@ -125,7 +125,7 @@ TEST(RelativeDirection, goes_from_a_source_that_was_shifted) {
 TEST(RelativeDirection, is_nothing_where_the_source_has_come_to_the_target) {
     const auto pipeline = load_pipeline();
     GuidanceOptions options;
-    options.adjust = "caption";
+    options.adjust = Adjustment::caption;
     const auto guidance = make_guidance(pipeline, source_prompt, target_prompt, options);
     guidance->shift_source({difference(*pipeline, source_prompt, target_prompt)});
     EXPECT_LT(guidance->step(random_input(4), 0).direction_length, 1e-5);
@@ -134,7 +134,7 @@ TEST(RelativeDirection, is_nothing_where_the_source_has_come_to_the_target) {
 
 TEST(TextDirection, is_measured_in_degrees_and_parts_of_the_first) {
     const auto row = [](float x, float y) {
-        return TextEmbedding{torch::tensor({x, y}).view({1, 1, 2})};
+        return TextEmbedding{at::tensor({x, y}).view({1, 1, 2})};
     };
     const TextDirection turned = compare_directions(row(2, 0), row(0, 0), row(2, 1));
     EXPECT_NEAR(turned.angle, 90, 1e-6);

@@ -4,7 +4,7 @@
 #include "item3d/guidance/noised_latents.h"
 #include "item3d/guidance/sdi.h"
 #include "item3d/guidance/timestep_schedule.h"
-#include "support/guidance.h"
+#include "tests/support/guidance.h"
 
 #include <gtest/gtest.h>
 
@@ -30,11 +30,11 @@ double alpha_bar(std::int64_t t) {
     return product;
 }
 
-torch::Tensor noised(const torch::Tensor& clean, const torch::Tensor& noise, double alpha) {
+at::Tensor noised(const at::Tensor& clean, const at::Tensor& noise, double alpha) {
     return std::sqrt(alpha) * clean + std::sqrt(1 - alpha) * noise;
 }
 
-torch::Tensor cleaned(const torch::Tensor& noisy, const torch::Tensor& noise, double alpha) {
+at::Tensor cleaned(const at::Tensor& noisy, const at::Tensor& noise, double alpha) {
     return (noisy - std::sqrt(1 - alpha) * noise) / std::sqrt(alpha);
 }
 
@@ -44,27 +44,27 @@ class GuidanceMethod : public ::testing::Test {
     static void TearDownTestSuite() { pipeline_.reset(); }
 
     GuidanceMethod() : input_(random_input(11)) {
-        options_.adjust = "off";
+        options_.adjust = Adjustment::off;
         options_.iterations = 100;
         options_.seed = 5;
     }
 
-    torch::Tensor gradient(const std::string& method, std::int64_t iteration) {
+    at::Tensor gradient(const std::string& method, std::int64_t iteration) {
         options_.method = method;
         return make_guidance(pipeline_, source_prompt, target_prompt, options_)
             ->step(input_, iteration)
             .latents_gradient;
     }
 
-    torch::Tensor eps(const torch::Tensor& noisy, std::int64_t t, const std::string& prompt) const {
-        const auto timesteps = torch::full({noisy.size(0)}, t, torch::kInt64);
+    at::Tensor eps(const at::Tensor& noisy, std::int64_t t, const std::string& prompt) const {
+        const auto timesteps = at::full({noisy.size(0)}, t, at::kLong);
         return pipeline_->predict_noise(noisy, timesteps, pipeline_->encode_text({prompt}));
     }
-    torch::Tensor guided(const torch::Tensor& noisy, std::int64_t t, const std::string& prompt,
-                         double w, const std::string& base = "") const {
+    at::Tensor guided(const at::Tensor& noisy, std::int64_t t, const std::string& prompt, double w,
+                      const std::string& base = "") const {
         return (1 - w) * eps(noisy, t, base) + w * eps(noisy, t, prompt);
     }
-    torch::Tensor latents(const torch::Tensor& images) const {
+    at::Tensor latents(const at::Tensor& images) const {
         return pipeline_->encode_image(images * 2 - 1).detach();
     }
     /// Latents and the draws of an iteration.
@@ -76,7 +76,7 @@ class GuidanceMethod : public ::testing::Test {
     }
 
     static inline std::shared_ptr<const Pipeline> pipeline_;
-    const torch::NoGradGuard no_grad_;
+    const at::NoGradGuard no_grad_;
     GuidanceInput input_;
     GuidanceOptions options_;
 };
@@ -87,10 +87,10 @@ TEST_F(GuidanceMethod, dds_is_the_difference_of_two_guided_predictions) {
         const NoisedLatents drawn = start(4);
         const std::int64_t t = timestep_of(drawn);
         const double alpha = alpha_bar(t);
-        const torch::Tensor expected = guided(noised(latents(input_.images), drawn.noise, alpha), t,
-                                              target_prompt, 7.5, negative) -
-                                       guided(noised(latents(input_.reference), drawn.noise, alpha),
-                                              t, source_prompt, 7.5, negative);
+        const at::Tensor expected = guided(noised(latents(input_.images), drawn.noise, alpha), t,
+                                           target_prompt, 7.5, negative) -
+                                    guided(noised(latents(input_.reference), drawn.noise, alpha), t,
+                                           source_prompt, 7.5, negative);
         EXPECT_LT(relative_error(gradient("dds", 4), expected), formula_tolerance) << negative;
     }
 }
@@ -107,17 +107,17 @@ TEST_F(GuidanceMethod, pds_is_the_difference_of_stochastic_latents) {
         const NoisedLatents drawn = start(iteration);
         const std::int64_t k = timestep_of(drawn) / 2, t = 2 * k + 1, before = t - 2;
         const double a = alpha_bar(t), b = alpha_bar(before);
-        const torch::Tensor second = iteration_draws(options_, iteration).normal_like(drawn.noise);
-        const auto stochastic = [&](const torch::Tensor& z, const std::string& prompt) {
-            const torch::Tensor z_t = noised(z, drawn.noise, a), z_b = noised(z, second, b);
-            const torch::Tensor clean = cleaned(z_t, guided(z_t, t, prompt, 30), a);
-            const torch::Tensor mean = std::sqrt(b) * beta(t) / (1 - a) * clean +
-                                       std::sqrt(1 - beta(t)) * (1 - b) / (1 - a) * z_t;
+        const at::Tensor second = iteration_draws(options_, iteration).normal_like(drawn.noise);
+        const auto stochastic = [&](const at::Tensor& z, const std::string& prompt) {
+            const at::Tensor z_t = noised(z, drawn.noise, a), z_b = noised(z, second, b);
+            const at::Tensor clean = cleaned(z_t, guided(z_t, t, prompt, 30), a);
+            const at::Tensor mean = std::sqrt(b) * beta(t) / (1 - a) * clean +
+                                    std::sqrt(1 - beta(t)) * (1 - b) / (1 - a) * z_t;
             return (z_b - mean) / std::sqrt((1 - b) / (1 - a) * beta(t));
         };
-        const torch::Tensor expected = stochastic(latents(input_.images), target_prompt) -
-                                       stochastic(latents(input_.reference), source_prompt);
-        EXPECT_FALSE(torch::allclose(second, drawn.noise));
+        const at::Tensor expected = stochastic(latents(input_.images), target_prompt) -
+                                    stochastic(latents(input_.reference), source_prompt);
+        EXPECT_FALSE(at::allclose(second, drawn.noise));
         // sigma is down to 0.03, and multiplies what float32 leaves of z_b - mean.
         EXPECT_LT(relative_error(gradient("pds", iteration), expected), 2e-3) << t;
     }
@@ -154,7 +154,7 @@ TEST_F(GuidanceMethod, pds_pulls_back_to_the_reference) {
     options_.method = "pds";
     options_.guidance_scale = 1;
     const auto guidance = make_guidance(pipeline_, "a mug", "a mug", options_);
-    const torch::Tensor away = latents(input_.images) - latents(input_.reference);
+    const at::Tensor away = latents(input_.images) - latents(input_.reference);
     EXPECT_GT((guidance->step(input_, 3).latents_gradient * away).sum().item<float>(), 0.0f);
 }
 
@@ -166,8 +166,8 @@ TEST_F(GuidanceMethod, nfsd_drops_the_negative_prompt_where_there_is_little_nois
         const NoisedLatents drawn = start(4);
         const std::int64_t t = timestep_of(drawn);
         const double alpha = alpha_bar(t);
-        const torch::Tensor noisy = noised(latents(input_.images), drawn.noise, alpha);
-        torch::Tensor expected = eps(noisy, t, "");
+        const at::Tensor noisy = noised(latents(input_.images), drawn.noise, alpha);
+        at::Tensor expected = eps(noisy, t, "");
         if (t >= 200) {
             expected = expected - eps(noisy, t,
                                       "unrealistic, blurry, low quality, out of focus, ugly, low "
@@ -190,9 +190,9 @@ TEST_F(GuidanceMethod, csd_changes_its_coefficients_and_timesteps) {
         options_ = usual;
         const std::int64_t t = timestep_of(drawn);
         const double alpha = alpha_bar(t);
-        const torch::Tensor noisy = noised(latents(input_.images), drawn.noise, alpha);
+        const at::Tensor noisy = noised(latents(input_.images), drawn.noise, alpha);
         const double u = -1 + 0.5 * progress, n = -0.5 * progress;
-        const torch::Tensor expected =
+        const at::Tensor expected =
             (1 - alpha) * (1.05 * eps(noisy, t, target_prompt) + u * eps(noisy, t, "grey") +
                            n * eps(noisy, t, ""));
         EXPECT_LT(relative_error(gradient("csd", iteration), expected), formula_tolerance) << t;
@@ -209,20 +209,20 @@ TEST_F(GuidanceMethod, ism_follows_one_path) {
         const std::int64_t t = timestep_of(drawn);
         const auto delta = static_cast<std::int64_t>(std::ceil(80 + 20 * warm_up - 1e-9));
         const std::int64_t s = std::max<std::int64_t>(t - delta, 0);
-        const torch::Tensor offset =
-            iteration_draws(options_, iteration).normal_like(torch::zeros({2, 4, 1, 1}));
-        torch::Tensor x = noised(latents(input_.images), drawn.noise + 0.1 * offset, alpha_bar(0));
+        const at::Tensor offset =
+            iteration_draws(options_, iteration).normal_like(at::zeros({2, 4, 1, 1}));
+        at::Tensor x = noised(latents(input_.images), drawn.noise + 0.1 * offset, alpha_bar(0));
         std::int64_t now = 0;
         for (int i = 0; i < 5 && now < s; ++i) {
             const std::int64_t next = std::min<std::int64_t>(now + 200, s);
-            const torch::Tensor e = eps(x, now, "");
+            const at::Tensor e = eps(x, now, "");
             x = noised(cleaned(x, e, alpha_bar(now)), e, alpha_bar(next));
             now = next;
         }
-        const torch::Tensor lower = eps(x, s, "");
+        const at::Tensor lower = eps(x, s, "");
         x = noised(cleaned(x, lower, alpha_bar(s)), lower, alpha_bar(t));
-        const torch::Tensor expected = std::sqrt((1 - alpha_bar(t)) / alpha_bar(t)) *
-                                       (guided(x, t, target_prompt, 7.5) - lower);
+        const at::Tensor expected = std::sqrt((1 - alpha_bar(t)) / alpha_bar(t)) *
+                                    (guided(x, t, target_prompt, 7.5) - lower);
         EXPECT_LT(relative_error(gradient("ism", iteration), expected), formula_tolerance) << t;
     }
 }
@@ -244,17 +244,16 @@ TEST_F(GuidanceMethod, sdi_inverts_with_the_prompt_and_compares_with_what_is_cle
         const InversionDistillation method(pipeline_, target_prompt, options_);
         EXPECT_EQ(method.inversion_levels(t, draws.uniform), levels);
 
-        const torch::Tensor z = latents(input_.images);
-        torch::Tensor x = z;
+        const at::Tensor z = latents(input_.images);
+        at::Tensor x = z;
         for (std::size_t i = 0; i + 1 < levels.size(); ++i) {
             const std::int64_t from = std::max<std::int64_t>(levels[i], 0);
             const double a = alpha_bar(from), b = alpha_bar(levels[i + 1]);
-            const torch::Tensor e = guided(x, from, target_prompt, -6.5);
+            const at::Tensor e = guided(x, from, target_prompt, -6.5);
             x = noised(cleaned(x, e, a), e, b) +
                 0.3 * std::sqrt((1 - a) / (1 - b) * (1 - b / a)) * draws.normal_like(x);
         }
-        const torch::Tensor expected =
-            z - cleaned(x, guided(x, t, target_prompt, 8.5), alpha_bar(t));
+        const at::Tensor expected = z - cleaned(x, guided(x, t, target_prompt, 8.5), alpha_bar(t));
         EXPECT_LT(relative_error(gradient("sdi", iteration), expected), 1e-3) << t;
     }
 }

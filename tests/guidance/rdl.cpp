@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/guidance/noised_latents.h"
 #include "item3d/tensors/safetensors.h"
-#include "support/guidance.h"
+#include "tests/support/guidance.h"
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ NoisedLatents recorded_start(const Pipeline& pipeline, const SafeTensors& file) 
     start.latents = file.tensor("out.latents");
     start.noise = file.tensor("in.noise");
     start.timesteps = file.tensor("in.t");
-    start.alphas_cumprod = pipeline.scheduler.alphas_at(start.timesteps);
-    start.noisy = pipeline.scheduler.add_noise(start.latents, start.noise, start.timesteps);
+    start.alphas_cumprod = pipeline.schedule().alphas_at(start.timesteps);
+    start.noisy = pipeline.schedule().add_noise(start.latents, start.noise, start.timesteps);
     return start;
 }
 
@@ -45,12 +45,12 @@ TEST(RelativeDirection, two_rows_equal_the_four_row_form_with_its_source_branch_
 
     EXPECT_LT(relative_error(pair.target, file.tensor("out.eps_target_cond")), tolerance);
     EXPECT_LT(relative_error(pair.source, file.tensor("out.eps_source_cond")), tolerance);
-    const torch::Tensor four_rows =
+    const at::Tensor four_rows =
         file.tensor("out.eps_target") - file.tensor("out.eps_source_base_uncond");
     EXPECT_LT(relative_error(w * (pair.target - pair.source), four_rows), 1e-4);
     for (const auto& [weighting, name] :
          {std::pair{Weighting::early, "early"}, std::pair{Weighting::late, "late"}}) {
-        const torch::Tensor gradient =
+        const at::Tensor gradient =
             timestep_weight(weighting, start.alphas_cumprod) * w * (pair.target - pair.source);
         EXPECT_LT(
             relative_error(gradient, file.tensor(std::string("out.grad_latents_uncond_") + name)),
@@ -60,8 +60,8 @@ TEST(RelativeDirection, two_rows_equal_the_four_row_form_with_its_source_branch_
 
 TEST(RelativeDirection, differs_from_the_published_source_branch) {
     const SafeTensors file = SafeTensors::open(step_file);
-    const torch::Tensor right = file.tensor("out.grad_latents_uncond_early");
-    const torch::Tensor published = file.tensor("out.grad_latents_text_early");
+    const at::Tensor right = file.tensor("out.grad_latents_uncond_early");
+    const at::Tensor published = file.tensor("out.grad_latents_text_early");
     EXPECT_GT(relative_error(published, right), 100 * tolerance);
 }
 
@@ -77,14 +77,14 @@ TEST(Guidance, same_seed_and_iteration_give_the_same_gradient) {
         const auto a = first->step(input, 5).latents_gradient;
         const auto b = second->step(input, 5).latents_gradient;
         const auto other = second->step(input, 6).latents_gradient;
-        EXPECT_TRUE(torch::equal(a, b)) << method;
-        EXPECT_FALSE(torch::allclose(a, other)) << method;
+        EXPECT_TRUE(at::equal(a, b)) << method;
+        EXPECT_FALSE(at::allclose(a, other)) << method;
     }
 }
 
 TEST(Guidance, the_same_two_prompts_have_no_direction) {
     GuidanceOptions options;
-    options.adjust = "off";
+    options.adjust = Adjustment::off;
     const auto guidance = make_guidance(load_pipeline(), "a mug", "a mug", options);
     EXPECT_LT(guidance->step(random_input(1), 0).latents_gradient.abs().max().item<float>(), 1e-4f);
 }
@@ -107,9 +107,9 @@ TEST(Guidance, a_negative_prompt_takes_the_empty_ones_place_in_sds_and_cancels_i
         return pipeline->predict_noise(start.noisy, start.timesteps,
                                        pipeline->encode_text({prompt}));
     };
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor base = predict("grey");
-    const torch::Tensor wanted =
+    const at::NoGradGuard no_grad;
+    const at::Tensor base = predict("grey");
+    const at::Tensor wanted =
         start.weight * (base + 7.5f * (predict("a Mallard") - base) - start.noise);
     EXPECT_LT(relative_error(gradient("sds", "grey"), wanted), 1e-4);
     EXPECT_GT(relative_error(gradient("sds", ""), wanted), 1e-3);
@@ -140,8 +140,8 @@ TEST(LearnedSource, lowers_the_denoising_loss_and_survives_a_checkpoint) {
     for (const auto& [name, tensor] : guidance->state())
         copy.emplace_back(name, tensor.clone());
     resumed->load_state(copy);
-    EXPECT_TRUE(torch::equal(guidance->step(input, 1).latents_gradient,
-                             resumed->step(input, 1).latents_gradient));
+    EXPECT_TRUE(at::equal(guidance->step(input, 1).latents_gradient,
+                          resumed->step(input, 1).latents_gradient));
 }
 
 TEST(LearnedSource, more_samples_change_its_step_but_not_the_first_prediction) {
@@ -165,7 +165,7 @@ TEST(NoisedLatents, renoised_rows_spread_over_the_timesteps) {
     options.max_timestep = 0.6f;
     const NoisedLatents start = noise_latents(*pipeline, random_input(5), options, 0);
     const NoisedLatents more = renoise_latents(*pipeline, start, options, 0, 4);
-    const auto steps = static_cast<double>(pipeline->scheduler.alphas_cumprod().size(0));
+    const auto steps = static_cast<double>(pipeline->schedule().alphas_cumprod().size(0));
     ASSERT_EQ(more.timesteps.size(0), 8);
     for (std::int64_t i = 0; i < 8; ++i) {
         const double part = static_cast<double>(more.timesteps[i].item<std::int64_t>()) / steps;
@@ -173,8 +173,8 @@ TEST(NoisedLatents, renoised_rows_spread_over_the_timesteps) {
         EXPECT_GE(part, quarter - 1.0 / steps);
         EXPECT_LE(part, quarter + 0.1);
     }
-    EXPECT_TRUE(torch::equal(more.latents[0], more.latents[3]));
-    EXPECT_FALSE(torch::allclose(more.noise[0], more.noise[1]));
+    EXPECT_TRUE(at::equal(more.latents[0], more.latents[3]));
+    EXPECT_FALSE(at::allclose(more.noise[0], more.noise[1]));
     EXPECT_FALSE(more.noisy.requires_grad());
 }
 

@@ -1,4 +1,5 @@
 #include "item3d/guidance/guidance.h"
+#include "item3d/networks/diffusion/pipeline.h"
 
 #include <ATen/Parallel.h>
 #include <gtest/gtest.h>
@@ -20,36 +21,36 @@ std::shared_ptr<const Pipeline> load_sdxl() {
 }
 
 GuidanceInput random_pictures(std::uint64_t seed) {
-    torch::manual_seed(seed);
+    at::manual_seed(seed);
     GuidanceInput input;
-    input.images = torch::rand({2, 3, 32, 32}).requires_grad_(true);
+    input.images = at::rand({2, 3, 32, 32}).requires_grad_(true);
     return input;
 }
 
-torch::Tensor find(const NamedTensors& state, const std::string& name) {
+at::Tensor find(const NamedTensors& state, const std::string& name) {
     for (const auto& [key, tensor] : state)
         if (key == name) return tensor;
     ADD_FAILURE() << "no " << name;
-    return torch::zeros({1});
+    return at::zeros({1});
 }
 
 }  // namespace
 
 TEST(GuidanceSdxl, every_method_reaches_the_pictures) {
     const auto pipeline = load_sdxl();
-    std::vector<std::pair<std::string, std::string>> cases{{"rdl", "learned"}};
+    std::vector<std::pair<std::string, Adjustment>> cases{{"rdl", Adjustment::learned}};
     for (const std::string& method : guidance_methods())
-        cases.emplace_back(method, "off");
+        cases.emplace_back(method, Adjustment::off);
     for (const auto& [method, adjust] : cases) {
         GuidanceOptions options;
         options.method = method;
         options.adjust = adjust;
         const auto guidance = make_guidance(pipeline, "a red bowl", "a stone statue", options);
         GuidanceInput input = random_pictures(1);
-        input.reference = torch::rand({2, 3, 32, 32});
+        input.reference = at::rand({2, 3, 32, 32});
         const GuidanceOutput output = guidance->step(input, 0);
         output.latents.backward(output.latents_gradient);
-        EXPECT_TRUE(torch::isfinite(input.images.grad()).all().item<bool>()) << method;
+        EXPECT_TRUE(at::isfinite(input.images.grad()).all().item<bool>()) << method;
         EXPECT_GT(input.images.grad().abs().max().item<float>(), 0.0f) << method;
     }
 }
@@ -57,11 +58,11 @@ TEST(GuidanceSdxl, every_method_reaches_the_pictures) {
 TEST(GuidanceSdxl, the_pooled_part_of_a_prompt_counts) {
     const auto pipeline = load_sdxl();
     TextEmbedding text = pipeline->encode_text({"a red bowl"});
-    const torch::Tensor latents = torch::zeros({1, 4, 4, 4}), t = torch::tensor({500});
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor before = pipeline->predict_noise(latents, t, text);
+    const at::Tensor latents = at::zeros({1, 4, 4, 4}), t = at::tensor({500}, at::kLong);
+    const at::NoGradGuard no_grad;
+    const at::Tensor before = pipeline->predict_noise(latents, t, text);
     text.pooled = text.pooled + 1;
-    EXPECT_FALSE(torch::allclose(pipeline->predict_noise(latents, t, text), before));
+    EXPECT_FALSE(at::allclose(pipeline->predict_noise(latents, t, text), before));
 }
 
 TEST(GuidanceSdxl, the_learned_source_moves_both_parts_and_survives_a_checkpoint) {
@@ -77,13 +78,13 @@ TEST(GuidanceSdxl, the_learned_source_moves_both_parts_and_survives_a_checkpoint
     NamedTensors copy;
     for (const auto& [name, tensor] : guidance->state())
         copy.emplace_back(name, tensor.clone());
-    EXPECT_FALSE(torch::allclose(find(copy, "source.embedding"), start.states));
-    EXPECT_FALSE(torch::allclose(find(copy, "source.pooled_embedding"), start.pooled));
+    EXPECT_FALSE(at::allclose(find(copy, "source.embedding"), start.states));
+    EXPECT_FALSE(at::allclose(find(copy, "source.pooled_embedding"), start.pooled));
 
     const auto resumed = make_guidance(pipeline, "a red bowl", "a stone statue", {});
     resumed->load_state(copy);
-    EXPECT_TRUE(torch::equal(guidance->step(input, 1).latents_gradient,
-                             resumed->step(input, 1).latents_gradient));
+    EXPECT_TRUE(at::equal(guidance->step(input, 1).latents_gradient,
+                          resumed->step(input, 1).latents_gradient));
 }
 
 }  // namespace item3d

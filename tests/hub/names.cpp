@@ -2,7 +2,7 @@
 #include "item3d/core/error.h"
 #include "item3d/hub/cache.h"
 #include "item3d/hub/find_prior.h"
-#include "support/hub_server.h"
+#include "tests/support/hub_server.h"
 
 #include <cstdlib>
 

@@ -1,6 +1,6 @@
 #include "item3d/core/error.h"
 #include "item3d/hub/cache.h"
-#include "support/hub_server.h"
+#include "tests/support/hub_server.h"
 
 #include <sys/resource.h>
 

@@ -1,6 +1,6 @@
 // Malformed files: a message that names the file, never a crash.
 #include "item3d/core/error.h"
-#include "support/io.h"
+#include "tests/support/io.h"
 
 namespace item3d {
 namespace {

@@ -1,6 +1,6 @@
 // Draco and meshopt: what comes out, and what an edit makes of it.
 #include "item3d/io/gltf/meshopt.h"
-#include "support/io.h"
+#include "tests/support/io.h"
 
 #include <meshoptimizer.h>
 

@@ -1,7 +1,7 @@
 // Damaged Draco and meshopt data: refused with a message, or sound.
 #include "item3d/core/error.h"
-#include "item3d/io/readers.h"
-#include "support/io.h"
+#include "item3d/io/gltf/read.h"
+#include "tests/support/io.h"
 
 #include <functional>
 

@@ -1,5 +1,5 @@
 #include "item3d/core/error.h"
-#include "support/io.h"
+#include "tests/support/io.h"
 
 namespace item3d {
 namespace {

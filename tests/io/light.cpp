@@ -2,10 +2,11 @@
 #include "item3d/io/gltf/light.h"
 
 #include "item3d/core/error.h"
+#include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/lighting/image_based_light.h"
 #include "item3d/lighting/layout.h"
-#include "support/io.h"
+#include "tests/support/io.h"
 
 #include <functional>
 

@@ -1,7 +1,7 @@
 // What load_model finds in difficult but valid files.
 #include "item3d/core/error.h"
 #include "item3d/io/obj/triangulate.h"
-#include "support/io.h"
+#include "tests/support/io.h"
 
 namespace item3d {
 namespace {

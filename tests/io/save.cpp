@@ -1,6 +1,6 @@
 // What save_model keeps and what it changes.
 #include "item3d/core/error.h"
-#include "support/io.h"
+#include "tests/support/io.h"
 
 namespace item3d {
 namespace {

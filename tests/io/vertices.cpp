@@ -1,7 +1,7 @@
 // Vertices of glTF files that are stored as small integers, or that lack normals.
-#include "item3d/io/readers.h"
+#include "item3d/io/gltf/read.h"
 #include "item3d/io/resources.h"
-#include "support/io.h"
+#include "tests/support/io.h"
 
 #include <cstring>
 

@@ -2,8 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
-#include "item3d/lighting/layout.h"
 #include "item3d/lighting/presets/sky_model.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,8 @@
 #include "item3d/metrics/clip_score.h"
 
+#include "item3d/networks/layers/load_parameters.h"
+#include "item3d/render/pictures.h"
 #include "item3d/report/model_pictures.h"
-#include "item3d/tensors/weights.h"
 
 #include <ATen/Parallel.h>
 #include <gtest/gtest.h>
@@ -40,9 +41,9 @@ class RandomClip : public ::testing::Test {
                              {"d</w>", 5}});
         std::ofstream(folder_ / "merges.txt") << "#version: 0.2\n";
         write("preprocessor_config.json", {{"size", 32}, {"crop_size", 32}});
-        torch::manual_seed(11);
+        at::manual_seed(11);
         ClipModel model(ClipConfig::from_config(Config(config, "config.json")));
-        const torch::NoGradGuard no_grad;
+        const at::NoGradGuard no_grad;
         for (auto& parameter : model->parameters())
             parameter.normal_(0, 0.3);
         save_safetensors(folder_ / "model.safetensors", module_tensors(*model));
@@ -58,14 +59,14 @@ class RandomClip : public ::testing::Test {
 };
 
 TEST_F(RandomClip, ScoresAreTheirFormulas) {
-    torch::manual_seed(12);
-    const torch::Tensor before = torch::rand({2, 3, 48, 48}), after = torch::rand({2, 3, 48, 48});
+    at::manual_seed(12);
+    const at::Tensor before = at::rand({2, 3, 48, 48}), after = at::rand({2, 3, 48, 48});
     const ClipScores scores = clip_scores(clip_, before, after, "a b", "c d");
     ASSERT_EQ(scores.views.size(), 2u);
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor was = clip_.embed_images(before)[1], is = clip_.embed_images(after)[1];
-    const torch::Tensor from = clip_.embed_texts({"a b"})[0], to = clip_.embed_texts({"c d"})[0];
-    const auto cosine = [](const torch::Tensor& a, const torch::Tensor& b) {
+    const at::NoGradGuard no_grad;
+    const at::Tensor was = clip_.embed_images(before)[1], is = clip_.embed_images(after)[1];
+    const at::Tensor from = clip_.embed_texts({"a b"})[0], to = clip_.embed_texts({"c d"})[0];
+    const auto cosine = [](const at::Tensor& a, const at::Tensor& b) {
         return a.dot(b).item<double>() / (a.norm() * b.norm()).item<double>();
     };
     EXPECT_NEAR(scores.views[1].global, cosine(is, to), 1e-5);
@@ -75,11 +76,11 @@ TEST_F(RandomClip, ScoresAreTheirFormulas) {
 }
 
 TEST_F(RandomClip, NothingChangedHasNoDirection) {
-    const torch::Tensor pictures = torch::rand({1, 3, 40, 60});
+    const at::Tensor pictures = at::rand({1, 3, 40, 60});
     const ClipScores same = clip_scores(clip_, pictures, pictures, "a", "b");
     EXPECT_EQ(same.mean.directional, 0);
     EXPECT_EQ(same.mean.global, same.mean.global_before);
-    const torch::Tensor others = torch::rand({1, 3, 40, 60});
+    const at::Tensor others = at::rand({1, 3, 40, 60});
     EXPECT_EQ(clip_scores(clip_, pictures, others, "a", "a").mean.directional, 0);
     // Back again is the other way.
     EXPECT_NEAR(clip_scores(clip_, pictures, others, "a", "b").mean.directional,
@@ -87,25 +88,26 @@ TEST_F(RandomClip, NothingChangedHasNoDirection) {
 }
 
 TEST_F(RandomClip, AscentOnThePixelsRaisesTheScore) {
-    torch::manual_seed(13);
-    const torch::Tensor target = clip_.embed_texts({"d"});
-    torch::Tensor picture = torch::rand({1, 3, 40, 40}).requires_grad_();
-    const torch::Tensor before = (clip_.embed_images(picture) * target).sum();
+    at::manual_seed(13);
+    const at::Tensor target = clip_.embed_texts({"d"});
+    at::Tensor picture = at::rand({1, 3, 40, 40}).requires_grad_();
+    const at::Tensor before = (clip_.embed_images(picture) * target).sum();
     before.backward();
-    const torch::Tensor step = picture.grad() / picture.grad().norm();
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor after = (clip_.embed_images(picture + 0.05 * step) * target).sum();
+    const at::Tensor step = picture.grad() / picture.grad().norm();
+    const at::NoGradGuard no_grad;
+    const at::Tensor after = (clip_.embed_images(picture + 0.05 * step) * target).sum();
     EXPECT_GT(after.item<double>(), before.item<double>());
 }
 
 TEST(OverWhite, ComposesPremultipliedRadiance) {
-    torch::Tensor linear = torch::zeros({1, 1, 3, 4});
-    linear[0][0][1] = torch::tensor({0.25f, 0.0f, 0.0f, 0.5f});  // half covered by (0.5, 0, 0)
-    linear[0][0][2] = torch::tensor({2.0f, 1.0f, 0.0f, 1.0f});   // too bright for a picture
-    const torch::Tensor pictures = over_white(linear);
-    ASSERT_EQ(pictures.sizes(), (torch::IntArrayRef{1, 3, 1, 3}));
-    const torch::Tensor expected = linear_to_srgb(
-        torch::tensor({{1.0f, 1.0f, 1.0f}, {0.75f, 0.5f, 0.5f}, {1.0f, 1.0f, 0.0f}}));
+    at::Tensor linear = at::zeros({1, 1, 3, 4});
+    linear[0][0][1] = at::tensor({0.25f, 0.0f, 0.0f, 0.5f});  // half covered by (0.5, 0, 0)
+    linear[0][0][2] = at::tensor({2.0f, 1.0f, 0.0f, 1.0f});   // too bright for a picture
+    const at::Tensor pictures = over_white(linear);
+    ASSERT_EQ(pictures.sizes(), (at::IntArrayRef{1, 3, 1, 3}));
+    const at::Tensor expected = linear_to_srgb(
+        at::tensor({1.0f, 1.0f, 1.0f, 0.75f, 0.5f, 0.5f, 1.0f, 1.0f, 0.0f}, at::kFloat)
+            .view({3, 3}));
     EXPECT_LT((pictures[0].select(1, 0).t() - expected).abs().max().item<float>(), 1e-6f);
 }
 

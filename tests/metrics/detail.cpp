@@ -6,48 +6,45 @@ namespace item3d {
 namespace {
 
 /// [2, 3, 64, 64]: vertical stripes between two colours.
-torch::Tensor stripes(const std::vector<float>& a, const std::vector<float>& b) {
-    const torch::Tensor bright = (torch::arange(64).div(8, "floor").remainder(2) == 0)
-                                     .to(torch::kFloat32)
-                                     .view({1, 1, 1, 64});
-    const torch::Tensor one = torch::tensor(a).view({1, 3, 1, 1});
-    const torch::Tensor two = torch::tensor(b).view({1, 3, 1, 1});
+at::Tensor stripes(const std::vector<float>& a, const std::vector<float>& b) {
+    const at::Tensor bright =
+        (at::arange(64).div(8, "floor").remainder(2) == 0).to(at::kFloat).view({1, 1, 1, 64});
+    const at::Tensor one = at::tensor(a).view({1, 3, 1, 1});
+    const at::Tensor two = at::tensor(b).view({1, 3, 1, 1});
     return (bright * one + (1 - bright) * two).expand({2, 3, 64, 64}).contiguous();
 }
 
-torch::Tensor disc_mask() {
-    const torch::Tensor x = (torch::arange(64) - 31.5).square();
-    return (x.view({1, 64, 1}) + x.view({1, 1, 64}) < 28 * 28)
-        .to(torch::kFloat32)
-        .expand({2, 64, 64});
+at::Tensor disc_mask() {
+    const at::Tensor x = (at::arange(64) - 31.5).square();
+    return (x.view({1, 64, 1}) + x.view({1, 1, 64}) < 28 * 28).to(at::kFloat).expand({2, 64, 64});
 }
 
 TEST(DetailCorrelation, StripesThatChangeColourAreKept) {
-    const torch::Tensor red = stripes({0.8f, 0.1f, 0.1f}, {0.9f, 0.9f, 0.9f});
-    const torch::Tensor blue = stripes({0.1f, 0.2f, 0.7f}, {0.9f, 0.9f, 0.9f});
+    const at::Tensor red = stripes({0.8f, 0.1f, 0.1f}, {0.9f, 0.9f, 0.9f});
+    const at::Tensor blue = stripes({0.1f, 0.2f, 0.7f}, {0.9f, 0.9f, 0.9f});
     EXPECT_NEAR(detail_correlation(red, red, disc_mask()), 1, 1e-9);
     EXPECT_GT(detail_correlation(red, blue, disc_mask()), 0.99);
 }
 
 TEST(DetailCorrelation, StripesThatVanishOrSwapAreNot) {
-    const torch::Tensor red = stripes({0.8f, 0.1f, 0.1f}, {0.9f, 0.9f, 0.9f});
-    const torch::Tensor swapped = stripes({0.9f, 0.9f, 0.9f}, {0.8f, 0.1f, 0.1f});
-    const torch::Tensor plain = torch::full({2, 3, 64, 64}, 0.4f);
+    const at::Tensor red = stripes({0.8f, 0.1f, 0.1f}, {0.9f, 0.9f, 0.9f});
+    const at::Tensor swapped = stripes({0.9f, 0.9f, 0.9f}, {0.8f, 0.1f, 0.1f});
+    const at::Tensor plain = at::full({2, 3, 64, 64}, 0.4f);
     EXPECT_LT(detail_correlation(red, swapped, disc_mask()), -0.95);
     EXPECT_EQ(detail_correlation(red, plain, disc_mask()), 0);
-    torch::manual_seed(1);
-    EXPECT_NEAR(detail_correlation(red, torch::rand({2, 3, 64, 64}), disc_mask()), 0, 0.1);
+    at::manual_seed(1);
+    EXPECT_NEAR(detail_correlation(red, at::rand({2, 3, 64, 64}), disc_mask()), 0, 0.1);
 }
 
 TEST(DetailCorrelation, SlowShadingDoesNotCountAndOutsideDoesNotEither) {
-    torch::manual_seed(2);
-    const torch::Tensor red = stripes({0.8f, 0.1f, 0.1f}, {0.9f, 0.9f, 0.9f});
-    const torch::Tensor ramp = torch::linspace(0.4f, 1.0f, 64).view({1, 1, 64, 1});
+    at::manual_seed(2);
+    const at::Tensor red = stripes({0.8f, 0.1f, 0.1f}, {0.9f, 0.9f, 0.9f});
+    const at::Tensor ramp = at::linspace(0.4f, 1.0f, 64).view({1, 1, 64, 1});
     EXPECT_GT(detail_correlation(red, red * ramp, disc_mask()), 0.95);
-    const torch::Tensor inside = disc_mask().unsqueeze(1);
-    const torch::Tensor noise = torch::rand({2, 3, 64, 64});
+    const at::Tensor inside = disc_mask().unsqueeze(1);
+    const at::Tensor noise = at::rand({2, 3, 64, 64});
     EXPECT_NEAR(detail_correlation(red * inside + noise * (1 - inside), red, disc_mask()), 1, 1e-6);
-    EXPECT_EQ(detail_correlation(red, red, torch::zeros({2, 64, 64})), 0);
+    EXPECT_EQ(detail_correlation(red, red, at::zeros({2, 64, 64})), 0);
 }
 
 TEST(DetailStrength, GrowsWithContrast) {

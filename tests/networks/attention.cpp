@@ -1,20 +1,20 @@
 #include "item3d/networks/layers/attention.h"
 
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 #include <cmath>
 
 namespace item3d {
 namespace {
 
-torch::Tensor exact_attention(const torch::Tensor& query, const torch::Tensor& key,
-                              const torch::Tensor& value, int heads) {
-    const auto split = [&](const torch::Tensor& x) {
-        return x.to(torch::kFloat64).reshape({x.size(0), x.size(1), heads, -1}).transpose(1, 2);
+at::Tensor exact_attention(const at::Tensor& query, const at::Tensor& key, const at::Tensor& value,
+                           int heads) {
+    const auto split = [&](const at::Tensor& x) {
+        return x.to(at::kDouble).reshape({x.size(0), x.size(1), heads, -1}).transpose(1, 2);
     };
     const double scale = 1 / std::sqrt(static_cast<double>(query.size(2) / heads));
-    const torch::Tensor scores = torch::matmul(split(query), split(key).transpose(2, 3)) * scale;
-    return torch::matmul(scores.softmax(-1), split(value)).transpose(1, 2).reshape(query.sizes());
+    const at::Tensor scores = at::matmul(split(query), split(key).transpose(2, 3)) * scale;
+    return at::matmul(scores.softmax(-1), split(value)).transpose(1, 2).reshape(query.sizes());
 }
 
 struct AttentionCase {
@@ -22,24 +22,24 @@ struct AttentionCase {
     int heads, width;
 };
 
-void compare_attention(const AttentionCase& shape, torch::Dtype dtype, double tolerance) {
+void compare_attention(const AttentionCase& shape, at::ScalarType dtype, double tolerance) {
     SCOPED_TRACE(::testing::Message() << shape.queries << " queries, " << shape.keys << " keys, "
                                       << shape.heads << " heads of " << shape.width);
-    torch::manual_seed(shape.queries);
+    at::manual_seed(shape.queries);
     const std::int64_t channels = std::int64_t(shape.heads) * shape.width;
     // Large scores: their exponentials overflow unless the largest is taken away first.
-    const torch::Tensor query = (8 * torch::randn({shape.rows, shape.queries, channels})).to(dtype);
-    const torch::Tensor key = (8 * torch::randn({shape.rows, shape.keys, channels})).to(dtype);
-    const torch::Tensor value = torch::randn({shape.rows, shape.keys, channels}).to(dtype);
-    const torch::Tensor exact = exact_attention(query, key, value, shape.heads);
-    const torch::Tensor found = attention(query, key, value, shape.heads);
+    const at::Tensor query = (8 * at::randn({shape.rows, shape.queries, channels})).to(dtype);
+    const at::Tensor key = (8 * at::randn({shape.rows, shape.keys, channels})).to(dtype);
+    const at::Tensor value = at::randn({shape.rows, shape.keys, channels}).to(dtype);
+    const at::Tensor exact = exact_attention(query, key, value, shape.heads);
+    const at::Tensor found = attention(query, key, value, shape.heads);
     EXPECT_EQ(found.scalar_type(), dtype);
-    EXPECT_LT((found.to(torch::kFloat64) - exact).abs().max().item<double>(), tolerance);
+    EXPECT_LT((found.to(at::kDouble) - exact).abs().max().item<double>(), tolerance);
 }
 
 TEST(Attention, IsTheFormula) {
     for (const auto& [dtype, tolerance] :
-         {std::pair(torch::kFloat32, 1e-4), std::pair(torch::kBFloat16, 2e-2)}) {
+         {std::pair(at::kFloat, 1e-4), std::pair(at::kBFloat16, 2e-2)}) {
         compare_attention({2, 64, 64, 4, 32}, dtype, tolerance);
         compare_attention({1, 30, 77, 2, 40}, dtype, tolerance);    // keys of text
         compare_attention({3, 7, 1, 1, 6}, dtype, tolerance);       // one key, few channels
@@ -50,12 +50,12 @@ TEST(Attention, IsTheFormula) {
 }
 
 TEST(Attention, IsTheSameOnOneThreadAndOnMany) {
-    const torch::Tensor x = torch::randn({2, 40, 64});
-    const torch::Tensor one = attention(x, x, x, 2);
+    const at::Tensor x = at::randn({2, 40, 64});
+    const at::Tensor one = attention(x, x, x, 2);
     at::set_num_threads(3);
-    const torch::Tensor many = attention(x, x, x, 2);
+    const at::Tensor many = attention(x, x, x, 2);
     at::set_num_threads(1);
-    EXPECT_TRUE(torch::equal(one, many));
+    EXPECT_TRUE(at::equal(one, many));
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include "item3d/networks/diffusion/autoencoder.h"
 
 #include "item3d/core/error.h"
+#include "item3d/networks/diffusion/autoencoder_kl.h"
+#include "item3d/networks/diffusion/autoencoder_tiny.h"
 #include "item3d/tensors/weights.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 #include <torch/csrc/autograd/autograd.h>
 #include <torch/optim/adam.h>
@@ -15,8 +17,8 @@ using testing::Golden;
 using testing::message_of;
 using testing::TemporaryFolder;
 
-torch::Tensor gradient(const torch::Tensor& output, const torch::Tensor& cotangent,
-                       const torch::Tensor& input) {
+at::Tensor gradient(const at::Tensor& output, const at::Tensor& cotangent,
+                    const at::Tensor& input) {
     return torch::autograd::grad({(output * cotangent).sum()}, {input}, {}, true)[0];
 }
 
@@ -24,8 +26,8 @@ TEST(AutoencoderTiny, ReproducesTheReference) {
     const Golden golden("vae_tiny");
     const auto vae = load_autoencoder(fixture("vae_tiny"));
     EXPECT_EQ(vae->downscale(), 8);
-    const torch::Tensor image = golden.in("image").clone().requires_grad_();
-    const torch::Tensor latents = vae->encode(image);
+    const at::Tensor image = golden.in("image").clone().requires_grad_();
+    const at::Tensor latents = vae->encode(image);
     golden.expect("latents", latents);
     golden.expect("grad_latents", gradient(latents, golden.in("cotangent"), image));
     golden.expect("latents_odd", vae->encode(golden.in("image_odd")));
@@ -33,17 +35,17 @@ TEST(AutoencoderTiny, ReproducesTheReference) {
 }
 
 TEST(AutoencoderTiny, LearnsToReconstruct) {
-    torch::manual_seed(5);
+    at::manual_seed(5);
     AutoencoderTinyConfig config;
     config.encoder_block_out_channels = config.decoder_block_out_channels = {16, 16};
     config.num_encoder_blocks = config.num_decoder_blocks = {1, 1};
     AutoencoderTiny vae(config);
     EXPECT_EQ(vae.downscale(), 2);
-    const torch::Tensor image = torch::rand({4, 3, 1, 1}).expand({4, 3, 8, 8}) * 2 - 1;
+    const at::Tensor image = at::rand({4, 3, 1, 1}).expand({4, 3, 8, 8}) * 2 - 1;
     torch::optim::Adam optimizer(vae.parameters(), torch::optim::AdamOptions(5e-3));
     double first = 0, last = 0;
     for (int i = 0; i < 60; ++i) {
-        const torch::Tensor loss = (vae.decode(vae.encode(image)) - image).square().mean();
+        const at::Tensor loss = (vae.decode(vae.encode(image)) - image).square().mean();
         optimizer.zero_grad();
         loss.backward();
         optimizer.step();
@@ -56,10 +58,10 @@ TEST(AutoencoderKL, GivesTheSameGradientWhenItComputesAgain) {
     const Golden golden("vae_kl");
     const auto vae = load_autoencoder(fixture("vae_kl"));
     const auto gradient_of_mean = [&] {
-        const torch::Tensor image = golden.in("image").clone().requires_grad_();
+        const at::Tensor image = golden.in("image").clone().requires_grad_();
         return gradient(vae->encode(image), golden.in("cotangent"), image);
     };
-    const torch::Tensor kept = gradient_of_mean();
+    const at::Tensor kept = gradient_of_mean();
     vae->recompute_in_backward(true);
     EXPECT_TRUE(gradient_of_mean().equal(kept));
     golden.expect("grad_mean", gradient_of_mean());
@@ -70,9 +72,9 @@ TEST(AutoencoderKL, ReproducesTheReferenceAndItsGradients) {
     const Golden golden("vae_kl");
     const auto vae = std::dynamic_pointer_cast<AutoencoderKL>(load_autoencoder(fixture("vae_kl")));
     ASSERT_TRUE(vae);
-    const torch::Tensor image = golden.in("image").clone().requires_grad_();
+    const at::Tensor image = golden.in("image").clone().requires_grad_();
     const LatentDistribution latents = vae->encode_distribution(image);
-    const torch::Tensor sample = latents.mean + latents.deviation() * golden.in("noise");
+    const at::Tensor sample = latents.mean + latents.deviation() * golden.in("noise");
     golden.expect("mean", latents.mean);
     golden.expect("std", latents.deviation());
     golden.expect("sample", sample);

@@ -4,8 +4,9 @@
 #include "item3d/networks/vision_language/blip2.h"
 #include "item3d/networks/vision_language/captioner.h"
 #include "item3d/tensors/weights.h"
-#include "item3d/text/caption_tokenizer.h"
-#include "support/networks.h"
+#include "item3d/text/bert_tokenizer.h"
+#include "item3d/text/gpt2_tokenizer.h"
+#include "tests/support/networks.h"
 
 namespace item3d {
 namespace {
@@ -41,10 +42,10 @@ TEST(CaptionTokenizers, TakeTextThatIsNotUtf8) {
 }
 
 TEST(Blip, ReproducesTheReference) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("blip");
     BlipModel model = load_blip(fixture("blip"));
-    const torch::Tensor embeds = model->image_embeds(golden.in("pixel_values"));
+    const at::Tensor embeds = model->image_embeds(golden.in("pixel_values"));
     golden.expect("image_embeds", embeds);
     golden.expect("logits",
                   model->logits(model->decode(golden.in("input_ids"), golden.in("attention_mask"),
@@ -54,9 +55,9 @@ TEST(Blip, ReproducesTheReference) {
 TEST(Blip, WritesTheReferencesCaptions) {
     const Golden golden("blip");
     const BlipModel model = load_blip(fixture("blip"));
-    const torch::Tensor pixels = golden.in("pixel_values");
-    const torch::Tensor begin = torch::tensor({{model->config().bos_token_id}}, torch::kInt64);
-    const torch::Tensor prompt = torch::cat({begin, golden.out("prompt_ids").slice(1, 1, -1)}, 1);
+    const at::Tensor pixels = golden.in("pixel_values");
+    const at::Tensor begin = at::tensor({{model->config().bos_token_id}}, at::kLong);
+    const at::Tensor prompt = at::cat({begin, golden.out("prompt_ids").slice(1, 1, -1)}, 1);
     DecodingOptions options;
     options.max_new_tokens = 12;
     EXPECT_TRUE(
@@ -74,10 +75,10 @@ TEST(Blip, WritesTheReferencesCaptions) {
 }
 
 TEST(Blip2, ReproducesTheReference) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("blip2");
     Blip2Model model = load_blip2(fixture("blip2"));
-    const torch::Tensor picture =
+    const at::Tensor picture =
         model->project(model->query_image(model->image_embeds(golden.in("pixel_values"))));
     golden.expect("language_projection", picture);
     OptModel language_model = model->language_model();
@@ -89,8 +90,8 @@ TEST(Blip2, ReproducesTheReference) {
 TEST(Blip2, WritesTheReferencesCaptions) {
     const Golden golden("blip2");
     const Blip2Model model = load_blip2(fixture("blip2"));
-    const torch::Tensor pixels = golden.in("pixel_values");
-    const torch::Tensor visible = golden.out("prompt_mask");
+    const at::Tensor pixels = golden.in("pixel_values");
+    const at::Tensor visible = golden.out("prompt_mask");
     DecodingOptions options;
     options.max_new_tokens = 12;
     options.end_token = model->config().text.eos_token_id;
@@ -118,8 +119,8 @@ Blip2Model random_blip2() {
                                                       {"num_query_tokens", 3},
                                                       {"image_token_index", 39}},
                                                      "config.json")));
-    torch::manual_seed(4);
-    const torch::NoGradGuard no_grad;
+    at::manual_seed(4);
+    const at::NoGradGuard no_grad;
     for (auto& parameter : model->parameters())
         parameter.normal_(0, 0.3);
     return model;
@@ -127,17 +128,17 @@ Blip2Model random_blip2() {
 
 TEST(Blip2, PaddingOnTheLeftChangesNothing) {
     const Blip2Model model = random_blip2();
-    torch::manual_seed(5);
-    const torch::Tensor pixels = torch::randn({1, 3, 8, 8});
-    const torch::Tensor prompt = torch::tensor({{39, 39, 39, 2, 7, 11}});
-    const torch::Tensor padded = torch::constant_pad_nd(prompt, {4, 0}, 1);
-    const torch::Tensor visible = padded.ne(1).to(torch::kInt64);
+    at::manual_seed(5);
+    const at::Tensor pixels = at::randn({1, 3, 8, 8});
+    const at::Tensor prompt = at::tensor({39, 39, 39, 2, 7, 11}, at::kLong).view({1, 6});
+    const at::Tensor padded = at::constant_pad_nd(prompt, {4, 0}, 1);
+    const at::Tensor visible = padded.ne(1).to(at::kLong);
     DecodingOptions options;
     options.max_new_tokens = 8;
     options.end_token = 2;
     for (const int beams : {1, 3}) {
         options.beams = beams;
-        const torch::Tensor plain = write_captions(model, pixels, prompt, {}, options).tokens;
+        const at::Tensor plain = write_captions(model, pixels, prompt, {}, options).tokens;
         EXPECT_GT(plain.size(1), prompt.size(1) + 1);
         EXPECT_TRUE(write_captions(model, pixels, padded, visible, options)
                         .tokens.slice(1, 4)
@@ -146,19 +147,19 @@ TEST(Blip2, PaddingOnTheLeftChangesNothing) {
 }
 
 TEST(Blip2, TheCacheChangesNothing) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Blip2Model model = random_blip2();
     OptModel language_model = model->language_model();
-    const torch::Tensor ids = torch::tensor({{2, 5, 8, 13, 21}, {2, 6, 7, 8, 9}});
-    const torch::Tensor visible = torch::ones_like(ids);
-    const torch::Tensor whole = language_model->forward(language_model->embed(ids), visible);
+    const at::Tensor ids = at::tensor({2, 5, 8, 13, 21, 2, 6, 7, 8, 9}, at::kLong).view({2, 5});
+    const at::Tensor visible = at::ones_like(ids);
+    const at::Tensor whole = language_model->forward(language_model->embed(ids), visible);
     KeyValueCache cache;
-    std::vector<torch::Tensor> pieces;
+    std::vector<at::Tensor> pieces;
     for (const auto& [begin, stop] : {std::pair{0, 3}, {3, 4}, {4, 5}})
         pieces.push_back(language_model->forward(language_model->embed(ids.slice(1, begin, stop)),
                                                  visible.slice(1, 0, stop), &cache));
-    EXPECT_LT(testing::largest_difference(torch::cat(pieces, 1), whole), 1e-5);
-    cache.select(torch::tensor({1, 1}));
+    EXPECT_LT(testing::largest_difference(at::cat(pieces, 1), whole), 1e-5);
+    cache.select(at::tensor({1, 1}, at::kLong));
     EXPECT_TRUE(cache.layers[0].keys[0].equal(cache.layers[0].keys[1]));
 }
 
@@ -177,15 +178,15 @@ class CaptionerFolder : public ::testing::Test {
 
 TEST_F(CaptionerFolder, GivesSentences) {
     const auto captioner = load_captioner(folder_.path());
-    torch::manual_seed(2);
-    const torch::Tensor bytes = torch::randint(256, {50, 70, 4}, torch::kUInt8);
+    at::manual_seed(2);
+    const at::Tensor bytes = at::randint(256, {50, 70, 4}, at::kByte);
     CaptionOptions options;
     options.max_new_tokens = 6;
     options.beams = 2;
     const std::string plain = captioner->caption(bytes, options);
     EXPECT_EQ(captioner->caption(bytes, options), plain);
     // Several at once are as each by itself.
-    const torch::Tensor other = torch::randint(256, {32, 32, 3}, torch::kUInt8);
+    const at::Tensor other = at::randint(256, {32, 32, 3}, at::kByte);
     const auto both = captioner->captions({bytes, other}, options);
     ASSERT_EQ(both.size(), 2u);
     EXPECT_EQ(both[0].text, plain);
@@ -198,10 +199,10 @@ TEST_F(CaptionerFolder, GivesSentences) {
 
 TEST_F(CaptionerFolder, TellsWhichCaptionsCameToAnEnd) {
     const auto captioner = load_captioner(folder_.path());
-    torch::manual_seed(2);
-    std::vector<torch::Tensor> pictures;
+    at::manual_seed(2);
+    std::vector<at::Tensor> pictures;
     for (int i = 0; i < 8; ++i)
-        pictures.push_back(torch::randint(256, {32, 32, 3}, torch::kUInt8));
+        pictures.push_back(at::randint(256, {32, 32, 3}, at::kByte));
     CaptionOptions options;
     const auto captions = captioner->captions(pictures, options);
     options.max_new_tokens = 40;

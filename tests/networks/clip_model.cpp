@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/tensors/weights.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 namespace item3d {
 namespace {
@@ -13,7 +13,7 @@ using testing::message_of;
 using testing::TemporaryFolder;
 
 TEST(ClipVision, ReproducesTheReference) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("clip_vision_proj");
     ClipVisionWithProjection model = load_clip_vision(fixture("clip_vision_proj"));
     const ClipVisionOutput output = model(golden.in("pixel_values"));
@@ -34,12 +34,12 @@ void write_clip(const std::filesystem::path& folder) {
     for (const char* half : {"clip_text_proj_eos", "clip_vision_proj"})
         for (const auto& tensor : SafeTensors::open(fixture(half) / "model.safetensors").tensors())
             tensors.push_back(tensor);
-    tensors.emplace_back("logit_scale", torch::tensor(2.0f));
+    tensors.emplace_back("logit_scale", at::tensor(2.0f));
     save_safetensors(folder / "model.safetensors", tensors);
 }
 
 TEST(ClipModel, IsItsTwoHalves) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const TemporaryFolder folder;
     write_clip(folder.path());
     ClipModel model = load_clip_model(folder.path());
@@ -53,16 +53,16 @@ TEST(ClipModel, PassesGradientsToThePixels) {
     const TemporaryFolder folder;
     write_clip(folder.path());
     ClipModel model = load_clip_model(folder.path());
-    model->to(torch::kFloat64);
-    torch::manual_seed(3);
-    torch::Tensor pixels = torch::randn({1, 3, 40, 40}, torch::kFloat64).requires_grad_();
-    const torch::Tensor direction = torch::randn({1, 3, 40, 40}, torch::kFloat64);
-    const torch::Tensor weights = torch::randn({1, 20}, torch::kFloat64);
-    const auto value = [&](const torch::Tensor& x) {
+    model->to(at::kDouble);
+    at::manual_seed(3);
+    at::Tensor pixels = at::randn({1, 3, 40, 40}, at::kDouble).requires_grad_();
+    const at::Tensor direction = at::randn({1, 3, 40, 40}, at::kDouble);
+    const at::Tensor weights = at::randn({1, 20}, at::kDouble);
+    const auto value = [&](const at::Tensor& x) {
         return (model->image_features(x) * weights).sum();
     };
     value(pixels).backward();
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const double step = 1e-5;
     const double slope =
         (value(pixels + step * direction) - value(pixels - step * direction)).item<double>() /
@@ -87,7 +87,7 @@ TEST(Clip, NamesWhatAFolderLacks) {
     EXPECT_NE(message().find("does not belong"), std::string::npos);
     testing::write_file(folder.path() / "vocab.json",
                         R"({"<|startoftext|>": 0, "<|endoftext|>": 501})");
-    EXPECT_EQ(Clip::load(folder.path()).embed_texts({"a"}).sizes(), (torch::IntArrayRef{1, 20}));
+    EXPECT_EQ(Clip::load(folder.path()).embed_texts({"a"}).sizes(), (at::IntArrayRef{1, 20}));
 
     std::filesystem::resize_file(folder.path() / "model.safetensors", 100000);
     EXPECT_NE(message().find("model.safetensors"), std::string::npos);

@@ -1,8 +1,8 @@
 #include "item3d/networks/vision_language/clip_text.h"
 
 #include "item3d/core/error.h"
-#include "item3d/tensors/weights.h"
-#include "support/networks.h"
+#include "item3d/networks/layers/load_parameters.h"
+#include "tests/support/networks.h"
 
 namespace item3d {
 namespace {
@@ -14,10 +14,10 @@ using testing::TemporaryFolder;
 class ClipText : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ClipText, ReproducesTheReference) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden(GetParam());
     ClipTextModel model = load_clip_text(fixture(GetParam()));
-    const torch::Tensor ids = golden.in("input_ids");
+    const at::Tensor ids = golden.in("input_ids");
     const ClipTextOutput output = model(ids);
     golden.expect("last_hidden_state", output.last_hidden_state);
     golden.expect("hidden_states_0", output.hidden_states[0]);
@@ -36,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, ClipText,
                          ::testing::Values("clip_text_sd15", "clip_text_proj_eos"));
 
 TEST(ClipTextModel, LoadsNamesWithAndWithoutThePrefix) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("clip_text_sd15");
     ClipTextModel model = load_clip_text(fixture("clip_text_sd15"));
     const TemporaryFolder folder;
@@ -52,15 +52,17 @@ TEST(ClipTextModel, LoadsNamesWithAndWithoutThePrefix) {
 }
 
 TEST(ClipTextModel, ATokenSeesOnlyWhatCameBefore) {
-    torch::manual_seed(6);
+    at::manual_seed(6);
     ClipTextModel model(ClipTextConfig::from_json({{"vocab_size", 20},
                                                    {"hidden_size", 8},
                                                    {"intermediate_size", 16},
                                                    {"num_hidden_layers", 2},
                                                    {"num_attention_heads", 2},
                                                    {"max_position_embeddings", 6}}));
-    const torch::Tensor first = model(torch::tensor({{1, 2, 3, 4}})).last_hidden_state;
-    const torch::Tensor second = model(torch::tensor({{1, 2, 3, 5}})).last_hidden_state;
+    const at::Tensor first =
+        model(at::tensor({1, 2, 3, 4}, at::kLong).view({1, 4})).last_hidden_state;
+    const at::Tensor second =
+        model(at::tensor({1, 2, 3, 5}, at::kLong).view({1, 4})).last_hidden_state;
     const auto difference = (first - second).abs().amax({0, 2});
     EXPECT_LT(difference.slice(0, 0, 3).max().item<float>(), 1e-6f);
     EXPECT_GT(difference[3].item<float>(), 1e-4f);

@@ -2,9 +2,12 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/networks/diffusion/autoencoder_tiny.h"
+#include "item3d/networks/diffusion/diffusion_networks.h"
+#include "item3d/networks/diffusion/pipeline.h"
 #include "item3d/networks/diffusion/pipeline_extras.h"
 #include "item3d/networks/diffusion/shape_condition.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 namespace item3d {
 namespace {
@@ -17,7 +20,7 @@ using testing::message_of;
 using testing::TemporaryFolder;
 
 TEST(ControlNet, ReproducesTheReference) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("controlnet_depth");
     ControlNet network = load_controlnet(fixture("controlnet_depth"));
     const auto residuals = [&](double scale) {
@@ -33,28 +36,30 @@ TEST(ControlNet, ReproducesTheReference) {
 }
 
 TEST(ControlNet, ChangesWhatThePipelinePredictsWhereItHasDepth) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
     EXPECT_FALSE(takes_shape(pipeline));
-    torch::manual_seed(5);
-    const torch::Tensor latents = torch::randn({2, 4, 4, 3}), t = torch::tensor({300, 300});
+    at::manual_seed(5);
+    const at::Tensor latents = at::randn({2, 4, 4, 3}), t = at::tensor({300, 300}, at::kLong);
     const TextEmbedding text = pipeline.encode_text({"a duck"});
-    const torch::Tensor depth = torch::rand({2, 64, 48}) + 1;  // twice as fine as the pictures
+    const at::Tensor depth = at::rand({2, 64, 48}) + 1;  // twice as fine as the pictures
     EXPECT_FALSE(condition_of_shape(pipeline, {depth, {}, {}}, latents).defined());
-    const torch::Tensor plain = pipeline.predict(latents, t, text);
+    const at::Tensor plain = pipeline.predict(latents, t, text);
 
     PipelineExtras extras;
     extras.controlnet = fixture("controlnet_depth").string();
     extras.controlnet_scale = 0.7f;
-    apply_extras(pipeline, extras);
+    pipeline.add(extras);
     ASSERT_TRUE(takes_shape(pipeline));
-    const torch::Tensor picture = condition_of_shape(pipeline, {depth, {}, {}}, latents);
+    const at::Tensor picture = condition_of_shape(pipeline, {depth, {}, {}}, latents);
     EXPECT_EQ(picture.sizes(), (std::vector<std::int64_t>{2, 3, 32, 24}));
     EXPECT_TRUE(pipeline.predict(latents, t, text).equal(plain));
-    const torch::Tensor context = text.expand(2).states;
-    const UNetResiduals residuals = pipeline.controlnet(latents, t, context, picture, 0.7f);
-    const torch::Tensor wanted = pipeline.unet(latents, t, context, AddedCondition{}, residuals);
-    const torch::Tensor predicted = pipeline.predict(latents, t, text, picture);
+    const at::Tensor context = text.expand(2).states;
+    const UNetResiduals residuals =
+        ControlNet(pipeline.networks().controlnet)(latents, t, context, picture, 0.7f);
+    const at::Tensor wanted =
+        UNet2DCondition(pipeline.networks().unet)(latents, t, context, AddedCondition{}, residuals);
+    const at::Tensor predicted = pipeline.predict(latents, t, text, picture);
     EXPECT_LT(largest_difference(predicted, wanted), 1e-5);
     EXPECT_GT(largest_difference(predicted, plain), 1e-3);
     EXPECT_LT(largest_difference(
@@ -64,26 +69,26 @@ TEST(ControlNet, ChangesWhatThePipelinePredictsWhereItHasDepth) {
 }
 
 TEST(ControlNet, DepthPictureIsDisparityOnBlack) {
-    torch::Tensor depth = torch::zeros({1, 4, 6});
+    at::Tensor depth = at::zeros({1, 4, 6});
     depth[0].slice(1, 0, 2) = 1.0f;  // near
     depth[0].slice(1, 2, 4) = 4.0f;  // far
-    const torch::Tensor picture = depth_picture(depth, 2, 3);
+    const at::Tensor picture = depth_picture(depth, 2, 3);
     EXPECT_EQ(picture.sizes(), (std::vector<std::int64_t>{1, 3, 2, 3}));
-    const torch::Tensor wanted = torch::tensor({1.0f, 0.2f, 0.0f});
+    const at::Tensor wanted = at::tensor({1.0f, 0.2f, 0.0f});
     for (int channel = 0; channel < 3; ++channel)
         EXPECT_LT(largest_difference(picture[0][channel][1], wanted), 1e-6);
-    EXPECT_TRUE(depth_picture(torch::zeros({1, 4, 4}), 4, 4).eq(0).all().item<bool>());
+    EXPECT_TRUE(depth_picture(at::zeros({1, 4, 4}), 4, 4).eq(0).all().item<bool>());
 }
 
 TEST(PipelineExtras, ReplaceTheAutoencoder) {
-    const torch::NoGradGuard no_grad;
-    Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"), torch::kCPU, torch::kBFloat16);
+    const at::NoGradGuard no_grad;
+    Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"), at::kCPU, at::kBFloat16);
     PipelineExtras extras;
     extras.vae = fixture("vae_tiny").string();
-    apply_extras(pipeline, extras);
-    EXPECT_NE(dynamic_cast<AutoencoderTiny*>(pipeline.vae.get()), nullptr);
-    EXPECT_EQ(pipeline.vae->parameters()[0].scalar_type(), torch::kBFloat16);
-    EXPECT_EQ(pipeline.encode_image(torch::zeros({1, 3, 16, 24})).sizes(),
+    pipeline.add(extras);
+    EXPECT_NE(dynamic_cast<AutoencoderTiny*>(pipeline.networks().vae.get()), nullptr);
+    EXPECT_EQ(pipeline.networks().vae->parameters()[0].scalar_type(), at::kBFloat16);
+    EXPECT_EQ(pipeline.encode_image(at::zeros({1, 3, 16, 24})).sizes(),
               (std::vector<std::int64_t>{1, 4, 2, 3}));
 }
 
@@ -91,7 +96,7 @@ TEST(PipelineExtras, SayWhatDoesNotFit) {
     const TemporaryFolder folder;
     const auto complaint = [&](const PipelineExtras& extras) {
         Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-        return message_of<InputError>([&] { apply_extras(pipeline, extras); });
+        return message_of<InputError>([&] { pipeline.add(extras); });
     };
     const auto has = [](const std::string& message, const std::string& part) {
         EXPECT_NE(message.find(part), std::string::npos) << message;
@@ -126,9 +131,9 @@ TEST(PipelineExtras, SayWhatDoesNotFit) {
     extras.controlnet_scale = -1;
     has(complaint(extras), "--controlnet-scale");
     Pipeline with_depth = Pipeline::load(fixture("pipeline_sd"));
-    with_depth.unet = load_unet(fixture("unet_depth"));
+    with_depth.networks().unet = load_unet(fixture("unet_depth"));
     extras.controlnet_scale = 1;
-    has(message_of<InputError>([&] { apply_extras(with_depth, extras); }), "further channels");
+    has(message_of<InputError>([&] { with_depth.add(extras); }), "further channels");
 
     extras = {};
     extras.vae = (folder.path() / "vae").string();
@@ -138,8 +143,8 @@ TEST(PipelineExtras, SayWhatDoesNotFit) {
     AutoencoderTinyConfig flat;
     flat.encoder_block_out_channels = flat.decoder_block_out_channels = {8, 8};
     flat.num_encoder_blocks = flat.num_decoder_blocks = {1, 1};
-    other.vae = std::make_shared<AutoencoderTiny>(flat);
-    has(message_of<InputError>([&] { apply_extras(other, extras); }), "pixels");
+    other.networks().vae = std::make_shared<AutoencoderTiny>(flat);
+    has(message_of<InputError>([&] { other.add(extras); }), "pixels");
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "item3d/networks/vision_language/image_processor.h"
 
 #include "item3d/core/error.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 namespace item3d {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 using testing::fixture;
 using testing::Golden;
 
-torch::Tensor to_planes(const torch::Tensor& bytes) {
+at::Tensor to_planes(const at::Tensor& bytes) {
     return bytes.permute({2, 0, 1}).unsqueeze(0);
 }
 
@@ -35,9 +35,9 @@ TEST(ImageProcessor, CropsBeyondThePicture) {
 TEST(ImageProcessor, TheDifferentiableWayGivesTheSameButForRounding) {
     const Golden golden("image_processor");
     const ImageProcessor processor = ImageProcessor::load(fixture("image_processor"));
-    torch::Tensor picture = to_planes(golden.in("0")).to(torch::kFloat32) / 255;
+    at::Tensor picture = to_planes(golden.in("0")).to(at::kFloat) / 255;
     picture.requires_grad_();
-    const torch::Tensor values = processor.process_differentiably(picture);
+    const at::Tensor values = processor.process_differentiably(picture);
     // Two roundings to bytes, divided by a deviation of 0.26.
     EXPECT_LT(testing::largest_difference(values.detach(), processor.process(golden.in("0"))),
               1.5 / 255 / 0.26);
@@ -49,7 +49,7 @@ TEST(ImageProcessor, TheDifferentiableWayGivesTheSameButForRounding) {
 }
 
 TEST(ImageProcessor, KeepsAPictureOfTheRightSize) {
-    const torch::Tensor bytes = torch::randint(256, {5, 7, 3}, torch::kUInt8);
+    const at::Tensor bytes = at::randint(256, {5, 7, 3}, at::kByte);
     EXPECT_TRUE(resize_bicubic(bytes, 5, 7).equal(bytes));
 }
 

@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/networks/diffusion/lora_names.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 #include <cmath>
 
@@ -17,19 +17,19 @@ using testing::TemporaryFolder;
 
 /// A U-Net of Stable Diffusion's structure, with few channels.
 UNet2DCondition lora_unet() {
-    torch::manual_seed(3);
+    at::manual_seed(3);
     UNet2DCondition unet(UNet2DConditionConfig::from_json({{"block_out_channels", {8, 8, 16, 16}},
                                                            {"attention_head_dim", 2},
                                                            {"cross_attention_dim", 12},
                                                            {"norm_num_groups", 4}}));
-    for (torch::Tensor& parameter : unet->parameters())
+    for (at::Tensor& parameter : unet->parameters())
         parameter.set_requires_grad(false);
     return unet;
 }
 
 const std::string query = "down_blocks.0.attentions.0.transformer_blocks.0.attn1.to_q";
 
-torch::Tensor weight_of(const UNet2DCondition& unet, const std::string& module) {
+at::Tensor weight_of(const UNet2DCondition& unet, const std::string& module) {
     return unet->named_parameters()[module + ".weight"];
 }
 
@@ -45,7 +45,7 @@ void fuse(const UNet2DCondition& unet, const NamedTensors& tensors, double scale
 }
 
 TEST(Lora, ReproducesTheReferenceInEverySpelling) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("lora");
     for (const char* file : {"peft", "pytorch_lora_weights", "kohya"}) {
         for (const char* scale : {"0.6", "1.0"}) {
@@ -62,17 +62,16 @@ TEST(Lora, ReproducesTheReferenceInEverySpelling) {
 TEST(Lora, AFusedConvolutionActsAsThroughTheRank) {
     const UNet2DCondition unet = lora_unet();
     const std::string module = "down_blocks.0.resnets.0.conv1";
-    const torch::Tensor before = weight_of(unet, module).clone();
-    const torch::Tensor down = torch::randn({2, 8, 3, 3}), up = torch::randn({8, 2, 1, 1});
+    const at::Tensor before = weight_of(unet, module).clone();
+    const at::Tensor down = at::randn({2, 8, 3, 3}), up = at::randn({8, 2, 1, 1});
     fuse(unet,
          {{"lora_unet_input_blocks_1_0_in_layers_2.lora_down.weight", down},
           {"lora_unet_input_blocks_1_0_in_layers_2.lora_up.weight", up},
-          {"lora_unet_input_blocks_1_0_in_layers_2.alpha", torch::tensor(3.0f)}},
+          {"lora_unet_input_blocks_1_0_in_layers_2.alpha", at::tensor(3.0f)}},
          0.5);
-    const torch::Tensor x = torch::randn({1, 8, 5, 6});
-    const torch::Tensor change = torch::conv2d(x, weight_of(unet, module) - before, {}, 1, 1);
-    const torch::Tensor wanted =
-        0.5 * 3.0 / 2.0 * torch::conv2d(torch::conv2d(x, down, {}, 1, 1), up);
+    const at::Tensor x = at::randn({1, 8, 5, 6});
+    const at::Tensor change = at::conv2d(x, weight_of(unet, module) - before, {}, 1, 1);
+    const at::Tensor wanted = 0.5 * 3.0 / 2.0 * at::conv2d(at::conv2d(x, down, {}, 1, 1), up);
     EXPECT_LT(largest_difference(change, wanted), 1e-4);
 }
 
@@ -110,10 +109,10 @@ TEST(Lora, KnowsTheOriginalNamesOfStableDiffusion) {
 
 TEST(Lora, SeveralFilesAddUpInFloat32BeforeTheCast) {
     UNet2DCondition unet = lora_unet();
-    unet->to(torch::kBFloat16);
-    const torch::Tensor before = weight_of(unet, query).clone();
+    unet->to(at::kBFloat16);
+    const at::Tensor before = weight_of(unet, query).clone();
     // One part is too small to change the weight's bfloat16 alone.
-    const torch::Tensor down = torch::ones({1, 8}), up = before.slice(1, 0, 1).to(torch::kFloat32);
+    const at::Tensor down = at::ones({1, 8}), up = before.slice(1, 0, 1).to(at::kFloat);
     const TemporaryFolder folder;
     const auto path = folder.path() / "small.safetensors";
     save_safetensors(path, {{"unet." + query + ".lora_A.weight", down},
@@ -122,19 +121,18 @@ TEST(Lora, SeveralFilesAddUpInFloat32BeforeTheCast) {
     targets.unet = unet;
     const LoraFile part{path, 1.0 / 600};
     fuse_loras({part, part, part, part, part, part}, targets);
-    const torch::Tensor wanted =
-        (before.to(torch::kFloat32) + torch::mm(up, down) / 100).to(torch::kBFloat16);
-    EXPECT_EQ(weight_of(unet, query).scalar_type(), torch::kBFloat16);
+    const at::Tensor wanted = (before.to(at::kFloat) + at::mm(up, down) / 100).to(at::kBFloat16);
+    EXPECT_EQ(weight_of(unet, query).scalar_type(), at::kBFloat16);
     EXPECT_LT(largest_difference(weight_of(unet, query).select(1, 0), wanted.select(1, 0)), 1e-9);
     EXPECT_FALSE(weight_of(unet, query).select(1, 0).equal(before.select(1, 0)));
 }
 
 TEST(Lora, TakesAlphaFromTheRecordOfDiffusers) {
-    const NamedTensors tensors = {{"unet." + query + ".lora_A.weight", torch::ones({4, 8})},
-                                  {"unet." + query + ".lora_B.weight", torch::ones({8, 4})}};
+    const NamedTensors tensors = {{"unet." + query + ".lora_A.weight", at::ones({4, 8})},
+                                  {"unet." + query + ".lora_B.weight", at::ones({8, 4})}};
     const auto change = [&](const std::string& record) {
         const UNet2DCondition unet = lora_unet();
-        const torch::Tensor before = weight_of(unet, query).clone();
+        const at::Tensor before = weight_of(unet, query).clone();
         fuse(unet, tensors, 1, {{"lora_adapter_metadata", record}});
         return (weight_of(unet, query) - before).mean().item<double>();
     };
@@ -147,7 +145,7 @@ TEST(Lora, TakesAlphaFromTheRecordOfDiffusers) {
 }
 
 TEST(Lora, NamesFileAndTensorOfWhatItRefuses) {
-    const torch::Tensor down = torch::ones({2, 8}), up = torch::ones({8, 2});
+    const at::Tensor down = at::ones({2, 8}), up = at::ones({8, 2});
     const std::string base = "lora_unet_conv_nowhere", q = "unet." + query;
     struct Broken {
         NamedTensors tensors;
@@ -161,25 +159,25 @@ TEST(Lora, NamesFileAndTensorOfWhatItRefuses) {
         {{{"model.diffusion_model.weight", down}}, "diffusion_model", "not one of a LoRA"},
         {{{q + ".lora_A.weight", down}}, "to_q.lora_A", "'up'"},
         {{{q + ".lora_B.weight", up}}, "to_q.lora_B", "'down'"},
-        {{{q + ".alpha", torch::ones({})}}, "to_q.alpha", "beside it"},
-        {{{q + ".lora_A.weight", down}, {q + ".lora_B.weight", torch::ones({8, 3})}},
+        {{{q + ".alpha", at::ones({})}}, "to_q.alpha", "beside it"},
+        {{{q + ".lora_A.weight", down}, {q + ".lora_B.weight", at::ones({8, 3})}},
          "to_q.lora_B",
          "rank"},
-        {{{q + ".lora_A.weight", torch::ones({2, 9})}, {q + ".lora_B.weight", up}},
+        {{{q + ".lora_A.weight", at::ones({2, 9})}, {q + ".lora_B.weight", up}},
          "to_q.lora_A",
          "[8, 8]"},
-        {{{q + ".lora_A.weight", down}, {q + ".lora_B.weight", torch::ones({7, 2})}},
+        {{{q + ".lora_A.weight", down}, {q + ".lora_B.weight", at::ones({7, 2})}},
          "to_q.lora_B",
          "[8, 8]"},
-        {{{q + ".lora_A.weight", torch::ones({2})}, {q + ".lora_B.weight", up}},
+        {{{q + ".lora_A.weight", at::ones({2})}, {q + ".lora_B.weight", up}},
          "to_q.lora_A",
          "matrix"},
-        {{{q + ".lora_A.weight", torch::ones({2, 8}, torch::kInt64)}, {q + ".lora_B.weight", up}},
+        {{{q + ".lora_A.weight", at::ones({2, 8}, at::kLong)}, {q + ".lora_B.weight", up}},
          "to_q.lora_A",
          "floating"},
         {{{q + ".lora_A.weight", down},
           {q + ".lora_B.weight", up},
-          {q + ".alpha", torch::full({1}, NAN)}},
+          {q + ".alpha", at::full({1}, NAN)}},
          "to_q.alpha",
          "finite"},
         {{{q + ".lora_A.weight", down}, {query + ".lora_down.weight", down}},
@@ -193,7 +191,7 @@ TEST(Lora, NamesFileAndTensorOfWhatItRefuses) {
     const auto path = folder.path() / "lora.safetensors";
     LoraTargets targets;
     targets.unet = lora_unet();
-    const torch::Tensor before = weight_of(targets.unet, query).clone();
+    const at::Tensor before = weight_of(targets.unet, query).clone();
     for (const Broken& broken : cases) {
         save_safetensors(path, broken.tensors);
         const std::string message = message_of<InputError>([&] {

@@ -1,9 +1,13 @@
+#include "item3d/networks/diffusion/pipeline.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
-#include "item3d/networks/diffusion/pipeline_extras.h"
+#include "item3d/networks/diffusion/diffusion_networks.h"
+#include "item3d/networks/diffusion/generate.h"
+#include "item3d/networks/diffusion/running_pipeline.h"
 #include "item3d/networks/diffusion/shape_condition.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 #include <torch/csrc/autograd/autograd.h>
 
@@ -30,7 +34,7 @@ GenerateOptions options_of(const Golden& golden, int index) {
 
 TEST(Pipeline, ReproducesTheReference) {
     set_verbosity(Verbosity::quiet);
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("pipeline_sd");
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
     EXPECT_EQ(pipeline.downscale(), 8);
@@ -38,7 +42,8 @@ TEST(Pipeline, ReproducesTheReference) {
     for (int i = 0; i < 2; ++i) {
         const GenerateOptions options = options_of(golden, i);
         const std::string number = "_" + std::to_string(i);
-        golden.expect("prompt_ids" + number, pipeline.tokenizer->encode_batch({options.prompt}), 0);
+        golden.expect("prompt_ids" + number, pipeline.tokenizer().encode_batch({options.prompt}),
+                      0);
         golden.expect("prompt_embeds" + number, pipeline.encode_text({options.prompt}).states);
         golden.expect("latents" + number, generate_latents(pipeline, options), 2e-4);
         golden.expect("image" + number, generate(pipeline, options), 1e-3);
@@ -46,20 +51,19 @@ TEST(Pipeline, ReproducesTheReference) {
 }
 
 TEST(Pipeline, SurvivesSavingAsFloat16) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
     const TemporaryFolder folder;
-    pipeline.save(folder.path(), torch::kFloat32);
-    torch::manual_seed(9);
-    const torch::Tensor latents = torch::randn({1, 4, 8, 8}), t = torch::tensor({500});
-    const torch::Tensor wanted =
-        pipeline.predict_noise(latents, t, pipeline.encode_text({"a duck"}));
+    pipeline.save(folder.path(), at::kFloat);
+    at::manual_seed(9);
+    const at::Tensor latents = at::randn({1, 4, 8, 8}), t = at::tensor({500}, at::kLong);
+    const at::Tensor wanted = pipeline.predict_noise(latents, t, pipeline.encode_text({"a duck"}));
     const auto predict = [&] {
         const Pipeline again = Pipeline::load(folder.path());
         return again.predict_noise(latents, t, again.encode_text({"a duck"}));
     };
     EXPECT_LT(largest_difference(predict(), wanted), 1e-6);
-    pipeline.save(folder.path(), torch::kFloat16);
+    pipeline.save(folder.path(), at::kHalf);
     const double half = largest_difference(predict(), wanted);
     EXPECT_LT(half, 0.02);
     EXPECT_GT(half, 0.0);
@@ -67,27 +71,27 @@ TEST(Pipeline, SurvivesSavingAsFloat16) {
 
 TEST(Pipeline, EncodingIsTheMeanAndHasAGradient) {
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-    torch::manual_seed(10);
-    const torch::Tensor image = torch::rand({1, 3, 16, 16}).requires_grad_();
-    const torch::Tensor latents = pipeline.encode_image(image);
+    at::manual_seed(10);
+    const at::Tensor image = at::rand({1, 3, 16, 16}).requires_grad_();
+    const at::Tensor latents = pipeline.encode_image(image);
     EXPECT_EQ(latents.sizes(), (std::vector<std::int64_t>{1, 4, 2, 2}));
-    EXPECT_LT(largest_difference(latents.detach(), pipeline.vae->encode(image).detach() *
-                                                       pipeline.vae->scaling_factor()),
+    EXPECT_LT(largest_difference(latents.detach(), pipeline.networks().vae->encode(image).detach() *
+                                                       pipeline.networks().vae->scaling_factor()),
               1e-6);
     EXPECT_GT(torch::autograd::grad({latents.sum()}, {image})[0].abs().max().item<float>(), 0);
 }
 
 TEST(Pipeline, Bfloat16WeightsStayNear) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("pipeline_sd");
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-    const Pipeline half = Pipeline::load(fixture("pipeline_sd"), torch::kCPU, torch::kBFloat16);
-    const torch::Tensor latents = golden.in("latents_0");
+    const Pipeline half = Pipeline::load(fixture("pipeline_sd"), at::kCPU, at::kBFloat16);
+    const at::Tensor latents = golden.in("latents_0");
     const TextEmbedding text = pipeline.encode_text({"a duck"});
-    const torch::Tensor t = torch::tensor({300});
-    const torch::Tensor wanted = pipeline.predict_noise(latents, t, text);
-    const torch::Tensor actual = half.predict_noise(latents, t, text);
-    EXPECT_EQ(actual.scalar_type(), torch::kFloat32);
+    const at::Tensor t = at::tensor({300}, at::kLong);
+    const at::Tensor wanted = pipeline.predict_noise(latents, t, text);
+    const at::Tensor actual = half.predict_noise(latents, t, text);
+    EXPECT_EQ(actual.scalar_type(), at::kFloat);
     EXPECT_LT((actual - wanted).norm().item<double>(), 0.03 * wanted.norm().item<double>());
 }
 
@@ -100,7 +104,7 @@ TEST(Pipeline, GeneratingDependsOnTheSeedAloneAndNotOnTheCount) {
     options.width = 32;
     options.height = 16;
     options.seed = 3;
-    const torch::Tensor one = generate(pipeline, options);
+    const at::Tensor one = generate(pipeline, options);
     EXPECT_EQ(one.sizes(), (std::vector<std::int64_t>{1, 16, 32, 3}));
     EXPECT_TRUE(one.equal(generate(pipeline, options)));
     options.count = 2;
@@ -118,7 +122,7 @@ GenerateOptions from_a_picture(const Pipeline& pipeline) {
     GenerateOptions options;
     options.prompt = "a duck";
     options.steps = 4;
-    options.image = torch::full({1, pipeline.latent_channels(), 8, 8}, 0.7f);
+    options.image = at::full({1, pipeline.latent_channels(), 8, 8}, 0.7f);
     return options;
 }
 
@@ -126,11 +130,11 @@ TEST(Pipeline, WhatIsKeptOfAPictureStaysAndTheRestIsDrawn) {
     set_verbosity(Verbosity::quiet);
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
     GenerateOptions options = from_a_picture(pipeline);
-    const torch::Tensor drawn = generate_latents(pipeline, options);
-    options.keep = torch::zeros({1, 1, 8, 8});
+    const at::Tensor drawn = generate_latents(pipeline, options);
+    options.keep = at::zeros({1, 1, 8, 8});
     EXPECT_TRUE(generate_latents(pipeline, options).equal(drawn));
     options.keep.narrow(3, 0, 4).fill_(1);
-    const torch::Tensor half = generate_latents(pipeline, options);
+    const at::Tensor half = generate_latents(pipeline, options);
     EXPECT_TRUE(half.narrow(3, 0, 4).equal(options.image.narrow(3, 0, 4)));
     EXPECT_GT(largest_difference(half.narrow(3, 4, 4), options.image.narrow(3, 4, 4)), 0.1);
     // What is drawn knows of what is kept beside it.
@@ -152,7 +156,7 @@ TEST(Pipeline, GeneratingFromAPictureWalksPartOfTheSchedule) {
 
     options.scheduler = "ddim";
     options.eta = 1;
-    const torch::Tensor noisy = generate_latents(pipeline, options);
+    const at::Tensor noisy = generate_latents(pipeline, options);
     EXPECT_TRUE(noisy.equal(generate_latents(pipeline, options)));
     options.eta = 0;
     EXPECT_GT(largest_difference(generate_latents(pipeline, options), noisy), 1e-3);
@@ -166,20 +170,20 @@ TEST(Pipeline, GeneratesWithEveryScheduler) {
     options.width = 24;
     options.height = 40;
     options.steps = 4;
-    std::vector<torch::Tensor> drawn;
+    std::vector<at::Tensor> drawn;
     for (const SamplerKind& kind : sampler_kinds()) {
         options.scheduler = kind.name;
         drawn.push_back(generate_latents(pipeline, options));
         EXPECT_EQ(drawn.back().sizes(), (std::vector<std::int64_t>{1, 4, 5, 3}));
-        EXPECT_TRUE(torch::isfinite(drawn.back()).all().item<bool>()) << kind.name;
+        EXPECT_TRUE(at::isfinite(drawn.back()).all().item<bool>()) << kind.name;
         EXPECT_TRUE(drawn.back().equal(generate_latents(pipeline, options))) << kind.name;
         for (std::size_t i = 0; i + 1 < drawn.size(); ++i)
             EXPECT_GT(largest_difference(drawn[i], drawn.back()), 1e-4) << kind.name << " " << i;
 
         GenerateOptions from_picture = options;
-        from_picture.image = torch::full({1, 4, 5, 3}, 0.7f);
+        from_picture.image = at::full({1, 4, 5, 3}, 0.7f);
         from_picture.strength = 0.25;
-        const torch::Tensor little = generate_latents(pipeline, from_picture);
+        const at::Tensor little = generate_latents(pipeline, from_picture);
         EXPECT_LT(largest_difference(little, from_picture.image),
                   largest_difference(drawn.back(), from_picture.image))
             << kind.name;
@@ -230,87 +234,86 @@ TEST(Pipeline, SaysWhatIsWrongWithAFolder) {
 }
 
 TEST(DepthCondition, ScalesDisparityAndAveragesCells) {
-    torch::Tensor depth = torch::zeros({1, 4, 6});
+    at::Tensor depth = at::zeros({1, 4, 6});
     depth[0].slice(1, 0, 2) = 1.0f;                 // near
     depth[0].slice(1, 2, 4) = 4.0f;                 // far
     depth[0].slice(1, 2, 4).slice(0, 0, 2) = 1.6f;  // disparity 0.625, halfway
-    const torch::Tensor condition = depth_condition(depth, 2);
-    const torch::Tensor wanted = torch::tensor({{1.0f, 0.6f, -1.0f}, {1.0f, 0.2f, -1.0f}});
+    const at::Tensor condition = depth_condition(depth, 2);
+    const at::Tensor wanted =
+        at::tensor({1.0f, 0.6f, -1.0f, 1.0f, 0.2f, -1.0f}, at::kFloat).view({2, 3});
     EXPECT_EQ(condition.sizes(), (std::vector<std::int64_t>{1, 1, 2, 3}));
     EXPECT_LT(largest_difference(condition[0][0], wanted), 1e-5);
     // Nothing in view, and a half-covered cell.
-    EXPECT_TRUE(
-        depth_condition(torch::zeros({1, 4, 4}), 4).equal(torch::full({1, 1, 1, 1}, -1.0f)));
-    torch::Tensor half = torch::zeros({1, 2, 2});
+    EXPECT_TRUE(depth_condition(at::zeros({1, 4, 4}), 4).equal(at::full({1, 1, 1, 1}, -1.0f)));
+    at::Tensor half = at::zeros({1, 2, 2});
     half[0][0].fill_(3.0f);
-    EXPECT_TRUE(torch::isfinite(depth_condition(half, 2)).all().item<bool>());
+    EXPECT_TRUE(at::isfinite(depth_condition(half, 2)).all().item<bool>());
 }
 
 TEST(ShapeCondition, SaysWhereInSpaceTheSurfaceOfEachCellIs) {
     // Two cells of 2 x 2 pixels: one half covered by a point at (.25, 0, -.5), one empty.
-    SeenShape shape{torch::zeros({1, 2, 4}), torch::full({1, 2, 4, 3}, 9.0f),
-                    torch::full({1, 2, 4, 3}, .5f)};
+    SeenShape shape{at::zeros({1, 2, 4}), at::full({1, 2, 4, 3}, 9.0f),
+                    at::full({1, 2, 4, 3}, .5f)};
     shape.depth[0].slice(1, 0, 1) = 2.0f;
-    shape.position[0].slice(1, 0, 1) = torch::tensor({.25f, 0.0f, -.5f});
-    const torch::Tensor cells = shape_cells(shape, 2);
+    shape.position[0].slice(1, 0, 1) = at::tensor({.25f, 0.0f, -.5f});
+    const at::Tensor cells = shape_cells(shape, 2);
     EXPECT_EQ(cells.sizes(), (std::vector<std::int64_t>{1, 7, 1, 2}));
     EXPECT_LT(largest_difference(cells[0].slice(0, 1, 4).select(2, 0).flatten(),
-                                 torch::tensor({.25f, 0.0f, -.5f})),
+                                 at::tensor({.25f, 0.0f, -.5f})),
               1e-6);
     EXPECT_EQ(cells[0][0][0][1].item<float>(), -1);
 
     EXPECT_FALSE(shape_condition(cells, 0).defined());
     EXPECT_TRUE(shape_condition(cells, 1).equal(cells.slice(1, 0, 1)));
-    const torch::Tensor all = shape_condition(cells, surface_condition_channels);
+    const at::Tensor all = shape_condition(cells, surface_condition_channels);
     EXPECT_EQ(all.size(1), surface_condition_channels);
     // Half a cycle a unit: an eighth of a turn along x, none along y, a quarter back along z.
-    EXPECT_TRUE(all[0].slice(0, 1, 4).select(2, 0).equal(torch::full({3, 1}, .5f)));
-    const torch::Tensor first = all[0].slice(0, 4, 10).select(1, 0).select(1, 0);
+    EXPECT_TRUE(all[0].slice(0, 1, 4).select(2, 0).equal(at::full({3, 1}, .5f)));
+    const at::Tensor first = all[0].slice(0, 4, 10).select(1, 0).select(1, 0);
     const float diagonal = std::sqrt(.5f);
-    EXPECT_LT(
-        largest_difference(first, torch::tensor({diagonal, 0.0f, -1.0f, diagonal, 1.0f, 0.0f})),
-        1e-5);
+    EXPECT_LT(largest_difference(first, at::tensor({diagonal, 0.0f, -1.0f, diagonal, 1.0f, 0.0f})),
+              1e-5);
     // Its normal faces all axes alike, so x first: the plane's coordinates are (z, y).
-    const torch::Tensor plane = all[0].slice(0, 4 + 6 * space_waves, 8 + 6 * space_waves);
+    const at::Tensor plane = all[0].slice(0, 4 + 6 * space_waves, 8 + 6 * space_waves);
     EXPECT_LT(
-        largest_difference(plane.select(2, 0).flatten(), torch::tensor({0.0f, -1.0f, 0.0f, 1.0f})),
+        largest_difference(plane.select(2, 0).flatten(), at::tensor({0.0f, -1.0f, 0.0f, 1.0f})),
         1e-5);
     EXPECT_TRUE(
-        all[0].slice(0, 1).select(2, 1).equal(torch::zeros({surface_condition_channels - 1, 1})));
+        all[0].slice(0, 1).select(2, 1).equal(at::zeros({surface_condition_channels - 1, 1})));
 }
 
-TEST(Pipeline, KnowsItsPromptsAfterTheEncodersAreFreed) {
-    Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-    const torch::Tensor duck = pipeline.encode_text({"a duck"}).states,
-                        none = pipeline.encode_no_text().states;
-    pipeline.keep_texts({"a duck", "a golden duck"});
-    EXPECT_EQ(pipeline.text_encoder->parameters()[0].numel(), 0);
-    EXPECT_TRUE(pipeline.encode_text({"a duck"}).states.equal(duck));
-    EXPECT_TRUE(pipeline.encode_no_text().states.equal(none));
-    const TextEmbedding both = pipeline.encode_text({"a golden duck", "a duck"});
+TEST(RunningPipeline, KnowsThePromptsThatItWasToldAndNoText) {
+    const Pipeline whole = Pipeline::load(fixture("pipeline_sd"));
+    const RunningPipeline running = RunningPipeline::load(
+        fixture("pipeline_sd"), at::kCPU, at::kFloat, {}, {{"a duck", "a golden duck"}});
+    const at::Tensor duck = whole.encode_text({"a duck"}).states;
+    EXPECT_TRUE(running.encode_text({"a duck"}).states.equal(duck));
+    EXPECT_TRUE(running.encode_no_text().states.equal(whole.encode_no_text().states));
+    const TextEmbedding both = running.encode_text({"a golden duck", "a duck"});
     EXPECT_EQ(both.rows(), 2);
     EXPECT_TRUE(both.row(1).states.equal(duck));
     EXPECT_FALSE(both.row(0).states.equal(duck));
-    EXPECT_ANY_THROW(pipeline.encode_text({"a cat"}));
+    EXPECT_ANY_THROW(running.encode_text({"a cat"}));
 }
 
-TEST(Pipeline, LoadedToRunIsTheSameButForWhatItDoesNotNeed) {
+TEST(RunningPipeline, IsTheSameButForWhatItDoesNotNeed) {
     const Pipeline whole = Pipeline::load(fixture("pipeline_sd"));
-    const Pipeline running = load_to_run(fixture("pipeline_sd"), torch::kCPU, torch::kFloat32, {},
-                                         {{"a duck"}, /*decoder=*/false});
-    const torch::NoGradGuard no_grad;
-    torch::manual_seed(0);
-    const torch::Tensor image = torch::rand({1, 3, 64, 64}) * 2 - 1;
-    const torch::Tensor latents = whole.encode_image(image);
+    const RunningPipeline running = RunningPipeline::load(
+        fixture("pipeline_sd"), at::kCPU, at::kFloat, {}, {{"a duck"}, /*decoder=*/false});
+    const at::NoGradGuard no_grad;
+    at::manual_seed(0);
+    const at::Tensor image = at::rand({1, 3, 64, 64}) * 2 - 1;
+    const at::Tensor latents = whole.encode_image(image);
     EXPECT_LT(largest_difference(running.encode_image(image), latents), 1e-5);
     const TextEmbedding text = whole.encode_text({"a duck"});
     EXPECT_TRUE(running.encode_text({"a duck"}).states.equal(text.states));
-    const torch::Tensor timestep = torch::full({1}, 400, torch::kInt64);
+    const at::Tensor timestep = at::full({1}, 400, at::kLong);
     EXPECT_LT(largest_difference(running.predict_noise(latents, timestep, text),
                                  whole.predict_noise(latents, timestep, text)),
               1e-5);
     EXPECT_ANY_THROW(running.decode_image(latents));
-    EXPECT_LT(running.vae->parameters().size(), whole.vae->parameters().size());
+    EXPECT_LT(running.networks().vae->parameters().size(),
+              whole.networks().vae->parameters().size());
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
+#include "item3d/networks/diffusion/diffusion_networks.h"
+#include "item3d/networks/diffusion/generate.h"
 #include "item3d/networks/diffusion/pipeline.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 namespace item3d {
 namespace {
@@ -16,7 +18,7 @@ using testing::TemporaryFolder;
 
 TEST(PipelineSdxl, ReproducesTheReference) {
     set_verbosity(Verbosity::quiet);
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("pipeline_sdxl");
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sdxl"));
     const auto meta = nlohmann::json::parse(read_text(fixture("pipeline_sdxl") / "meta.json"));
@@ -43,13 +45,13 @@ TEST(PipelineSdxl, ReproducesTheReference) {
 }
 
 TEST(PipelineSdxl, IsToldTheSizeOfThePicture) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sdxl"));
     const TextEmbedding text = pipeline.encode_text({"a duck"});
     // Of constant latents the network sees the size alone, but for the borders.
     const auto center = [&](std::int64_t cells) {
-        const torch::Tensor flat = torch::zeros({1, 4, cells, cells});
-        return pipeline.predict(flat, torch::tensor({500}), text)
+        const at::Tensor flat = at::zeros({1, 4, cells, cells});
+        return pipeline.predict(flat, at::tensor({500}, at::kLong), text)
             .slice(2, cells / 2, cells / 2 + 1)
             .slice(3, cells / 2, cells / 2 + 1);
     };
@@ -57,13 +59,13 @@ TEST(PipelineSdxl, IsToldTheSizeOfThePicture) {
 }
 
 TEST(PipelineSdxl, SurvivesSaving) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sdxl"));
     const TemporaryFolder folder;
-    pipeline.save(folder.path(), torch::kFloat32);
+    pipeline.save(folder.path(), at::kFloat);
     const Pipeline again = Pipeline::load(folder.path());
-    torch::manual_seed(11);
-    const torch::Tensor latents = torch::randn({2, 4, 4, 4}), t = torch::tensor({500, 20});
+    at::manual_seed(11);
+    const at::Tensor latents = at::randn({2, 4, 4, 4}), t = at::tensor({500, 20}, at::kLong);
     const auto predict = [&](const Pipeline& model) {
         return model.predict_noise(latents, t, model.encode_text({"a duck", ""}));
     };

@@ -1,7 +1,7 @@
 #include "item3d/networks/layers/row_groups.h"
 
 #include "item3d/networks/diffusion/unet.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 #include <torch/csrc/autograd/autograd.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 /// Convolutions, norms, attention and gates with the embedded prior's widths.
 UNet2DCondition small_unet() {
-    torch::manual_seed(1);
+    at::manual_seed(1);
     const std::vector<std::string> down(2, "CrossAttnDownBlock2D"), up(2, "CrossAttnUpBlock2D");
     UNet2DCondition unet(UNet2DConditionConfig::from_json({{"in_channels", 4},
                                                            {"block_out_channels", {48, 96}},
@@ -20,23 +20,23 @@ UNet2DCondition small_unet() {
                                                            {"attention_head_dim", {2, 4}},
                                                            {"cross_attention_dim", 32},
                                                            {"norm_num_groups", 16}}));
-    for (torch::Tensor& parameter : unet->parameters())
+    for (at::Tensor& parameter : unet->parameters())
         parameter.set_requires_grad(false);
     return unet;
 }
 
 /// A U-Net's output for some rows, and the gradient of its squares to one text for all of them.
-std::pair<torch::Tensor, torch::Tensor> predict_rows(std::int64_t rows, bool in_groups) {
+std::pair<at::Tensor, at::Tensor> predict_rows(std::int64_t rows, bool in_groups) {
     UNet2DCondition unet = small_unet();
-    torch::manual_seed(2);
-    const torch::Tensor sample = torch::randn({rows, 4, 4, 4});
-    const torch::Tensor text = torch::randn({1, 7, 32}).requires_grad_(true);
-    const torch::Tensor times = torch::arange(rows) * 100;
-    const auto run = [&](std::int64_t first, std::int64_t count, const torch::Tensor& states) {
+    at::manual_seed(2);
+    const at::Tensor sample = at::randn({rows, 4, 4, 4});
+    const at::Tensor text = at::randn({1, 7, 32}).requires_grad_(true);
+    const at::Tensor times = at::arange(rows) * 100;
+    const auto run = [&](std::int64_t first, std::int64_t count, const at::Tensor& states) {
         return unet(sample.narrow(0, first, count), times.narrow(0, first, count), states);
     };
-    const torch::Tensor each = text.expand({rows, 7, 32});
-    const torch::Tensor y = in_groups ? in_row_groups(each, run) : run(0, rows, each);
+    const at::Tensor each = text.expand({rows, 7, 32});
+    const at::Tensor y = in_groups ? in_row_groups(each, run) : run(0, rows, each);
     return {y.detach(), torch::autograd::grad({y.square().mean()}, {text})[0]};
 }
 
@@ -44,9 +44,9 @@ TEST(RowGroups, GiveWhatAllRowsTogetherGive) {
     for (const std::int64_t rows : {1, 2, 5, 33}) {
         const auto [y, gradient] = predict_rows(rows, true);
         const auto [whole, whole_gradient] = predict_rows(rows, false);
-        EXPECT_TRUE(torch::allclose(y, whole, 1e-4, 1e-5)) << rows;
-        EXPECT_TRUE(torch::allclose(gradient, whole_gradient, 1e-3,
-                                    1e-4 * whole_gradient.abs().max().item<double>()))
+        EXPECT_TRUE(at::allclose(y, whole, 1e-4, 1e-5)) << rows;
+        EXPECT_TRUE(at::allclose(gradient, whole_gradient, 1e-3,
+                                 1e-4 * whole_gradient.abs().max().item<double>()))
             << rows;
     }
 }
@@ -56,28 +56,28 @@ TEST(RowGroups, GiveTheSameOnOneThreadAndOnMany) {
     at::set_num_threads(4);
     const auto many = predict_rows(7, true);
     at::set_num_threads(1);
-    EXPECT_TRUE(torch::equal(one.first, many.first));
-    EXPECT_TRUE(torch::equal(one.second, many.second));
+    EXPECT_TRUE(at::equal(one.first, many.first));
+    EXPECT_TRUE(at::equal(one.second, many.second));
 }
 
 TEST(RowGroups, KeepNoGraphWhereNoGradientIsAskedFor) {
-    const torch::Tensor text = torch::randn({5, 3});
-    const RowFunction doubled = [&](auto, auto, const torch::Tensor& rows) {
-        EXPECT_FALSE(torch::GradMode::is_enabled());
+    const at::Tensor text = at::randn({5, 3});
+    const RowFunction doubled = [&](auto, auto, const at::Tensor& rows) {
+        EXPECT_FALSE(at::GradMode::is_enabled());
         return rows * 2;
     };
-    EXPECT_TRUE(torch::equal(in_row_groups(text, doubled), text * 2));
-    const torch::Tensor asking = torch::randn({5, 3}).requires_grad_(true);
-    const torch::NoGradGuard no_grad;
+    EXPECT_TRUE(at::equal(in_row_groups(text, doubled), text * 2));
+    const at::Tensor asking = at::randn({5, 3}).requires_grad_(true);
+    const at::NoGradGuard no_grad;
     EXPECT_FALSE(in_row_groups(asking, doubled).requires_grad());
 }
 
 TEST(RowGroups, PassOnWhatIsThrown) {
-    const RowFunction fails = [](std::int64_t first, std::int64_t, const torch::Tensor& rows) {
+    const RowFunction fails = [](std::int64_t first, std::int64_t, const at::Tensor& rows) {
         if (first > 0) throw std::runtime_error("no");
         return rows;
     };
-    EXPECT_THROW(in_row_groups(torch::zeros({6, 2}), fails), std::runtime_error);
+    EXPECT_THROW(in_row_groups(at::zeros({6, 2}), fails), std::runtime_error);
 }
 
 }  // namespace

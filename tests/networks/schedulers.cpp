@@ -1,6 +1,6 @@
 #include "item3d/core/error.h"
 #include "item3d/networks/diffusion/samplers/sampler.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 namespace item3d {
 namespace {
@@ -20,26 +20,26 @@ TEST_P(RecordedScheduler, AgreesWithTheReference) {
     const auto& [config, kind] = GetParam();
     const std::string prefix = std::string(config) + "." + kind + ".";
     const NoiseSchedule schedule = NoiseSchedule::load(fixture("schedulers") / config / kind);
-    const torch::Tensor sample = golden.in("sample"), noise = golden.in("noise");
-    const torch::Tensor noise_timesteps = golden.in("noise_timesteps");
-    const auto expect_if_recorded = [&](const std::string& name, const torch::Tensor& actual) {
+    const at::Tensor sample = golden.in("sample"), noise = golden.in("noise");
+    const at::Tensor noise_timesteps = golden.in("noise_timesteps");
+    const auto expect_if_recorded = [&](const std::string& name, const at::Tensor& actual) {
         if (golden.has("out." + prefix + name)) golden.expect(prefix + name, actual, tolerance);
     };
     expect_if_recorded("alphas_cumprod", schedule.alphas_at(noise_timesteps).flatten());
-    std::vector<torch::Tensor> noisy, velocities;
+    std::vector<at::Tensor> noisy, velocities;
     for (std::int64_t i = 0; i < noise_timesteps.size(0); ++i) {
-        const torch::Tensor t = noise_timesteps.narrow(0, i, 1);
+        const at::Tensor t = noise_timesteps.narrow(0, i, 1);
         noisy.push_back(schedule.add_noise(sample, noise, t));
         velocities.push_back(schedule.get_velocity(sample, noise, t));
     }
-    expect_if_recorded("add_noise", torch::stack(noisy));
-    expect_if_recorded("get_velocity", torch::stack(velocities));
+    expect_if_recorded("add_noise", at::stack(noisy));
+    expect_if_recorded("get_velocity", at::stack(velocities));
 
     const auto sampler =
         make_sampler(schedule, {.steps = 10, .eta = kind == std::string("ddim_eta") ? 0.6 : 0.0});
     std::vector<double> timesteps;
-    std::vector<torch::Tensor> scaled, trajectory, starts;
-    torch::Tensor current = sample * sampler->initial_scale();
+    std::vector<at::Tensor> scaled, trajectory, starts;
+    at::Tensor current = sample * sampler->initial_scale();
     for (int i = 0; i < sampler->steps(); ++i) {
         timesteps.push_back(sampler->timestep(i));
         scaled.push_back(sampler->scale_input(i, current));
@@ -49,13 +49,12 @@ TEST_P(RecordedScheduler, AgreesWithTheReference) {
     }
     for (const int i : {0, 4, 9})
         starts.push_back(sampler->add_noise(i, sample, noise));
-    golden.expect(prefix + "timesteps", torch::tensor(timesteps),
+    golden.expect(prefix + "timesteps", at::tensor(timesteps),
                   std::string(kind) == "euler_karras" ? tolerance : 0);
-    golden.expect(prefix + "init_noise_sigma", torch::tensor({sampler->initial_scale()}),
-                  tolerance);
-    golden.expect(prefix + "prev_sample", torch::stack(trajectory), tolerance);
-    expect_if_recorded("scaled_input", torch::stack(scaled));
-    expect_if_recorded("add_noise_schedule", torch::stack(starts));
+    golden.expect(prefix + "init_noise_sigma", at::tensor({sampler->initial_scale()}), tolerance);
+    golden.expect(prefix + "prev_sample", at::stack(trajectory), tolerance);
+    expect_if_recorded("scaled_input", at::stack(scaled));
+    expect_if_recorded("add_noise_schedule", at::stack(starts));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -65,16 +64,16 @@ INSTANTIATE_TEST_SUITE_P(
                                          "dpmpp2m", "dpmpp2m_karras", "pndm")));
 
 TEST(NoiseSchedule, ConvertsEveryPredictionToTheSameNoiseAndPicture) {
-    torch::manual_seed(7);
-    const torch::Tensor clean = torch::randn({2, 4, 3, 3}), noise = torch::randn({2, 4, 3, 3});
-    const torch::Tensor timesteps = torch::tensor({600, 600});
+    at::manual_seed(7);
+    const at::Tensor clean = at::randn({2, 4, 3, 3}), noise = at::randn({2, 4, 3, 3});
+    const at::Tensor timesteps = at::tensor({600, 600}, at::kLong);
     for (const char* type : {"epsilon", "v_prediction", "sample"}) {
         const NoiseSchedule schedule(SchedulerConfig::stable_diffusion(type));
-        const torch::Tensor noisy = schedule.add_noise(clean, noise, timesteps);
-        const torch::Tensor output = type == std::string("epsilon") ? noise
-                                     : type == std::string("sample")
-                                         ? clean
-                                         : schedule.get_velocity(clean, noise, timesteps);
+        const at::Tensor noisy = schedule.add_noise(clean, noise, timesteps);
+        const at::Tensor output = type == std::string("epsilon") ? noise
+                                  : type == std::string("sample")
+                                      ? clean
+                                      : schedule.get_velocity(clean, noise, timesteps);
         EXPECT_LT(largest_difference(schedule.to_noise(output, noisy, timesteps), noise), 1e-5)
             << type;
         const Prediction meant =
@@ -85,25 +84,25 @@ TEST(NoiseSchedule, ConvertsEveryPredictionToTheSameNoiseAndPicture) {
 }
 
 /// Runs a sampler with a network that knows the picture.
-torch::Tensor run_with_oracle(Sampler& sampler, const torch::Tensor& clean, torch::Tensor sample) {
-    const torch::Tensor zero = torch::zeros({1, 1, 1, 1}), one = torch::ones({1, 1, 1, 1});
+at::Tensor run_with_oracle(Sampler& sampler, const at::Tensor& clean, at::Tensor sample) {
+    const at::Tensor zero = at::zeros({1, 1, 1, 1}), one = at::ones({1, 1, 1, 1});
     for (int i = 0; i < sampler.steps(); ++i) {
-        const torch::Tensor input = sampler.scale_input(i, sample);
+        const at::Tensor input = sampler.scale_input(i, sample);
         double signal = sampler.add_noise(i, one, zero).item<double>();
         double deviation = sampler.add_noise(i, zero, one).item<double>();
         const double length = std::hypot(signal, deviation);
         signal /= length;
         deviation /= length;
-        const torch::Tensor noise = (input - signal * clean) / deviation;
+        const at::Tensor noise = (input - signal * clean) / deviation;
         sample =
-            sampler.step(i, signal * noise - deviation * clean, sample, torch::randn_like(sample));
+            sampler.step(i, signal * noise - deviation * clean, sample, at::randn_like(sample));
     }
     return sample;
 }
 
 TEST(Sampler, PerfectPredictionsLeadToTheCleanSample) {
-    torch::manual_seed(8);
-    const torch::Tensor clean = torch::randn({1, 4, 3, 3}), noise = torch::randn({1, 4, 3, 3});
+    at::manual_seed(8);
+    const at::Tensor clean = at::randn({1, 4, 3, 3}), noise = at::randn({1, 4, 3, 3});
     for (const SamplerKind& kind : sampler_kinds()) {
         // PNDM extrapolates, and its steps are not quite those between linspace's timesteps.
         const double bound = kind.method == SamplerMethod::pndm ? 0.3 : 0.05;
@@ -115,7 +114,7 @@ TEST(Sampler, PerfectPredictionsLeadToTheCleanSample) {
             const NoiseSchedule schedule(config.with_sampler(kind.name));
             for (const int skip : {0, 3}) {
                 const auto sampler = make_sampler(schedule, {.steps = 8, .skip = skip});
-                const torch::Tensor start = sampler->add_noise(0, clean, noise);
+                const at::Tensor start = sampler->add_noise(0, clean, noise);
                 EXPECT_LT(largest_difference(run_with_oracle(*sampler, clean, start), clean), bound)
                     << kind.name << " " << spacing << " " << skip;
             }
@@ -124,8 +123,8 @@ TEST(Sampler, PerfectPredictionsLeadToTheCleanSample) {
 }
 
 TEST(Sampler, TakesAnyNumberOfSteps) {
-    torch::manual_seed(9);
-    const torch::Tensor start = torch::randn({1, 1, 2, 2});
+    at::manual_seed(9);
+    const at::Tensor start = at::randn({1, 1, 2, 2});
     for (const SamplerKind& kind : sampler_kinds()) {
         for (const char* spacing : {"leading", "trailing", "linspace"}) {
             SchedulerConfig config = SchedulerConfig::stable_diffusion("epsilon");
@@ -134,13 +133,13 @@ TEST(Sampler, TakesAnyNumberOfSteps) {
             config = config.with_sampler(kind.name);
             for (int steps = 1; steps <= most_steps(config); ++steps) {
                 const auto sampler = make_sampler(NoiseSchedule(config), {.steps = steps});
-                torch::Tensor sample = start * sampler->initial_scale();
+                at::Tensor sample = start * sampler->initial_scale();
                 for (int i = 0; i < sampler->steps(); ++i) {
                     EXPECT_GE(sampler->timestep(i), 0);
                     EXPECT_LT(sampler->timestep(i), 20);
                     sample = sampler->step(i, start, sample, start);
                 }
-                EXPECT_TRUE(torch::isfinite(sample).all().item<bool>())
+                EXPECT_TRUE(at::isfinite(sample).all().item<bool>())
                     << kind.name << " " << spacing << " " << steps;
             }
         }

@@ -2,7 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/networks/diffusion/pipeline.h"
-#include "support/networks.h"
+#include "item3d/networks/diffusion/text_encoders.h"
+#include "tests/support/networks.h"
 
 namespace item3d {
 namespace {
@@ -15,7 +16,7 @@ using testing::TemporaryFolder;
 TEST(TextualInversion, ReproducesTheReference) {
     const Golden golden("textual_inversion");
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-    const TextEncoderPair encoder{pipeline.tokenizer, pipeline.text_encoder};
+    const TextEncoderPair encoder{pipeline.text().tokenizer, pipeline.text().model};
     const auto folder = fixture("textual_inversion");
     EXPECT_EQ(add_embedding(folder / "learned_embeds.safetensors", "", {encoder}), "<cat-toy>");
     EXPECT_EQ(add_embedding(folder / "a1111_embeds.safetensors", "<style-x>", {encoder}),
@@ -23,16 +24,16 @@ TEST(TextualInversion, ReproducesTheReference) {
     const std::vector<std::string> prompts = {
         "a photo of <cat-toy>", "<cat-toy> in the style of <style-x>, highly detailed",
         "A<cat-toy>b <style-x><style-x>", "nothing special"};
-    golden.expect("input_ids", pipeline.tokenizer->encode_batch(prompts), 0);
+    golden.expect("input_ids", pipeline.tokenizer().encode_batch(prompts), 0);
     golden.expect("last_hidden_state", pipeline.encode_text(prompts).states);
 }
 
 TEST(TextualInversion, IsCalledAfterTheFileAndItsVectorsAlone) {
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-    const ClipTokenizer& tokenizer = *pipeline.tokenizer;
+    const ClipTokenizer& tokenizer = pipeline.tokenizer();
     const int before = tokenizer.largest_id();
     EXPECT_EQ(add_embedding(fixture("textual_inversion") / "a1111_embeds.safetensors", "",
-                            {{pipeline.tokenizer, pipeline.text_encoder}}),
+                            {{pipeline.text().tokenizer, pipeline.text().model}}),
               "a1111_embeds");
     const std::vector<int> whole = tokenizer.encode("A1111_Embeds"),
                            one = tokenizer.encode("a1111_embeds_2");
@@ -52,23 +53,23 @@ TEST(TextualInversion, TeachesBothEncodersOfAPair) {
                                                {second.tokenizer, second.text_encoder}};
     const TemporaryFolder folder;
     const auto path = folder.path() / "style.safetensors";
-    save_safetensors(
-        path, {{"clip_l", torch::full({2, 32}, 0.5f)}, {"clip_g", torch::full({2, 32}, -0.5f)}});
+    save_safetensors(path,
+                     {{"clip_l", at::full({2, 32}, 0.5f)}, {"clip_g", at::full({2, 32}, -0.5f)}});
     EXPECT_EQ(add_embedding(path, "", pair), "style");
     for (const Pipeline* pipeline : {&first, &second}) {
-        const auto parameters = pipeline->text_encoder->named_parameters();
-        const torch::Tensor table = parameters["embeddings.token_embedding.weight"];
-        const int id = pipeline->tokenizer->encode("style")[1];
+        const auto parameters = pipeline->text().model->named_parameters();
+        const at::Tensor table = parameters["embeddings.token_embedding.weight"];
+        const int id = pipeline->tokenizer().encode("style")[1];
         EXPECT_TRUE(table[id].eq(pipeline == &first ? 0.5 : -0.5).all().item<bool>());
-        EXPECT_EQ(pipeline->tokenizer->encode("a style").size(), 5u);
+        EXPECT_EQ(pipeline->tokenizer().encode("a style").size(), 5u);
     }
-    save_safetensors(path, {{"clip_l", torch::ones({2, 32})}, {"clip_g", torch::ones({1, 32})}});
+    save_safetensors(path, {{"clip_l", at::ones({2, 32})}, {"clip_g", at::ones({1, 32})}});
     EXPECT_THROW(add_embedding(path, "other", pair), InputError);
 }
 
 TEST(TextualInversion, SaysWhatItCannotUse) {
     const Pipeline pipeline = Pipeline::load(fixture("pipeline_sd"));
-    const TextEncoderPair encoder{pipeline.tokenizer, pipeline.text_encoder};
+    const TextEncoderPair encoder{pipeline.text().tokenizer, pipeline.text().model};
     const TemporaryFolder folder;
     const auto path = folder.path() / "word.safetensors";
     const auto complaint = [&](const NamedTensors& tensors, const std::string& token = "") {
@@ -79,15 +80,15 @@ TEST(TextualInversion, SaysWhatItCannotUse) {
         EXPECT_NE(message.find(part), std::string::npos) << message;
         EXPECT_NE(message.find(folder.path().string()), std::string::npos) << message;
     };
-    has(complaint({{"<a>", torch::ones({31})}}), "31");
-    has(complaint({{"<a>", torch::ones({2, 2, 32})}}), "[2, 2, 32]");
-    has(complaint({{"<a>", torch::ones({76, 32})}}), "76 vectors");
-    has(complaint({{"<a>", torch::ones({32}, torch::kInt64)}}), "floating");
-    has(complaint({{"<a>", torch::ones({32})}, {"<b>", torch::ones({32})}}), "2 tensors");
-    has(complaint({{"clip_l", torch::ones({1, 32})}, {"clip_g", torch::ones({1, 32})}}), "SDXL");
-    has(complaint({{"<a>", torch::ones({32})}}, " "), "blank");
-    has(complaint({{"<|endoftext|>", torch::ones({32})}}), "already");
-    save_safetensors(path, {{"<a>", torch::ones({32})}});
+    has(complaint({{"<a>", at::ones({31})}}), "31");
+    has(complaint({{"<a>", at::ones({2, 2, 32})}}), "[2, 2, 32]");
+    has(complaint({{"<a>", at::ones({76, 32})}}), "76 vectors");
+    has(complaint({{"<a>", at::ones({32}, at::kLong)}}), "floating");
+    has(complaint({{"<a>", at::ones({32})}, {"<b>", at::ones({32})}}), "2 tensors");
+    has(complaint({{"clip_l", at::ones({1, 32})}, {"clip_g", at::ones({1, 32})}}), "SDXL");
+    has(complaint({{"<a>", at::ones({32})}}, " "), "blank");
+    has(complaint({{"<|endoftext|>", at::ones({32})}}), "already");
+    save_safetensors(path, {{"<a>", at::ones({32})}});
     add_embedding(path, "", {encoder});
     has(message_of<InputError>([&] { add_embedding(path, "", {encoder}); }), "already");
     has(message_of<InputError>([&] { add_embedding(path, "<a>", {encoder, encoder}); }), "clip_l");

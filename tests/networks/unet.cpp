@@ -4,7 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/networks/layers/attention.h"
 #include "item3d/tensors/weights.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 #include <ATen/autocast_mode.h>
 #include <torch/csrc/autograd/autograd.h>
@@ -30,72 +30,72 @@ UNet2DConditionConfig small_config() {
 }
 
 TEST(UNet, ReproducesTheReference) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("unet_depth");
     UNet2DCondition unet = load_unet(fixture("unet_depth"));
-    const torch::Tensor sample = golden.in("sample"), context = golden.in("encoder_hidden_states");
-    const torch::Tensor timesteps = golden.in("timesteps");
+    const at::Tensor sample = golden.in("sample"), context = golden.in("encoder_hidden_states");
+    const at::Tensor timesteps = golden.in("timesteps");
     golden.expect("sample_0", unet(sample, timesteps[0], context));
     golden.expect("sample_1", unet(sample, timesteps[1], context));
     golden.expect("sample_float_t", unet(sample, golden.in("timestep_float"), context));
     golden.expect("sample_odd",
                   unet(golden.in("sample_odd"), timesteps[1][1], context.slice(0, 0, 1)));
-    const torch::Tensor sinusoids = unet->time_sinusoids(timesteps[1]);
+    const at::Tensor sinusoids = unet->time_sinusoids(timesteps[1]);
     golden.expect("time_proj", sinusoids);
     golden.expect("time_embedding", unet->time_embedding(sinusoids));
 }
 
 TEST(UNet, GivesTheSameInEveryLayoutAndNearlySoInBfloat16) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Golden golden("unet_depth");
     UNet2DCondition unet = load_unet(fixture("unet_depth"));
-    const torch::Tensor sample = golden.in("sample"), context = golden.in("encoder_hidden_states");
-    const torch::Tensor timesteps = golden.in("timesteps")[0];
+    const at::Tensor sample = golden.in("sample"), context = golden.in("encoder_hidden_states");
+    const at::Tensor timesteps = golden.in("timesteps")[0];
     golden.expect("sample_0",
-                  unet(sample.contiguous(torch::MemoryFormat::ChannelsLast), timesteps, context));
+                  unet(sample.contiguous(at::MemoryFormat::ChannelsLast), timesteps, context));
 
     at::autocast::set_autocast_enabled(at::kCPU, true);
     at::autocast::set_autocast_dtype(at::kCPU, at::kBFloat16);
-    const torch::Tensor automatic = unet(sample, timesteps, context);
+    const at::Tensor automatic = unet(sample, timesteps, context);
     at::autocast::clear_cache();
     at::autocast::set_autocast_enabled(at::kCPU, false);
-    EXPECT_EQ(automatic.scalar_type(), torch::kBFloat16);
+    EXPECT_EQ(automatic.scalar_type(), at::kBFloat16);
 
-    const UNet2DCondition half = load_unet(fixture("unet_depth"), torch::kCPU, torch::kBFloat16);
+    const UNet2DCondition half = load_unet(fixture("unet_depth"), at::kCPU, at::kBFloat16);
     UNet2DCondition copy = half;
-    const torch::Tensor cast = copy(sample, timesteps, context);
-    const torch::Tensor wanted = golden.out("sample_0");
-    for (const torch::Tensor& actual : {automatic, cast})
-        EXPECT_LT((actual.to(torch::kFloat32) - wanted).norm().item<double>(),
+    const at::Tensor cast = copy(sample, timesteps, context);
+    const at::Tensor wanted = golden.out("sample_0");
+    for (const at::Tensor& actual : {automatic, cast})
+        EXPECT_LT((actual.to(at::kFloat) - wanted).norm().item<double>(),
                   0.03 * wanted.norm().item<double>());
 }
 
 TEST(Attention, PlainAndFusedFormsAgree) {
-    torch::manual_seed(3);
-    const torch::Tensor q = torch::randn({2, 5, 12}), k = torch::randn({2, 7, 12}),
-                        v = torch::randn({2, 7, 12}), mask = torch::randn({5, 7});
-    for (const torch::Tensor& bias : {torch::Tensor(), mask}) {
-        const torch::Tensor plain = attention(q.clone().requires_grad_(), k, v, 3, bias);
-        const torch::NoGradGuard no_grad;
+    at::manual_seed(3);
+    const at::Tensor q = at::randn({2, 5, 12}), k = at::randn({2, 7, 12}),
+                     v = at::randn({2, 7, 12}), mask = at::randn({5, 7});
+    for (const at::Tensor& bias : {at::Tensor(), mask}) {
+        const at::Tensor plain = attention(q.clone().requires_grad_(), k, v, 3, bias);
+        const at::NoGradGuard no_grad;
         EXPECT_LT(largest_difference(plain.detach(), attention(q, k, v, 3, bias)), 1e-6);
     }
 }
 
 TEST(UNet, GradientReachesTheTextEmbedding) {
-    torch::manual_seed(4);
+    at::manual_seed(4);
     UNet2DCondition unet(small_config());
-    unet->to(torch::kFloat64);
-    const auto options = torch::dtype(torch::kFloat64);
-    const torch::Tensor sample = torch::randn({1, 4, 6, 5}, options);
-    const torch::Tensor context = torch::randn({1, 3, 12}, options).requires_grad_();
-    const torch::Tensor timestep = torch::tensor({400}),
-                        weights = torch::randn({1, 4, 6, 5}, options);
-    const auto value = [&](const torch::Tensor& text) {
+    unet->to(at::kDouble);
+    const auto options = at::dtype(at::kDouble);
+    const at::Tensor sample = at::randn({1, 4, 6, 5}, options);
+    const at::Tensor context = at::randn({1, 3, 12}, options).requires_grad_();
+    const at::Tensor timestep = at::tensor({400}, at::kLong),
+                     weights = at::randn({1, 4, 6, 5}, options);
+    const auto value = [&](const at::Tensor& text) {
         return (unet(sample, timestep, text) * weights).sum();
     };
-    const torch::Tensor gradient = torch::autograd::grad({value(context)}, {context})[0];
-    const torch::Tensor direction = torch::randn({1, 3, 12}, options);
-    const torch::NoGradGuard no_grad;
+    const at::Tensor gradient = torch::autograd::grad({value(context)}, {context})[0];
+    const at::Tensor direction = at::randn({1, 3, 12}, options);
+    const at::NoGradGuard no_grad;
     const double step = 1e-5;
     const double difference =
         (value(context + step * direction) - value(context - step * direction)).item<double>() /

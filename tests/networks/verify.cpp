@@ -2,10 +2,11 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/networks/diffusion/diffusion_networks.h"
 #include "item3d/networks/diffusion/pipeline.h"
 #include "item3d/networks/diffusion/shape_condition.h"
 #include "item3d/tensors/safetensors.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 namespace item3d {
 namespace {
@@ -64,7 +65,7 @@ TEST_F(Verify, CountsWhatLoadingFinds) {
     EXPECT_EQ(report.pipeline_class, "StableDiffusionPipeline");
     const Pipeline pipeline = Pipeline::load(prior());
     std::int64_t parameters = 0;
-    for (const auto& tensor : pipeline.unet->parameters())
+    for (const auto& tensor : pipeline.networks().unet->parameters())
         parameters += tensor.numel();
     ASSERT_EQ(report.parts.size(), 5u);
     for (const PartReport& part : report.parts)
@@ -72,16 +73,16 @@ TEST_F(Verify, CountsWhatLoadingFinds) {
             EXPECT_EQ(part.parameters, parameters);
             EXPECT_EQ(part.file_bytes, static_cast<std::uint64_t>(4 * parameters));
         }
-    for (const auto& tensor : pipeline.vae->parameters())
+    for (const auto& tensor : pipeline.networks().vae->parameters())
         parameters += tensor.numel();
     std::uint64_t text = 0;
-    for (const auto& tensor : pipeline.text_encoder->parameters())
+    for (const auto& tensor : pipeline.text().model->parameters())
         text += static_cast<std::uint64_t>(tensor.numel());
     EXPECT_EQ(report.parameters(), parameters + static_cast<std::int64_t>(text));
     ASSERT_EQ(report.memory.size(), 3u);
     EXPECT_EQ(report.memory[0].weights, 4 * (static_cast<std::uint64_t>(parameters) + text));
     EXPECT_EQ(report.memory[1].weights, 2 * static_cast<std::uint64_t>(parameters) + 4 * text);
-    EXPECT_EQ(report.resolution, pipeline.unet->config().sample_size * pipeline.downscale());
+    EXPECT_EQ(report.resolution, pipeline.native_size());
     EXPECT_EQ(report.condition_channels, pipeline.condition_channels());
 }
 
@@ -112,7 +113,7 @@ TEST_F(Verify, AnInpaintingNetworkIsTakenForNoneThatIsToldAShape) {
     NamedTensors tensors = SafeTensors::open(prior() / unet).tensors();
     for (auto& [name, value] : tensors)
         if (name == "conv_in.weight")
-            value = torch::cat({value, torch::zeros({value.size(0), 5, 3, 3})}, 1);
+            value = at::cat({value, at::zeros({value.size(0), 5, 3, 3})}, 1);
     save_safetensors(prior() / unet, tensors);
     EXPECT_FALSE(takes_shape(Pipeline::load(prior())));
     expect_problem("5 further input channels (inpainting");

@@ -2,6 +2,7 @@
 #include "item3d/prior/data/captions.h"
 
 #include "item3d/prior/data/lights.h"
+#include "item3d/prior/data/materials/colors.h"
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/prior/training/tokenizer_training.h"
 

@@ -4,9 +4,11 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/networks/diffusion/generate_defaults.h"
+#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/prior/evaluation/classifier.h"
-#include "item3d/prior/training/vision_language.h"
+#include "item3d/prior/evaluation/evaluation_pictures.h"
 
 #include <gtest/gtest.h>
 

@@ -13,19 +13,19 @@ namespace item3d {
 namespace {
 
 TEST(Orthogonalize, SingularValuesBecomeAboutOne) {
-    torch::manual_seed(1);
+    at::manual_seed(1);
     for (const auto& [rows, columns] : {std::pair{24, 24}, {16, 200}, {200, 16}}) {
-        const torch::Tensor step = orthogonalized(torch::randn({rows, columns}) * 1e-4);
+        const at::Tensor step = orthogonalized(at::randn({rows, columns}) * 1e-4);
         ASSERT_EQ(step.sizes(), (std::vector<std::int64_t>{rows, columns}));
         // Of a random square matrix the smallest may be too small to be lifted in five iterations.
-        const torch::Tensor values = std::get<1>(torch::linalg_svd(step));
+        const at::Tensor values = std::get<1>(at::linalg_svd(step));
         EXPECT_LT(values.max().item<float>(), 1.3f) << rows;
         EXPECT_GT(values.median().item<float>(), .6f) << rows;
         if (rows != columns) {
             EXPECT_GT(values.min().item<float>(), .6f) << rows;
         }
     }
-    EXPECT_EQ(orthogonalized(torch::zeros({16, 32})).abs().max().item<float>(), 0);
+    EXPECT_EQ(orthogonalized(at::zeros({16, 32})).abs().max().item<float>(), 0);
 }
 
 struct WordNetwork : torch::nn::Module {
@@ -33,14 +33,14 @@ struct WordNetwork : torch::nn::Module {
     torch::nn::Conv2d convolution{nullptr};
     torch::nn::Linear head{nullptr};
     WordNetwork() {
-        torch::manual_seed(3);
+        at::manual_seed(3);
         embedding = register_module("token_embedding", torch::nn::Embedding(40, 24));
         convolution = register_module("convolution", torch::nn::Conv2d(24, 16, 3));
         head = register_module("head", torch::nn::Linear(16, 1));
     }
-    torch::Tensor loss(const torch::Tensor& words) {
+    at::Tensor loss(const at::Tensor& words) {
         const auto x = embedding(words).permute({0, 3, 1, 2});
-        return (head(torch::tanh(convolution(x)).flatten(1)) - 1).square().mean();
+        return (head(at::tanh(convolution(x)).flatten(1)) - 1).square().mean();
     }
 };
 
@@ -62,15 +62,15 @@ TEST(Orthogonalize, TheFirstStepIsTheGradientsWithoutItsScale) {
     flat.push_back(flat_of(network));
     ReplicaGroup group(std::move(flat), {.weight_decay = 0, .orthogonal = true});
     // Of full rank: what is almost zero is lifted by its rounding.
-    network->convolution->weight.mutable_grad().copy_(torch::randn({16, 24, 3, 3}));
-    const auto matrix = [](const torch::Tensor& weight) {
+    network->convolution->weight.mutable_grad().copy_(at::randn({16, 24, 3, 3}));
+    const auto matrix = [](const at::Tensor& weight) {
         return weight.permute({0, 2, 3, 1}).reshape({16, -1}).clone();  // as it lies in memory
     };
-    const torch::Tensor before = matrix(network->convolution->weight.detach());
-    const torch::Tensor step = orthogonalized(matrix(network->convolution->weight.grad())) *
-                               orthogonal_step_scale(16, 24 * 9);
+    const at::Tensor before = matrix(network->convolution->weight.detach());
+    const at::Tensor step = orthogonalized(matrix(network->convolution->weight.grad())) *
+                            orthogonal_step_scale(16, 24 * 9);
     group.step(0, {.learning_rate = .01f});
-    const torch::Tensor change = before - matrix(network->convolution->weight.detach());
+    const at::Tensor change = before - matrix(network->convolution->weight.detach());
     EXPECT_LT((change - step * .01).abs().max().item<float>(),
               .02 * change.abs().max().item<float>());
 }
@@ -83,7 +83,7 @@ TEST(Orthogonalize, ReplicasStayEqual) {
         flat.push_back(flat_of(networks.back()));
     }
     ReplicaGroup group(std::move(flat), {.orthogonal = true});
-    const torch::Tensor words = torch::arange(36).view({4, 3, 3});
+    const at::Tensor words = at::arange(36).view({4, 3, 3});
     double first = 0, last = 0;
     run_ranks(2, [&](int rank) {
         for (int step = 0; step < 20; ++step) {
@@ -94,7 +94,7 @@ TEST(Orthogonalize, ReplicasStayEqual) {
             group.step(rank, {.learning_rate = 1e-2f});
         }
     });
-    EXPECT_TRUE(torch::equal(group.replica(0).values, group.replica(1).values));
+    EXPECT_TRUE(at::equal(group.replica(0).values, group.replica(1).values));
     EXPECT_LT(last, .1 * first);
 }
 

@@ -1,9 +1,9 @@
 // What processes that train together ask of their environment and of each other.
 #include "item3d/core/error.h"
 #include "item3d/prior/training/process_group.h"
-#include "item3d/prior/training/settings_check.h"
+#include "item3d/prior/training/settings.h"
 #include "item3d/prior/training/training_loop.h"
-#include "support/prior.h"
+#include "tests/support/prior.h"
 
 #include <gtest/gtest.h>
 #include <torch/nn/modules/linear.h>
@@ -47,11 +47,11 @@ TEST(PriorProcesses, WithoutVariablesThereIsOne) {
         const ProcessGroup group = group_of(alone);
         EXPECT_EQ(group.size(), 1);
         EXPECT_TRUE(group.first());
-        torch::Tensor ones = torch::ones({3});
+        at::Tensor ones = at::ones({3});
         group.sum(ones);
         group.barrier();
         group.wait_for_first();
-        EXPECT_TRUE(torch::equal(ones, torch::ones({3})));
+        EXPECT_TRUE(at::equal(ones, at::ones({3})));
         EXPECT_EQ(group.broadcast("text"), "text");
     }
 }
@@ -103,20 +103,20 @@ TEST(PriorProcesses, ExchangeNumbersTextsAndTensors) {
     ASSERT_EQ(group.size(), 2);
     const auto rank = static_cast<float>(group.rank());
     group.wait_for_first();
-    torch::manual_seed(4);
-    const torch::Tensor numbers = torch::randn({2, 30011});
-    torch::Tensor sum = numbers[group.rank()].clone();
+    at::manual_seed(4);
+    const at::Tensor numbers = at::randn({2, 30011});
+    at::Tensor sum = numbers[group.rank()].clone();
     group.sum(sum);
-    EXPECT_TRUE(torch::equal(sum, numbers[0] + numbers[1]));
+    EXPECT_TRUE(at::equal(sum, numbers[0] + numbers[1]));
 
     EXPECT_EQ(group.broadcast(group.first() ? "of the first" : "another"), "of the first");
     EXPECT_EQ(group.broadcast(std::string()), "");
-    const NamedTensors got = group.broadcast(
-        NamedTensors{{"half", torch::full({2, 3}, 5 + rank, torch::kHalf)},
-                     {"none", torch::empty({0, 4})},
-                     {"long", torch::scalar_tensor(7 + group.rank(), torch::kInt64)}});
+    const NamedTensors got =
+        group.broadcast(NamedTensors{{"half", at::full({2, 3}, 5 + rank, at::kHalf)},
+                                     {"none", at::empty({0, 4})},
+                                     {"long", at::scalar_tensor(7 + group.rank(), at::kLong)}});
     ASSERT_EQ(got.size(), 3u);
-    EXPECT_TRUE(torch::equal(got[0].second, torch::full({2, 3}, 5, torch::kHalf)));
+    EXPECT_TRUE(at::equal(got[0].second, at::full({2, 3}, 5, at::kHalf)));
     EXPECT_EQ(got[1].second.sizes(), (std::vector<std::int64_t>{0, 4}));
     EXPECT_EQ(got[2].second.item<std::int64_t>(), 7);
 
@@ -142,7 +142,7 @@ struct Toy {
         options.batch = 4;
         options.processes = processes;
         for (int rank = 0; rank < count; ++rank) {
-            torch::manual_seed(5 + processes.rank());  // all get process 0's values
+            at::manual_seed(5 + processes.rank());  // all get process 0's values
             layers.emplace_back(70, 70);
         }
     }
@@ -158,10 +158,10 @@ struct Toy {
         }
         return result;
     }
-    static torch::Tensor loss(torch::nn::Linear layer, const std::vector<std::int64_t>& rows,
-                              int rank) {
-        const torch::Tensor columns = torch::arange(70) + .5f * static_cast<float>(rank);
-        const torch::Tensor x = torch::sin(torch::tensor(rows).unsqueeze(1) * columns);
+    static at::Tensor loss(torch::nn::Linear layer, const std::vector<std::int64_t>& rows,
+                           int rank) {
+        const at::Tensor columns = at::arange(70) + .5f * static_cast<float>(rank);
+        const at::Tensor x = at::sin(at::tensor(rows).unsqueeze(1) * columns);
         return (layer(x) - x.flip(1)).square().mean();
     }
     void train(bool resume, std::int64_t stop_after = 0) {
@@ -199,7 +199,7 @@ TEST(PriorProcesses, TwoTrainAsTwoReplicasDo) {
     const auto one = SafeTensors::open(folder / "one.safetensors");
     const auto two = SafeTensors::open(folder / "two.safetensors");
     for (const char* name : {"values", "average", "first_moment", "second_moment", "steps"})
-        EXPECT_TRUE(torch::equal(one.tensor(name), two.tensor(name))) << name;
+        EXPECT_TRUE(at::equal(one.tensor(name), two.tensor(name))) << name;
     EXPECT_EQ(two.tensor("record")[0].item<double>(), 80);
     std::filesystem::remove_all(folder);
 }

@@ -21,17 +21,17 @@ struct Network : torch::nn::Module {
     torch::nn::Conv2d convolution{nullptr};
     torch::nn::Linear linear{nullptr};
     Network() {
-        torch::manual_seed(3);
+        at::manual_seed(3);
         convolution = register_module("convolution", torch::nn::Conv2d(2, 3, 3));
         linear = register_module("linear", torch::nn::Linear(12, 1));
     }
-    torch::Tensor loss(const torch::Tensor& x) {
-        return linear(torch::tanh(convolution(x)).flatten(1)).square().mean();
+    at::Tensor loss(const at::Tensor& x) {
+        return linear(at::tanh(convolution(x)).flatten(1)).square().mean();
     }
 };
 
 /// Trains `ranks` replicas for some steps on equal parts of the same batches.
-torch::Tensor train_toy(int ranks, int steps) {
+at::Tensor train_toy(int ranks, int steps) {
     std::vector<std::shared_ptr<Network>> networks;
     std::vector<std::unique_ptr<FlatModel>> flat;
     for (int rank = 0; rank < ranks; ++rank) {
@@ -39,8 +39,8 @@ torch::Tensor train_toy(int ranks, int steps) {
         flat.push_back(std::make_unique<FlatModel>(
             std::vector<std::shared_ptr<torch::nn::Module>>{networks.back()}));
     }
-    torch::manual_seed(9);
-    const torch::Tensor batch = torch::randn({8, 2, 4, 4});
+    at::manual_seed(9);
+    const at::Tensor batch = at::randn({8, 2, 4, 4});
     ReplicaGroup group(std::move(flat), OptimizerOptions{});
     run_ranks(ranks, [&](int rank) {
         const auto part = 8 / ranks;
@@ -52,16 +52,16 @@ torch::Tensor train_toy(int ranks, int steps) {
         }
     });
     for (int rank = 1; rank < ranks; ++rank)
-        EXPECT_TRUE(torch::equal(group.replica(0).values, group.replica(rank).values));
+        EXPECT_TRUE(at::equal(group.replica(0).values, group.replica(rank).values));
     EXPECT_EQ(group.steps(), steps);
     return group.replica(0).values.clone();
 }
 
 TEST(PriorReplicas, AveragedGradientsAreThoseOfTheWholeBatch) {
-    const torch::Tensor one = train_toy(1, 5), two = train_toy(2, 5), four = train_toy(4, 5);
+    const at::Tensor one = train_toy(1, 5), two = train_toy(2, 5), four = train_toy(4, 5);
     EXPECT_LT((one - two).abs().max().item<float>(), 1e-5);
     EXPECT_LT((one - four).abs().max().item<float>(), 1e-5);
-    EXPECT_TRUE(torch::equal(two, train_toy(2, 5)));  // no trace of timing
+    EXPECT_TRUE(at::equal(two, train_toy(2, 5)));  // no trace of timing
 }
 
 TEST(PriorReplicas, StepIsAdamW) {
@@ -72,7 +72,7 @@ TEST(PriorReplicas, StepIsAdamW) {
     ReplicaGroup group(std::move(flat), OptimizerOptions{.clip_norm = .05f});
     torch::optim::AdamW adam(reference->parameters(),
                              torch::optim::AdamWOptions(1e-2).betas({.9, .99}).weight_decay(.01));
-    const torch::Tensor batch = torch::randn({4, 2, 4, 4});
+    const at::Tensor batch = at::randn({4, 2, 4, 4});
     for (int step = 0; step < 4; ++step) {
         ours->loss(batch).backward();
         group.step(0, {.learning_rate = 1e-2f});

@@ -161,20 +161,20 @@ TEST(PriorShapes, ViewsShowTheShapeInTheRightSize) {
         const double part = static_cast<double>(high - low + 1) / view_size;
         EXPECT_GT(part, .5);
         EXPECT_LT(part, 1);
-        const torch::Tensor cells = view.cells.to(torch::kFloat32);
+        const at::Tensor cells = view.cells.to(at::kFloat);
         EXPECT_EQ(cells.sizes(),
                   (std::vector<std::int64_t>{shape_cell_channels, latent_size, latent_size}));
-        const torch::Tensor depth = cells[0];
+        const at::Tensor depth = cells[0];
         EXPECT_NEAR(depth.max().item<float>(), 1, .15);
         EXPECT_EQ(depth.min().item<float>(), -1);
     }
 }
 
 TEST(Shapes, PatternsLieOnThePlaneThatTheNetworkIsTold) {
-    torch::manual_seed(3);
-    const torch::Tensor cells = torch::rand({1, shape_cell_channels, 6, 6}) * 2 - 1;
-    const torch::Tensor told = shape_condition(cells, surface_condition_channels);
-    const torch::Tensor sine = told[0][4 + 6 * space_waves], sine_up = told[0][6 + 6 * space_waves];
+    at::manual_seed(3);
+    const at::Tensor cells = at::rand({1, shape_cell_channels, 6, 6}) * 2 - 1;
+    const at::Tensor told = shape_condition(cells, surface_condition_channels);
+    const at::Tensor sine = told[0][4 + 6 * space_waves], sine_up = told[0][6 + 6 * space_waves];
     for (int y = 0; y < 6; ++y) {
         for (int x = 0; x < 6; ++x) {
             const auto at = [&](int channel) { return cells[0][channel][y][x].item<float>(); };

@@ -2,12 +2,17 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/pipeline_folder.h"
 #include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/prior/data/captions.h"
+#include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/training/init_from.h"
+#include "item3d/prior/training/settings.h"
 #include "item3d/prior/training/tokenizer_training.h"
-#include "item3d/prior/training/train.h"
+#include "item3d/prior/training/train_autoencoder.h"
+#include "item3d/prior/training/train_diffusion.h"
 #include "item3d/tensors/safetensors.h"
-#include "support/prior.h"
+#include "tests/support/prior.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -35,11 +40,11 @@ std::string refusal(const std::function<void()>& function) {
 class PriorTraining : public ::testing::Test {
   protected:
     PriorTraining() {
-        torch::manual_seed(1);
-        data_.latents = torch::randn({24, latent_channels, 16, 16}).to(torch::kHalf);
-        data_.cells = torch::randn({24, 7, 16, 16}).to(torch::kHalf);
-        data_.tokens = torch::randint(0, 30, {24, text_length}).to(torch::kInt16);
-        data_.empty_tokens = torch::full({text_length}, 31).to(torch::kInt16);
+        at::manual_seed(1);
+        data_.latents = at::randn({24, latent_channels, 16, 16}).to(at::kHalf);
+        data_.cells = at::randn({24, 7, 16, 16}).to(at::kHalf);
+        data_.tokens = at::randint(0, 30, {24, text_length}).to(at::kShort);
+        data_.empty_tokens = at::full({text_length}, 31).to(at::kShort);
         networks_.unet = prior_unet_config();
         networks_.unet.block_out_channels = {16, 16, 16};
         networks_.unet.attention_head_dim = {1, 1, 1};
@@ -90,7 +95,7 @@ TEST_F(PriorTraining, ResumedTrainingEndsWithTheSameWeights) {
     ASSERT_EQ(expected.size(), found.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
         if (expected[i].first == "record") continue;  // holds seconds
-        EXPECT_TRUE(torch::equal(expected[i].second, found[i].second)) << expected[i].first;
+        EXPECT_TRUE(at::equal(expected[i].second, found[i].second)) << expected[i].first;
     }
     for (const char* file : {"unet/config.json", "unet/diffusion_pytorch_model.safetensors",
                              "text_encoder/model.safetensors", "prior.json"})
@@ -128,7 +133,7 @@ TEST_F(PriorTraining, TwoProcessesTrainAsTwoReplicas) {
     const SafeTensors found = SafeTensors::open(root_ / "two.safetensors");
     for (const auto& [name, tensor] : expected)
         if (name != "record") {
-            EXPECT_TRUE(torch::equal(tensor, found.tensor(name))) << name;
+            EXPECT_TRUE(at::equal(tensor, found.tensor(name))) << name;
         }
     EXPECT_EQ(found.tensor("record")[0].item<double>(), 48);
 }
@@ -178,8 +183,8 @@ TEST_F(PriorTraining, BeginsWithTheWeightsOfAnotherPrior) {
         const SafeTensors expected = SafeTensors::open(first.output / file);
         const SafeTensors found = SafeTensors::open(second.output / file);
         for (const auto& [name, tensor] : expected.tensors())
-            EXPECT_TRUE(torch::allclose(tensor.to(torch::kFloat32),
-                                        found.tensor(name).to(torch::kFloat32), 2e-3, 1e-6))
+            EXPECT_TRUE(
+                at::allclose(tensor.to(at::kFloat), found.tensor(name).to(at::kFloat), 2e-3, 1e-6))
                 << name;
     }
     const nlohmann::json record = begin_with_record(first.output);
@@ -205,7 +210,7 @@ TEST_F(PriorTraining, TakesTheAutoencoderOfAnotherPrior) {
     AutoencoderTiny trained(prior_autoencoder_config(picture_size));
     const TrainSettings first = settings("first");
     std::filesystem::create_directories(first.output / "vae");
-    save_autoencoder(first.output / "vae", trained, torch::kFloat32);
+    save_autoencoder(first.output / "vae", trained, at::kFloat);
     write_atomically(first.output / "prior.json",
                      R"({"train": {"psnr": 31.0, "object_psnr": 27.0, "samples": 9}})");
     TrainSettings second = settings("second");
@@ -239,12 +244,12 @@ TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {
     const auto input_weight = [](const TrainSettings& of) {
         return SafeTensors::open(of.output / "unet/diffusion_pytorch_model.safetensors")
             .tensor("conv_in.weight")
-            .to(torch::kFloat32);
+            .to(at::kFloat);
     };
-    const torch::Tensor was = input_weight(first), is = input_weight(second);
+    const at::Tensor was = input_weight(first), is = input_weight(second);
     EXPECT_EQ(was.size(1), latent_channels + 1);
     EXPECT_EQ(is.size(1), latent_channels + surface_condition_channels);
-    EXPECT_TRUE(torch::allclose(is.slice(1, 0, was.size(1)), was, 2e-3, 1e-6));
+    EXPECT_TRUE(at::allclose(is.slice(1, 0, was.size(1)), was, 2e-3, 1e-6));
     EXPECT_LT(is.slice(1, was.size(1)).abs().max().item<float>(), 1e-6);
     // The other way round there is no place for the weights.
     first.begin_with = second.output;
@@ -300,7 +305,7 @@ TEST_F(PriorTraining, ABrokenCheckpointIsRefused) {
     expect_refused("tensor 'average' is missing");
     changed("values", [](auto& entry) { entry.second = entry.second.slice(0, 1); });
     expect_refused("is of another network: 'values' has ");
-    changed("steps", [](auto& entry) { entry.second = entry.second.to(torch::kFloat32); });
+    changed("steps", [](auto& entry) { entry.second = entry.second.to(at::kFloat); });
     expect_refused("'steps'");
     save_safetensors(file, good, {{"settings", "{"}});
     expect_refused("does not say what it was made with");
@@ -347,7 +352,7 @@ TEST_F(PriorTraining, DataThatDoesNotBelongIsRefused) {
     other[1].second = other[1].second.slice(0, 1);
     EXPECT_NE(refused(other, 32).find("shapes"), std::string::npos);
     other = good;
-    other[2].second = other[2].second.to(torch::kInt64);
+    other[2].second = other[2].second.to(at::kLong);
     EXPECT_NE(refused(other, 32).find("no 'tokens' of the right type"), std::string::npos);
     other = good;
     other[0].first = "latent";
@@ -358,11 +363,9 @@ TEST(PriorTraining128, TheAutoencoderShrinksLargerPicturesMore) {
     for (const int resolution : {64, 128}) {
         AutoencoderTiny model(prior_autoencoder_config(resolution));
         EXPECT_EQ(model.downscale() * latent_size, resolution);
-        const torch::Tensor latents = model.encode(torch::rand({1, 3, resolution, resolution}));
-        EXPECT_EQ(latents.sizes(),
-                  torch::IntArrayRef({1, latent_channels, latent_size, latent_size}));
-        EXPECT_EQ(model.decode(latents).sizes(),
-                  torch::IntArrayRef({1, 3, resolution, resolution}));
+        const at::Tensor latents = model.encode(at::rand({1, 3, resolution, resolution}));
+        EXPECT_EQ(latents.sizes(), at::IntArrayRef({1, latent_channels, latent_size, latent_size}));
+        EXPECT_EQ(model.decode(latents).sizes(), at::IntArrayRef({1, 3, resolution, resolution}));
         // What is written can be read.
         EXPECT_NO_THROW(AutoencoderTinyConfig::from_config(Config(model.config_json(), "")));
     }

@@ -3,10 +3,14 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/prior/data/captions.h"
+#include "item3d/prior/data/materials/colors.h"
+#include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/evaluation/vision_language_accuracy.h"
 #include "item3d/prior/training/init_from.h"
-#include "item3d/prior/training/shared_vision.h"
 #include "item3d/prior/training/tokenizer_training.h"
+#include "item3d/prior/training/train_captioner.h"
+#include "item3d/prior/training/train_clip.h"
 #include "item3d/tensors/safetensors.h"
 
 #include <gtest/gtest.h>
@@ -109,23 +113,23 @@ TEST(SharedVision, ClipSeesWhatTheCaptionerSees) {
     const std::int64_t side = read_size;
     BlipConfig blip = prior_captioner_config(20);
     ClipConfig clip = prior_clip_config(40, 38, 39);
-    torch::manual_seed(2);
+    at::manual_seed(2);
     const BlipModel captioner(blip);
     ClipModel model(clip), other(clip);
     {
-        const torch::NoGradGuard no_grad;
+        const at::NoGradGuard no_grad;
         for (auto& item : captioner->named_parameters())
             if (item.key().find("embeddings") != std::string::npos)
                 // The class token as large as those of the patches, as the copy takes them to be.
                 item.value().normal_(0, item.key().ends_with("class_embedding") ? 2 : .1);
     }
-    const torch::Tensor pictures = torch::randn({4, 3, side, side});
+    const at::Tensor pictures = at::randn({4, 3, side, side});
     ASSERT_TRUE(copy_vision(captioner, model, pictures));
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     BlipModel reader = captioner;
-    const torch::Tensor theirs = reader->image_embeds(pictures).select(1, 0);
+    const at::Tensor theirs = reader->image_embeds(pictures).select(1, 0);
     const auto likeness = [&](ClipModel each) {
-        return torch::cosine_similarity(theirs, each->vision()->forward(pictures).pooled, 1)
+        return at::cosine_similarity(theirs, each->vision()->forward(pictures).pooled, 1)
             .mean()
             .item<double>();
     };
@@ -142,7 +146,7 @@ class VisionLanguage : public ::testing::Test {
     VisionLanguage() {
         constexpr std::int64_t count = 120;
         const auto& colors = plain_colors();
-        data_.images = torch::zeros({count, picture_size, picture_size, 3}, torch::kUInt8);
+        data_.images = at::zeros({count, picture_size, picture_size, 3}, at::kByte);
         for (std::int64_t i = 0; i < count; ++i) {
             const PlainColor& color = colors[static_cast<std::size_t>(i % 6)];
             for (int c = 0; c < 3; ++c)
@@ -221,7 +225,7 @@ TEST_F(VisionLanguage, CaptionerLearnsColorsAndResumes) {
     ASSERT_EQ(expected.size(), found.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
         if (expected[i].first == "record") continue;  // holds seconds
-        EXPECT_TRUE(torch::equal(expected[i].second, found[i].second)) << expected[i].first;
+        EXPECT_TRUE(at::equal(expected[i].second, found[i].second)) << expected[i].first;
     }
 }
 
@@ -245,8 +249,8 @@ TEST_F(VisionLanguage, BeginsWithTheReadersOfAnotherPrior) {
         const fs::path file = fs::path(part) / "model.safetensors";
         const SafeTensors found = SafeTensors::open(second.output / file);
         for (const auto& [name, tensor] : SafeTensors::open(first.output / file).tensors())
-            EXPECT_TRUE(torch::allclose(tensor.to(torch::kFloat32),
-                                        found.tensor(name).to(torch::kFloat32), 2e-3, 1e-5))
+            EXPECT_TRUE(
+                at::allclose(tensor.to(at::kFloat), found.tensor(name).to(at::kFloat), 2e-3, 1e-5))
                 << part << " " << name;
     }
     // What does not fit is said before any picture is drawn.
@@ -293,7 +297,7 @@ TEST_F(VisionLanguage, PicturesAndFactsAreKeptTogether) {
     save_labeled(root_, "pictures", data_);
     EXPECT_TRUE(has_labeled(root_, "pictures"));
     const LabeledPictures loaded = load_labeled(root_, "pictures");
-    EXPECT_TRUE(torch::equal(loaded.images, data_.images));
+    EXPECT_TRUE(at::equal(loaded.images, data_.images));
     EXPECT_EQ(loaded.facts.back().phrases, data_.facts.back().phrases);
     write_atomically(root_ / "pictures.json", "[]\n");
     EXPECT_THROW(load_labeled(root_, "pictures"), InputError);
@@ -310,7 +314,7 @@ TEST(ShippedNetworks, TellHeldOutShapesApart) {
                                               {"metal", "gold", ""}, {"grass", "", ""},
                                               {"brick", "", ""},     {"wood", "", ""}};
     LabeledPictures pictures;
-    std::vector<torch::Tensor> images;
+    std::vector<at::Tensor> images;
     for (const char* shape : {"mug", "vase", "chair", "snowman"}) {
         const std::vector<ShapeView> views = make_views(shape, shape_variants - 1, 6, 3, 64);
         for (std::size_t i = 0; i < views.size(); ++i) {
@@ -320,11 +324,11 @@ TEST(ShippedNetworks, TellHeldOutShapesApart) {
             wish.plain_background = true;
             wish.part = "none";
             Example example = draw_example(random, views[i], {}, wish);
-            images.push_back((example.image * 255).round().to(torch::kUInt8));
+            images.push_back((example.image * 255).round().to(at::kByte));
             pictures.facts.push_back(std::move(example.facts));
         }
     }
-    pictures.images = torch::stack(images);
+    pictures.images = at::stack(images);
     const RetrievalAccuracy found =
         measure_retrieval(Clip::load(prior / clip_folder), pictures, 24);
     EXPECT_GT(found.picture_to_caption, .6);  // by chance 1 / 24

@@ -1,6 +1,6 @@
 #include "item3d/core/error.h"
 #include "item3d/reconstruct/dataset/orientation.h"
-#include "support/reconstruct.h"
+#include "tests/support/reconstruct.h"
 
 #include <cmath>
 #include <cstring>

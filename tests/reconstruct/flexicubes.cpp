@@ -1,7 +1,7 @@
 #include "item3d/reconstruct/shape/flexicubes.h"
 
 #include "item3d/reconstruct/shape/dual_cases.h"
-#include "support/reconstruct.h"
+#include "tests/support/reconstruct.h"
 
 #include <bit>
 #include <cmath>
@@ -42,8 +42,8 @@ TriangleMesh as_mesh(const ExtractedSurface& surface) {
     return {surface.positions.detach(), surface.triangles};
 }
 
-torch::Tensor torus_values(const torch::Tensor& points) {
-    const torch::Tensor ring = points.narrow(1, 0, 2).norm(2, 1) - 0.6f;
+at::Tensor torus_values(const at::Tensor& points) {
+    const at::Tensor ring = points.narrow(1, 0, 2).norm(2, 1) - 0.6f;
     return (ring.square() + points.select(1, 2).square()).sqrt() - 0.23f;
 }
 
@@ -72,10 +72,10 @@ TEST(DualCases, EveryCrossedEdgeIsInOneLoop) {
 
 TEST(FlexiCubes, SphereAndTorusAreClosedAndHaveTheirVolume) {
     const Lattice lattice = cube_lattice(24);
-    const torch::Tensor points = lattice.vertices();
+    const at::Tensor points = lattice.vertices();
     FlexiCubes cubes(lattice);
     // Means of crossings lie inside: more so where a tube is three cells thick.
-    const auto expect = [&](const torch::Tensor& values, double volume, double part, int euler) {
+    const auto expect = [&](const at::Tensor& values, double volume, double part, int euler) {
         for (const TriangleMesh& mesh :
              {as_mesh(cubes.extract(values, points)), cubes.mesh(values, points)}) {
             expect_manifold(mesh);
@@ -91,13 +91,13 @@ TEST(FlexiCubes, AnySignsGiveAManifold) {
     int turned = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         Lattice lattice;
-        const torch::Tensor values = testing::random_values(lattice, seed);
+        const at::Tensor values = testing::random_values(lattice, seed);
         FlexiCubes cubes(lattice);
         expect_manifold(as_mesh(cubes.extract(values, lattice.vertices())));
         expect_manifold(cubes.mesh(values, lattice.vertices()));
         // The memory that is kept does not change the next result.
         const DualTopology topology = cubes.topology(values);
-        EXPECT_TRUE(torch::equal(topology.quads, cubes.topology(values).quads));
+        EXPECT_TRUE(at::equal(topology.quads, cubes.topology(values).quads));
         // Only faces that are doubled on both sides are turned: a vertex more for each.
         const auto* v = values.const_data_ptr<float>();
         std::int64_t plain = 0;
@@ -115,23 +115,23 @@ TEST(FlexiCubes, AnySignsGiveAManifold) {
     EXPECT_GT(turned, 0);  // or the test would not have seen them
     const Lattice lattice = cube_lattice(4);
     FlexiCubes cubes(lattice);
-    EXPECT_EQ(cubes.mesh(torch::ones({125}), lattice.vertices()).triangles.size(0), 0);
-    EXPECT_EQ(cubes.extract(torch::ones({125}), lattice.vertices()).triangles.size(0), 0);
+    EXPECT_EQ(cubes.mesh(at::ones({125}), lattice.vertices()).triangles.size(0), 0);
+    EXPECT_EQ(cubes.extract(at::ones({125}), lattice.vertices()).triangles.size(0), 0);
 }
 
 TEST(FlexiCubes, VerticesStayInTheirCubesWhateverTheWeights) {
     const Lattice lattice = cube_lattice(12);
-    const torch::Tensor values = sphere_values(lattice.vertices());
+    const at::Tensor values = sphere_values(lattice.vertices());
     FlexiCubes cubes(lattice);
     {
-        const torch::NoGradGuard no_gradient;
+        const at::NoGradGuard no_gradient;
         cubes.weights().front().normal_(0, 20);
     }
     const DualTopology topology = cubes.topology(values);
-    const torch::Tensor positions = cubes.mesh(values, lattice.vertices()).positions;
-    const torch::Tensor cube = topology.cubes.index_select(0, topology.cube_of);
-    const torch::Tensor corner =
-        torch::stack({cube % 12, cube.div(12, "floor") % 12, cube.div(144, "floor")}, 1) *
+    const at::Tensor positions = cubes.mesh(values, lattice.vertices()).positions;
+    const at::Tensor cube = topology.cubes.index_select(0, topology.cube_of);
+    const at::Tensor corner =
+        at::stack({cube % 12, cube.div(12, "floor") % 12, cube.div(144, "floor")}, 1) *
             lattice.cell -
         1;
     EXPECT_GE((positions - corner).min().item<float>(), -1e-5f);
@@ -142,7 +142,7 @@ TEST(FlexiCubes, VerticesStayInTheirCubesWhateverTheWeights) {
 TEST(FlexiCubes, TheRegulariserIsNothingWhereCrossingsAreEquallyFar) {
     // One vertex inside: every loop has three crossings, all as far from their mean.
     const Lattice lattice = cube_lattice(2);
-    torch::Tensor values = torch::ones({27});
+    at::Tensor values = at::ones({27});
     values[13] = -1.0f;
     FlexiCubes cubes(lattice);
     EXPECT_NEAR(cubes.extract(values, lattice.vertices()).regularizer.item<float>(), 0, 1e-6);
@@ -152,41 +152,40 @@ TEST(FlexiCubes, TheRegulariserIsNothingWhereCrossingsAreEquallyFar) {
 
 TEST(FlexiCubes, GradientsAreThoseOfFiniteDifferences) {
     const Lattice lattice = cube_lattice(5);
-    torch::manual_seed(7);
-    torch::Tensor values = sphere_values(lattice.vertices());
+    at::manual_seed(7);
+    at::Tensor values = sphere_values(lattice.vertices());
     // Away from signs that a small step would change.
-    values = torch::where(values.abs() < 0.1f, torch::full_like(values, 0.1f), values);
+    values = at::where(values.abs() < 0.1f, at::full_like(values, 0.1f), values);
     values.set_requires_grad(true);
-    torch::Tensor vertices = lattice.vertices().set_requires_grad(true);
+    at::Tensor vertices = lattice.vertices().set_requires_grad(true);
     FlexiCubes cubes(lattice);
-    torch::Tensor weights = cubes.weights().front();
+    at::Tensor weights = cubes.weights().front();
     {
-        const torch::NoGradGuard no_gradient;
+        const at::NoGradGuard no_gradient;
         weights.normal_(0, 0.5);
     }
-    const torch::Tensor probe =
-        torch::randn({cubes.extract(values, vertices).positions.size(0), 3});
-    const auto weighted_positions = [&](const torch::Tensor& v, const torch::Tensor& p) {
+    const at::Tensor probe = at::randn({cubes.extract(values, vertices).positions.size(0), 3});
+    const auto weighted_positions = [&](const at::Tensor& v, const at::Tensor& p) {
         return (cubes.extract(v, p).positions * probe).sum();
     };
-    const auto regularizer = [&](const torch::Tensor& v, const torch::Tensor& p) {
+    const auto regularizer = [&](const at::Tensor& v, const at::Tensor& p) {
         return cubes.extract(v, p).regularizer;
     };
     const auto check = [&](const auto& loss, double tolerance) {
-        for (torch::Tensor* input : {&values, &vertices, &weights})
-            input->mutable_grad() = torch::Tensor();
+        for (at::Tensor* input : {&values, &vertices, &weights})
+            input->mutable_grad() = at::Tensor();
         loss(values, vertices).backward();
         EXPECT_TRUE(weights.grad().is_sparse());
-        const torch::Tensor weight_gradient = weights.grad().to_dense();
-        const torch::NoGradGuard no_gradient;
-        const torch::Tensor kept = weights.clone();
+        const at::Tensor weight_gradient = weights.grad().to_dense();
+        const at::NoGradGuard no_gradient;
+        const at::Tensor kept = weights.clone();
         for (int i = 0; i < 9; ++i) {
-            const auto direction = [&](int input, const torch::Tensor& like) {
-                return i % 3 == input ? 0.3f * torch::randn_like(like) : torch::zeros_like(like);
+            const auto direction = [&](int input, const at::Tensor& like) {
+                return i % 3 == input ? 0.3f * at::randn_like(like) : at::zeros_like(like);
             };
-            const torch::Tensor along_values = direction(0, values);
-            const torch::Tensor along_vertices = direction(1, vertices);
-            const torch::Tensor along_weights = direction(2, weights);
+            const at::Tensor along_values = direction(0, values);
+            const at::Tensor along_vertices = direction(1, vertices);
+            const at::Tensor along_weights = direction(2, weights);
             const auto at = [&](float step) {
                 weights.copy_(kept + step * along_weights);
                 return loss(values + step * along_values, vertices + step * along_vertices)

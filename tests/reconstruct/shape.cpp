@@ -3,7 +3,7 @@
 #include "item3d/reconstruct/shape/marching_tetrahedra.h"
 #include "item3d/reconstruct/shape/visual_hull.h"
 #include "item3d/reconstruct/surface/movable_mesh.h"
-#include "support/reconstruct.h"
+#include "tests/support/reconstruct.h"
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ using testing::cube_lattice;
 using testing::expect_closed;
 using testing::sphere_values;
 
-TriangleMesh march(const Lattice& lattice, const torch::Tensor& values) {
+TriangleMesh march(const Lattice& lattice, const at::Tensor& values) {
     MarchingTetrahedra marching(lattice);
     const MarchedTopology topology = marching.topology(values);
     return {surface_points(topology, values, lattice.vertices()), topology.triangles};
@@ -32,37 +32,37 @@ TEST(MarchingTetrahedra, SphereIsClosedAndHasItsVolume) {
 
 TEST(MarchingTetrahedra, AnySignsGiveAClosedSurface) {
     Lattice lattice;
-    const torch::Tensor values = testing::random_values(lattice, 5);
+    const at::Tensor values = testing::random_values(lattice, 5);
     MarchingTetrahedra marching(lattice);
     const MarchedTopology first = marching.topology(values);
     expect_closed(first.triangles);
     EXPECT_GT(first.triangles.size(0), 100);
     // The memory that is kept does not change the next result.
-    EXPECT_TRUE(torch::equal(first.triangles, marching.topology(values).triangles));
-    EXPECT_EQ(marching.topology(torch::ones({lattice.vertex_count()})).triangles.size(0), 0);
+    EXPECT_TRUE(at::equal(first.triangles, marching.topology(values).triangles));
+    EXPECT_EQ(marching.topology(at::ones({lattice.vertex_count()})).triangles.size(0), 0);
 }
 
 TEST(MarchingTetrahedra, GradientsAreThoseOfFiniteDifferences) {
     const Lattice lattice = cube_lattice(5);
-    torch::manual_seed(7);
-    torch::Tensor values = sphere_values(lattice.vertices());
+    at::manual_seed(7);
+    at::Tensor values = sphere_values(lattice.vertices());
     // Away from signs that a small step would change.
-    values = torch::where(values.abs() < 0.05f, torch::full_like(values, 0.05f), values);
+    values = at::where(values.abs() < 0.05f, at::full_like(values, 0.05f), values);
     values.set_requires_grad(true);
-    torch::Tensor vertices = lattice.vertices().set_requires_grad(true);
+    at::Tensor vertices = lattice.vertices().set_requires_grad(true);
     MarchingTetrahedra marching(lattice);
     const MarchedTopology topology = marching.topology(values);
-    const torch::Tensor weights = torch::randn({topology.edges.size(0), 3});
-    const auto loss = [&](const torch::Tensor& v, const torch::Tensor& p) {
+    const at::Tensor weights = at::randn({topology.edges.size(0), 3});
+    const auto loss = [&](const at::Tensor& v, const at::Tensor& p) {
         return (surface_points(topology, v, p) * weights).sum() +
                sign_change_loss(topology.edges, v);
     };
     loss(values, vertices).backward();
-    const torch::NoGradGuard no_gradient;
+    const at::NoGradGuard no_gradient;
     constexpr float step = 1e-2f;
     for (int i = 0; i < 3; ++i) {
-        const torch::Tensor along_values = torch::randn_like(values) * 0.3f;
-        const torch::Tensor along_vertices = torch::randn_like(vertices) * 0.3f;
+        const at::Tensor along_values = at::randn_like(values) * 0.3f;
+        const at::Tensor along_vertices = at::randn_like(vertices) * 0.3f;
         const double difference =
             (loss(values + step * along_values, vertices + step * along_vertices) -
              loss(values - step * along_values, vertices - step * along_vertices))
@@ -76,8 +76,8 @@ TEST(MarchingTetrahedra, GradientsAreThoseOfFiniteDifferences) {
 
 TEST(MarchingTetrahedra, AFinerLatticeHasTheSameSurface) {
     const Lattice lattice = cube_lattice(10);
-    const torch::Tensor values = sphere_values(lattice.vertices());
-    const torch::Tensor finer = refined_values(values, lattice);
+    const at::Tensor values = sphere_values(lattice.vertices());
+    const at::Tensor finer = refined_values(values, lattice);
     ASSERT_EQ(finer.size(0), lattice.refined().vertex_count());
     const TriangleMesh coarse = march(lattice, values), fine = march(lattice.refined(), finer);
     EXPECT_NEAR(enclosed_volume(fine), enclosed_volume(coarse), 0.02 * enclosed_volume(coarse));
@@ -86,12 +86,11 @@ TEST(MarchingTetrahedra, AFinerLatticeHasTheSameSurface) {
 TEST(Mesh, NeighboursNormalsAndDistances) {
     const Lattice lattice = cube_lattice(16);
     const TriangleMesh sphere = march(lattice, sphere_values(lattice.vertices()));
-    const torch::Tensor normals = vertex_normals(sphere.positions, sphere.triangles);
-    const torch::Tensor outwards =
-        (sphere.positions - torch::tensor({0.03f, -0.02f, 0.05f})) / 0.7f;
+    const at::Tensor normals = vertex_normals(sphere.positions, sphere.triangles);
+    const at::Tensor outwards = (sphere.positions - at::tensor({0.03f, -0.02f, 0.05f})) / 0.7f;
     EXPECT_GT((normals * outwards).sum(1).min().item<float>(), 0.95f);
 
-    const torch::Tensor neighbours = mesh_neighbours(sphere.triangles, sphere.positions.size(0));
+    const at::Tensor neighbours = mesh_neighbours(sphere.triangles, sphere.positions.size(0));
     const auto* n = neighbours.const_data_ptr<std::int32_t>();
     for (std::int64_t i = 0; i < neighbours.numel(); ++i) {
         ASSERT_GE(n[i], 0);
@@ -111,9 +110,9 @@ TEST(Mesh, NeighboursNormalsAndDistances) {
 
 TEST(Mesh, SpecksGo) {
     const Lattice lattice = cube_lattice(20);
-    const torch::Tensor points = lattice.vertices();
-    const torch::Tensor speck = (points - torch::tensor({0.85f, 0.85f, 0.85f})).norm(2, 1) - 0.09f;
-    const torch::Tensor both = torch::minimum(sphere_values(points), speck);
+    const at::Tensor points = lattice.vertices();
+    const at::Tensor speck = (points - at::tensor({0.85f, 0.85f, 0.85f})).norm(2, 1) - 0.09f;
+    const at::Tensor both = at::minimum(sphere_values(points), speck);
     const TriangleMesh mesh = march(lattice, both);
     const TriangleMesh clean = without_specks(mesh, 0.05);
     EXPECT_LT(clean.triangles.size(0), mesh.triangles.size(0));

@@ -6,9 +6,12 @@
 #include "item3d/reconstruct/outputs/stage_preview.h"
 #include "item3d/reconstruct/reconstruct.h"
 #include "item3d/reconstruct/surface/plain_model.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/render.h"
+#include "item3d/render/scatter.h"
+#include "item3d/render/textured_materials.h"
 #include "item3d/scene/sphere.h"
-#include "support/reconstruct.h"
+#include "tests/support/reconstruct.h"
 
 #include <cmath>
 
@@ -38,7 +41,7 @@ Model striped_sphere() {
 
 /// A NeRF-synthetic folder of the sphere in the light of noon, and sphere.glb.
 fs::path sphere_dataset(const std::string& name, int train, int test, int size) {
-    const torch::NoGradGuard no_gradient;
+    const at::NoGradGuard no_gradient;
     const fs::path folder = testing::fresh_folder(name);
     const Model model = striped_sphere();
     save_model(folder / "sphere.glb", model);
@@ -231,7 +234,7 @@ TEST(Reconstruct, AConstantFieldIsTheMaterialOfThePlainModel) {
     NeuralTexture field = constant_field(options);
     Model model = striped_sphere();
     set_constant_material(model, options.ranges);
-    const MaterialSample sample = field->forward(torch::rand({20, 3}) - 0.5f);
+    const MaterialSample sample = field->forward(at::rand({20, 3}) - 0.5f);
     const Material& material = model.materials[0];
     EXPECT_NEAR(sample.base_color.min().item<float>(), material.base_color_factor.x, 1e-5);
     EXPECT_NEAR(sample.base_color.max().item<float>(), material.base_color_factor.x, 1e-5);
@@ -241,50 +244,50 @@ TEST(Reconstruct, AConstantFieldIsTheMaterialOfThePlainModel) {
 }
 
 TEST(Refine, LossesSeeWhatTheyShould) {
-    const torch::Tensor target = torch::full({1, 4, 4, 4}, 0.5f);
-    torch::Tensor same = target.clone();
-    const torch::Tensor background = torch::full({3}, 0.2f);
+    const at::Tensor target = at::full({1, 4, 4, 4}, 0.5f);
+    at::Tensor same = target.clone();
+    const at::Tensor background = at::full({3}, 0.2f);
     EXPECT_EQ(picture_loss(same, target, background).item<float>(), 0);
     EXPECT_EQ(mask_loss(same, target).item<float>(), 0);
     same.narrow(3, 0, 3).fill_(0.7f);
     EXPECT_GT(picture_loss(same, target, background).item<float>(), 0.02f);
     // What is brighter than a photograph can be is right where the photograph is white.
-    torch::Tensor white = torch::ones({1, 4, 4, 4}), brighter = white.clone();
+    at::Tensor white = at::ones({1, 4, 4, 4}), brighter = white.clone();
     brighter.narrow(3, 0, 3).fill_(5.0f);
     EXPECT_EQ(picture_loss(brighter, white, background).item<float>(), 0);
 
     TrainableLight light(16, 0.5f);
     EXPECT_NEAR(light.whiteness_loss().item<float>(), 0, 1e-6);
     {
-        const torch::NoGradGuard no_gradient;
+        const at::NoGradGuard no_gradient;
         light.parameters().front().select(2, 0).add_(1.0f);
     }
     EXPECT_GT(light.whiteness_loss().item<float>(), 0.1f);
     light.prefiltered().diffuse.sum().backward();
-    for (const torch::Tensor& level : light.parameters())
+    for (const at::Tensor& level : light.parameters())
         EXPECT_GT(level.grad().abs().min().item<float>(), 0);
 }
 
 TEST(Refine, LightAloneIsComparedWithThePhotographsLargestChannel) {
     const Model model = striped_sphere();
     const Geometry geometry = Geometry::from_model(model);
-    TargetView view{"view", testing::ring_of_cameras(1).front(), torch::zeros({1, 24, 24, 4})};
+    TargetView view{"view", testing::ring_of_cameras(1).front(), at::zeros({1, 24, 24, 4})};
     fit_depth_range(view.camera, model.bounds());
     Appearance appearance = make_appearance(model.bounds(), {view}, 0);
     const EnvironmentLight light = appearance.light.prefiltered();
     const RenderedView rendered = render_view(geometry, appearance.field, light, view);
     MaterialSample white = rendered.shaded;
-    white.base_color = torch::ones_like(white.base_color);
-    white.orm = white.orm * torch::tensor({1.0f, 1.0f, 0.0f});
+    white.base_color = at::ones_like(white.base_color);
+    white.orm = white.orm * at::tensor({1.0f, 1.0f, 0.0f});
     // Red paint, whose largest channel is that of paper.
-    const torch::Tensor lit = shade(rendered.surface, white, light).mean(1, true).detach() * 0.8f;
-    const torch::Tensor red = torch::cat({lit, 0.1f * lit, 0.2f * lit, torch::ones_like(lit)}, 1);
+    const at::Tensor lit = shade(rendered.surface, white, light).mean(1, true).detach() * 0.8f;
+    const at::Tensor red = at::cat({lit, 0.1f * lit, 0.2f * lit, at::ones_like(lit)}, 1);
     const auto picture = [&](float exposure) {
-        const torch::Tensor scale = torch::tensor({exposure, exposure, exposure, 1.0f});
-        return scatter(red * scale, rendered.surface, rendered.raster, torch::zeros({4}));
+        const at::Tensor scale = at::tensor({exposure, exposure, exposure, 1.0f});
+        return scatter(red * scale, rendered.surface, rendered.raster, at::zeros({4}));
     };
     EXPECT_NEAR(demodulated_light_loss(rendered, light, picture(1)).item<float>(), 0, 1e-4);
-    const torch::Tensor darker = demodulated_light_loss(rendered, light, picture(0.5f));
+    const at::Tensor darker = demodulated_light_loss(rendered, light, picture(0.5f));
     EXPECT_GT(darker.item<float>(), 0.05f);
     darker.backward();
     // What is to be mended is the light, and not the base colour.
@@ -299,8 +302,8 @@ TEST(MovableMesh, SeamsMoveAsOne) {
     EXPECT_LT(places, static_cast<std::int64_t>(model.primitives[0].positions.size()));
     EXPECT_NEAR(mesh.crumpling().item<float>(), 0, 1e-9);
     {
-        const torch::NoGradGuard no_gradient;
-        mesh.offsets().add_(torch::tensor({0.1f, 0.0f, 0.0f}));
+        const at::NoGradGuard no_gradient;
+        mesh.offsets().add_(at::tensor({0.1f, 0.0f, 0.0f}));
     }
     EXPECT_NEAR(mesh.crumpling().item<float>(), 0, 1e-6);  // moved as one
     const Model moved = mesh.apply(model);

@@ -1,4 +1,6 @@
-#include "support/render.h"
+#include "item3d/render/antialias.h"
+
+#include "tests/support/render.h"
 
 namespace item3d {
 namespace {
@@ -7,9 +9,9 @@ using testing::front_camera;
 using testing::make_geometry;
 using testing::make_quad;
 
-torch::Tensor coverage(const Geometry& geometry, const std::vector<Camera>& cameras, int size) {
+at::Tensor coverage(const Geometry& geometry, const std::vector<Camera>& cameras, int size) {
     const Raster raster = rasterize(geometry, cameras, size, size);
-    return antialias((raster.triangle >= 0).to(torch::kFloat32).unsqueeze(-1), raster, geometry);
+    return antialias((raster.triangle >= 0).to(at::kFloat).unsqueeze(-1), raster, geometry);
 }
 
 TEST(Antialias, CoverageOfAnAxisAlignedQuadIsExact) {
@@ -19,10 +21,10 @@ TEST(Antialias, CoverageOfAnAxisAlignedQuadIsExact) {
     // Edges between pixel centres: 4.3 pixels left of the centre, 6.7 right, 3.2 below, 5.9 above.
     Geometry quad = make_quad(1, 1);
     quad.positions =
-        torch::tensor({-4.3f, -3.2f, 0.f, 6.7f, -3.2f, 0.f, 6.7f, 5.9f, 0.f, -4.3f, 5.9f, 0.f})
+        at::tensor({-4.3f, -3.2f, 0.f, 6.7f, -3.2f, 0.f, 6.7f, 5.9f, 0.f, -4.3f, 5.9f, 0.f})
             .reshape({4, 3}) /
         16;
-    const torch::Tensor picture = coverage(quad, {front_camera(distance, 1.0f)}, size)[0];
+    const at::Tensor picture = coverage(quad, {front_camera(distance, 1.0f)}, size)[0];
     const auto at = [&](int x, int y) { return picture[y][x][0].item<float>(); };
     const int middle = 16;
     EXPECT_NEAR(at(middle - 5, middle), 0.3, 1e-4);  // spans [-5, -4]
@@ -39,8 +41,8 @@ TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
     constexpr int size = 64;
     const std::vector<Camera> cameras{front_camera(1 / std::tan(0.5f), 1.0f)};
     const Geometry triangle = make_geometry(
-        torch::tensor({-0.71f, -0.52f, 0.f, 0.83f, -0.31f, 0.f, 0.12f, 0.77f, 0.f}).reshape({3, 3}),
-        torch::tensor({0, 1, 2}).reshape({1, 3}));
+        at::tensor({-0.71f, -0.52f, 0.f, 0.83f, -0.31f, 0.f, 0.12f, 0.77f, 0.f}).reshape({3, 3}),
+        at::tensor({0, 1, 2}, at::kLong).reshape({1, 3}));
     const double area = 0.5 * (1.54 * 1.29 - 0.83 * 0.21) * (size / 2) * (size / 2);
     // Each edge is blended along one axis: the sum is the area, whatever the slope.
     EXPECT_NEAR(coverage(triangle, cameras, size).sum().item<double>(), area, 0.5);
@@ -49,47 +51,47 @@ TEST(Antialias, AreaOfASlantedTriangleAndOfAFineMesh) {
     const Geometry sphere = Geometry::from_model(make_unit_sphere(200, 400));
     const Camera camera = front_camera(4, 0.7f);
     const double radius = 16 / std::tan(0.35) * std::tan(std::asin(0.25));
-    const torch::Tensor picture = coverage(sphere, {camera}, 32);
+    const at::Tensor picture = coverage(sphere, {camera}, 32);
     EXPECT_NEAR(picture.sum().item<double>(), M_PI * radius * radius, 1);
-    const torch::Tensor soft = (picture > 0.02f).logical_and(picture < 0.98f);
+    const at::Tensor soft = (picture > 0.02f).logical_and(picture < 0.98f);
     EXPECT_GT(soft.sum().item<int>(), 40);
 }
 
 TEST(Antialias, CreasesAndSeamsAreNotSilhouettes) {
     // Two quads that meet at an edge with vertices of their own.
     const Geometry folded = make_geometry(
-        torch::tensor({-1.f, -1.f, -.5f, 0.f, -1.f, 0.f,  0.f, 1.f, 0.f,  -1.f, 1.f, -.5f,  //
-                       0.f,  -1.f, 0.f,  1.f, -1.f, -.5f, 1.f, 1.f, -.5f, 0.f,  1.f, 0.f})
+        at::tensor({-1.f, -1.f, -.5f, 0.f, -1.f, 0.f,  0.f, 1.f, 0.f,  -1.f, 1.f, -.5f,  //
+                    0.f,  -1.f, 0.f,  1.f, -1.f, -.5f, 1.f, 1.f, -.5f, 0.f,  1.f, 0.f})
             .reshape({8, 3}),
-        torch::tensor({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}).reshape({4, 3}));
+        at::tensor({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}, at::kLong).reshape({4, 3}));
     const Raster raster = rasterize(folded, {front_camera(3, 0.3f)}, 16, 16);
     ASSERT_GE(raster.triangle.min().item<int>(), 0);
-    torch::manual_seed(0);
-    const torch::Tensor picture = torch::rand({1, 16, 16, 3});
-    EXPECT_TRUE(torch::equal(antialias(picture, raster, folded), picture));
+    at::manual_seed(0);
+    const at::Tensor picture = at::rand({1, 16, 16, 3});
+    EXPECT_TRUE(at::equal(antialias(picture, raster, folded), picture));
 }
 
 TEST(Antialias, Gradients) {
-    torch::manual_seed(4);
-    const torch::Tensor positions =
-        torch::tensor({-0.71f, -0.52f, 0.1f, 0.83f, -0.31f, 0.f, 0.12f, 0.77f, -0.2f,  //
-                       -0.4f, -0.7f, -1.f, 0.9f, 0.1f, -1.f, 0.5f, 0.9f, -1.f})
+    at::manual_seed(4);
+    const at::Tensor positions =
+        at::tensor({-0.71f, -0.52f, 0.1f, 0.83f, -0.31f, 0.f, 0.12f, 0.77f, -0.2f,  //
+                    -0.4f, -0.7f, -1.f, 0.9f, 0.1f, -1.f, 0.5f, 0.9f, -1.f})
             .reshape({6, 3});
     const Geometry geometry =
-        make_geometry(positions, torch::tensor({0, 1, 2, 3, 4, 5}).reshape({2, 3}));
+        make_geometry(positions, at::tensor({0, 1, 2, 3, 4, 5}, at::kLong).reshape({2, 3}));
     const std::vector<Camera> cameras{front_camera(3, 0.8f), front_camera(4, 0.6f)};
-    const torch::Tensor image = torch::rand({2, 24, 24, 3});
+    const at::Tensor image = at::rand({2, 24, 24, 3});
     const Raster fixed = rasterize(geometry, cameras, 24, 24);
-    testing::check_gradient([&](const torch::Tensor& x) { return antialias(x, fixed, geometry); },
+    testing::check_gradient([&](const at::Tensor& x) { return antialias(x, fixed, geometry); },
                             image, 1e-2f, 1e-4);
     // Visibility must stay the same between the two sides of a difference: a step that is small
     // against the distance of the nearest pixel centre from an edge.
     testing::check_gradient(
-        [&](const torch::Tensor& x) {
+        [&](const at::Tensor& x) {
             Geometry moved = geometry;
             moved.positions = x;
             Raster raster = rasterize(moved, cameras, 24, 24);
-            EXPECT_TRUE(torch::equal(raster.triangle, fixed.triangle));
+            EXPECT_TRUE(at::equal(raster.triangle, fixed.triangle));
             return antialias(image, raster, moved);
         },
         positions, 2e-5f, 0.03);

@@ -1,10 +1,16 @@
 // The same operations on the CPU and on a CUDA device. Where there is no device those comparisons
 // are skipped, and what the device's way of summing and drawing must give is checked on the CPU.
 #include "item3d/core/error.h"
+#include "item3d/render/antialias.h"
 #include "item3d/render/cuda/module.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/prefilter/equirectangular.h"
+#include "item3d/render/render.h"
+#include "item3d/render/scatter.h"
+#include "item3d/render/texture.h"
+#include "item3d/render/textured_materials.h"
 #include "item3d/render/topology.h"
-#include "support/render.h"
+#include "tests/support/render.h"
 
 #include <ATen/Context.h>
 #include <dlfcn.h>
@@ -47,16 +53,16 @@ Scene make_scene() {
 
 Geometry on_device(const Geometry& geometry) {
     Geometry moved = geometry;
-    for (torch::Tensor* tensor :
+    for (at::Tensor* tensor :
          {&moved.positions, &moved.normals, &moved.tangents, &moved.uvs, &moved.colors,
           &moved.triangles, &moved.triangle_material, &moved.triangle_primitive, &moved.neighbours})
-        if (tensor->defined()) *tensor = tensor->to(torch::kCUDA);
+        if (tensor->defined()) *tensor = tensor->to(at::kCUDA);
     return moved;
 }
 
 /// Differences relative to the largest value.
-double relative_error(const torch::Tensor& found, const torch::Tensor& expected) {
-    const torch::Tensor difference = (found.cpu().to(torch::kFloat64) - expected).abs().max();
+double relative_error(const at::Tensor& found, const at::Tensor& expected) {
+    const at::Tensor difference = (found.cpu().to(at::kDouble) - expected).abs().max();
     return difference.item<double>() / std::max(1e-12, expected.abs().max().item<double>());
 }
 
@@ -72,12 +78,10 @@ TEST(CudaModule, TableIsComplete) {
     const cuda::RenderTable* table = function();
     EXPECT_EQ(table->header.version, cuda::table_version);
     ASSERT_EQ(table->header.size, sizeof(cuda::RenderTable));
-    // After the header there are pointers to functions and nothing else.
-    std::vector<void*> entries((sizeof(cuda::RenderTable) - sizeof(cuda::TableHeader)) /
-                               sizeof(void*));
-    std::memcpy(entries.data(), &table->error_text, entries.size() * sizeof(void*));
-    for (std::size_t i = 0; i < entries.size(); ++i)
-        EXPECT_NE(entries[i], nullptr) << "entry " << i;
+    EXPECT_NE(table->error_text, nullptr);
+#define EXPECT_ENTRY(entry, ...) EXPECT_NE(table->entry, nullptr);
+    ITEM3D_RENDER_KERNELS(EXPECT_ENTRY)
+#undef EXPECT_ENTRY
     // As the renderer opens it: beside the program.
     EXPECT_EQ(cuda::render_table().header.size, sizeof(cuda::RenderTable));
     EXPECT_THROW(cuda::find_table("item3d_cuda_nothing", 8), ResourceError);
@@ -94,9 +98,9 @@ TEST(CudaModule, TableIsComplete) {
 /// those of the sum in double.
 TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
     constexpr std::int64_t terms = 5000;
-    torch::manual_seed(5);
-    const torch::Tensor values =
-        (torch::randn({terms}) * torch::pow(10.0f, 6 * torch::randn({terms}))).contiguous();
+    at::manual_seed(5);
+    const at::Tensor values =
+        (at::randn({terms}) * at::pow(10.0f, 6 * at::randn({terms}))).contiguous();
     const auto sum = [&](bool backwards) {
         std::uint32_t largest = 0;
         unsigned long long fixed = 0;
@@ -113,8 +117,7 @@ TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
         return result;
     };
     EXPECT_EQ(sum(false), sum(true));
-    EXPECT_FLOAT_EQ(sum(false),
-                    static_cast<float>(values.to(torch::kFloat64).sum().item<double>()));
+    EXPECT_FLOAT_EQ(sum(false), static_cast<float>(values.to(at::kDouble).sum().item<double>()));
 
     // As many equal terms as were announced, at the largest float there is, do not wrap around.
     const float largest_float = std::numeric_limits<float>::max() / 4096;
@@ -141,11 +144,11 @@ TEST(Accumulator, TwoPassesDoNotDependOnTheOrder) {
 TEST(CudaKernels, KeysGiveTheCpusRaster) {
     const Scene scene = make_scene();
     for (const bool second_layer : {false, true}) {
-        torch::Tensor behind;
+        at::Tensor behind;
         if (second_layer) {
-            const torch::Tensor depth =
+            const at::Tensor depth =
                 rasterize(scene.geometry, scene.cameras, scene.width, scene.height).depth;
-            behind = torch::where(depth > 0, depth, torch::full_like(depth, 1e30f));
+            behind = at::where(depth > 0, depth, at::full_like(depth, 1e30f));
         }
         const Raster expected =
             rasterize(scene.geometry, scene.cameras, scene.width, scene.height, behind);
@@ -153,9 +156,9 @@ TEST(CudaKernels, KeysGiveTheCpusRaster) {
 
         const std::int64_t triangles = scene.geometry.triangles.size(0);
         std::vector<kernels::PixelBox> boxes(static_cast<std::size_t>(2 * triangles));
-        torch::Tensor barycentrics = torch::full_like(expected.barycentrics, 7);
-        torch::Tensor depth = torch::full_like(expected.depth, 7);
-        torch::Tensor triangle = torch::full_like(expected.triangle, 7);
+        at::Tensor barycentrics = at::full_like(expected.barycentrics, 7);
+        at::Tensor depth = at::full_like(expected.depth, 7);
+        at::Tensor triangle = at::full_like(expected.triangle, 7);
         std::vector<unsigned long long> keys(static_cast<std::size_t>(depth.numel()), 0);
         const kernels::KeyedRasterParameters keyed{
             {expected.positions_clip.const_data_ptr<float>(),
@@ -174,9 +177,9 @@ TEST(CudaKernels, KeysGiveTheCpusRaster) {
             kernels::rasterize_keys(keyed, i);
         for (std::int64_t i = 0; i < depth.numel(); ++i)
             kernels::resolve_key(keyed, i);
-        EXPECT_TRUE(torch::equal(triangle, expected.triangle));
-        EXPECT_TRUE(torch::equal(depth, expected.depth));
-        EXPECT_TRUE(torch::equal(barycentrics, expected.barycentrics));
+        EXPECT_TRUE(at::equal(triangle, expected.triangle));
+        EXPECT_TRUE(at::equal(depth, expected.depth));
+        EXPECT_TRUE(at::equal(barycentrics, expected.barycentrics));
     }
 }
 
@@ -184,19 +187,18 @@ TEST(CudaKernels, KeysGiveTheCpusRaster) {
 TEST(CudaKernels, GatheredBlendsAreTheCpus) {
     const Scene scene = make_scene();
     const Raster raster = rasterize(scene.geometry, scene.cameras, scene.width, scene.height);
-    torch::manual_seed(2);
-    const torch::Tensor image =
-        torch::rand({2, scene.height, scene.width, 3}).set_requires_grad(true);
-    const torch::Tensor weights = torch::randn({2, scene.height, scene.width, 3});
+    at::manual_seed(2);
+    const at::Tensor image = at::rand({2, scene.height, scene.width, 3}).set_requires_grad(true);
+    const at::Tensor weights = at::randn({2, scene.height, scene.width, 3});
     Raster leaf = raster;
     leaf.positions_clip = raster.positions_clip.detach().set_requires_grad(true);
     Geometry geometry = scene.geometry;
-    const torch::Tensor expected = antialias(image, leaf, geometry);
+    const at::Tensor expected = antialias(image, leaf, geometry);
     ASSERT_GT((expected - image).abs().gt(1e-3f).sum().item<int>(), 200);
     (expected * weights).sum().backward();
 
-    torch::Tensor blended = torch::empty_like(image), by_image = torch::empty_like(image);
-    torch::Tensor by_clip = torch::zeros_like(raster.positions_clip);
+    at::Tensor blended = at::empty_like(image), by_image = at::empty_like(image);
+    at::Tensor by_clip = at::zeros_like(raster.positions_clip);
     kernels::BlendParameters p{};
     p.raster = {raster.positions_clip.const_data_ptr<float>(),
                 geometry.triangles.const_data_ptr<std::int32_t>(),
@@ -216,20 +218,20 @@ TEST(CudaKernels, GatheredBlendsAreTheCpus) {
         kernels::blend_pixel(p, pixel);
         kernels::blend_pixel_backward(p, pixel);
     }
-    EXPECT_TRUE(torch::equal(blended, expected));
-    EXPECT_TRUE(torch::equal(by_image, image.grad()));
-    EXPECT_TRUE(torch::equal(by_clip, leaf.positions_clip.grad()));
+    EXPECT_TRUE(at::equal(blended, expected));
+    EXPECT_TRUE(at::equal(by_image, image.grad()));
+    EXPECT_TRUE(at::equal(by_clip, leaf.positions_clip.grad()));
 }
 
 /// Texels that many pixels look up, summed in two passes and from the last pixel to the first.
 TEST(CudaKernels, TexelGradientsInTwoPassesAreTheCpus) {
     constexpr std::int64_t count = 600;
-    torch::manual_seed(6);
-    const torch::Tensor uv = 3 * torch::rand({count, 2}) - 1;
-    const torch::Tensor footprint = 0.2f * torch::randn({count, 4});
-    const torch::Tensor weights = torch::randn({count, 3});
-    std::vector<torch::Tensor> levels = texture_pyramid(torch::rand({16, 8, 3}));
-    for (torch::Tensor& level : levels)
+    at::manual_seed(6);
+    const at::Tensor uv = 3 * at::rand({count, 2}) - 1;
+    const at::Tensor footprint = 0.2f * at::randn({count, 4});
+    const at::Tensor weights = at::randn({count, 3});
+    std::vector<at::Tensor> levels = texture_pyramid(at::rand({16, 8, 3}));
+    for (at::Tensor& level : levels)
         level.set_requires_grad(true);
     (sample_texture(levels, uv, footprint) * weights).sum().backward();
 
@@ -238,7 +240,7 @@ TEST(CudaKernels, TexelGradientsInTwoPassesAreTheCpus) {
     p.channels = 3;
     p.uv = uv.const_data_ptr<float>();
     p.footprint = footprint.const_data_ptr<float>();
-    std::vector<torch::Tensor> expected;
+    std::vector<at::Tensor> expected;
     std::int64_t total = 0;
     for (std::size_t i = 0; i < levels.size(); ++i) {
         p.levels[i] = {levels[i].const_data_ptr<float>(), static_cast<int>(levels[i].size(0)),
@@ -256,10 +258,10 @@ TEST(CudaKernels, TexelGradientsInTwoPassesAreTheCpus) {
             kernels::texture_backward(p, i, weights.const_data_ptr<float>(), accumulator);
         accumulator.fixed = fixed.data();
     }
-    const torch::Tensor found = torch::empty({total});
+    const at::Tensor found = at::empty({total});
     for (std::int64_t i = 0; i < total; ++i)
         finish_sum({largest.data(), fixed.data(), accumulator.bits, found.data_ptr<float>()}, i);
-    EXPECT_LT(relative_error(found, torch::cat(expected)), 1e-5);
+    EXPECT_LT(relative_error(found, at::cat(expected)), 1e-5);
 }
 
 /// Sets LibTorch's switch while it lives.
@@ -278,52 +280,52 @@ TEST(CudaDevice, RasterIsTheCpus) {
     const Raster cpu = rasterize(scene.geometry, scene.cameras, scene.width, scene.height);
     const Raster device =
         rasterize(on_device(scene.geometry), scene.cameras, scene.width, scene.height);
-    EXPECT_TRUE(torch::equal(device.triangle.cpu(), cpu.triangle));
+    EXPECT_TRUE(at::equal(device.triangle.cpu(), cpu.triangle));
     EXPECT_LT(relative_error(device.depth, cpu.depth), 1e-4);
     EXPECT_LT(relative_error(device.barycentrics, cpu.barycentrics), 1e-4);
 }
 
 /// Everything from vertices to antialiased pictures, with gradients by all that has one.
 struct Rendered {
-    torch::Tensor picture;
-    std::vector<torch::Tensor> gradients;
+    at::Tensor picture;
+    std::vector<at::Tensor> gradients;
 };
 
-Rendered render_scene(const Scene& scene, torch::Device device) {
-    torch::manual_seed(9);
-    const torch::Tensor weights = torch::randn({2, scene.height, scene.width, 3}).to(device);
-    std::vector<torch::Tensor> light_maps{testing::smooth_cube(16), testing::smooth_cube(32, 4),
-                                          testing::smooth_cube(16, 5), testing::smooth_cube(16, 6),
-                                          testing::smooth_cube(16, 7)};
+Rendered render_scene(const Scene& scene, at::Device device) {
+    at::manual_seed(9);
+    const at::Tensor weights = at::randn({2, scene.height, scene.width, 3}).to(device);
+    std::vector<at::Tensor> light_maps{testing::smooth_cube(16), testing::smooth_cube(32, 4),
+                                       testing::smooth_cube(16, 5), testing::smooth_cube(16, 6),
+                                       testing::smooth_cube(16, 7)};
     Geometry geometry = device.is_cuda() ? on_device(scene.geometry) : scene.geometry;
-    const auto leaf = [&](const torch::Tensor& tensor) {
+    const auto leaf = [&](const at::Tensor& tensor) {
         return tensor.detach().clone().to(device).set_requires_grad(true);
     };
     geometry.positions = leaf(geometry.positions);
     geometry.normals = leaf(geometry.normals);
-    for (torch::Tensor& map : light_maps)
+    for (at::Tensor& map : light_maps)
         map = leaf(map);
     const Raster raster = rasterize(geometry, scene.cameras, scene.width, scene.height);
     const Surface surface = interpolate_surface(geometry, raster, scene.cameras);
-    torch::manual_seed(10);
+    at::manual_seed(10);
     const std::int64_t count = surface.count();
     MaterialSample material;
-    material.base_color = leaf(torch::rand({count, 3}));
-    material.orm = leaf(torch::rand({count, 3}) * 0.9f + 0.05f);
-    material.normal = leaf(
-        testing::unit_rows(torch::randn({count, 3}) * 0.2f + torch::tensor({0.0f, 0.0f, 1.0f})));
+    material.base_color = leaf(at::rand({count, 3}));
+    material.orm = leaf(at::rand({count, 3}) * 0.9f + 0.05f);
+    material.normal =
+        leaf(testing::unit_rows(at::randn({count, 3}) * 0.2f + at::tensor({0.0f, 0.0f, 1.0f})));
     const EnvironmentLight light{
         light_maps[0], {light_maps.begin() + 1, light_maps.end()}, {0.1f, 0.25f, 0.5f, 0.9f}};
-    const torch::Tensor radiance = shade(surface, material, light);
-    const torch::Tensor background = leaf(torch::rand({3}));
-    const torch::Tensor picture = scatter(radiance, surface, raster, background);
-    const torch::Tensor smooth = antialias(picture, raster, geometry);
+    const at::Tensor radiance = shade(surface, material, light);
+    const at::Tensor background = leaf(at::rand({3}));
+    const at::Tensor picture = scatter(radiance, surface, raster, background);
+    const at::Tensor smooth = antialias(picture, raster, geometry);
     (smooth * weights).sum().backward();
     Rendered rendered{smooth.detach().cpu(), {}};
-    for (const torch::Tensor& input : {geometry.positions, geometry.normals, material.base_color,
-                                       material.orm, material.normal, background})
+    for (const at::Tensor& input : {geometry.positions, geometry.normals, material.base_color,
+                                    material.orm, material.normal, background})
         rendered.gradients.push_back(input.grad().cpu());
-    for (const torch::Tensor& map : light_maps)
+    for (const at::Tensor& map : light_maps)
         rendered.gradients.push_back(map.grad().cpu());
     return rendered;
 }
@@ -331,43 +333,43 @@ Rendered render_scene(const Scene& scene, torch::Device device) {
 TEST(CudaDevice, PicturesAndGradientsAreTheCpus) {
     SKIP_WITHOUT_DEVICE();
     const Scene scene = make_scene();
-    const Rendered cpu = render_scene(scene, torch::kCPU);
+    const Rendered cpu = render_scene(scene, at::kCPU);
     for (const bool deterministic : {false, true}) {
         const Deterministic guard(deterministic);
-        const Rendered device = render_scene(scene, torch::Device(torch::kCUDA, 0));
+        const Rendered device = render_scene(scene, at::Device(at::kCUDA, 0));
         EXPECT_LT(relative_error(device.picture, cpu.picture), 1e-4);
         for (std::size_t i = 0; i < cpu.gradients.size(); ++i)
             EXPECT_LT(relative_error(device.gradients[i], cpu.gradients[i]), 1e-3)
                 << "gradient " << i;
         if (!deterministic) continue;
-        const Rendered again = render_scene(scene, torch::Device(torch::kCUDA, 0));
+        const Rendered again = render_scene(scene, at::Device(at::kCUDA, 0));
         for (std::size_t i = 0; i < cpu.gradients.size(); ++i)
-            EXPECT_TRUE(torch::equal(device.gradients[i], again.gradients[i])) << "gradient " << i;
+            EXPECT_TRUE(at::equal(device.gradients[i], again.gradients[i])) << "gradient " << i;
     }
 }
 
 /// A texture, its mip levels, and lookups in them, with gradients by texels and by UV.
-Rendered sample_pyramid(torch::Device device) {
-    torch::manual_seed(12);
-    const auto leaf = [&](const torch::Tensor& tensor) {
+Rendered sample_pyramid(at::Device device) {
+    at::manual_seed(12);
+    const auto leaf = [&](const at::Tensor& tensor) {
         return tensor.to(device).detach().clone().set_requires_grad(true);
     };
-    const torch::Tensor texture = leaf(torch::rand({32, 64, 4}));
-    const torch::Tensor uv = leaf(3 * torch::rand({5000, 2}) - 1);
-    const torch::Tensor footprint = 0.05f * torch::randn({5000, 4});
-    const torch::Tensor weights = torch::randn({5000, 4});
-    const torch::Tensor values = sample_texture(texture_pyramid(texture), uv, footprint.to(device),
-                                                Wrap::repeat, Wrap::mirrored_repeat);
+    const at::Tensor texture = leaf(at::rand({32, 64, 4}));
+    const at::Tensor uv = leaf(3 * at::rand({5000, 2}) - 1);
+    const at::Tensor footprint = 0.05f * at::randn({5000, 4});
+    const at::Tensor weights = at::randn({5000, 4});
+    const at::Tensor values = sample_texture(texture_pyramid(texture), uv, footprint.to(device),
+                                             Wrap::repeat, Wrap::mirrored_repeat);
     (values * weights.to(device)).sum().backward();
     return {values.detach().cpu(), {texture.grad().cpu(), uv.grad().cpu()}};
 }
 
 TEST(CudaDevice, TextureLookupsAreTheCpus) {
     SKIP_WITHOUT_DEVICE();
-    const Rendered cpu = sample_pyramid(torch::kCPU);
+    const Rendered cpu = sample_pyramid(at::kCPU);
     for (const bool deterministic : {false, true}) {
         const Deterministic guard(deterministic);
-        const Rendered device = sample_pyramid(torch::Device(torch::kCUDA, 0));
+        const Rendered device = sample_pyramid(at::Device(at::kCUDA, 0));
         EXPECT_LT(relative_error(device.picture, cpu.picture), 1e-4);
         EXPECT_LT(relative_error(device.gradients[0], cpu.gradients[0]), 1e-3);
         EXPECT_LT(relative_error(device.gradients[1], cpu.gradients[1]), 1e-3);
@@ -377,10 +379,10 @@ TEST(CudaDevice, TextureLookupsAreTheCpus) {
 /// Two layers, one of them half transparent, of a texture whose size is no power of two.
 TEST(CudaDevice, PicturesOfTexturedModelsAreTheCpus) {
     SKIP_WITHOUT_DEVICE();
-    torch::manual_seed(13);
+    at::manual_seed(13);
     Model model = make_unit_sphere(24, 48);
     model.textures.push_back(
-        {"noise", to_image(torch::rand({30, 50, 4})), 8, Wrap::repeat, Wrap::clamp_to_edge});
+        {"noise", to_image(at::rand({30, 50, 4})), 8, Wrap::repeat, Wrap::clamp_to_edge});
     Material glass;
     glass.base_color_texture = 0;
     glass.alpha = Material::Alpha::blend;
@@ -402,10 +404,9 @@ TEST(CudaDevice, PicturesOfTexturedModelsAreTheCpus) {
     options.width = 80;
     options.height = 64;
     options.background = Vec3(0.2f, 0.3f, 0.4f);
-    std::vector<torch::Tensor> pictures;
-    for (const torch::Device device :
-         {torch::Device(torch::kCPU), torch::Device(torch::kCUDA, 0)}) {
-        const torch::NoGradGuard no_gradients;
+    std::vector<at::Tensor> pictures;
+    for (const at::Device device : {at::Device(at::kCPU), at::Device(at::kCUDA, 0)}) {
+        const at::NoGradGuard no_gradients;
         pictures.push_back(render(Geometry::from_model(model, device),
                                   TexturedMaterials(model, device), light.to(device),
                                   {front_camera(3), front_camera(2.2f, 0.6f)}, options)
@@ -416,13 +417,12 @@ TEST(CudaDevice, PicturesOfTexturedModelsAreTheCpus) {
 
 TEST(CudaDevice, EquirectangularMapsAreTheCpus) {
     SKIP_WITHOUT_DEVICE();
-    torch::manual_seed(3);
-    const torch::Tensor map = torch::rand({32, 64, 3}), weights = torch::randn({6, 16, 16, 3});
-    std::vector<torch::Tensor> cubes, gradients;
-    for (const torch::Device device :
-         {torch::Device(torch::kCPU), torch::Device(torch::kCUDA, 0)}) {
-        const torch::Tensor leaf = map.to(device).detach().clone().set_requires_grad(true);
-        const torch::Tensor cube = equirectangular_to_cube(leaf, 16);
+    at::manual_seed(3);
+    const at::Tensor map = at::rand({32, 64, 3}), weights = at::randn({6, 16, 16, 3});
+    std::vector<at::Tensor> cubes, gradients;
+    for (const at::Device device : {at::Device(at::kCPU), at::Device(at::kCUDA, 0)}) {
+        const at::Tensor leaf = map.to(device).detach().clone().set_requires_grad(true);
+        const at::Tensor cube = equirectangular_to_cube(leaf, 16);
         (cube * weights.to(device)).sum().backward();
         cubes.push_back(cube.detach().cpu());
         gradients.push_back(leaf.grad().cpu());

@@ -4,7 +4,7 @@
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/prefilter/irradiance_sums.h"
 #include "item3d/render/prefilter/specular_sums.h"
-#include "support/render.h"
+#include "tests/support/render.h"
 
 #include <algorithm>
 #include <array>
@@ -16,21 +16,21 @@ using kernels::ZonalKernel;
 
 /// Of random values, halos full.
 CubePlanes random_planes(int size) {
-    torch::manual_seed(4);
-    return to_planes(torch::rand({6, size, size, 3}), torch::rand({size, size}) + 0.5f, true);
+    at::manual_seed(4);
+    return to_planes(at::rand({6, size, size, 3}), at::rand({size, size}) + 0.5f, true);
 }
 
 /// [6, S, S, 4]: the map, and the shared plane with it.
-torch::Tensor values_of(const CubePlanes& planes) {
-    const torch::Tensor map = from_planes(planes, torch::ones({planes.size(), planes.size()}));
-    torch::Tensor shared = torch::empty({planes.size(), planes.size()});
+at::Tensor values_of(const CubePlanes& planes) {
+    const at::Tensor map = from_planes(planes, at::ones({planes.size(), planes.size()}));
+    at::Tensor shared = at::empty({planes.size(), planes.size()});
     for (int y = 0; y < planes.size(); ++y)
         for (int x = 0; x < planes.size(); ++x)
             shared[y][x] = planes.view().row(18, y)[x];
-    return torch::cat({map, shared.expand({6, -1, -1}).unsqueeze(-1)}, -1);
+    return at::cat({map, shared.expand({6, -1, -1}).unsqueeze(-1)}, -1);
 }
 
-void expect_close(const torch::Tensor& found, const torch::Tensor& expected, double bound = 1e-5) {
+void expect_close(const at::Tensor& found, const at::Tensor& expected, double bound = 1e-5) {
     const double largest = expected.abs().max().item<double>();
     ASSERT_GT(largest, 0);
     EXPECT_LT((found.cpu() - expected).abs().max().item<double>(), bound * largest);
@@ -48,12 +48,12 @@ ZonalKernel lobe(float roughness, float outer) {
 TEST(CudaKernels, NearSumsOfATexelAreThoseOfTheLanes) {
     constexpr int size = 64;
     const CubePlanes map = random_planes(size);
-    const CubeDirections directions(size, torch::kCPU);
+    const CubeDirections directions(size, at::kCPU);
     const ZonalKernel kernel = lobe(0.2f, 0.006f);
-    CubePlanes found(size, true, torch::kCPU);
+    CubePlanes found(size, true, at::kCPU);
     found.clear();
     add_near_sums(map, directions, kernel, found);
-    CubePlanes expected(size, true, torch::kCPU);
+    CubePlanes expected(size, true, at::kCPU);
     const kernels::Planes out = expected.writable();
     near_sums(map, directions, kernel, nullptr, [&](int row, int column, const float* sums) {
         for (int plane = 0; plane < out.count; ++plane)
@@ -66,14 +66,14 @@ TEST(CudaKernels, NearSumsOfATexelAreThoseOfTheLanes) {
 /// Sums of one texel after another, over planes that are turned run by run.
 CubePlanes far_sums_by_texels(const CubePlanes& map, const ZonalKernel& kernel) {
     const int size = map.size();
-    const torch::Tensor turned = torch::zeros({19 * kernels::far_plane(size)});
+    const at::Tensor turned = at::zeros({19 * kernels::far_plane(size)});
     const kernels::TurnParameters turn{map.view(), turned.data_ptr<float>(), 6, 4};
     for (std::int64_t i = 0; i < 6 * 19 * size * (size / 4); ++i)
         kernels::turn_planes(turn, i);
-    const torch::Tensor centres = (2 * torch::arange(size) + 1).to(torch::kFloat32) / size - 1;
-    const torch::Tensor lengths =
+    const at::Tensor centres = (2 * at::arange(size) + 1).to(at::kFloat) / size - 1;
+    const at::Tensor lengths =
         (1 + centres.square() + centres.square().unsqueeze(1)).rsqrt().contiguous();
-    CubePlanes out(size, true, torch::kCPU);
+    CubePlanes out(size, true, at::kCPU);
     const float reach = kernel.reach();
     const kernels::FarParameters p{kernel,
                                    turned.const_data_ptr<float>(),
@@ -98,18 +98,18 @@ TEST(CudaKernels, FarSumsOfATexelAreThoseOfTheLanes) {
 TEST(CudaKernels, ShortRunsGiveWhatLongOnesGive) {
     constexpr int size = 32, fine_size = 64, run = kernels::device_resized_run;
     const CubePlanes map = random_planes(size);
-    CubePlanes fine(fine_size, true, torch::kCPU);
+    CubePlanes fine(fine_size, true, at::kCPU);
     for (std::int64_t i = 0; i < 19 * fine_size * fine_size / run; ++i)
         kernels::upsample<run>({map.view(), fine.writable(), false}, i);
-    EXPECT_TRUE(torch::equal(values_of(fine), values_of(upsampled(map))));
+    EXPECT_TRUE(at::equal(values_of(fine), values_of(upsampled(map))));
 
-    CubePlanes coarse(size / 2, true, torch::kCPU);
+    CubePlanes coarse(size / 2, true, at::kCPU);
     for (std::int64_t i = 0; i < 19 * size * size / 4 / (run / 2); ++i)
         kernels::restrict_run<run>({map.view(), coarse.writable(), false}, i);
-    EXPECT_TRUE(torch::equal(values_of(coarse), values_of(restricted(map))));
+    EXPECT_TRUE(at::equal(values_of(coarse), values_of(restricted(map))));
 
     // Halos texel by texel, over planes that have none.
-    CubePlanes filled(size, true, torch::kCPU);
+    CubePlanes filled(size, true, at::kCPU);
     filled.clear();
     for (int plane = 0; plane < 19; ++plane)
         for (int y = 0; y < size; ++y)
@@ -127,8 +127,8 @@ TEST(CudaKernels, ShortRunsGiveWhatLongOnesGive) {
 }
 
 /// A dim map with a few bright texels.
-torch::Tensor map_with_lamps(int size) {
-    torch::Tensor map = testing::smooth_cube(size);
+at::Tensor map_with_lamps(int size) {
+    at::Tensor map = testing::smooth_cube(size);
     map[2][size / 3][size / 2] = 4000.0f;
     map[4][1][size - 1] = 2000.0f;
     return map;
@@ -136,8 +136,8 @@ torch::Tensor map_with_lamps(int size) {
 
 TEST(CudaKernels, BrightTexelsInShortRuns) {
     constexpr int size = 32, run = kernels::device_bright_run;
-    const CubePlanes flux = to_planes(map_with_lamps(size), torch::full({size, size}, 1e-3f), true);
-    const torch::Tensor bright = bright_texels(flux);
+    const CubePlanes flux = to_planes(map_with_lamps(size), at::full({size, size}, 1e-3f), true);
+    const at::Tensor bright = bright_texels(flux);
     ASSERT_EQ((bright >= 0).sum().item<int>(), 2);
     kernels::BrightParameters p{};
     p.texels = bright.const_data_ptr<std::int64_t>();
@@ -145,9 +145,9 @@ TEST(CudaKernels, BrightTexelsInShortRuns) {
     p.size = size;
     p.flux = flux.view();
     const std::int64_t normals = 6 * irradiance_size * irradiance_size;
-    std::array<torch::Tensor, 2> irradiance;
+    std::array<at::Tensor, 2> irradiance;
     for (const int length : {1, irradiance_size}) {
-        CubePlanes sums(irradiance_size, true, torch::kCPU);
+        CubePlanes sums(irradiance_size, true, at::kCPU);
         sums.clear();
         p.out = sums.writable();
         for (std::int64_t i = 0; i < normals / length; ++i)
@@ -158,29 +158,28 @@ TEST(CudaKernels, BrightTexelsInShortRuns) {
 
     const CubePlanes gradient = random_planes(irradiance_size);
     p.gradient = gradient.view();
-    std::array<torch::Tensor, 2> sums;
+    std::array<at::Tensor, 2> sums;
     for (const int length : {run, irradiance_size}) {
-        const torch::Tensor partial = torch::empty({normals / length, p.count, 3});
+        const at::Tensor partial = at::empty({normals / length, p.count, 3});
         p.partial_sums = partial.data_ptr<float>();
         for (std::int64_t i = 0; i < normals / length; ++i)
             length == run ? kernels::sum_bright<run>(p, i)
                           : kernels::sum_bright<irradiance_size>(p, i);
-        sums[length == run ? 0 : 1] = partial.to(torch::kFloat64).sum(0);
+        sums[length == run ? 0 : 1] = partial.to(at::kDouble).sum(0);
     }
     expect_close(sums[0], sums[1]);
 }
 
 TEST(CudaDevice, PrefilteredLightIsTheCpus) {
     if (!cuda::cuda_available()) GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so";
-    std::vector<std::vector<torch::Tensor>> maps, gradients;
-    for (const torch::Device device :
-         {torch::Device(torch::kCPU), torch::Device(torch::kCUDA, 0)}) {
-        const torch::Tensor cube =
+    std::vector<std::vector<at::Tensor>> maps, gradients;
+    for (const at::Device device : {at::Device(at::kCPU), at::Device(at::kCUDA, 0)}) {
+        const at::Tensor cube =
             map_with_lamps(128).to(device).detach().clone().set_requires_grad(true);
         const EnvironmentLight light = prefilter(cube);
-        torch::Tensor loss = (light.diffuse * light.diffuse.detach().cos()).sum();
-        std::vector<torch::Tensor> found{light.diffuse.detach().cpu()};
-        for (const torch::Tensor& level : light.specular) {
+        at::Tensor loss = (light.diffuse * light.diffuse.detach().cos()).sum();
+        std::vector<at::Tensor> found{light.diffuse.detach().cpu()};
+        for (const at::Tensor& level : light.specular) {
             loss = loss + (level * level.detach().cos()).sum();
             found.push_back(level.detach().cpu());
         }
@@ -195,15 +194,14 @@ TEST(CudaDevice, PrefilteredLightIsTheCpus) {
 
 TEST(CudaDevice, OcclusionIsTheCpus) {
     if (!cuda::cuda_available()) GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so";
-    const torch::NoGradGuard no_gradients;
+    const at::NoGradGuard no_gradients;
     Model model = make_unit_sphere(24, 48);
     Primitive neighbour = model.primitives[0];
     for (Vec3& position : neighbour.positions)
         position = 0.5f * position + Vec3(1.3f, 0, 0);
     model.primitives.push_back(neighbour);
-    std::vector<torch::Tensor> openness;
-    for (const torch::Device device :
-         {torch::Device(torch::kCPU), torch::Device(torch::kCUDA, 0)}) {
+    std::vector<at::Tensor> openness;
+    for (const at::Device device : {at::Device(at::kCPU), at::Device(at::kCUDA, 0)}) {
         const Geometry geometry = Geometry::from_model(model, device);
         const std::vector<Camera> cameras{testing::front_camera(4)};
         const Raster raster = rasterize(geometry, cameras, 64, 64);

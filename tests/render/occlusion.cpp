@@ -6,8 +6,10 @@
 #include "item3d/lighting/environment.h"
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/occlusion/occlusion_grid.h"
-#include "item3d/render/textured.h"
-#include "support/render.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/render.h"
+#include "item3d/render/textured_materials.h"
+#include "tests/support/render.h"
 
 #include <omp.h>
 
@@ -34,7 +36,7 @@ OcclusionOptions quick(int rays = 64, std::int64_t most_points = 2048) {
 struct Seen {
     Raster raster;
     Surface surface;
-    torch::Tensor open;
+    at::Tensor open;
 };
 
 Seen look(const Occlusion& occlusion, const Geometry& geometry, const Camera& camera,
@@ -61,16 +63,16 @@ Camera back_camera(float distance = 3) {
 Geometry corner_of_planes(float depth) {
     const float d = depth;
     Geometry geometry = make_geometry(
-        torch::tensor({0.0f, -0.5f, 0.0f, d,    -0.5f, 0.0f, d,    0.5f, 0.0f, 0.0f, 0.5f,  0.0f,
-                       0.0f, -1.0f, 0.0f, 0.0f, 1.0f,  0.0f, 0.0f, 1.0f, 1.0f, 0.0f, -1.0f, 1.0f})
+        at::tensor({0.0f, -0.5f, 0.0f, d,    -0.5f, 0.0f, d,    0.5f, 0.0f, 0.0f, 0.5f,  0.0f,
+                    0.0f, -1.0f, 0.0f, 0.0f, 1.0f,  0.0f, 0.0f, 1.0f, 1.0f, 0.0f, -1.0f, 1.0f})
             .reshape({8, 3}),
-        torch::tensor({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}).reshape({4, 3}));
-    geometry.normals = torch::zeros({8, 3});
+        at::tensor({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}, at::kLong).reshape({4, 3}));
+    geometry.normals = at::zeros({8, 3});
     return geometry;
 }
 
 /// Pixels that see the floor of corner_of_planes.
-torch::Tensor on_floor(const Seen& seen) {
+at::Tensor on_floor(const Seen& seen) {
     return seen.surface.position.select(1, 2).abs() < 1e-4f;
 }
 
@@ -106,7 +108,7 @@ TEST(Occlusion, AWallOnAFloorAsItsViewFactor) {
     const Geometry geometry = corner_of_planes(1);
     const OcclusionOptions options = quick(1024, 4096);
     const Seen seen = look(Occlusion(geometry, nullptr, options), geometry, front_camera(), 128);
-    const torch::Tensor floor = on_floor(seen);
+    const at::Tensor floor = on_floor(seen);
     double sum = 0, largest = 0;
     std::int64_t count = 0;
     for (std::int64_t i = 0; i < seen.surface.count(); ++i) {
@@ -145,13 +147,13 @@ TEST(Occlusion, BottomOfACylinder) {
         for (const int vertex : {0, a, b, a, b, b + 1, a, b + 1, a + 1})
             triangles.push_back(vertex);
     }
-    Geometry geometry = make_geometry(torch::tensor(positions).reshape({-1, 3}),
-                                      torch::tensor(triangles).reshape({-1, 3}));
+    Geometry geometry = make_geometry(at::tensor(positions).reshape({-1, 3}),
+                                      at::tensor(triangles).reshape({-1, 3}));
     geometry.normals.zero_();
     const OcclusionOptions options = quick(1024);
     const Seen seen = look(Occlusion(geometry, nullptr, options), geometry, front_camera(8, 0.2f));
-    const torch::Tensor distance = seen.surface.position.narrow(1, 0, 2).norm(2, 1);
-    const torch::Tensor middle = (distance < 0.05f).logical_and(on_floor(seen));
+    const at::Tensor distance = seen.surface.position.narrow(1, 0, 2).norm(2, 1);
+    const at::Tensor middle = (distance < 0.05f).logical_and(on_floor(seen));
     ASSERT_GT(middle.sum().item<std::int64_t>(), 0);
     // The opening is a disc: r^2 / (r^2 + h^2).
     EXPECT_NEAR(seen.open.masked_select(middle).mean().item<double>(), 1 / (1 + depth * depth),
@@ -162,25 +164,25 @@ TEST(Occlusion, ThreadsDoNotChangeIt) {
     const Geometry geometry = corner_of_planes(1);
     const int threads = omp_get_max_threads();
     omp_set_num_threads(1);
-    const torch::Tensor alone =
+    const at::Tensor alone =
         look(Occlusion(geometry, nullptr, quick()), geometry, front_camera()).open;
     omp_set_num_threads(5);
-    const torch::Tensor together =
+    const at::Tensor together =
         look(Occlusion(geometry, nullptr, quick()), geometry, front_camera()).open;
     omp_set_num_threads(threads);
-    EXPECT_TRUE(torch::equal(alone, together));
+    EXPECT_TRUE(at::equal(alone, together));
 
     OcclusionOptions other = quick();
     other.seed = 1;
-    const torch::Tensor seeded =
+    const at::Tensor seeded =
         look(Occlusion(geometry, nullptr, other), geometry, front_camera()).open;
-    EXPECT_FALSE(torch::equal(alone, seeded));
+    EXPECT_FALSE(at::equal(alone, seeded));
     EXPECT_LT((alone - seeded).abs().max().item<float>(), 0.1f);
 }
 
 TEST(Occlusion, TransparentMaterialsLetLightThrough) {
     Geometry geometry = corner_of_planes(1);
-    geometry.triangle_material = torch::tensor({0, 0, 1, 1}, torch::kInt32);
+    geometry.triangle_material = at::tensor({0, 0, 1, 1}, at::kInt);
     Model model;
     model.materials.resize(2);
     Material& wall = model.materials[1];
@@ -222,9 +224,9 @@ TEST(Occlusion, ALightCastsAShadow) {
     for (int c = 0; c < 3; ++c)
         options.light.at(static_cast<int>(uv.x * 128), static_cast<int>(uv.y * 64), c) = 1000;
     const Seen seen = look(Occlusion(geometry, nullptr, options), geometry, front_camera(4));
-    const torch::Tensor x = seen.surface.position.select(1, 0), floor = on_floor(seen);
-    const torch::Tensor shadow = floor.logical_and(x < 0.85f);
-    const torch::Tensor lit = floor.logical_and(x > 1.15f);
+    const at::Tensor x = seen.surface.position.select(1, 0), floor = on_floor(seen);
+    const at::Tensor shadow = floor.logical_and(x < 0.85f);
+    const at::Tensor lit = floor.logical_and(x > 1.15f);
     ASSERT_GT(shadow.sum().item<std::int64_t>(), 20);
     ASSERT_GT(lit.sum().item<std::int64_t>(), 20);
     EXPECT_EQ(seen.open.masked_select(shadow).max().item<float>(), 0.0f);
@@ -233,9 +235,9 @@ TEST(Occlusion, ALightCastsAShadow) {
 
 TEST(Occlusion, GridsOfDifferentFinenessMeetWithoutAStep) {
     const Geometry geometry = make_geometry(
-        torch::tensor({0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 9.0f, 9.0f, 0.0f})
+        at::tensor({0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 9.0f, 9.0f, 0.0f})
             .reshape({4, 3}),
-        torch::tensor({0, 1, 2, 2, 1, 3}).reshape({2, 3}));
+        at::tensor({0, 1, 2, 2, 1, 3}, at::kLong).reshape({2, 3}));
     const OcclusionGrid grid = make_occlusion_grid(geometry, 0.07f, 1 << 20);
     const int coarse = grid.resolution[0], fine = grid.resolution[1];
     ASSERT_GT(fine, coarse);
@@ -291,13 +293,13 @@ TEST(Occlusion, BringsPicturesNearerToPathTracing) {
     camera.field_of_view_x = 39.6f * pi / 180;
     camera = orbit_camera(center, radius / std::sin(camera.field_of_view_x / 2) * 1.04f, pi,
                           elevation, camera.field_of_view_x);
-    const torch::Tensor traced = to_tensor(load_image(views / "view_04_lambertggx.exr"));
+    const at::Tensor traced = to_tensor(load_image(views / "view_04_lambertggx.exr"));
     const auto error = [&](std::shared_ptr<const Occlusion> occlusion) {
         RenderOptions options;
         options.width = options.height = 256;
         options.shade.multiple_scattering = false;
         options.occlusion = std::move(occlusion);
-        const torch::Tensor picture =
+        const at::Tensor picture =
             render(geometry, TexturedMaterials(model), light, {camera}, options)[0];
         return ((picture - traced).narrow(2, 0, 3).abs().mean() / traced.narrow(2, 0, 3).mean())
             .item<double>();

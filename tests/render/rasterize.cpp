@@ -1,5 +1,5 @@
 #include "item3d/render/topology.h"
-#include "support/render.h"
+#include "tests/support/render.h"
 
 #include <omp.h>
 
@@ -53,12 +53,12 @@ Hit trace(const Geometry& geometry, const Camera& camera, int x, int y, int widt
 }
 
 TEST(Rasterize, AgreesWithRaysOnRandomTrianglesAlsoThroughTheNearPlane) {
-    torch::manual_seed(5);
+    at::manual_seed(5);
     // Around the camera: many triangles cross the near plane or lie behind it.
-    const torch::Tensor centres = (torch::rand({60, 1, 3}) - 0.5f) * 5;
-    const torch::Tensor positions =
-        (centres + torch::randn({60, 3, 3}) * 0.6f).reshape({-1, 3}).contiguous();
-    const Geometry geometry = make_geometry(positions, torch::arange(180).reshape({60, 3}));
+    const at::Tensor centres = (at::rand({60, 1, 3}) - 0.5f) * 5;
+    const at::Tensor positions =
+        (centres + at::randn({60, 3, 3}) * 0.6f).reshape({-1, 3}).contiguous();
+    const Geometry geometry = make_geometry(positions, at::arange(180).reshape({60, 3}));
     Camera camera = front_camera(0.7f, 1.3f);
     camera.near_plane = 0.1f;
     constexpr int width = 53, height = 37;
@@ -85,18 +85,18 @@ TEST(Rasterize, AgreesWithRaysOnRandomTrianglesAlsoThroughTheNearPlane) {
 }
 
 TEST(Rasterize, EveryPixelOfAJitteredSheetIsDrawnExactlyOnce) {
-    torch::manual_seed(2);
+    at::manual_seed(2);
     constexpr int cells = 6, size = 48;
-    torch::Tensor positions = torch::zeros({(cells + 1) * (cells + 1), 3});
+    at::Tensor positions = at::zeros({(cells + 1) * (cells + 1), 3});
     for (int i = 0; i <= cells; ++i)
         for (int j = 0; j <= cells; ++j) {
             const bool border = i == 0 || j == 0 || i == cells || j == cells;
-            const torch::Tensor jitter = border ? torch::zeros({3}) : torch::randn({3}) * 0.08f;
+            const at::Tensor jitter = border ? at::zeros({3}) : at::randn({3}) * 0.08f;
             positions[i * (cells + 1) + j] =
-                torch::tensor({4.0f * j / cells - 2, 4.0f * i / cells - 2, 0.0f}) + jitter;
+                at::tensor({4.0f * j / cells - 2, 4.0f * i / cells - 2, 0.0f}) + jitter;
         }
     // Pixel centres that lie exactly on edges and vertices.
-    positions[3 * (cells + 1) + 3] = torch::zeros({3});
+    positions[3 * (cells + 1) + 3] = at::zeros({3});
     std::vector<int> indices;
     for (int i = 0; i < cells; ++i)
         for (int j = 0; j < cells; ++j) {
@@ -104,22 +104,22 @@ TEST(Rasterize, EveryPixelOfAJitteredSheetIsDrawnExactlyOnce) {
             for (const int index : {a, a + 1, b + 1, a, b + 1, b})
                 indices.push_back(index);
         }
-    const torch::Tensor triangles = torch::tensor(indices).reshape({-1, 3});
+    const at::Tensor triangles = at::tensor(indices).reshape({-1, 3});
     // An odd size puts a pixel's centre on the vertex in the middle.
     const std::vector<Camera> cameras{front_camera(3, 0.9f)};
-    torch::Tensor count = torch::zeros({size + 1, size + 1}, torch::kInt32);
+    at::Tensor count = at::zeros({size + 1, size + 1}, at::kInt);
     for (std::int64_t t = 0; t < triangles.size(0); ++t) {
         const Geometry one = make_geometry(positions, triangles.narrow(0, t, 1));
-        count += (rasterize(one, cameras, size + 1, size + 1).triangle[0] >= 0).to(torch::kInt32);
+        count += (rasterize(one, cameras, size + 1, size + 1).triangle[0] >= 0).to(at::kInt);
     }
     EXPECT_EQ(count.min().item<int>(), 1);
     EXPECT_EQ(count.max().item<int>(), 1);
 }
 
 TEST(Rasterize, SameBytesWhateverTheThreads) {
-    torch::manual_seed(8);
-    const torch::Tensor positions = torch::randn({300, 3}) * 0.7f;
-    const Geometry geometry = make_geometry(positions, torch::randint(300, {200, 3}));
+    at::manual_seed(8);
+    const at::Tensor positions = at::randn({300, 3}) * 0.7f;
+    const Geometry geometry = make_geometry(positions, at::randint(300, {200, 3}));
     const std::vector<Camera> cameras{front_camera(), front_camera(4, 0.5f)};
     const int threads = omp_get_max_threads();
     omp_set_num_threads(1);
@@ -127,26 +127,26 @@ TEST(Rasterize, SameBytesWhateverTheThreads) {
     omp_set_num_threads(3);
     const Raster three = rasterize(geometry, cameras, 70, 50);
     omp_set_num_threads(threads);
-    EXPECT_TRUE(torch::equal(one.triangle, three.triangle));
-    EXPECT_TRUE(torch::equal(one.barycentrics, three.barycentrics));
-    EXPECT_TRUE(torch::equal(one.depth, three.depth));
+    EXPECT_TRUE(at::equal(one.triangle, three.triangle));
+    EXPECT_TRUE(at::equal(one.barycentrics, three.barycentrics));
+    EXPECT_TRUE(at::equal(one.depth, three.depth));
 }
 
 TEST(Rasterize, PixelsBehindALayerShowTheNextOne) {
     const Geometry near = make_quad(1, 1, 0.5f), far = make_quad(1, 1, -0.5f);
-    const Geometry both = make_geometry(torch::cat({near.positions, far.positions}),
-                                        torch::cat({near.triangles, far.triangles + 4}));
+    const Geometry both = make_geometry(at::cat({near.positions, far.positions}),
+                                        at::cat({near.triangles, far.triangles + 4}));
     const Raster first = rasterize(both, {front_camera(3, 0.3f)}, 8, 8);
-    EXPECT_TRUE(torch::allclose(first.depth, torch::full_like(first.depth, 2.5f)));
+    EXPECT_TRUE(at::allclose(first.depth, at::full_like(first.depth, 2.5f)));
     const Raster second = rasterize(both, {front_camera(3, 0.3f)}, 8, 8, first.depth);
-    EXPECT_TRUE(torch::allclose(second.depth, torch::full_like(second.depth, 3.5f)));
+    EXPECT_TRUE(at::allclose(second.depth, at::full_like(second.depth, 3.5f)));
     const Raster third = rasterize(both, {front_camera(3, 0.3f)}, 8, 8, second.depth);
     EXPECT_EQ(third.triangle.max().item<int>(), -1);
 }
 
 TEST(Rasterize, NamesTheWantedShape) {
     Geometry geometry = make_quad(1, 1);
-    geometry.triangles = geometry.triangles.to(torch::kInt64);
+    geometry.triangles = geometry.triangles.to(at::kLong);
     try {
         rasterize(geometry, {front_camera()}, 8, 8);
         FAIL();
@@ -160,15 +160,15 @@ TEST(Rasterize, NamesTheWantedShape) {
 TEST(InterpolateSurface, IsPerspectiveCorrectAndFacesTheViewer) {
     // A floor that recedes: positions on it must satisfy its plane and reproject to their pixels.
     const Geometry geometry = make_geometry(
-        torch::tensor({-2.f, -1.f, 2.f, 2.f, -1.f, 2.f, 2.f, -1.f, -9.f, -2.f, -1.f, -9.f})
+        at::tensor({-2.f, -1.f, 2.f, 2.f, -1.f, 2.f, 2.f, -1.f, -9.f, -2.f, -1.f, -9.f})
             .reshape({4, 3}),
-        torch::tensor({0, 1, 2, 0, 2, 3}).reshape({2, 3}));
+        at::tensor({0, 1, 2, 0, 2, 3}, at::kLong).reshape({2, 3}));
     const std::vector<Camera> cameras{front_camera(3, 1.0f)};
     constexpr int size = 32;
     const Raster raster = rasterize(geometry, cameras, size, size);
     Geometry upwards = geometry;
     // Against the viewer, who looks from above: it must be turned.
-    upwards.normals = torch::tensor({0.0f, -1.0f, 0.0f}).repeat({4, 1});
+    upwards.normals = at::tensor({0.0f, -1.0f, 0.0f}).repeat({4, 1});
     const Surface surface = interpolate_surface(upwards, raster, cameras);
     ASSERT_GT(surface.count(), 100);
     const Mat4 to_clip = cameras[0].world_to_clip(size, size);
@@ -181,46 +181,44 @@ TEST(InterpolateSurface, IsPerspectiveCorrectAndFacesTheViewer) {
         EXPECT_NEAR((0.5f - clip.y / clip.w * 0.5f) * size, pixel / size + 0.5, 2e-3);
         EXPECT_NEAR(raster.depth.view(-1)[pixel].item<float>(), 3 - p[2], 1e-4);
     }
-    EXPECT_TRUE(torch::equal(surface.normal,
-                             torch::tensor({0.0f, 1.0f, 0.0f}).expand({surface.count(), 3})));
-    EXPECT_TRUE(torch::allclose(surface.view.norm(2, 1), torch::ones({surface.count()})));
-    EXPECT_TRUE(torch::equal(surface.tangent.select(1, 3), -torch::ones({surface.count()})));
+    EXPECT_TRUE(
+        at::equal(surface.normal, at::tensor({0.0f, 1.0f, 0.0f}).expand({surface.count(), 3})));
+    EXPECT_TRUE(at::allclose(surface.view.norm(2, 1), at::ones({surface.count()})));
+    EXPECT_TRUE(at::equal(surface.tangent.select(1, 3), -at::ones({surface.count()})));
 }
 
 TEST(InterpolateSurface, GradientsOfPositionsAndNormals) {
-    torch::manual_seed(1);
+    at::manual_seed(1);
     Geometry geometry = make_quad(1.4f, 1.4f);
-    geometry.positions = geometry.positions + torch::randn({4, 3}) * 0.3f;
-    geometry.normals = torch::randn({4, 3}) * 0.3f + torch::tensor({0.0f, 0.0f, 1.0f});
+    geometry.positions = geometry.positions + at::randn({4, 3}) * 0.3f;
+    geometry.normals = at::randn({4, 3}) * 0.3f + at::tensor({0.0f, 0.0f, 1.0f});
     const std::vector<Camera> cameras{front_camera(3, 0.4f), front_camera(4, 0.3f)};
-    const auto with = [&](const torch::Tensor& positions, const torch::Tensor& normals) {
+    const auto with = [&](const at::Tensor& positions, const at::Tensor& normals) {
         Geometry moved = geometry;
         moved.positions = positions;
         moved.normals = normals;
         return interpolate_surface(moved, rasterize(moved, cameras, 9, 7), cameras);
     };
     testing::check_gradient(
-        [&](const torch::Tensor& x) {
+        [&](const at::Tensor& x) {
             const Surface s = with(x, geometry.normals);
-            return torch::cat({s.position, s.normal, s.view}, 1);
+            return at::cat({s.position, s.normal, s.view}, 1);
         },
         geometry.positions, 1e-3f, 5e-3);
-    testing::check_gradient(
-        [&](const torch::Tensor& x) { return with(geometry.positions, x).normal; },
-        geometry.normals, 1e-3f, 5e-3);
+    testing::check_gradient([&](const at::Tensor& x) { return with(geometry.positions, x).normal; },
+                            geometry.normals, 1e-3f, 5e-3);
 }
 
 TEST(Topology, FindsNeighboursAcrossSeams) {
     // Two triangles that share an edge by position, not by index; a zero of each sign.
-    const torch::Tensor positions = torch::tensor({0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f,  //
-                                                   1.f, -0.f, 0.f, 0.f, 1.f, -0.f, 1.f, 1.f, 0.f})
-                                        .reshape({6, 3});
-    const torch::Tensor triangles =
-        torch::tensor({0, 1, 2, 3, 5, 4}, torch::kInt32).reshape({2, 3});
-    const torch::Tensor neighbours = triangle_neighbours(positions, triangles);
+    const at::Tensor positions = at::tensor({0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f,  //
+                                             1.f, -0.f, 0.f, 0.f, 1.f, -0.f, 1.f, 1.f, 0.f})
+                                     .reshape({6, 3});
+    const at::Tensor triangles = at::tensor({0, 1, 2, 3, 5, 4}, at::kInt).reshape({2, 3});
+    const at::Tensor neighbours = triangle_neighbours(positions, triangles);
     // Corner 0 of triangle 0 faces the shared edge; from there it is faced by corner 1.
-    EXPECT_TRUE(torch::equal(neighbours,
-                             torch::tensor({4, -1, -1, -1, 0, -1}, torch::kInt32).reshape({2, 3})));
+    EXPECT_TRUE(
+        at::equal(neighbours, at::tensor({4, -1, -1, -1, 0, -1}, at::kInt).reshape({2, 3})));
 }
 
 }  // namespace

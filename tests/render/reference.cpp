@@ -2,8 +2,13 @@
 
 #include "item3d/io/load.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/render/textured.h"
-#include "support/render.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/prefilter/bsdf_table.h"
+#include "item3d/render/render.h"
+#include "item3d/render/scatter.h"
+#include "item3d/render/texture.h"
+#include "item3d/render/textured_materials.h"
+#include "tests/support/render.h"
 
 #include <filesystem>
 #include <fstream>
@@ -13,22 +18,22 @@ namespace {
 
 const std::filesystem::path shared = std::filesystem::path(ITEM3D_SHARED_DATA) / "data";
 
-torch::Tensor load(const std::filesystem::path& path) {
+at::Tensor load(const std::filesystem::path& path) {
     return to_tensor(load_image(path));
 }
 
 TEST(Reference, BsdfTable) {
     const auto path = shared / "dfg" / "dfg_correlated.bin";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "no reference data";
-    torch::Tensor reference = torch::empty({256, 256, 2});
+    at::Tensor reference = at::empty({256, 256, 2});
     std::ifstream(path, std::ios::binary)
         .read(reinterpret_cast<char*>(reference.data_ptr<float>()),
               reference.numel() * static_cast<std::int64_t>(sizeof(float)));
-    const torch::Tensor error = (bsdf_table() - reference).abs();
+    const at::Tensor error = (bsdf_table() - reference).abs();
     // The reference samples half vectors on 128 x 128 midpoints, which is off by up to 0.03 where
     // light grazes smooth surfaces; elsewhere both agree.
     EXPECT_LT(error.mean().item<float>(), 1.5e-3);
-    EXPECT_GT((error < 1e-3f).to(torch::kFloat32).mean().item<float>(), 0.75);
+    EXPECT_GT((error < 1e-3f).to(at::kFloat).mean().item<float>(), 0.75);
 }
 
 TEST(Reference, Irradiance) {
@@ -36,13 +41,13 @@ TEST(Reference, Irradiance) {
     for (const char* name : {"sky_noon", "studio"}) {
         const Image map = load_image(shared / "env" / (std::string(name) + ".hdr"));
         const EnvironmentLight light = prefilter(map, 64);
-        const torch::Tensor reference =
+        const at::Tensor reference =
             load(shared / "env" / (std::string(name) + "_irradiance.exr")).narrow(2, 0, 3);
         // A white diffuse surface shows the irradiance; seen at every normal of the reference.
         const std::int64_t height = reference.size(0), width = reference.size(1);
         Surface surface;
-        surface.pixel = torch::arange(height * width);
-        surface.normal = torch::empty({height * width, 3});
+        surface.pixel = at::arange(height * width);
+        surface.normal = at::empty({height * width, 3});
         for (std::int64_t i = 0; i < height * width; ++i) {
             const Vec3 d = equirectangular_direction(
                 (static_cast<float>(i % width) + 0.5f) / static_cast<float>(width),
@@ -51,14 +56,14 @@ TEST(Reference, Irradiance) {
                 surface.normal[i][c] = d[c];
         }
         surface.view = surface.normal;
-        surface.tangent = torch::zeros({height * width, 4});
+        surface.tangent = at::zeros({height * width, 4});
         MaterialSample white;
-        white.base_color = torch::ones({height * width, 3});
-        white.orm = torch::tensor({1.0f, 1.0f, 0.0f}).expand({height * width, 3});
+        white.base_color = at::ones({height * width, 3});
+        white.orm = at::tensor({1.0f, 1.0f, 0.0f}).expand({height * width, 3});
         EnvironmentLight diffuse_only = light;
-        for (torch::Tensor& level : diffuse_only.specular)
-            level = torch::zeros_like(level);
-        const torch::Tensor error =
+        for (at::Tensor& level : diffuse_only.specular)
+            level = at::zeros_like(level);
+        const at::Tensor error =
             (shade(surface, white, diffuse_only).reshape_as(reference) - reference).abs();
         std::printf("[ irradiance %s: mean error %.5f, largest %.5f of 1 ]\n", name,
                     error.mean().item<float>(), error.max().item<float>());
@@ -85,26 +90,26 @@ TEST(Reference, GradientOfABaseColourTexture) {
     const Raster raster = rasterize(geometry, {camera}, size * grid, size * grid);
     const Surface surface = interpolate_surface(geometry, raster, {camera});
     EnvironmentLight light = prefilter(load_image(shared / "env" / "sky_noon.hdr"), 64);
-    for (torch::Tensor& level : light.specular)
-        level = torch::zeros_like(level);
+    for (at::Tensor& level : light.specular)
+        level = at::zeros_like(level);
 
-    torch::Tensor texture =
+    at::Tensor texture =
         load(folder / "texture_now.exr").narrow(2, 0, 3).contiguous().set_requires_grad(true);
     MaterialSample material;
     material.base_color = sample_texture(texture, surface.uv);
-    material.orm = torch::tensor({1.0f, 1.0f, 0.0f}).expand({surface.count(), 3});
-    const torch::Tensor fine =
-        scatter(shade(surface, material, light), surface, raster, torch::zeros({3}))[0];
-    const torch::Tensor picture = fine.reshape({size, grid, size, grid, 3}).mean({1, 3});
-    const torch::Tensor target = load(folder / "ibl_target.exr").narrow(2, 0, 3);
-    const torch::Tensor loss = (picture - target).square().mean();
+    material.orm = at::tensor({1.0f, 1.0f, 0.0f}).expand({surface.count(), 3});
+    const at::Tensor fine =
+        scatter(shade(surface, material, light), surface, raster, at::zeros({3}))[0];
+    const at::Tensor picture = fine.reshape({size, grid, size, grid, 3}).mean({1, 3});
+    const at::Tensor target = load(folder / "ibl_target.exr").narrow(2, 0, 3);
+    const at::Tensor loss = (picture - target).square().mean();
     loss.backward();
-    const torch::Tensor expected = load(folder / "ibl_gradient.exr").narrow(2, 0, 3);
-    const torch::Tensor found = texture.grad();
+    const at::Tensor expected = load(folder / "ibl_gradient.exr").narrow(2, 0, 3);
+    const at::Tensor found = texture.grad();
     const double cosine =
         ((found * expected).sum() / found.norm() / expected.norm()).item<double>();
     const double relative = ((found - expected).norm() / expected.norm()).item<double>();
-    const torch::Tensor image = load(folder / "ibl_image.exr").narrow(2, 0, 3);
+    const at::Tensor image = load(folder / "ibl_image.exr").narrow(2, 0, 3);
     const double image_error = ((picture - image).abs().mean() / image.mean()).item<double>();
     std::printf("[ texture gradient: cosine %.5f, relative error %.4f; picture %.4f ]\n", cosine,
                 relative, image_error);
@@ -124,13 +129,13 @@ TEST(Reference, Spheres) {
     for (const char* light_name : {"studio", "sky_noon"}) {
         const EnvironmentLight light =
             prefilter(load_image(shared / "env" / (std::string(light_name) + ".hdr")), 64);
-        const torch::Tensor mask = load(folder / light_name / "mask.png").select(2, 0) > 0.999f;
+        const at::Tensor mask = load(folder / light_name / "mask.png").select(2, 0) > 0.999f;
         for (const char* metallic : {"0", "1"}) {
             for (const auto& [name, roughness] : std::vector<std::pair<std::string, float>>{
                      {"r0p1", 0.1f}, {"r0p5", 0.5f}, {"r1", 1.0f}}) {
                 const auto path = folder / light_name /
                                   ("lambertggx_m" + std::string(metallic) + "_" + name + ".exr");
-                const torch::Tensor reference = load(path).narrow(2, 0, 3);
+                const at::Tensor reference = load(path).narrow(2, 0, 3);
                 Model model = sphere;
                 model.materials[0].base_color_factor = Vec4(0.8f, 0.45f, 0.2f, 1);
                 model.materials[0].metallic_factor = metallic[0] == '1' ? 1.0f : 0.0f;
@@ -140,12 +145,12 @@ TEST(Reference, Spheres) {
                     options.width = options.height = 256;
                     options.supersampling = 1;
                     options.shade.multiple_scattering = multiple_scattering;
-                    const torch::Tensor picture =
+                    const at::Tensor picture =
                         render(geometry, TexturedMaterials(model), light, {camera}, options)[0]
                             .narrow(2, 0, 3);
-                    const torch::Tensor inside = mask.unsqueeze(2).expand({256, 256, 3});
-                    const torch::Tensor ours = picture.masked_select(inside);
-                    const torch::Tensor theirs = reference.masked_select(inside);
+                    const at::Tensor inside = mask.unsqueeze(2).expand({256, 256, 3});
+                    const at::Tensor ours = picture.masked_select(inside);
+                    const at::Tensor theirs = reference.masked_select(inside);
                     return std::array<double, 2>{
                         ((ours - theirs).abs() / theirs).median().item<double>(),
                         (ours.sum() / theirs.sum()).item<double>()};

@@ -1,4 +1,7 @@
-#include "support/render.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/prefilter/bsdf_table.h"
+#include "item3d/render/scatter.h"
+#include "tests/support/render.h"
 
 namespace item3d {
 namespace {
@@ -11,40 +14,40 @@ struct ShadedPoints {
 
 /// Points with random normals that face random viewers.
 ShadedPoints random_points(std::int64_t count, bool normal_map) {
-    torch::manual_seed(21);
+    at::manual_seed(21);
     ShadedPoints scene;
-    scene.surface.pixel = torch::arange(count);
-    scene.surface.normal = testing::unit_rows(torch::randn({count, 3}));
-    scene.surface.view = testing::unit_rows(scene.surface.normal * 1.2f +
-                                            testing::unit_rows(torch::randn({count, 3})));
-    const torch::Tensor sign = (torch::rand({count, 1}) < 0.5f).to(torch::kFloat32) * 2 - 1;
-    scene.surface.tangent = torch::cat({testing::unit_rows(torch::randn({count, 3})), sign}, 1);
-    scene.material.base_color = torch::rand({count, 3});
-    scene.material.orm = torch::rand({count, 3}) * 0.85f + 0.1f;
+    scene.surface.pixel = at::arange(count);
+    scene.surface.normal = testing::unit_rows(at::randn({count, 3}));
+    scene.surface.view =
+        testing::unit_rows(scene.surface.normal * 1.2f + testing::unit_rows(at::randn({count, 3})));
+    const at::Tensor sign = (at::rand({count, 1}) < 0.5f).to(at::kFloat) * 2 - 1;
+    scene.surface.tangent = at::cat({testing::unit_rows(at::randn({count, 3})), sign}, 1);
+    scene.material.base_color = at::rand({count, 3});
+    scene.material.orm = at::rand({count, 3}) * 0.85f + 0.1f;
     if (normal_map)
         scene.material.normal =
-            testing::unit_rows(torch::randn({count, 3}) * 0.2f + torch::tensor({0.0f, 0.0f, 1.0f}));
-    const torch::NoGradGuard no_gradient;
+            testing::unit_rows(at::randn({count, 3}) * 0.2f + at::tensor({0.0f, 0.0f, 1.0f}));
+    const at::NoGradGuard no_gradient;
     scene.light = prefilter(testing::smooth_cube(32));
     return scene;
 }
 
 EnvironmentLight constant_light(float radiance) {
-    return prefilter(torch::full({6, 16, 16, 3}, radiance));
+    return prefilter(at::full({6, 16, 16, 3}, radiance));
 }
 
 TEST(Shade, WhiteMetalInAWhiteFurnaceIsWhiteAtAnyRoughness) {
     ShadedPoints scene = random_points(200, false);
     scene.light = constant_light(0.5f);
-    scene.material.base_color = torch::ones({200, 3});
+    scene.material.base_color = at::ones({200, 3});
     scene.material.orm.select(1, 0).fill_(1);
     scene.material.orm.select(1, 2).fill_(1);
-    const torch::Tensor furnace = shade(scene.surface, scene.material, scene.light);
+    const at::Tensor furnace = shade(scene.surface, scene.material, scene.light);
     EXPECT_LT((furnace - 0.5f).abs().max().item<float>(), 1e-4);
     // Without the light that bounces more than once, rough metal darkens.
     ShadeOptions single;
     single.multiple_scattering = false;
-    const torch::Tensor darker = shade(scene.surface, scene.material, scene.light, single);
+    const at::Tensor darker = shade(scene.surface, scene.material, scene.light, single);
     EXPECT_LT(darker.max().item<float>(), 0.5f + 1e-4f);
     EXPECT_LT(darker.mean().item<float>(), 0.45f);
 }
@@ -52,8 +55,8 @@ TEST(Shade, WhiteMetalInAWhiteFurnaceIsWhiteAtAnyRoughness) {
 TEST(Shade, TermsOfTheEquation) {
     ShadedPoints scene = random_points(100, false);
     scene.light = constant_light(1);
-    scene.material.orm = torch::tensor({0.5f, 0.4f, 0.0f}).expand({100, 3});
-    scene.material.emissive = torch::full({100, 3}, 0.25f);
+    scene.material.orm = at::tensor({0.5f, 0.4f, 0.0f}).expand({100, 3});
+    scene.material.emissive = at::full({100, 3}, 0.25f);
     scene.surface.view = scene.surface.normal.clone();
     // Seen from straight above: A and B of roughness 0.4.
     const auto table = bsdf_table().accessor<float, 3>();
@@ -62,7 +65,7 @@ TEST(Shade, TermsOfTheEquation) {
     const float a = std::lerp(table[y0][255][0], table[y0 + 1][255][0], y - static_cast<float>(y0));
     const float b = std::lerp(table[y0][255][1], table[y0 + 1][255][1], y - static_cast<float>(y0));
     const float specular = (0.04f * a + b) * (1 + 0.04f * (1 / (a + b) - 1));
-    const torch::Tensor expected = 0.5f * (scene.material.base_color + specular) + 0.25f;
+    const at::Tensor expected = 0.5f * (scene.material.base_color + specular) + 0.25f;
     EXPECT_LT(
         (shade(scene.surface, scene.material, scene.light) - expected).abs().max().item<float>(),
         1e-4);
@@ -70,43 +73,43 @@ TEST(Shade, TermsOfTheEquation) {
 
 TEST(Shade, AFlatNormalMapChangesNothing) {
     ShadedPoints scene = random_points(100, false);
-    const torch::Tensor plain = shade(scene.surface, scene.material, scene.light);
-    scene.material.normal = torch::tensor({0.0f, 0.0f, 1.0f}).expand({100, 3});
-    const torch::Tensor mapped = shade(scene.surface, scene.material, scene.light);
+    const at::Tensor plain = shade(scene.surface, scene.material, scene.light);
+    scene.material.normal = at::tensor({0.0f, 0.0f, 1.0f}).expand({100, 3});
+    const at::Tensor mapped = shade(scene.surface, scene.material, scene.light);
     EXPECT_LT((plain - mapped).abs().max().item<float>(), 1e-5);
     // Also where there are no tangents.
-    scene.surface.tangent = torch::zeros({100, 4});
-    const torch::Tensor without = shade(scene.surface, scene.material, scene.light);
+    scene.surface.tangent = at::zeros({100, 4});
+    const at::Tensor without = shade(scene.surface, scene.material, scene.light);
     EXPECT_LT((plain - without).abs().max().item<float>(), 1e-5);
 }
 
 TEST(Shade, NormalMapsLeanAlongTangentAndBitangent) {
     ShadedPoints scene = random_points(1, false);
-    scene.surface.normal = torch::tensor({0.0f, 0.0f, 1.0f}).reshape({1, 3});
+    scene.surface.normal = at::tensor({0.0f, 0.0f, 1.0f}).reshape({1, 3});
     scene.surface.view = scene.surface.normal.clone();
-    scene.surface.tangent = torch::tensor({1.0f, 0.0f, 0.0f, -1.0f}).reshape({1, 4});
+    scene.surface.tangent = at::tensor({1.0f, 0.0f, 0.0f, -1.0f}).reshape({1, 4});
     const auto with_map = [&](float x, float y) {
-        scene.material.normal = torch::tensor({x, y, 0.8f}).reshape({1, 3});
+        scene.material.normal = at::tensor({x, y, 0.8f}).reshape({1, 3});
         return shade(scene.surface, scene.material, scene.light);
     };
     const auto with_normal = [&](float x, float y) {
         ShadedPoints bent = scene;
-        bent.material.normal = torch::Tensor();
-        bent.surface.normal = testing::unit_rows(torch::tensor({x, y, 0.8f}).reshape({1, 3}));
+        bent.material.normal = at::Tensor();
+        bent.surface.normal = testing::unit_rows(at::tensor({x, y, 0.8f}).reshape({1, 3}));
         return shade(bent.surface, bent.material, bent.light);
     };
-    EXPECT_TRUE(torch::allclose(with_map(0.6f, 0), with_normal(0.6f, 0), 1e-4, 1e-5));
+    EXPECT_TRUE(at::allclose(with_map(0.6f, 0), with_normal(0.6f, 0), 1e-4, 1e-5));
     // Handedness -1: the bitangent is -cross(normal, tangent) = -Y.
-    EXPECT_TRUE(torch::allclose(with_map(0, 0.6f), with_normal(0, -0.6f), 1e-4, 1e-5));
+    EXPECT_TRUE(at::allclose(with_map(0, 0.6f), with_normal(0, -0.6f), 1e-4, 1e-5));
 }
 
 TEST(Shade, IsContinuousInRoughness) {
     ShadedPoints scene = random_points(1, false);
     scene.material.orm[0][2] = 1;
-    torch::Tensor previous;
+    at::Tensor previous;
     for (int i = 0; i <= 2000; ++i) {
         scene.material.orm[0][1] = static_cast<float>(i) / 2000;
-        const torch::Tensor value = shade(scene.surface, scene.material, scene.light);
+        const at::Tensor value = shade(scene.surface, scene.material, scene.light);
         if (previous.defined()) {
             EXPECT_LT((value - previous).abs().max().item<float>(), 0.01) << i;
         }
@@ -120,11 +123,11 @@ TEST(Shade, Gradients) {
             const ShadedPoints scene = random_points(60, normal_map);
             ShadeOptions options;
             options.multiple_scattering = multiple_scattering;
-            const auto check = [&](const char* name, const torch::Tensor& x, auto set,
+            const auto check = [&](const char* name, const at::Tensor& x, auto set,
                                    float step = 5e-5f) {
                 SCOPED_TRACE(name);
                 testing::check_gradient(
-                    [&](const torch::Tensor& value) {
+                    [&](const at::Tensor& value) {
                         ShadedPoints changed = scene;
                         set(changed, value);
                         return shade(changed.surface, changed.material, changed.light, options);
@@ -132,25 +135,23 @@ TEST(Shade, Gradients) {
                     x, step, 0.02);
             };
             check("base colour", scene.material.base_color,
-                  [](ShadedPoints& s, const torch::Tensor& x) { s.material.base_color = x; });
+                  [](ShadedPoints& s, const at::Tensor& x) { s.material.base_color = x; });
             check("orm", scene.material.orm,
-                  [](ShadedPoints& s, const torch::Tensor& x) { s.material.orm = x; });
+                  [](ShadedPoints& s, const at::Tensor& x) { s.material.orm = x; });
             check("surface normal", scene.surface.normal,
-                  [](ShadedPoints& s, const torch::Tensor& x) { s.surface.normal = x; });
+                  [](ShadedPoints& s, const at::Tensor& x) { s.surface.normal = x; });
             if (normal_map)
                 check("normal map", scene.material.normal,
-                      [](ShadedPoints& s, const torch::Tensor& x) { s.material.normal = x; });
+                      [](ShadedPoints& s, const at::Tensor& x) { s.material.normal = x; });
             // Linear: a large step loses nothing but rounding.
             constexpr float light_step = 1e-2f;
             check(
                 "diffuse light", scene.light.diffuse,
-                [](ShadedPoints& s, const torch::Tensor& x) { s.light.diffuse = x; }, light_step);
+                [](ShadedPoints& s, const at::Tensor& x) { s.light.diffuse = x; }, light_step);
             for (std::size_t level = 0; level < scene.light.specular.size(); ++level)
                 check(
                     "specular light", scene.light.specular[level],
-                    [level](ShadedPoints& s, const torch::Tensor& x) {
-                        s.light.specular[level] = x;
-                    },
+                    [level](ShadedPoints& s, const at::Tensor& x) { s.light.specular[level] = x; },
                     light_step);
         }
     }
@@ -159,7 +160,7 @@ TEST(Shade, Gradients) {
 TEST(Shade, GradientReachesTheCube) {
     ShadedPoints scene = random_points(50, true);
     testing::check_gradient(
-        [&](const torch::Tensor& cube) {
+        [&](const at::Tensor& cube) {
             return shade(scene.surface, scene.material, prefilter(cube));
         },
         testing::smooth_cube(16), 1e-2f, 1e-3);
@@ -173,7 +174,7 @@ TEST(Shade, NoPointsGiveNoRadiance) {
 
 TEST(Shade, NamesTheWantedShape) {
     ShadedPoints scene = random_points(5, false);
-    scene.material.orm = torch::rand({5, 2});
+    scene.material.orm = at::rand({5, 2});
     try {
         shade(scene.surface, scene.material, scene.light);
         FAIL();
@@ -188,35 +189,35 @@ TEST(Scatter, PutsValuesOverBackgroundsWithGradients) {
     const std::vector<Camera> cameras{testing::front_camera(), testing::front_camera(5)};
     const Raster raster = rasterize(quad, cameras, 12, 10);
     const Surface surface = interpolate_surface(quad, raster, cameras);
-    torch::manual_seed(3);
-    const torch::Tensor values = torch::rand({surface.count(), 3});
-    const torch::Tensor color = torch::rand({3}), picture = torch::rand({2, 10, 12, 3});
-    const torch::Tensor out = scatter(values, surface, raster, color);
-    EXPECT_TRUE(torch::equal(out.reshape({-1, 3}).index_select(0, surface.pixel), values));
-    EXPECT_TRUE(torch::equal(out[0][0][0], color));
-    const auto close = [&](auto f, const torch::Tensor& x) {
+    at::manual_seed(3);
+    const at::Tensor values = at::rand({surface.count(), 3});
+    const at::Tensor color = at::rand({3}), picture = at::rand({2, 10, 12, 3});
+    const at::Tensor out = scatter(values, surface, raster, color);
+    EXPECT_TRUE(at::equal(out.reshape({-1, 3}).index_select(0, surface.pixel), values));
+    EXPECT_TRUE(at::equal(out[0][0][0], color));
+    const auto close = [&](auto f, const at::Tensor& x) {
         testing::check_gradient(f, x, 1e-2f, 1e-4);
     };
-    close([&](const torch::Tensor& x) { return scatter(x, surface, raster, color); }, values);
-    close([&](const torch::Tensor& x) { return scatter(values, surface, raster, x); }, color);
-    close([&](const torch::Tensor& x) { return scatter(values, surface, raster, x); }, picture);
+    close([&](const at::Tensor& x) { return scatter(x, surface, raster, color); }, values);
+    close([&](const at::Tensor& x) { return scatter(values, surface, raster, x); }, color);
+    close([&](const at::Tensor& x) { return scatter(values, surface, raster, x); }, picture);
 }
 
 TEST(Srgb, IsTheInverseAndHasBoundedGradients) {
-    const torch::Tensor x = torch::linspace(0, 1, 1001);
+    const at::Tensor x = at::linspace(0, 1, 1001);
     EXPECT_LT((srgb_to_linear(linear_to_srgb(x)) - x).abs().max().item<float>(), 1e-6);
     for (const float value : {0.0f, 0.001f, 0.0031308f, 0.2f, 1.0f})
-        EXPECT_NEAR(linear_to_srgb(torch::tensor(value)).item<float>(),
-                    item3d::linear_to_srgb(value), 1e-6);
-    torch::Tensor leaf =
-        torch::tensor({-1.0f, 0.0f, 1e-8f, 0.003f, 0.0032f, 0.5f, 3.0f}).set_requires_grad(true);
+        EXPECT_NEAR(linear_to_srgb(at::tensor(value)).item<float>(), item3d::linear_to_srgb(value),
+                    1e-6);
+    at::Tensor leaf =
+        at::tensor({-1.0f, 0.0f, 1e-8f, 0.003f, 0.0032f, 0.5f, 3.0f}).set_requires_grad(true);
     linear_to_srgb(leaf).sum().backward();
-    EXPECT_TRUE(torch::isfinite(leaf.grad()).all().item<bool>());
+    EXPECT_TRUE(at::isfinite(leaf.grad()).all().item<bool>());
     EXPECT_LE(leaf.grad().max().item<float>(), 12.92f + 1e-3f);
-    testing::check_gradient([](const torch::Tensor& v) { return linear_to_srgb(v); },
-                            torch::rand({50}) + 0.05f, 1e-3f, 1e-3);
-    testing::check_gradient([](const torch::Tensor& v) { return srgb_to_linear(v); },
-                            torch::rand({50}) + 0.1f, 1e-3f, 1e-3);
+    testing::check_gradient([](const at::Tensor& v) { return linear_to_srgb(v); },
+                            at::rand({50}) + 0.05f, 1e-3f, 1e-3);
+    testing::check_gradient([](const at::Tensor& v) { return srgb_to_linear(v); },
+                            at::rand({50}) + 0.1f, 1e-3f, 1e-3);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include "item3d/render/tangents.h"
 
 #include "item3d/core/files.h"
-#include "support/render.h"
+#include "tests/support/render.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,8 @@
-#include "item3d/render/textured.h"
 
-#include "support/render.h"
+#include "item3d/render/render.h"
+#include "item3d/render/texture.h"
+#include "item3d/render/textured_materials.h"
+#include "tests/support/render.h"
 
 namespace item3d {
 namespace {
@@ -50,44 +52,44 @@ Sampled sample(const Model& model, int size = 16) {
     return result;
 }
 
-void expect_rows(const torch::Tensor& rows, const std::vector<float>& expected) {
-    EXPECT_LT((rows - torch::tensor(expected)).abs().max().item<float>(), 1e-4)
-        << rows[0] << " instead of " << torch::tensor(expected);
+void expect_rows(const at::Tensor& rows, const std::vector<float>& expected) {
+    EXPECT_LT((rows - at::tensor(expected)).abs().max().item<float>(), 1e-4)
+        << rows[0] << " instead of " << at::tensor(expected);
 }
 
 TEST(SampleTexture, BilinearWithEachWrapMode) {
     // One row of texels 0, 1, 2, 3; centres at u = 1/8, 3/8, 5/8, 7/8.
-    const torch::Tensor texture = torch::arange(4).to(torch::kFloat32).reshape({1, 4, 1});
+    const at::Tensor texture = at::arange(4).to(at::kFloat).reshape({1, 4, 1});
     const std::vector<float> u{0.125f, 0.25f, 0.0f, 1.0f, 1.125f, -0.375f, 1.375f, 7.25f};
     const auto values = [&](Wrap wrap) {
-        const torch::Tensor uv = torch::stack({torch::tensor(u), torch::full({8}, 0.3f)}, 1);
+        const at::Tensor uv = at::stack({at::tensor(u), at::full({8}, 0.3f)}, 1);
         return sample_texture(texture, uv, wrap, wrap).squeeze(1);
     };
-    EXPECT_TRUE(torch::allclose(values(Wrap::repeat),
-                                torch::tensor({0.f, .5f, 1.5f, 1.5f, 0.f, 2.f, 1.f, .5f})));
-    EXPECT_TRUE(torch::allclose(values(Wrap::clamp_to_edge),
-                                torch::tensor({0.f, .5f, 0.f, 3.f, 3.f, 0.f, 3.f, 3.f})));
-    EXPECT_TRUE(torch::allclose(values(Wrap::mirrored_repeat),
-                                torch::tensor({0.f, .5f, 0.f, 3.f, 3.f, 1.f, 2.f, 2.5f})));
+    EXPECT_TRUE(
+        at::allclose(values(Wrap::repeat), at::tensor({0.f, .5f, 1.5f, 1.5f, 0.f, 2.f, 1.f, .5f})));
+    EXPECT_TRUE(at::allclose(values(Wrap::clamp_to_edge),
+                             at::tensor({0.f, .5f, 0.f, 3.f, 3.f, 0.f, 3.f, 3.f})));
+    EXPECT_TRUE(at::allclose(values(Wrap::mirrored_repeat),
+                             at::tensor({0.f, .5f, 0.f, 3.f, 3.f, 1.f, 2.f, 2.5f})));
 }
 
 TEST(SampleTexture, SurvivesAbsurdCoordinates) {
-    const torch::Tensor texture = torch::rand({3, 5, 2});
+    const at::Tensor texture = at::rand({3, 5, 2});
     const float infinity = std::numeric_limits<float>::infinity();
-    const torch::Tensor uv =
-        torch::tensor({1e30f, -1e30f, infinity, -infinity, std::nanf(""), 0.5f, 3e9f, -7e8f})
+    const at::Tensor uv =
+        at::tensor({1e30f, -1e30f, infinity, -infinity, std::nanf(""), 0.5f, 3e9f, -7e8f})
             .reshape({4, 2});
     for (const Wrap wrap : {Wrap::repeat, Wrap::mirrored_repeat, Wrap::clamp_to_edge})
-        EXPECT_TRUE(torch::isfinite(sample_texture(texture, uv, wrap, wrap)).all().item<bool>());
+        EXPECT_TRUE(at::isfinite(sample_texture(texture, uv, wrap, wrap)).all().item<bool>());
 }
 
 TEST(SampleTexture, GradientOfTheTexture) {
-    torch::manual_seed(1);
-    const torch::Tensor uv = torch::randn({50, 2});
+    at::manual_seed(1);
+    const at::Tensor uv = at::randn({50, 2});
     for (const Wrap wrap : {Wrap::repeat, Wrap::mirrored_repeat, Wrap::clamp_to_edge})
         testing::check_gradient(
-            [&](const torch::Tensor& x) { return sample_texture(x, uv, wrap, wrap); },
-            torch::rand({6, 7, 3}), 1e-2f, 1e-4);
+            [&](const at::Tensor& x) { return sample_texture(x, uv, wrap, wrap); },
+            at::rand({6, 7, 3}), 1e-2f, 1e-4);
 }
 
 TEST(TexturedMaterials, FactorsTexturesAndVertexColoursMultiply) {
@@ -117,9 +119,9 @@ TEST(TexturedMaterials, DecodesBeforeFiltering) {
         image.at(1, 0, c) = 1;
     model.materials[0].base_color_texture = add_texture(model, image);
     const Sampled sampled = sample(model, 64);
-    const torch::Tensor u = sampled.surface.uv.select(1, 0);
-    const torch::Tensor middle = (u > 0.3f).logical_and(u < 0.7f);
-    const torch::Tensor expected = (u * 2 - 0.5f).masked_select(middle);
+    const at::Tensor u = sampled.surface.uv.select(1, 0);
+    const at::Tensor middle = (u > 0.3f).logical_and(u < 0.7f);
+    const at::Tensor expected = (u * 2 - 0.5f).masked_select(middle);
     EXPECT_LT((sampled.material.base_color.select(1, 0).masked_select(middle) - expected)
                   .abs()
                   .max()
@@ -139,11 +141,11 @@ TEST(TexturedMaterials, EachPointHasItsOwnMaterial) {
     model.materials[2].base_color_factor = Vec4(0, 0, 1, 1);
     model.materials[2].normal_texture = add_texture(model, uniform_image({0.5f, 0.5f, 1}));
     const Sampled sampled = sample(model);
-    const torch::Tensor right = sampled.surface.position.select(1, 0) > 0;
-    EXPECT_TRUE(torch::equal(sampled.surface.material == 2, right));
-    EXPECT_TRUE(torch::equal(sampled.surface.primitive == 1, right));
-    EXPECT_TRUE(torch::equal(sampled.material.base_color.select(1, 2) > 0.5f, right));
-    EXPECT_TRUE(torch::equal(sampled.material.base_color.select(1, 0) > 0.5f, ~right));
+    const at::Tensor right = sampled.surface.position.select(1, 0) > 0;
+    EXPECT_TRUE(at::equal(sampled.surface.material == 2, right));
+    EXPECT_TRUE(at::equal(sampled.surface.primitive == 1, right));
+    EXPECT_TRUE(at::equal(sampled.material.base_color.select(1, 2) > 0.5f, right));
+    EXPECT_TRUE(at::equal(sampled.material.base_color.select(1, 0) > 0.5f, ~right));
     expect_rows(sampled.material.normal, {0, 0, 1});
 }
 
@@ -159,7 +161,7 @@ TEST(TexturedMaterials, TangentsFollowTheTextureAndGreenPointsUp) {
 }
 
 EnvironmentLight white() {
-    return prefilter(torch::ones({6, 16, 16, 3}));
+    return prefilter(at::ones({6, 16, 16, 3}));
 }
 
 RenderOptions small_picture() {
@@ -176,20 +178,20 @@ TEST(Render, CoverageAndBackground) {
     const TexturedMaterials materials(model);
     const std::vector<Camera> cameras{front_camera(5, 0.8f), front_camera(8, 0.8f)};
     RenderOptions options = small_picture();
-    const torch::Tensor open = render(geometry, materials, white(), cameras, options);
+    const at::Tensor open = render(geometry, materials, white(), cameras, options);
     ASSERT_EQ(open.sizes(), (std::vector<std::int64_t>{2, 16, 24, 4}));
     // Premultiplied white metal in a white furnace: all channels are the coverage.
-    EXPECT_TRUE(torch::allclose(open.narrow(3, 0, 3), open.narrow(3, 3, 1).expand({2, 16, 24, 3}),
-                                1e-4, 1e-4));
+    EXPECT_TRUE(at::allclose(open.narrow(3, 0, 3), open.narrow(3, 3, 1).expand({2, 16, 24, 3}),
+                             1e-4, 1e-4));
     const double pixels_per_unit = 12 / std::tan(0.4) / 5;
     EXPECT_NEAR(open[0].select(2, 3).sum().item<double>(), std::pow(2 * pixels_per_unit, 2), 0.5);
 
     options.background = Vec3(0.1f, 0.2f, 0.3f);
-    const torch::Tensor over = render(geometry, materials, white(), cameras, options);
-    EXPECT_TRUE(torch::allclose(over.select(3, 3), torch::ones({2, 16, 24})));
-    const torch::Tensor expected =
-        open.narrow(3, 0, 3) + (1 - open.narrow(3, 3, 1)) * torch::tensor({0.1f, 0.2f, 0.3f});
-    EXPECT_TRUE(torch::allclose(over.narrow(3, 0, 3), expected, 1e-4, 1e-4));
+    const at::Tensor over = render(geometry, materials, white(), cameras, options);
+    EXPECT_TRUE(at::allclose(over.select(3, 3), at::ones({2, 16, 24})));
+    const at::Tensor expected =
+        open.narrow(3, 0, 3) + (1 - open.narrow(3, 3, 1)) * at::tensor({0.1f, 0.2f, 0.3f});
+    EXPECT_TRUE(at::allclose(over.narrow(3, 0, 3), expected, 1e-4, 1e-4));
 }
 
 TEST(Render, MaskedAndBlendedLayersShowWhatLiesBehind) {
@@ -204,10 +206,10 @@ TEST(Render, MaskedAndBlendedLayersShowWhatLiesBehind) {
     model.materials[0].base_color_factor = Vec4(1, 1, 1, 0.3f);
     model.materials[0].emissive_factor = Vec3(1, 0, 0);
     model.materials[1].emissive_factor = Vec3(0, 1, 0);
-    const EnvironmentLight dark = prefilter(torch::zeros({6, 16, 16, 3}));
+    const EnvironmentLight dark = prefilter(at::zeros({6, 16, 16, 3}));
     const auto centre = [&] {
-        const torch::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
-                                             dark, {front_camera(5, 0.5f)}, small_picture());
+        const at::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
+                                          dark, {front_camera(5, 0.5f)}, small_picture());
         return picture[0][8][12];
     };
     expect_rows(centre().unsqueeze(0), {1, 0, 0, 1});
@@ -224,9 +226,9 @@ TEST(Render, UnlitMaterialsShowTheirBaseColorInAnyLight) {
     model.materials[0].base_color_factor = Vec4(0.2f, 0.4f, 0.6f, 1);
     model.materials[0].unlit = true;
     for (const float radiance : {0.0f, 1.0f, 20.0f}) {
-        const EnvironmentLight light = prefilter(torch::full({6, 16, 16, 3}, radiance));
-        const torch::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
-                                             light, {front_camera(5, 0.5f)}, small_picture());
+        const EnvironmentLight light = prefilter(at::full({6, 16, 16, 3}, radiance));
+        const at::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
+                                          light, {front_camera(5, 0.5f)}, small_picture());
         expect_rows(picture[0][8][12].unsqueeze(0), {0.2f, 0.4f, 0.6f, 1});
     }
 }
@@ -235,8 +237,8 @@ TEST(Render, AViewThatSeesNothingIsEmpty) {
     const Model model = quad_model();
     Camera away = front_camera(3);
     away.camera_to_world[3] = Vec4(0, 0, -3, 1);
-    const torch::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
-                                         white(), {away}, small_picture());
+    const at::Tensor picture = render(Geometry::from_model(model), TexturedMaterials(model),
+                                      white(), {away}, small_picture());
     EXPECT_EQ(picture.abs().max().item<float>(), 0);
 }
 

@@ -1,6 +1,7 @@
 #include "item3d/report/report.h"
 
-#include "item3d/io/image/formats.h"
+#include "item3d/io/image/png.h"
+#include "item3d/report/html_chart.h"
 
 #include <gtest/gtest.h>
 

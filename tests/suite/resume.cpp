@@ -2,7 +2,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/suite/edit_suite.h"
-#include "support/edit.h"
+#include "tests/support/edit.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/guidance/guidance.h"
+#include "item3d/networks/diffusion/pipeline.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -15,15 +16,15 @@ inline std::shared_ptr<const Pipeline> load_pipeline() {
 
 /// Two pictures, and two more as the unedited model's.
 inline GuidanceInput random_input(std::uint64_t seed) {
-    torch::manual_seed(seed);
+    at::manual_seed(seed);
     GuidanceInput input;
-    input.images = torch::rand({2, 3, 32, 32}).requires_grad_(true);
-    input.reference = torch::rand({2, 3, 32, 32});
+    input.images = at::rand({2, 3, 32, 32}).requires_grad_(true);
+    input.reference = at::rand({2, 3, 32, 32});
     return input;
 }
 
 /// Of the largest expected value, or of 1 where that is smaller.
-inline double relative_error(const torch::Tensor& value, const torch::Tensor& expected) {
+inline double relative_error(const at::Tensor& value, const at::Tensor& expected) {
     const double scale = std::max(1.0, expected.abs().max().item<double>());
     return (value - expected).abs().max().item<double>() / scale;
 }

@@ -29,17 +29,15 @@ class Golden {
   public:
     explicit Golden(const std::string& name)
         : io_(SafeTensors::open(fixture(name) / "io.safetensors")) {}
-    torch::Tensor in(const std::string& name) const { return io_.tensor("in." + name); }
-    torch::Tensor out(const std::string& name) const { return io_.tensor("out." + name); }
+    at::Tensor in(const std::string& name) const { return io_.tensor("in." + name); }
+    at::Tensor out(const std::string& name) const { return io_.tensor("out." + name); }
     bool has(const std::string& tensor) const { return io_.contains(tensor); }
 
     /// Within `tolerance` of "out.NAME", relative to max(1, max |expected|).
-    void expect(const std::string& name, const torch::Tensor& actual,
-                double tolerance = 2e-5) const {
-        const torch::Tensor wanted = out(name).to(torch::kFloat64);
+    void expect(const std::string& name, const at::Tensor& actual, double tolerance = 2e-5) const {
+        const at::Tensor wanted = out(name).to(at::kDouble);
         ASSERT_EQ(actual.sizes(), wanted.sizes()) << name;
-        const double error =
-            (actual.detach().to(torch::kFloat64) - wanted).abs().max().item<double>();
+        const double error = (actual.detach().to(at::kDouble) - wanted).abs().max().item<double>();
         EXPECT_LE(error, tolerance * std::max(1.0, wanted.abs().max().item<double>())) << name;
     }
 
@@ -84,8 +82,8 @@ std::string message_of(const Action& action) {
     return "";
 }
 
-inline double largest_difference(const torch::Tensor& a, const torch::Tensor& b) {
-    return (a.to(torch::kFloat64) - b.to(torch::kFloat64)).abs().max().item<double>();
+inline double largest_difference(const at::Tensor& a, const at::Tensor& b) {
+    return (a.to(at::kDouble) - b.to(at::kDouble)).abs().max().item<double>();
 }
 
 }  // namespace item3d::testing

@@ -71,24 +71,23 @@ inline Lattice cube_lattice(int cells) {
 }
 
 /// Radius 0.7 around a point that is no vertex.
-inline torch::Tensor sphere_values(const torch::Tensor& points) {
-    const torch::Tensor centre = torch::tensor({0.03f, -0.02f, 0.05f});
+inline at::Tensor sphere_values(const at::Tensor& points) {
+    const at::Tensor centre = at::tensor({0.03f, -0.02f, 0.05f});
     return (points - centre).norm(2, 1) - 0.7f;
 }
 
 /// A small lattice with any values; nothing inside touches the border.
-inline torch::Tensor random_values(Lattice& lattice, std::uint64_t seed) {
-    torch::manual_seed(seed);
+inline at::Tensor random_values(Lattice& lattice, std::uint64_t seed) {
+    at::manual_seed(seed);
     lattice = cube_lattice(6);
     lattice.cells = {6, 5, 7};
-    const torch::Tensor inner =
-        torch::constant_pad_nd(torch::ones({6, 4, 5}), {1, 1, 1, 1, 1, 1}, 0) > 0;
-    const torch::Tensor values = torch::randn({8, 6, 7});
-    return torch::where(inner, values, torch::ones_like(values)).reshape({-1});
+    const at::Tensor inner = at::constant_pad_nd(at::ones({6, 4, 5}), {1, 1, 1, 1, 1, 1}, 0) > 0;
+    const at::Tensor values = at::randn({8, 6, 7});
+    return at::where(inner, values, at::ones_like(values)).reshape({-1});
 }
 
 /// Every edge is used once in each direction.
-inline void expect_closed(const torch::Tensor& triangles) {
+inline void expect_closed(const at::Tensor& triangles) {
     std::map<std::pair<std::int64_t, std::int64_t>, int> edges;
     const auto* t = triangles.const_data_ptr<std::int64_t>();
     for (std::int64_t i = 0; i < triangles.size(0); ++i)

@@ -1,7 +1,7 @@
 #include "item3d/tensors/checkpoint.h"
 
 #include "item3d/core/error.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 namespace item3d {
 namespace {
@@ -13,15 +13,15 @@ using testing::write_file;
 TEST(Checkpoint, KeepsTensorsOfWhichLittleWasTouched) {
     const TemporaryFolder folder;
     const auto path = folder.path() / "checkpoint.safetensors";
-    torch::Tensor touched = torch::zeros({100000, 3}), counts = torch::zeros({100000}, torch::kInt);
+    at::Tensor touched = at::zeros({100000, 3}), counts = at::zeros({100000}, at::kInt);
     touched[7][1] = 2.5f;
     touched[99999][0] = -1.0f;
     counts[99998] = 4;
     const NamedTensors tensors{{"touched", touched},
                                {"counts", counts},
-                               {"full", torch::ones({100000, 2})},
-                               {"small", torch::zeros({5})},
-                               {"nothing", torch::zeros({0})}};
+                               {"full", at::ones({100000, 2})},
+                               {"small", at::zeros({5})},
+                               {"nothing", at::zeros({0})}};
     save_checkpoint(path, {{{"seed", 3}}, 12, tensors});
     EXPECT_LT(std::filesystem::file_size(path), 900000u);  // of 2.4 million bytes
     const auto found = load_checkpoint(path);
@@ -30,7 +30,7 @@ TEST(Checkpoint, KeepsTensorsOfWhichLittleWasTouched) {
     EXPECT_EQ(found->identity["seed"], 3);
     const CheckpointReader reader("here", found->tensors);
     for (const auto& [name, tensor] : tensors) {
-        EXPECT_TRUE(torch::equal(reader.get(name), tensor)) << name;
+        EXPECT_TRUE(at::equal(reader.get(name), tensor)) << name;
         EXPECT_EQ(reader.get(name).scalar_type(), tensor.scalar_type()) << name;
     }
     EXPECT_EQ(found->tensors.size(), tensors.size());
@@ -42,14 +42,14 @@ TEST(Checkpoint, SaysWhatDoesNotFit) {
     EXPECT_FALSE(load_checkpoint(path));
     write_file(path, "broken");
     EXPECT_THROW(load_checkpoint(path), InputError);
-    save_safetensors(path, {{"x", torch::ones({2})}});
+    save_safetensors(path, {{"x", at::ones({2})}});
     EXPECT_THROW(load_checkpoint(path), InputError);  // another program's
 
-    const CheckpointReader reader("here", {{"x", torch::ones({2})}});
+    const CheckpointReader reader("here", {{"x", at::ones({2})}});
     EXPECT_THROW(reader.get("y"), InputError);
-    torch::Tensor other = torch::zeros({3});
+    at::Tensor other = at::zeros({3});
     EXPECT_THROW(reader.copy("x", other), InputError);
-    torch::Tensor same = torch::zeros({2});
+    at::Tensor same = at::zeros({2});
     reader.copy("x", same);
     EXPECT_EQ(same[1].item<float>(), 1);
 

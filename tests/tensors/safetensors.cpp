@@ -3,8 +3,9 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/random.h"
+#include "item3d/networks/layers/load_parameters.h"
 #include "item3d/tensors/weights.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 #include <torch/nn/init.h>
 #include <torch/nn/modules/linear.h>
@@ -30,14 +31,13 @@ std::string file_of(const std::string& header, std::size_t data_size) {
 TEST(SafeTensors, KeepsEveryTypeShapeAndTheMetadata) {
     const TemporaryFolder folder;
     NamedTensors tensors;
-    for (const auto dtype :
-         {torch::kFloat64, torch::kFloat32, torch::kFloat16, torch::kBFloat16, torch::kInt64,
-          torch::kInt32, torch::kInt16, torch::kInt8, torch::kUInt8, torch::kBool})
+    for (const auto dtype : {at::kDouble, at::kFloat, at::kHalf, at::kBFloat16, at::kLong, at::kInt,
+                             at::kShort, at::kChar, at::kByte, at::kBool})
         tensors.emplace_back(std::string("x.") + c10::toString(dtype),
-                             torch::arange(7).reshape({1, 7}).to(dtype));
-    tensors.emplace_back("scalar", torch::tensor(2.5f));
-    tensors.emplace_back("empty", torch::empty({0, 3}));
-    tensors.emplace_back("transposed", torch::arange(6.0f).reshape({2, 3}).t());
+                             at::arange(7).reshape({1, 7}).to(dtype));
+    tensors.emplace_back("scalar", at::tensor(2.5f));
+    tensors.emplace_back("empty", at::empty({0, 3}));
+    tensors.emplace_back("transposed", at::arange(6.0f).reshape({2, 3}).t());
     save_safetensors(folder.path() / "a.safetensors", tensors, {{"format", "pt"}});
 
     const SafeTensors file = SafeTensors::open(folder.path() / "a.safetensors");
@@ -54,8 +54,8 @@ TEST(SafeTensors, KeepsEveryTypeShapeAndTheMetadata) {
 TEST(SafeTensors, TensorsOutliveTheReaderAndNeverWriteToTheFile) {
     const TemporaryFolder folder;
     const auto path = folder.path() / "a.safetensors";
-    save_safetensors(path, {{"x", torch::arange(1000)}});
-    torch::Tensor x = SafeTensors::open(path).tensor("x");
+    save_safetensors(path, {{"x", at::arange(1000)}});
+    at::Tensor x = SafeTensors::open(path).tensor("x");
     EXPECT_EQ(x.sum().item<int>(), 499500);
     x.zero_();
     EXPECT_EQ(SafeTensors::open(path).tensor("x").sum().item<int>(), 499500);
@@ -69,7 +69,7 @@ TEST(SafeTensors, ReadsTensorsThatAreNotAligned) {
     const float value = 3.25f;
     std::memcpy(file.data() + file.size() - 4, &value, 4);
     write_file(folder.path() / "a.safetensors", file);
-    const torch::Tensor f = SafeTensors::open(folder.path() / "a.safetensors").tensor("f");
+    const at::Tensor f = SafeTensors::open(folder.path() / "a.safetensors").tensor("f");
     EXPECT_EQ(f.item<float>(), 3.25f);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(f.data_ptr()) % 4, 0u);
 }
@@ -112,7 +112,7 @@ TEST(SafeTensors, RejectsHeadersThatDoNotFitTheData) {
 TEST(SafeTensors, TruncatedAndDamagedFilesAreReadOrRejectedNeverMore) {
     const TemporaryFolder folder;
     const auto path = folder.path() / "a.safetensors";
-    save_safetensors(path, {{"x", torch::arange(6.0f)}, {"y", torch::ones({2, 2})}});
+    save_safetensors(path, {{"x", at::arange(6.0f)}, {"y", at::ones({2, 2})}});
     const std::string whole = read_text(path);
     for (std::size_t size = 0; size < whole.size(); ++size) {
         write_file(path, whole.substr(0, size));
@@ -127,25 +127,25 @@ TEST(SafeTensors, TruncatedAndDamagedFilesAreReadOrRejectedNeverMore) {
         write_file(path, damaged);
         try {
             for (const auto& [name, tensor] : SafeTensors::open(path).tensors())
-                tensor.to(torch::kFloat32).sum();
+                tensor.to(at::kFloat).sum();
         } catch (const InputError&) {
         }
     }
 }
 
 TEST(SafeTensors, AnUnwritableFolderIsReported) {
-    EXPECT_THROW(save_safetensors("/nonexistent/a.safetensors", {{"x", torch::ones(1)}}), Error);
+    EXPECT_THROW(save_safetensors("/nonexistent/a.safetensors", {{"x", at::ones(1)}}), Error);
 }
 
 TEST(Weights, FindsShardsThroughTheIndexAndStaysInTheFolder) {
     const TemporaryFolder folder;
-    save_safetensors(folder.path() / "m-1.safetensors", {{"weight", torch::ones({2, 3})}});
-    save_safetensors(folder.path() / "m-2.safetensors", {{"bias", torch::zeros(2)}});
+    save_safetensors(folder.path() / "m-1.safetensors", {{"weight", at::ones({2, 3})}});
+    save_safetensors(folder.path() / "m-2.safetensors", {{"bias", at::zeros(2)}});
     write_file(folder.path() / "m.safetensors.index.json",
                R"({"weight_map":{"weight":"m-1.safetensors","bias":"m-2.safetensors"}})");
     torch::nn::Linear linear(3, 2);
     load_parameters(*linear, Weights::open(folder.path(), "m"));
-    EXPECT_TRUE(linear->weight.equal(torch::ones({2, 3})));
+    EXPECT_TRUE(linear->weight.equal(at::ones({2, 3})));
     EXPECT_FALSE(linear->weight.requires_grad());
 
     write_file(folder.path() / "m.safetensors.index.json",
@@ -187,13 +187,13 @@ TEST(Weights, ALinkThatLeadsNowhereIsNamed) {
 
 TEST(Weights, EveryFloatingPointTypeIsConverted) {
     const TemporaryFolder folder;
-    const torch::Tensor weight = torch::arange(6.0f).reshape({2, 3}) / 4;
-    for (const auto stored : {torch::kFloat32, torch::kFloat16, torch::kBFloat16, torch::kFloat64})
-        for (const auto wanted : {torch::kFloat32, torch::kFloat16, torch::kBFloat16}) {
+    const at::Tensor weight = at::arange(6.0f).reshape({2, 3}) / 4;
+    for (const auto stored : {at::kFloat, at::kHalf, at::kBFloat16, at::kDouble})
+        for (const auto wanted : {at::kFloat, at::kHalf, at::kBFloat16}) {
             save_safetensors(folder.path() / "m.fp16.safetensors",
-                             {{"weight", weight.to(stored)}, {"bias", torch::ones(2)}});
+                             {{"weight", weight.to(stored)}, {"bias", at::ones(2)}});
             torch::nn::Linear linear(3, 2);
-            load_parameters(*linear, Weights::open(folder.path(), "m"), torch::kCPU, wanted);
+            load_parameters(*linear, Weights::open(folder.path(), "m"), at::kCPU, wanted);
             EXPECT_EQ(linear->weight.scalar_type(), wanted);
             EXPECT_TRUE(linear->weight.equal(weight.to(wanted)));
         }
@@ -202,14 +202,13 @@ TEST(Weights, EveryFloatingPointTypeIsConverted) {
 TEST(Weights, MetaComparesAndReadsNothing) {
     const TemporaryFolder folder;
     save_safetensors(folder.path() / "m.safetensors",
-                     {{"weight", torch::ones({2, 3})}, {"bias", torch::ones(2)}});
+                     {{"weight", at::ones({2, 3})}, {"bias", at::ones(2)}});
     auto linear = without_initial_values([] { return torch::nn::Linear(3, 2); });
     torch::nn::init::constant_(linear->weight, 5);
-    load_parameters(*linear, Weights::open(folder.path(), "m"), torch::kMeta);
+    load_parameters(*linear, Weights::open(folder.path(), "m"), at::kMeta);
     EXPECT_EQ(linear->weight.sum().item<float>(), 30);
     torch::nn::Linear wide(4, 2);
-    EXPECT_THROW(load_parameters(*wide, Weights::open(folder.path(), "m"), torch::kMeta),
-                 InputError);
+    EXPECT_THROW(load_parameters(*wide, Weights::open(folder.path(), "m"), at::kMeta), InputError);
 }
 
 TEST(Weights, WithoutInitialValuesTheMemoryIsLeftAlone) {
@@ -235,7 +234,7 @@ TEST(Weights, MessagesNameTheTensor) {
             load_parameters(*linear, Weights::open(folder.path(), "m"));
         });
     };
-    const torch::Tensor weight = torch::ones({2, 3}), bias = torch::ones(2);
+    const at::Tensor weight = at::ones({2, 3}), bias = at::ones(2);
     EXPECT_NE(load({{"weight", weight}}).find("'bias' of shape [2] is missing"), std::string::npos);
     EXPECT_NE(
         load({{"weight", weight.t()}, {"bias", bias}}).find("expected shape [2, 3], found [3, 2]"),
@@ -243,7 +242,7 @@ TEST(Weights, MessagesNameTheTensor) {
     EXPECT_NE(
         load({{"weight", weight}, {"bias", bias}, {"scale", bias}}).find("'scale' has no place"),
         std::string::npos);
-    EXPECT_NE(load({{"weight", weight}, {"bias", bias.to(torch::kInt64)}}).find("'bias' is not"),
+    EXPECT_NE(load({{"weight", weight}, {"bias", bias.to(at::kLong)}}).find("'bias' is not"),
               std::string::npos);
     EXPECT_NE(load({{"scale", bias}}).find("(and 2 more tensors do not fit)"), std::string::npos);
 }

@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/text/normalization.h"
-#include "support/networks.h"
+#include "tests/support/networks.h"
 
 #include <chrono>
 
@@ -87,7 +87,7 @@ TEST(ClipTokenizer, PadsAndTruncatesKeepingTheEndToken) {
               (std::vector<int>{tokenizer.bos_id(), red, end, end, end}));
     EXPECT_EQ(tokenizer.encode_padded("red red red red red"),
               (std::vector<int>{tokenizer.bos_id(), red, red, red, end}));
-    const torch::Tensor batch = tokenizer.encode_batch({"red", ""}, 7);
+    const at::Tensor batch = tokenizer.encode_batch({"red", ""}, 7);
     EXPECT_EQ(batch.sizes(), (std::vector<std::int64_t>{2, 7}));
     EXPECT_EQ(batch[1][1].item<int>(), end);
 }

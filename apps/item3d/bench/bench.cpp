@@ -1,14 +1,15 @@
 // item3d bench: how fast this machine is at what item3d does.
-#include "bench/bench_guidance.h"
-#include "bench/bench_render.h"
-#include "command.h"
+#include "apps/item3d/bench/bench_guidance.h"
+#include "apps/item3d/bench/bench_render.h"
+#include "apps/item3d/bench/commands.h"
+#include "apps/item3d/command.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
 
 #include <omp.h>
 
@@ -49,16 +50,15 @@ std::vector<BenchScene> load_scenes(const BenchRenderCommand& options) {
 }
 
 /// The device that was asked for; with `auto`, each that is there.
-std::vector<torch::Device> choose_devices(const BenchRenderCommand& options,
-                                          torch::Device preferred) {
-    std::vector<torch::Device> devices{preferred};
+std::vector<at::Device> choose_devices(const BenchRenderCommand& options, at::Device preferred) {
+    std::vector<at::Device> devices{preferred};
     if (options.device == "auto" && preferred.is_cuda()) {
-        devices.insert(devices.begin(), torch::Device(torch::kCPU));
+        devices.insert(devices.begin(), at::Device(at::kCPU));
     }
     return devices;
 }
 
-std::string device_name(torch::Device device) {
+std::string device_name(at::Device device) {
     return device.is_cuda() ? "cuda" : "cpu";
 }
 
@@ -67,7 +67,7 @@ nlohmann::json stage_json(const StageTime& time) {
         {"stage", time.stage}, {"forward_ms", time.forward_ms}, {"backward_ms", time.backward_ms}};
 }
 
-nlohmann::json row_json(const BenchScene& scene, PictureSize size, torch::Device device,
+nlohmann::json row_json(const BenchScene& scene, PictureSize size, at::Device device,
                         const RenderTimes& times) {
     nlohmann::json row = {{"model", scene.name},
                           {"triangles", scene.model.triangle_count()},
@@ -96,7 +96,7 @@ nlohmann::json row_json(const BenchScene& scene, PictureSize size, torch::Device
     return row;
 }
 
-void print_row(const BenchScene& scene, PictureSize size, torch::Device device,
+void print_row(const BenchScene& scene, PictureSize size, at::Device device,
                const RenderTimes& times) {
     fmt::print("{}, {} triangles, {} x {}, {} pixels covered, {}\n", scene.name,
                scene.model.triangle_count(), size.width, size.height, times.covered_pixels,
@@ -113,19 +113,19 @@ void print_row(const BenchScene& scene, PictureSize size, torch::Device device,
     fmt::print("\n");
 }
 
-void run_bench_render(const BenchRenderCommand& options, torch::Device preferred) {
+void run_bench_render(const BenchRenderCommand& options, at::Device preferred) {
     std::vector<PictureSize> sizes;
     for (const std::string& size : options.sizes)
         sizes.push_back(parse_size(size));
     const std::vector<BenchScene> scenes = load_scenes(options);
-    const std::vector<torch::Device> devices = choose_devices(options, preferred);
+    const std::vector<at::Device> devices = choose_devices(options, preferred);
     const Image light = load_light(options.light);
 
     nlohmann::json rows = nlohmann::json::array();
     const std::size_t total = devices.size() * scenes.size() * sizes.size() + 1;
     Progress progress("bench", static_cast<std::int64_t>(total));
     std::int64_t done = 0;
-    for (const torch::Device device : devices) {
+    for (const at::Device device : devices) {
         for (const BenchScene& scene : scenes) {
             for (const PictureSize size : sizes) {
                 const RenderTimes times = time_render(scene, light, size, device, options.repeats);
@@ -137,7 +137,7 @@ void run_bench_render(const BenchRenderCommand& options, torch::Device preferred
     }
     const StageTime time = time_prefilter(prefilter_size, options.repeats);
     nlohmann::json prefiltering = stage_json(time);
-    prefiltering["device"] = device_name(torch::kCPU);
+    prefiltering["device"] = device_name(at::kCPU);
     prefiltering["face_size"] = prefilter_size;
     if (!options.json) {
         fmt::print("{} to cubes of {} texels, cpu: {:.1f} ms forward, {:.1f} ms backward\n\n",
@@ -181,7 +181,7 @@ void add_bench_render(CLI::App& app) {
 }  // namespace
 
 void add_bench_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("bench", "Measure how fast this machine is");
+    CLI::App* command = add_command_group(app, "bench");
     command->require_subcommand(1);
     add_bench_render(*command);
     add_bench_guidance(*command);

@@ -1,7 +1,7 @@
 // item3d bench guidance: how long one step of guidance takes with a prior, and what memory.
-#include "bench/bench_guidance.h"
+#include "apps/item3d/bench/bench_guidance.h"
 
-#include "command.h"
+#include "apps/item3d/command.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
@@ -9,7 +9,7 @@
 #include "item3d/guidance/guidance.h"
 #include "item3d/guidance/noised_latents.h"
 #include "item3d/hub/find_prior.h"
-#include "item3d/networks/diffusion/pipeline_extras.h"
+#include "item3d/networks/diffusion/running_pipeline.h"
 #include "item3d/tensors/precision.h"
 
 #include <algorithm>
@@ -33,27 +33,27 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-void run(const BenchGuidanceCommand& options, torch::Device device) {
+void run(const BenchGuidanceCommand& options, at::Device device) {
     const auto folder = find_prior(options.prior);
-    const torch::Dtype precision = choose_precision(options.precision, device);
+    const at::ScalarType precision = choose_precision(options.precision, device);
     const double begin = seconds_now();
     GuidanceOptions guidance_options;
     guidance_options.method = options.method;
-    guidance_options.adjust = options.adjust;
+    guidance_options.adjust = parse_adjustment(options.adjust);
     const std::string from = "a red mug", to = "a golden mug";
-    const auto prior = std::make_shared<Pipeline>(load_to_run(  // as an edit does
-        folder, device, precision, {}, {{from, to, default_negative_prompt()}, false}));
+    const auto prior =
+        std::make_shared<const RunningPipeline>(RunningPipeline::load(  // as an edit does
+            folder, device, precision, {}, {{from, to, default_negative_prompt()}, false}));
     const double loaded = seconds_now();
     const auto guidance = make_guidance(prior, from, to, guidance_options);
-    const int size =
-        options.size > 0 ? options.size : prior->unet->config().sample_size * prior->downscale();
-    const torch::Tensor images =
-        torch::rand({options.batch, 3, size, size}, device).set_requires_grad(true);
-    const torch::Tensor nowhere = torch::zeros({options.batch, size, size, 3}, device);
-    const SeenShape shape{torch::ones({options.batch, size, size}, device), nowhere, nowhere};
+    const int size = options.size > 0 ? options.size : prior->native_size();
+    const at::Tensor images =
+        at::rand({options.batch, 3, size, size}, device).set_requires_grad(true);
+    const at::Tensor nowhere = at::zeros({options.batch, size, size, 3}, device);
+    const SeenShape shape{at::ones({options.batch, size, size}, device), nowhere, nowhere};
 
     GuidanceInput input{images, shape};
-    if (guidance->needs_reference()) input.reference = torch::rand_like(images);
+    if (guidance->needs_reference()) input.reference = at::rand_like(images);
 
     std::vector<double> step, encode, unet;
     double first = 0;
@@ -66,7 +66,7 @@ void run(const BenchGuidanceCommand& options, torch::Device device) {
         // Waits for the device as well.
         ITEM3D_CHECK(images.grad().isfinite().all().item<bool>(), "the gradient is not finite");
         const double taken = seconds_now() - start;
-        images.mutable_grad() = torch::Tensor();
+        images.mutable_grad() = at::Tensor();
         if (i < 0) {
             first = seconds_now() - begin;
             continue;

@@ -1,10 +1,13 @@
-#include "bench/bench_render.h"
+#include "apps/item3d/bench/bench_render.h"
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/antialias.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/scatter.h"
+#include "item3d/render/texture.h"
 #include "item3d/scene/sphere.h"
 
 #include <torch/cuda.h>
@@ -22,7 +25,7 @@ constexpr int light_cube_size = 64;
 /// Runs things several times and takes the median of what they took.
 class Stopwatch {
   public:
-    Stopwatch(torch::Device device, int repeats) : device_(device), repeats_(repeats) {}
+    Stopwatch(at::Device device, int repeats) : device_(device), repeats_(repeats) {}
 
     /// prepare: what is not timed, before each run.
     double median_ms(const std::function<void()>& run,
@@ -46,28 +49,28 @@ class Stopwatch {
     }
 
     /// forward gives one tensor; leaves: what its gradients go to.
-    StageTime stage(const std::string& name, const std::function<torch::Tensor()>& forward,
-                    const std::vector<torch::Tensor>& leaves) const {
+    StageTime stage(const std::string& name, const std::function<at::Tensor()>& forward,
+                    const std::vector<at::Tensor>& leaves) const {
         StageTime time;
         time.stage = name;
         {
-            const torch::NoGradGuard no_gradients;
+            const at::NoGradGuard no_gradients;
             time.forward_ms = median_ms([&] { forward(); });
         }
-        torch::Tensor out, seed;
+        at::Tensor out, seed;
         time.backward_ms = median_ms([&] { out.backward(seed); },
                                      [&] {
                                          forget(leaves);
                                          out = forward();
-                                         seed = torch::ones_like(out);
+                                         seed = at::ones_like(out);
                                      });
         forget(leaves);
         return time;
     }
 
-    static void forget(const std::vector<torch::Tensor>& leaves) {
-        for (const torch::Tensor& leaf : leaves)
-            leaf.mutable_grad() = torch::Tensor();
+    static void forget(const std::vector<at::Tensor>& leaves) {
+        for (const at::Tensor& leaf : leaves)
+            leaf.mutable_grad() = at::Tensor();
     }
 
   private:
@@ -75,17 +78,17 @@ class Stopwatch {
         if (device_.is_cuda()) torch::cuda::synchronize();
     }
 
-    torch::Device device_;
+    at::Device device_;
     int repeats_;
 };
 
-torch::Tensor leaf(const torch::Tensor& value) {
+at::Tensor leaf(const at::Tensor& value) {
     return value.detach().clone().set_requires_grad(true);
 }
 
 /// The base colour texture that most triangles have, linear RGB [H, W, 3]; made up where there is
 /// none, so that there is something to look up.
-torch::Tensor base_color_texture(const Model& model) {
+at::Tensor base_color_texture(const Model& model) {
     std::vector<std::size_t> triangles(model.materials.size(), 0);
     for (const Primitive& primitive : model.primitives)
         triangles[static_cast<std::size_t>(primitive.material)] += primitive.indices.size() / 3;
@@ -98,14 +101,13 @@ torch::Tensor base_color_texture(const Model& model) {
         chosen = texture;
     }
     if (chosen >= 0) {
-        const torch::Tensor texels =
-            to_tensor(model.textures[static_cast<std::size_t>(chosen)].image);
+        const at::Tensor texels = to_tensor(model.textures[static_cast<std::size_t>(chosen)].image);
         return srgb_to_linear(texels.size(2) >= 3 ? texels.narrow(2, 0, 3)
                                                   : texels.narrow(2, 0, 1).expand(
                                                         {texels.size(0), texels.size(1), 3}));
     }
     constexpr std::int64_t side = 1024;
-    return torch::linspace(0.05, 0.95, side * side * 3).reshape({side, side, 3});
+    return at::linspace(0.05, 0.95, side * side * 3).reshape({side, side, 3});
 }
 
 /// The passes over one view, as an edit and `item3d render` make them.
@@ -114,20 +116,20 @@ struct View {
     std::vector<Camera> cameras;
     PictureSize size;
     EnvironmentLight light;
-    torch::Tensor texture;  ///< [H, W, 3], a leaf
+    at::Tensor texture;  ///< [H, W, 3], a leaf
     NeuralTexture field{nullptr};
 
     Raster visible() const { return rasterize(geometry, cameras, size.width, size.height); }
 
-    torch::Tensor composed(const torch::Tensor& radiance, const Surface& surface,
-                           const Raster& raster) const {
-        const torch::Tensor values =
-            torch::cat({radiance, torch::ones({radiance.size(0), 1}, radiance.options())}, 1);
-        return antialias(scatter(values, surface, raster, torch::zeros({4}, radiance.options())),
+    at::Tensor composed(const at::Tensor& radiance, const Surface& surface,
+                        const Raster& raster) const {
+        const at::Tensor values =
+            at::cat({radiance, at::ones({radiance.size(0), 1}, radiance.options())}, 1);
+        return antialias(scatter(values, surface, raster, at::zeros({4}, radiance.options())),
                          raster, geometry);
     }
 
-    torch::Tensor picture(const std::function<MaterialSample(const Surface&)>& material) const {
+    at::Tensor picture(const std::function<MaterialSample(const Surface&)>& material) const {
         const Raster raster = visible();
         const Surface surface = interpolate_surface(geometry, raster, cameras);
         return composed(shade(surface, material(surface), light), surface, raster);
@@ -137,30 +139,30 @@ struct View {
         MaterialSample sample;
         sample.base_color = sample_texture(texture, surface.uv);
         sample.orm =
-            torch::tensor({1.0f, 0.5f, 0.0f}).to(texture.device()).expand({surface.count(), 3});
+            at::tensor({1.0f, 0.5f, 0.0f}).to(texture.device()).expand({surface.count(), 3});
         return sample;
     }
 
-    torch::Tensor filtered(const Surface& surface, const torch::Tensor& footprints) const {
+    at::Tensor filtered(const Surface& surface, const at::Tensor& footprints) const {
         return sample_texture(texture_pyramid(texture), surface.uv, footprints);
     }
 
-    std::vector<torch::Tensor> field_leaves() const {
-        std::vector<torch::Tensor> leaves = field->network_parameters();
+    std::vector<at::Tensor> field_leaves() const {
+        std::vector<at::Tensor> leaves = field->network_parameters();
         leaves.push_back(field->table());
         return leaves;
     }
 };
 
 /// All that the field gives, as one tensor.
-torch::Tensor joined(const MaterialSample& sample) {
-    return torch::cat({sample.base_color, sample.orm, sample.normal}, 1);
+at::Tensor joined(const MaterialSample& sample) {
+    return at::cat({sample.base_color, sample.orm, sample.normal}, 1);
 }
 
 void time_stages(View& view, const Stopwatch& watch, std::vector<StageTime>& stages) {
     const Raster raster = view.visible();
     const Surface surface = interpolate_surface(view.geometry, raster, view.cameras);
-    const torch::Tensor still = view.geometry.positions;
+    const at::Tensor still = view.geometry.positions;
 
     // Gradients to vertices, which an edit has no need of, are what these two would add.
     view.geometry.positions = leaf(still);
@@ -172,7 +174,7 @@ void time_stages(View& view, const Stopwatch& watch, std::vector<StageTime>& sta
                                  [&] {
                                      const Surface at =
                                          interpolate_surface(view.geometry, moving, view.cameras);
-                                     return torch::cat({at.position, at.normal}, 1);
+                                     return at::cat({at.position, at.normal}, 1);
                                  },
                                  {view.geometry.positions, moving.positions_clip}));
     view.geometry.positions = still;
@@ -180,25 +182,25 @@ void time_stages(View& view, const Stopwatch& watch, std::vector<StageTime>& sta
     stages.push_back(watch.stage("sample textures",
                                  [&] { return sample_texture(view.texture, surface.uv); },
                                  {view.texture}));
-    const torch::Tensor footprints = uv_footprints(view.geometry, raster, surface);
+    const at::Tensor footprints = uv_footprints(view.geometry, raster, surface);
     stages.push_back(watch.stage("sample with mip levels",
                                  [&] { return view.filtered(surface, footprints); },
                                  {view.texture}));
-    const torch::Tensor positions = surface.position.detach();
+    const at::Tensor positions = surface.position.detach();
     stages.push_back(watch.stage(
         "neural texture", [&] { return joined(view.field->forward(positions)); },
         view.field_leaves()));
 
     MaterialSample material;
     {
-        const torch::NoGradGuard no_gradients;
+        const at::NoGradGuard no_gradients;
         material = view.textured(surface);
     }
     material.base_color = leaf(material.base_color);
     material.orm = leaf(material.orm);
     stages.push_back(watch.stage("shade", [&] { return shade(surface, material, view.light); },
                                  {material.base_color, material.orm}));
-    const torch::Tensor radiance = leaf(shade(surface, material, view.light));
+    const at::Tensor radiance = leaf(shade(surface, material, view.light));
     stages.push_back(watch.stage("scatter and antialias",
                                  [&] { return view.composed(radiance, surface, raster); },
                                  {radiance}));
@@ -218,7 +220,7 @@ BenchScene sphere_scene(int squares) {
 }
 
 RenderTimes time_render(const BenchScene& scene, const Image& light, PictureSize size,
-                        torch::Device device, int repeats) {
+                        at::Device device, int repeats) {
     const Stopwatch watch(device, repeats);
     View view;
     view.geometry = Geometry::from_model(scene.model, device);
@@ -233,7 +235,7 @@ RenderTimes time_render(const BenchScene& scene, const Image& light, PictureSize
 
     RenderTimes times;
     {
-        const torch::NoGradGuard no_gradients;
+        const at::NoGradGuard no_gradients;
         times.covered_pixels =
             interpolate_surface(view.geometry, view.visible(), view.cameras).count();
     }
@@ -242,11 +244,10 @@ RenderTimes time_render(const BenchScene& scene, const Image& light, PictureSize
         return view.field->forward(surface.position);
     };
     const auto forward = [&](const auto& material) {
-        const torch::NoGradGuard no_gradients;
+        const at::NoGradGuard no_gradients;
         return watch.median_ms([&] { view.picture(material); });
     };
-    const auto forward_backward = [&](const auto& material,
-                                      const std::vector<torch::Tensor>& leaves) {
+    const auto forward_backward = [&](const auto& material, const std::vector<at::Tensor>& leaves) {
         return watch.median_ms([&] { view.picture(material).square().mean().backward(); },
                                [&] { Stopwatch::forget(leaves); });
     };
@@ -259,16 +260,16 @@ RenderTimes time_render(const BenchScene& scene, const Image& light, PictureSize
 }
 
 StageTime time_prefilter(int size, int repeats) {
-    const torch::Tensor cube = leaf(
-        torch::linspace(0.1, 1.0, std::int64_t{6} * size * size * 3).reshape({6, size, size, 3}));
+    const at::Tensor cube =
+        leaf(at::linspace(0.1, 1.0, std::int64_t{6} * size * size * 3).reshape({6, size, size, 3}));
     const auto forward = [&] {
         const EnvironmentLight light = prefilter(cube);
-        std::vector<torch::Tensor> maps{light.diffuse.flatten()};
-        for (const torch::Tensor& level : light.specular)
+        std::vector<at::Tensor> maps{light.diffuse.flatten()};
+        for (const at::Tensor& level : light.specular)
             maps.push_back(level.flatten());
-        return torch::cat(maps);
+        return at::cat(maps);
     };
-    return Stopwatch(torch::kCPU, repeats).stage("prefilter the light", forward, {cube});
+    return Stopwatch(at::kCPU, repeats).stage("prefilter the light", forward, {cube});
 }
 
 }  // namespace item3d

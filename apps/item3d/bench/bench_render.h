@@ -1,11 +1,10 @@
 // What each part of the renderer takes, for `item3d bench render`.
 #pragma once
 
-#include "edit/picture_options.h"
+#include "apps/item3d/edit/picture_options.h"
 #include "item3d/scene/camera.h"
 #include "item3d/scene/model.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <string>
 #include <vector>
@@ -43,7 +42,7 @@ BenchScene sphere_scene(int squares);
 
 /// light: linear equirectangular radiance.
 RenderTimes time_render(const BenchScene& scene, const Image& light, PictureSize size,
-                        torch::Device device, int repeats);
+                        at::Device device, int repeats);
 
 /// Prefiltering of an environment of size x size texels a face, which is done on the CPU alone.
 StageTime time_prefilter(int size, int repeats);

@@ -1,12 +1,14 @@
 // item3d caption: a sentence for a picture, or for a model seen from all around.
-#include "command.h"
-#include "edit/picture_options.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
 #include "item3d/networks/vision_language/captioner.h"
+#include "item3d/render/pictures.h"
 #include "item3d/report/model_pictures.h"
 #include "item3d/report/picture.h"
 #include "item3d/tensors/precision.h"
@@ -30,15 +32,15 @@ struct CaptionCommand : CommonOptions {
     CaptionOptions caption{.prefix = {}, .beams = caption_beams};
 };
 
-constexpr int view_pixels = 512;
+constexpr int caption_view_pixels = 512;
 constexpr int least_pixels = 8;  ///< of a side of a picture that can show something
 
-torch::Tensor to_bytes(const torch::Tensor& picture) {
-    return (picture.nan_to_num(0).clamp(0, 1) * 255).round().to(torch::kUInt8);
+at::Tensor to_bytes(const at::Tensor& picture) {
+    return (picture.nan_to_num(0).clamp(0, 1) * 255).round().to(at::kByte);
 }
 
 /// The pictures to be captioned, bytes [H, W, C] each: one, or one a view of a model.
-std::vector<torch::Tensor> load_pictures(const CaptionCommand& options, torch::Device device) {
+std::vector<at::Tensor> load_pictures(const CaptionCommand& options, at::Device device) {
     const std::string extension = lower_extension(options.input);
     if (extension != ".glb" && extension != ".gltf" && extension != ".obj") {
         const Image image = load_image(options.input);
@@ -52,18 +54,18 @@ std::vector<torch::Tensor> load_pictures(const CaptionCommand& options, torch::D
     }
     const Model model = load_model(options.input);
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
-    const torch::Tensor views =
-        over_white(draw_pictures(model, light, picture_cameras(model, options.views), view_pixels));
-    std::vector<torch::Tensor> pictures;
-    for (const torch::Tensor& view : views.cpu().unbind(0))
+    const at::Tensor views = over_white(
+        draw_pictures(model, light, picture_cameras(model, options.views), caption_view_pixels));
+    std::vector<at::Tensor> pictures;
+    for (const at::Tensor& view : views.cpu().unbind(0))
         pictures.push_back(to_bytes(view.permute({1, 2, 0})));
     return pictures;
 }
 
-void run_caption(const CaptionCommand& options, torch::Device device) {
+void run_caption(const CaptionCommand& options, at::Device device) {
     const std::unique_ptr<Captioner> captioner =
         load_captioner(options.captioner, device, choose_precision(options.precision, device));
-    const std::vector<torch::Tensor> pictures = load_pictures(options, device);
+    const std::vector<at::Tensor> pictures = load_pictures(options, device);
 
     const auto begin = std::chrono::steady_clock::now();
     const std::string caption = captioner->caption_together(pictures, options.caption);
@@ -93,8 +95,7 @@ void run_caption(const CaptionCommand& options, torch::Device device) {
 
 void add_caption_command(CLI::App& app) {
     auto options = std::make_shared<CaptionCommand>();
-    CLI::App* command =
-        add_command(app, "caption", "Describe a picture or a model in words", *options);
+    CLI::App* command = add_command(app, "caption", *options);
     command
         ->add_option("IMAGE|MODEL", options->input,
                      "A .png, .jpg, .hdr or .exr picture, or a .glb, .gltf or .obj model")
@@ -125,7 +126,7 @@ void add_caption_command(CLI::App& app) {
     command->add_option("--precision", options->precision, "Of the networks: auto, fp32 or bf16")
         ->capture_default_str();
     command->callback([options] {
-        const torch::Device device = start_command(*options);
+        const at::Device device = start_command(*options);
         options->captioner = given_or_embedded(options->captioner, "captioner", "--captioner");
         run_caption(*options, device);
     });

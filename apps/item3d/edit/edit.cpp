@@ -1,9 +1,10 @@
 // item3d edit: a model and two sentences in, an edited model out.
 #include "item3d/edit/edit.h"
 
-#include "command.h"
-#include "edit/extras_options.h"
-#include "edit/relight_words.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/extras_options.h"
+#include "apps/item3d/edit/relight_words.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
@@ -199,8 +200,7 @@ void run_edit(EditCommandOptions& options) {
 
 void add_edit_command(CLI::App& app) {
     auto options = std::make_shared<EditCommandOptions>();
-    CLI::App* command =
-        add_command(app, "edit", "Edit the look of a textured model from two sentences", *options);
+    CLI::App* command = add_command(app, "edit", *options);
     EditRequest& request = options->request;
     command->add_option("MODEL", request.model, "A .glb, .gltf or .obj file")->required();
     command->add_option("--from", options->from, "What the model looks like now")->required();

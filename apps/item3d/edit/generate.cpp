@@ -1,9 +1,12 @@
 // item3d generate: pictures that a prior draws from a prompt, in the shape of a model where it
 // takes one.
-#include "command.h"
-#include "edit/extras_options.h"
-#include "edit/light_options.h"
-#include "edit/picture_options.h"
+#include "item3d/networks/diffusion/generate.h"
+
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/extras_options.h"
+#include "apps/item3d/edit/light_options.h"
+#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -14,13 +17,15 @@
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
 #include "item3d/networks/diffusion/generate_defaults.h"
+#include "item3d/networks/diffusion/pipeline.h"
 #include "item3d/networks/diffusion/pipeline_extras.h"
 #include "item3d/networks/diffusion/shape_condition.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/prior/data/shapes/shape_models.h"
 #include "item3d/prior/data/shapes/shapes.h"
+#include "item3d/render/interpolate.h"
+#include "item3d/render/pictures.h"
 #include "item3d/render/rasterize.h"
-#include "item3d/render/shade.h"
 #include "item3d/report/contact_sheet.h"
 
 #include <filesystem>
@@ -35,8 +40,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* no_shape = "none";              ///< for --like
-constexpr std::uint64_t shape_stream = 0x7368617065;  ///< of the seed
+constexpr const char* no_shape = "none";  ///< for --like
 
 struct GenerateCommand : CommonOptions {
     GenerateOptions generate;
@@ -51,7 +55,7 @@ struct GenerateCommand : CommonOptions {
 
 /// What was not said is the prior's own.
 void complete_options(const GenerateCommand& command, const fs::path& prior,
-                      const Pipeline& pipeline, GenerateOptions& options) {
+                      const DiffusionModel& pipeline, GenerateOptions& options) {
     const GenerateOptions defaults = generate_defaults(prior, pipeline, options.scheduler);
     options.scheduler = defaults.scheduler;
     options.steps = command.steps > 0 ? command.steps : defaults.steps;
@@ -60,7 +64,7 @@ void complete_options(const GenerateCommand& command, const fs::path& prior,
 }
 
 /// A model from the default view, as the pipeline takes it.
-torch::Tensor condition_of(const Model& model, PictureSize size, const Pipeline& pipeline) {
+at::Tensor condition_of(const Model& model, PictureSize size, const DiffusionModel& pipeline) {
     const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
     const Camera camera = default_view(model, aspect);
     const Geometry geometry = Geometry::from_model(model, pipeline.device());
@@ -71,24 +75,24 @@ torch::Tensor condition_of(const Model& model, PictureSize size, const Pipeline&
     const auto cells = [&](int pixels) { return (pixels + cell - 1) / cell; };
     return condition_of_shape(
         pipeline, seen_shape(raster, surface, bounding_sphere(model)),
-        torch::empty({1, 1, cells(size.height), cells(size.width)}, pipeline.device()));
+        at::empty({1, 1, cells(size.height), cells(size.width)}, pipeline.device()));
 }
 
 /// The prior's own kind of shape, another variant for each picture while there are some.
-torch::Tensor own_condition(const std::string& shape_class, const GenerateOptions& options,
-                            const Pipeline& pipeline) {
-    std::map<int, torch::Tensor> of_variant;
-    std::vector<torch::Tensor> conditions;
+at::Tensor own_condition(const std::string& shape_class, const GenerateOptions& options,
+                         const DiffusionModel& pipeline) {
+    std::map<int, at::Tensor> of_variant;
+    std::vector<at::Tensor> conditions;
     for (int i = 0; i < options.count; ++i) {
-        Random random(options.seed, shape_stream, static_cast<std::uint64_t>(i));
+        Random random(options.seed, RandomStream::shape, static_cast<std::uint64_t>(i));
         const auto variant = static_cast<int>(random.index(training_variants));
-        torch::Tensor& condition = of_variant[variant];
+        at::Tensor& condition = of_variant[variant];
         if (!condition.defined())
             condition = condition_of(shape_model(shape_class, variant),
                                      {options.width, options.height}, pipeline);
         conditions.push_back(condition);
     }
-    return torch::cat(conditions);
+    return at::cat(conditions);
 }
 
 /// Whose shape the pictures have; neither: the prompt alone says what is there.
@@ -99,7 +103,7 @@ struct ShapeChoice {
     bool any() const { return !model.empty() || !own_class.empty(); }
 };
 
-ShapeChoice choose_shape(const GenerateCommand& command, const Pipeline& pipeline,
+ShapeChoice choose_shape(const GenerateCommand& command, const DiffusionModel& pipeline,
                          const PipelineExtras& extras, const PriorVocabulary& vocabulary) {
     if (command.like == no_shape) return {};
     if (!command.like.empty()) return {command.like, ""};
@@ -110,7 +114,7 @@ ShapeChoice choose_shape(const GenerateCommand& command, const Pipeline& pipelin
 }
 
 /// Throws where the prior cannot be told a shape, or cannot do without.
-void check_shape(const ShapeChoice& shape, const fs::path& prior, const Pipeline& pipeline,
+void check_shape(const ShapeChoice& shape, const fs::path& prior, const DiffusionModel& pipeline,
                  const PipelineExtras& extras) {
     const int channels = pipeline.condition_channels();
     if (channels > 1 && channels != surface_condition_channels) {
@@ -128,8 +132,8 @@ void check_shape(const ShapeChoice& shape, const fs::path& prior, const Pipeline
 }
 
 /// What the pipeline is told of the shape; undefined where there is none.
-torch::Tensor shape_condition(const ShapeChoice& shape, const GenerateOptions& options,
-                              const Pipeline& pipeline) {
+at::Tensor shape_condition(const ShapeChoice& shape, const GenerateOptions& options,
+                           const DiffusionModel& pipeline) {
     if (!shape.model.empty())
         return condition_of(load_model(shape.model), {options.width, options.height}, pipeline);
     if (shape.own_class.empty()) return {};
@@ -151,7 +155,7 @@ void open_output(const fs::path& output) {
 
 /// A single picture is `output` itself. Several get numbers behind its name, and it becomes a sheet
 /// of them all. Returns what was written.
-std::vector<fs::path> save_pictures(const fs::path& output, const torch::Tensor& images) {
+std::vector<fs::path> save_pictures(const fs::path& output, const at::Tensor& images) {
     if (images.size(0) == 1) {
         save_image(output, to_image(images[0].cpu()));
         return {output};
@@ -176,31 +180,31 @@ std::string list_schedulers() {
     return list;
 }
 
-void run_generate(const GenerateCommand& command, torch::Device device) {
+void run_generate(const GenerateCommand& command, at::Device device) {
     if (command.generate.prompt.find_first_not_of(" \t\n") == std::string::npos)
         throw InputError("PROMPT", "is empty", "say what to draw, as in \"a golden vase\"");
     open_output(command.output);
     const fs::path prior = find_prior(command.prior);
     Pipeline pipeline = Pipeline::load(prior, device);
     const auto extras = command.extras.get<PipelineExtras>();
-    apply_extras(pipeline, extras);
+    pipeline.add(extras);
     const PriorVocabulary vocabulary = PriorVocabulary::load(prior);
     const ShapeChoice shape = choose_shape(command, pipeline, extras, vocabulary);
     check_shape(shape, prior, pipeline, extras);
     const std::string warning = vocabulary.warning(command.generate.prompt, shape.any());
     if (!warning.empty()) warn(warning);
-    warn_of_lost_words(*pipeline.tokenizer, "PROMPT", command.generate.prompt);
+    warn_of_lost_words(pipeline.tokenizer(), "PROMPT", command.generate.prompt);
 
     GenerateOptions options = command.generate;
     options.prompt = vocabulary.reading(options.prompt);
     complete_options(command, prior, pipeline, options);
-    const int native = pipeline.unet->config().sample_size * pipeline.downscale();
+    const int native = pipeline.native_size();
     const PictureSize size =
         command.size.empty() ? PictureSize{native, native} : parse_size(command.size);
     options.width = size.width;
     options.height = size.height;
 
-    const torch::Tensor condition = shape_condition(shape, options, pipeline);
+    const at::Tensor condition = shape_condition(shape, options, pipeline);
 
     nlohmann::json names = nlohmann::json::array();
     for (const fs::path& file :
@@ -229,8 +233,7 @@ void run_generate(const GenerateCommand& command, torch::Device device) {
 
 void add_generate_command(CLI::App& app) {
     auto options = std::make_shared<GenerateCommand>();
-    CLI::App* command =
-        add_command(app, "generate", "Draw pictures from a prompt with the prior alone", *options);
+    CLI::App* command = add_command(app, "generate", *options);
     command->add_option("PROMPT", options->generate.prompt, "What to draw, as in \"a golden vase\"")
         ->required();
     command

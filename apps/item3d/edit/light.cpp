@@ -1,10 +1,12 @@
 // item3d light: lights between formats and layouts, changed by hand, and described.
-#include "command.h"
-#include "edit/light_options.h"
-#include "edit/picture_options.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/light_options.h"
+#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/layout.h"
 
@@ -70,7 +72,7 @@ void run_light(const LightCommand& options) {
 
 void add_light_command(CLI::App& app) {
     auto options = std::make_shared<LightCommand>();
-    CLI::App* command = add_command(app, "light", "Convert, change and describe a light", *options);
+    CLI::App* command = add_command(app, "light", *options);
     command
         ->add_option("LIGHT", options->light,
                      "studio, noon, sunset, overcast, night, or an .hdr or .exr file")

@@ -1,6 +1,6 @@
-#include "edit/light_options.h"
+#include "apps/item3d/edit/light_options.h"
 
-#include "edit/picture_options.h"
+#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"

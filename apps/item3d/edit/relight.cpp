@@ -1,8 +1,9 @@
 // item3d relight: the same model under another light, chosen and changed by hand, or by words.
-#include "command.h"
-#include "edit/light_options.h"
-#include "edit/picture_options.h"
-#include "edit/relight_words.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/light_options.h"
+#include "apps/item3d/edit/picture_options.h"
+#include "apps/item3d/edit/relight_words.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -10,13 +11,15 @@
 #include "item3d/core/version.h"
 #include "item3d/io/gltf/light.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/layout.h"
 #include "item3d/lighting/presets/sky_hour.h"
 #include "item3d/render/occlusion/occlusion.h"
+#include "item3d/render/pictures.h"
 #include "item3d/render/prefilter/image_based_light.h"
-#include "item3d/render/shade.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/render.h"
+#include "item3d/render/textured_materials.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
 #include "item3d/report/model_pictures.h"
@@ -72,7 +75,7 @@ std::vector<Camera> cameras_around(const Model& model, int count) {
 /// Draws a model in one light, with the shadows that it throws upon itself.
 class LitPainter {
   public:
-    LitPainter(const Model& model, const Image& light, bool shadows, torch::Device device)
+    LitPainter(const Model& model, const Image& light, bool shadows, at::Device device)
         : model_(model),
           geometry_(Geometry::from_model(model, device)),
           materials_(model, device),
@@ -84,14 +87,14 @@ class LitPainter {
     }
 
     std::vector<Image> draw(int count, int pixels) const {
-        const torch::NoGradGuard no_grad;
+        const at::NoGradGuard no_grad;
         RenderOptions options;
         options.width = pixels;
         options.height = pixels;
         options.occlusion = occlusion_;
         std::vector<Image> pictures;
         for (const Camera& camera : cameras_around(model_, count)) {
-            const torch::Tensor picture = render(geometry_, materials_, light_, {camera}, options);
+            const at::Tensor picture = render(geometry_, materials_, light_, {camera}, options);
             pictures.push_back(to_display(to_image(picture[0].cpu())));
         }
         return pictures;
@@ -171,7 +174,7 @@ Image chosen_light(const RelightCommand& options, const std::optional<SunSetting
 
 /// What is drawn under both lights, and written.
 void write_pictures(const RelightCommand& options, const Model& model, const Image& old_image,
-                    const Image& new_image, torch::Device device) {
+                    const Image& new_image, at::Device device) {
     const fs::path folder = options.output;
     const LitPainter old_painter(model, old_image, options.shadows, device);
     const LitPainter painter(model, new_image, options.shadows, device);
@@ -205,7 +208,7 @@ ModelLights lights_for_model(const RelightCommand& options, const Image& light,
     return lights;
 }
 
-void run_relight(const RelightCommand& options, torch::Device device) {
+void run_relight(const RelightCommand& options, at::Device device) {
     const std::optional<SunSetting> placed_sun = chosen_sun(options.change);
     const Model model = load_model(options.model);
     const Image old_light = load_light(options.from_light);
@@ -263,7 +266,7 @@ void run_relight(const RelightCommand& options, torch::Device device) {
 
 void add_relight_command(CLI::App& app) {
     auto options = std::make_shared<RelightCommand>();
-    CLI::App* command = add_command(app, "relight", "Show a model under another light", *options);
+    CLI::App* command = add_command(app, "relight", *options);
     command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
     command->add_option("-o,--output", options->output, "A folder")->required();
     CLI::Option* light =
@@ -302,7 +305,7 @@ void add_relight_command(CLI::App& app) {
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();
     command->callback([options, light] {
-        const torch::Device device = start_command(*options);
+        const at::Device device = start_command(*options);
         refuse_contradictions(*options, light->count() > 0);
         run_relight(*options, device);
     });

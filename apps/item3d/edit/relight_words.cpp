@@ -1,7 +1,7 @@
-#include "edit/relight_words.h"
+#include "apps/item3d/edit/relight_words.h"
 
-#include "command.h"
-#include "edit/picture_options.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
@@ -9,9 +9,9 @@
 #include "item3d/edit/relight.h"
 #include "item3d/guidance/guidance.h"
 #include "item3d/hub/find_prior.h"
+#include "item3d/io/load_light.h"
 #include "item3d/lighting/adjust.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
 #include "item3d/lighting/optimized/light_model.h"
 #include "item3d/lighting/words.h"
 #include "item3d/networks/vocabulary.h"
@@ -128,7 +128,7 @@ void require_light_words(const std::filesystem::path& prior, const std::string& 
 
 WordsLight light_by_words(const RelightWords& words, const std::filesystem::path& model,
                           const std::string& from_light, const std::filesystem::path& output,
-                          torch::Device device) {
+                          at::Device device) {
     if (words.from.empty() || words.to.empty())
         throw UsageError("--from and --to go together: what the model looks like now, and then");
     const LightWords said = parse_light_words(words.to, viewer_azimuth());

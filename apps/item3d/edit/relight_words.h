@@ -4,10 +4,10 @@
 
 #include "item3d/lighting/description.h"
 #include "item3d/scene/image.h"
+#include "item3d/tensors/tensor.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <torch/types.h>
 
 #include <filesystem>
 #include <optional>
@@ -44,6 +44,6 @@ struct WordsLight {
 /// for sentences that name no light that the prior knows, and as find_light().
 WordsLight light_by_words(const RelightWords& words, const std::filesystem::path& model,
                           const std::string& from_light, const std::filesystem::path& output,
-                          torch::Device device);
+                          at::Device device);
 
 }  // namespace item3d

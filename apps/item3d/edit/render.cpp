@@ -1,18 +1,23 @@
 // item3d render: pictures of a model, shaded or of one of its material channels.
-#include "command.h"
-#include "edit/light_options.h"
-#include "edit/picture_options.h"
+#include "item3d/render/render.h"
+
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/light_options.h"
+#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
 #include "item3d/metrics/color.h"
 #include "item3d/render/occlusion/occlusion.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/scatter.h"
+#include "item3d/render/textured_materials.h"
 #include "item3d/report/picture.h"
 #include "item3d/scene/camera.h"
 
@@ -109,27 +114,26 @@ int choose_samples(const RenderCommand& options, PictureSize size) {
 }
 
 /// World-space normal with the material's normal map applied, [P, 3].
-torch::Tensor shading_normal(const Surface& surface, const MaterialSample& sample) {
+at::Tensor shading_normal(const Surface& surface, const MaterialSample& sample) {
     if (!sample.normal.defined()) return surface.normal;
-    const auto unit = [](const torch::Tensor& v) {
+    const auto unit = [](const at::Tensor& v) {
         return v / v.norm(2, {-1}, /*keepdim=*/true).clamp_min(1e-12);
     };
-    const torch::Tensor& n = surface.normal;
-    const torch::Tensor along = surface.tangent.narrow(-1, 0, 3);
-    const torch::Tensor tangent = unit(along - n * (n * along).sum(-1, true));
-    const torch::Tensor bitangent =
-        torch::linalg_cross(n, tangent) * surface.tangent.narrow(-1, 3, 1);
-    const torch::Tensor mapped = tangent * sample.normal.narrow(-1, 0, 1) +
-                                 bitangent * sample.normal.narrow(-1, 1, 1) +
-                                 n * sample.normal.narrow(-1, 2, 1);
+    const at::Tensor& n = surface.normal;
+    const at::Tensor along = surface.tangent.narrow(-1, 0, 3);
+    const at::Tensor tangent = unit(along - n * (n * along).sum(-1, true));
+    const at::Tensor bitangent = at::linalg_cross(n, tangent) * surface.tangent.narrow(-1, 3, 1);
+    const at::Tensor mapped = tangent * sample.normal.narrow(-1, 0, 1) +
+                              bitangent * sample.normal.narrow(-1, 1, 1) +
+                              n * sample.normal.narrow(-1, 2, 1);
     // Where there are no UVs the tangent is zero and the surface's own normal remains.
-    return torch::where(along.square().sum(-1, true) > 0, unit(mapped), n);
+    return at::where(along.square().sum(-1, true) > 0, unit(mapped), n);
 }
 
 /// Draws what the options ask for: linear values, ready for OpenEXR.
 class Painter {
   public:
-    Painter(const RenderCommand& options, const Model& model, torch::Device device)
+    Painter(const RenderCommand& options, const Model& model, at::Device device)
         : channel_(options.channel),
           size_(parse_size(options.size)),
           samples_(choose_samples(options, size_)),
@@ -154,7 +158,7 @@ class Painter {
 
     /// RGBA, premultiplied; one channel for depth and mask.
     Image linear(const Camera& camera) const {
-        const torch::NoGradGuard no_gradients;
+        const at::NoGradGuard no_gradients;
         if (channel_ != "shaded") return values(camera);
         RenderOptions options;
         options.width = size_.width;
@@ -188,17 +192,16 @@ class Painter {
     Image values(const Camera& camera) const {
         const Raster raster = visible(camera);
         if (channel_ == "depth") return to_image(raster.depth[0].unsqueeze(-1).cpu());
-        const torch::Tensor mask = (raster.triangle[0] >= 0).to(torch::kFloat32).unsqueeze(-1);
+        const at::Tensor mask = (raster.triangle[0] >= 0).to(at::kFloat).unsqueeze(-1);
         if (channel_ == "mask") return to_image(mask.cpu());
 
         const Surface surface = interpolate_surface(geometry_, raster, {camera});
         const MaterialSample sample = materials_.sample(surface);
-        torch::Tensor chosen = sample.base_color;
+        at::Tensor chosen = sample.base_color;
         if (channel_ == "orm") chosen = sample.orm;
         if (channel_ == "normal") chosen = shading_normal(surface, sample);
-        const torch::Tensor image =
-            scatter(chosen, surface, raster, torch::zeros({3}, chosen.options()));
-        return to_image(torch::cat({image[0], mask}, -1).cpu());
+        const at::Tensor image = scatter(chosen, surface, raster, at::zeros({3}, chosen.options()));
+        return to_image(at::cat({image[0], mask}, -1).cpu());
     }
 
     /// The nearest surface that is at least half opaque.
@@ -207,19 +210,18 @@ class Painter {
         Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
         for (int layer = 1; materials_.has_alpha() && layer < most_layers; ++layer) {
             const Surface surface = interpolate_surface(geometry_, raster, {camera});
-            const torch::Tensor alpha = materials_.sample(surface).alpha.unsqueeze(-1);
-            const torch::Tensor open =
-                scatter(alpha, surface, raster, torch::ones({1}, alpha.options())).squeeze(-1) <
-                0.5f;
+            const at::Tensor alpha = materials_.sample(surface).alpha.unsqueeze(-1);
+            const at::Tensor open =
+                scatter(alpha, surface, raster, at::ones({1}, alpha.options())).squeeze(-1) < 0.5f;
             if (!open.any().item<bool>()) break;
             // Nothing lies behind the farthest depth, so the other pixels stay as they are.
             const Raster next =
                 rasterize(geometry_, {camera}, size_.width, size_.height,
-                          torch::where(open, raster.depth, torch::full_like(raster.depth, 1e30f)));
-            raster.triangle = torch::where(open, next.triangle, raster.triangle);
-            raster.depth = torch::where(open, next.depth, raster.depth);
+                          at::where(open, raster.depth, at::full_like(raster.depth, 1e30f)));
+            raster.triangle = at::where(open, next.triangle, raster.triangle);
+            raster.depth = at::where(open, next.depth, raster.depth);
             raster.barycentrics =
-                torch::where(open.unsqueeze(-1), next.barycentrics, raster.barycentrics);
+                at::where(open.unsqueeze(-1), next.barycentrics, raster.barycentrics);
         }
         return raster;
     }
@@ -248,7 +250,7 @@ class Painter {
     std::shared_ptr<const Occlusion> occlusion_;
 };
 
-void run_render(const RenderCommand& options, torch::Device device) {
+void run_render(const RenderCommand& options, at::Device device) {
     if (!options.cameras.empty() && options.views > 0) {
         throw UsageError("--views and --cameras exclude one another");
     }
@@ -293,7 +295,7 @@ void run_render(const RenderCommand& options, torch::Device device) {
 
 void add_render_command(CLI::App& app) {
     auto options = std::make_shared<RenderCommand>();
-    CLI::App* command = add_command(app, "render", "Draw pictures of a model", *options);
+    CLI::App* command = add_command(app, "render", *options);
     command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
     command
         ->add_option("-o,--output", options->output,

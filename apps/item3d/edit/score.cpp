@@ -1,10 +1,11 @@
 // item3d score: how well an edited model follows its two sentences, and what it kept of the source.
-#include "command.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
 #include "item3d/metrics/clip_score.h"
 #include "item3d/report/model_pictures.h"
 #include "item3d/tensors/precision.h"
@@ -29,7 +30,7 @@ struct ScoreCommand : CommonOptions {
     int views = 6;
 };
 
-constexpr int view_pixels = 384;
+constexpr int score_view_pixels = 384;
 
 void print_table(const ClipScores& scores, const std::vector<double>& kept, double kept_mean) {
     fmt::print("{:8} {:>8} {:>8} {:>12} {:>12}\n", "view", "target", "before", "directional",
@@ -48,7 +49,7 @@ void check_sentence(const std::string& option, const std::string& sentence) {
         throw InputError(option, "the sentence is empty", "say what the model looks like");
 }
 
-void run_score(const ScoreCommand& options, torch::Device device) {
+void run_score(const ScoreCommand& options, at::Device device) {
     check_sentence("--from", options.from);
     check_sentence("--to", options.to);
     const Model before = load_model(options.before), after = load_model(options.after);
@@ -59,9 +60,9 @@ void run_score(const ScoreCommand& options, torch::Device device) {
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
     // One set of cameras: what moved or shrank shows.
     const std::vector<Camera> cameras = picture_cameras(before, options.views);
-    const torch::Tensor was = draw_pictures(before, light, cameras, view_pixels);
-    const torch::Tensor is = draw_pictures(after, light, cameras, view_pixels);
-    const torch::Tensor before_pictures = over_white(was), after_pictures = over_white(is);
+    const at::Tensor was = draw_pictures(before, light, cameras, score_view_pixels);
+    const at::Tensor is = draw_pictures(after, light, cameras, score_view_pixels);
+    const at::Tensor before_pictures = over_white(was), after_pictures = over_white(is);
     const auto begin = std::chrono::steady_clock::now();
     const ClipScores scores =
         clip_scores(clip, before_pictures, after_pictures, options.from, options.to);
@@ -94,8 +95,7 @@ void run_score(const ScoreCommand& options, torch::Device device) {
 
 void add_score_command(CLI::App& app) {
     auto options = std::make_shared<ScoreCommand>();
-    CLI::App* command = add_command(
-        app, "score", "Measure by CLIP how well an edit follows its sentences", *options);
+    CLI::App* command = add_command(app, "score", *options);
     command->add_option("BEFORE", options->before, "The model as it was")->required();
     command->add_option("AFTER", options->after, "The edited model")->required();
     command->add_option("--from", options->from, "What the model looked like")->required();
@@ -115,7 +115,7 @@ void add_score_command(CLI::App& app) {
                      "studio, noon, sunset, overcast, night, or an .hdr or .exr file")
         ->capture_default_str();
     command->callback([options] {
-        const torch::Device device = start_command(*options);
+        const at::Device device = start_command(*options);
         options->clip = given_or_embedded(options->clip, "clip", "--clip");
         run_score(*options, device);
     });

@@ -1,6 +1,6 @@
-// item3d: answers --help and --version by itself and otherwise becomes item3d-commands, the program
-// beside it that has the commands and LibTorch.
-#include "texts.h"
+// item3d: answers --help and --version by itself and otherwise becomes the program of the command's
+// family, which loads LibTorch; that alone takes longer than reading the help.
+#include "apps/item3d/commands.h"
 
 #include <unistd.h>
 
@@ -9,16 +9,44 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <system_error>
 
+namespace item3d {
 namespace {
 
-constexpr int done = 0, no_resource = 4;  // item3d::ExitCode
+constexpr int done = 0, usage = 2, no_resource = 4;  // item3d::ExitCode
 
-int say(const char* text) {
-    const bool said = std::fputs(text, stdout) >= 0 && std::fflush(stdout) == 0;
+std::string list_of_commands() {
+    std::string list;
+    for (const CommandEntry& command : commands) {
+        std::string line = "  " + std::string(command.name);
+        line.resize(30, ' ');
+        list += line + std::string(command.description) + "\n";
+    }
+    return list;
+}
+
+std::string help() {
+    return "Edits the look of textured 3D models from two sentences.\n"
+           "Usage: item3d COMMAND [OPTIONS]\n\n"
+           "Options:\n"
+           "  -h,--help                   Print this help message and exit\n"
+           "  --version                   Print the version and exit\n\n"
+           "Commands:\n" +
+           list_of_commands() + "\n`item3d COMMAND --help` lists a command's options.\n";
+}
+
+int say(const std::string& text) {
+    const bool said = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
     return said ? done : no_resource;
+}
+
+int refuse(const std::string& problem) {
+    std::fprintf(stderr, "item3d: error: %s; `item3d --help` lists the commands\n",
+                 problem.c_str());
+    return usage;
 }
 
 /// Threads of OpenMP wait for each other by spinning, for so long by default that beside a program
@@ -28,20 +56,40 @@ void wait_briefly() {
     if (std::getenv("OMP_WAIT_POLICY") == nullptr) setenv("GOMP_SPINCOUNT", "5000", 0);
 }
 
+/// The program of a family: beside this one in the build folder, in lib/item3d when installed.
+std::filesystem::path program_of(std::string_view family) {
+    std::error_code code;
+    const auto here = std::filesystem::read_symlink("/proc/self/exe", code).parent_path();
+    const auto name = "item3d-" + std::string(family);
+    if (std::filesystem::exists(here / name, code)) return here / name;
+    return here.parent_path() / "lib/item3d" / name;
+}
+
+int become(const CommandEntry& command, char** arguments) {
+    const auto program = program_of(command.family);
+    wait_briefly();
+    execv(program.c_str(), arguments);
+    if (errno == ENOENT)
+        std::fprintf(stderr,
+                     "item3d: error: %s is not there; build it (make) or install item3d again\n",
+                     program.c_str());
+    else
+        std::fprintf(stderr, "item3d: error: %s: %s\n", program.c_str(), std::strerror(errno));
+    return no_resource;
+}
+
+int run_launcher(int argc, char** argv) {
+    if (argc < 2) return refuse("no command is given");
+    const std::string_view first = argv[1];
+    if (first == "--help" || first == "-h") return say(help());
+    if (first == "--version") return say("item3d " ITEM3D_VERSION "\n");
+    if (const CommandEntry* command = find_command(first)) return become(*command, argv);
+    return refuse("there is no command '" + std::string(first) + "'");
+}
+
 }  // namespace
+}  // namespace item3d
 
 int main(int argc, char** argv) {
-    if (argc == 2) {
-        const std::string_view option = argv[1];
-        if (option == "--help" || option == "-h") return say(help_text);
-        if (option == "--version") return say(version_text);
-    }
-    std::error_code code;
-    const auto here = std::filesystem::read_symlink("/proc/self/exe", code);
-    const auto commands = here.parent_path() / "item3d-commands";
-    wait_briefly();
-    execv(commands.c_str(), argv);
-    std::fprintf(stderr, "item3d: error: %s: %s; install item3d again\n", commands.c_str(),
-                 std::strerror(errno));
-    return no_resource;
+    return item3d::run_launcher(argc, argv);
 }

@@ -1,7 +1,8 @@
 // item3d reconstruct: photographs with poses in, a model and its light out.
 #include "item3d/reconstruct/reconstruct.h"
 
-#include "command.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/reconstruct/commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/metrics/color.h"
@@ -77,8 +78,7 @@ void add_dataset_options(CLI::App& command, ReconstructCommand& options) {
 
 void add_reconstruct_command(CLI::App& app) {
     auto options = std::make_shared<ReconstructCommand>();
-    CLI::App* command =
-        add_command(app, "reconstruct", "Make a model from photographs with poses", *options);
+    CLI::App* command = add_command(app, "reconstruct", *options);
     ReconstructRequest& request = options->request;
     command
         ->add_option("DATASET", request.dataset,

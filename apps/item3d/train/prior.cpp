@@ -1,5 +1,7 @@
 // item3d prior: train the embedded prior, look at what it is trained on, fetch and verify others.
-#include "command.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/train/commands.h"
+#include "apps/item3d/train/prior_commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -9,9 +11,9 @@
 #include "item3d/networks/vocabulary.h"
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/prior/evaluation/sheets.h"
+#include "item3d/prior/training/settings.h"
 #include "item3d/prior/training/train.h"
 #include "item3d/prior/training/vision_language.h"
-#include "train/prior_commands.h"
 
 #include <functional>
 #include <utility>
@@ -321,7 +323,7 @@ void add_info(CLI::App& app) {
 }  // namespace
 
 void add_prior_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("prior", "Train, fetch and inspect priors");
+    CLI::App* command = add_command_group(app, "prior");
     command->require_subcommand(1);
     add_train(*command);
     add_prior_list(*command);

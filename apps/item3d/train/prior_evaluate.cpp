@@ -1,5 +1,6 @@
 // item3d prior evaluate and list: how good a prior is, and which ones there are.
-#include "command.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/train/prior_commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -10,7 +11,6 @@
 #include "item3d/suite/edit_suite.h"
 #include "item3d/suite/held_out_meshes.h"
 #include "item3d/suite/models.h"
-#include "train/prior_commands.h"
 
 #include <ATen/Parallel.h>
 

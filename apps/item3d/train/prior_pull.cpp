@@ -1,11 +1,11 @@
 // item3d prior pull: a prior from the Hugging Face hub into its cache.
-#include "command.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/train/prior_commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/hub/cache.h"
 #include "item3d/hub/pull.h"
-#include "train/prior_commands.h"
 
 #include <memory>
 #include <string>

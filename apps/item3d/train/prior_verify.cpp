@@ -1,10 +1,10 @@
 // item3d prior verify: what a prior's folder holds, and whether an edit can use it.
-#include "command.h"
+#include "apps/item3d/command.h"
+#include "apps/item3d/train/prior_commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/networks/verify.h"
-#include "train/prior_commands.h"
 
 #include <memory>
 #include <string>

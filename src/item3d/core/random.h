@@ -15,6 +15,68 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
+/// Streams of a run's seed. Each use draws from a stream of its own, so that no two draw the same
+/// numbers; a value that changes changes the results of what draws from it.
+enum class RandomStream : std::uint64_t {
+    surface_means = 0,           ///< edit: points at which a material's means are taken
+    noise = 1,                   ///< guidance: timestep and noise
+    renoise = 5,                 ///< guidance: of the learned source's samples
+    further_noise = 8,           ///< guidance: what methods draw besides
+    spread = 6,                  ///< edit: offsets of the points where a material is looked up
+    painting = 7,                ///< edit: which view the detail stage fits next
+    color_points = 9,            ///< edit: where the colour regulariser looks
+    field = 0x6669656c64,        ///< field: first values of the neural texture
+    fit = 0x666974,              ///< field: points that it is fitted at
+    metallic = 0x6d6574616c,     ///< field: points at which its mean metallic is measured
+    view_order = 0x76696577,     ///< reconstruct: in which order the photographs come
+    shape = 0x7368617065,        ///< reconstruct: the search for a shape; generate: its choice of one
+    refinement = 0x726566696e65, ///< reconstruct: materials and light
+    chamfer = 0x6368616d,        ///< reconstruct: points that two meshes are compared at
+};
+
+/// Streams of a seed that an index was mixed into. No such seed is a run's own, so that a value may
+/// be one of RandomStream's (8 is).
+enum class IndexedStream : std::uint64_t {
+    cameras = 2,           ///< edit: of an iteration
+    backgrounds = 3,       ///< edit: of an iteration
+    lights = 4,            ///< edit: of an iteration
+    painting_cameras = 8,  ///< edit: of a view of the detail stage
+};
+
+/// Two streams of one value are a case that is there twice, which does not compile; one that is
+/// missing here is warned of.
+constexpr bool is_listed(RandomStream stream) {
+    switch (stream) {
+        case RandomStream::surface_means:
+        case RandomStream::noise:
+        case RandomStream::renoise:
+        case RandomStream::further_noise:
+        case RandomStream::spread:
+        case RandomStream::painting:
+        case RandomStream::color_points:
+        case RandomStream::field:
+        case RandomStream::fit:
+        case RandomStream::metallic:
+        case RandomStream::view_order:
+        case RandomStream::shape:
+        case RandomStream::refinement:
+        case RandomStream::chamfer:
+            return true;
+    }
+    return false;
+}
+constexpr bool is_listed(IndexedStream stream) {
+    switch (stream) {
+        case IndexedStream::cameras:
+        case IndexedStream::backgrounds:
+        case IndexedStream::lights:
+        case IndexedStream::painting_cameras:
+            return true;
+    }
+    return false;
+}
+static_assert(is_listed(RandomStream::noise) && is_listed(IndexedStream::cameras));
+
 /// A stream of random numbers. Copying it copies its position; `counter` is its whole state.
 class Random {
   public:
@@ -22,6 +84,11 @@ class Random {
     /// own.
     explicit Random(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t counter = 0)
         : key_(mix_bits(seed ^ mix_bits(stream + 0x632be59bd9b4e019ull))), counter_(counter) {}
+
+    Random(std::uint64_t seed, RandomStream stream, std::uint64_t counter = 0)
+        : Random(seed, static_cast<std::uint64_t>(stream), counter) {}
+    Random(std::uint64_t seed, IndexedStream stream, std::uint64_t counter = 0)
+        : Random(seed, static_cast<std::uint64_t>(stream), counter) {}
 
     std::uint64_t bits() { return mix_bits(key_ ^ mix_bits(counter_++)); }
     std::uint64_t counter() const { return counter_; }

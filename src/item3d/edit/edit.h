@@ -3,9 +3,9 @@
 #pragma once
 
 #include "item3d/edit/settings.h"
+#include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>
-#include <torch/types.h>
 
 #include <filesystem>
 #include <string>
@@ -22,7 +22,7 @@ struct EditRequest {
     bool resume = false;
     /// Stop as an interrupt would when this many iterations are done; 0: run to the end.
     int stop_after = 0;
-    torch::Device device = torch::kCPU;
+    at::Device device = at::kCPU;
     std::string precision = "auto";  ///< of the networks: auto, fp32, bf16, fp16
     std::string memory = "auto";     ///< auto, low (less memory, more time), high
     int picture_pixels = 384;        ///< side of the report's views; its turntable has 3/4 of it

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "item3d/edit/scene.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <vector>
 
@@ -13,8 +12,7 @@ namespace item3d {
 std::vector<Camera> field_cameras(const EditScene& scene, int count);
 
 /// [N, size, size, 3] sRGB in [0, 1], a light grey behind. No graph.
-torch::Tensor draw_field(const EditScene& scene, NeuralTexture& field,
-                         const EnvironmentLight& light, const std::vector<Camera>& cameras,
-                         int size);
+at::Tensor draw_field(const EditScene& scene, NeuralTexture& field, const EnvironmentLight& light,
+                      const std::vector<Camera>& cameras, int size);
 
 }  // namespace item3d

@@ -46,10 +46,10 @@ std::vector<int> select_materials(const Model& model, const std::vector<std::str
 
 MaterialSource::MaterialSource(const Model& model, const TexturedMaterials& textured,
                                const FieldSpace& space, const std::vector<int>& edited_materials,
-                               ChannelMask channels, torch::Device device)
+                               ChannelMask channels, at::Device device)
     : textured_(textured), space_(space), channels_(channels) {
-    torch::Tensor is_edited =
-        torch::zeros({static_cast<std::int64_t>(model.materials.size())}, torch::kBool);
+    at::Tensor is_edited =
+        at::zeros({static_cast<std::int64_t>(model.materials.size())}, at::kBool);
     for (const int index : edited_materials)
         is_edited[index] = true;
     for (const Primitive& primitive : model.primitives) {
@@ -57,11 +57,12 @@ MaterialSource::MaterialSource(const Model& model, const TexturedMaterials& text
     }
     is_edited_ = is_edited.to(device);
     orm_is_edited_ =
-        torch::tensor({channels.occlusion, channels.roughness, channels.metallic}).to(device);
+        at::tensor({int{channels.occlusion}, int{channels.roughness}, int{channels.metallic}})
+            .to(device, at::kBool);
 }
 
 MaterialSample MaterialSource::own(const Surface& surface) const {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     return textured_.sample(surface);
 }
 
@@ -70,15 +71,13 @@ MaterialSample MaterialSource::sample(const Surface& surface, NeuralTexture& fie
     if (!channels_.any()) return own;
     MaterialSample mixed = own;
     const MaterialSample edited = field->forward(space_.positions(surface));
-    const torch::Tensor here = all_edited_
-                                   ? torch::ones({1, 1}, is_edited_.options())
-                                   : is_edited_.index_select(0, surface.material).unsqueeze(1);
-    if (channels_.base_color)
-        mixed.base_color = torch::where(here, edited.base_color, own.base_color);
-    mixed.orm = torch::where(here & orm_is_edited_, edited.orm, own.orm);
+    const at::Tensor here = all_edited_ ? at::ones({1, 1}, is_edited_.options())
+                                        : is_edited_.index_select(0, surface.material).unsqueeze(1);
+    if (channels_.base_color) mixed.base_color = at::where(here, edited.base_color, own.base_color);
+    mixed.orm = at::where(here & orm_is_edited_, edited.orm, own.orm);
     if (channels_.normal) {
         mixed.normal =
-            own.normal.defined() ? torch::where(here, edited.normal, own.normal) : edited.normal;
+            own.normal.defined() ? at::where(here, edited.normal, own.normal) : edited.normal;
     }
     return mixed;
 }

@@ -4,9 +4,8 @@
 #include "item3d/edit/settings.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/field/surface_points.h"
-#include "item3d/render/textured.h"
-
-#include <torch/types.h>
+#include "item3d/render/textured_materials.h"
+#include "item3d/tensors/tensor.h"
 
 #include <vector>
 
@@ -35,7 +34,7 @@ class MaterialSource {
     /// `textured` and `space` must outlive this. device: theirs and that of the surfaces to come.
     MaterialSource(const Model& model, const TexturedMaterials& textured, const FieldSpace& space,
                    const std::vector<int>& edited_materials, ChannelMask channels,
-                   torch::Device device = torch::kCPU);
+                   at::Device device = at::kCPU);
     /// The model's own materials, which are the same whatever the field holds.
     MaterialSample own(const Surface& surface) const;
     /// Differentiable in the field's parameters. own: of this surface.
@@ -45,9 +44,9 @@ class MaterialSource {
   private:
     const TexturedMaterials& textured_;
     const FieldSpace& space_;
-    torch::Tensor is_edited_;  ///< [materials] bool
+    at::Tensor is_edited_;  ///< [materials] bool
     bool all_edited_ = true;
-    torch::Tensor orm_is_edited_;  ///< [3] bool
+    at::Tensor orm_is_edited_;  ///< [3] bool
     ChannelMask channels_;
 };
 

@@ -28,7 +28,7 @@ struct Need {
     double weights = 0, high = 0, low = 0;  ///< bytes
 };
 
-Need estimate(const EditRequest& request, torch::Dtype precision) {
+Need estimate(const EditRequest& request, at::ScalarType precision) {
     const PriorReport report = verify_prior(request.prior);
     if (!report.usable()) return {};  // loading it will say why
     const double side = static_cast<double>(request.settings.resolution) / report.resolution;
@@ -49,7 +49,7 @@ Need estimate(const EditRequest& request, torch::Dtype precision) {
 
 }  // namespace
 
-bool wants_low_memory(const EditRequest& request, torch::Dtype precision, torch::Device device) {
+bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::Device device) {
     if (request.memory != "auto" && request.memory != "low" && request.memory != "high")
         throw InputError("--memory", "'" + request.memory + "' is not known",
                          "choose auto, low or high");
@@ -62,7 +62,7 @@ bool wants_low_memory(const EditRequest& request, torch::Dtype precision, torch:
             "{}: its weights take {:.1f} GB in {}, and {:.1f} GB of memory are free; close other "
             "programs{}",
             request.prior.string(), need.weights / gigabyte, precision_name(precision),
-            free / gigabyte, precision == torch::kFloat32 ? ", or try --precision bf16" : ""));
+            free / gigabyte, precision == at::kFloat ? ", or try --precision bf16" : ""));
     const bool low = request.memory == "low" || (request.memory == "auto" && need.high > free);
     const double wanted = low ? need.low : need.high;
     if (wanted > free)

@@ -9,6 +9,6 @@ namespace item3d {
 /// looks at the prior's headers and at what is free, and says what it chose where that is not the
 /// usual. Warns where even the low estimate does not fit. Throws ResourceError when the weights
 /// alone do not, InputError on another word.
-bool wants_low_memory(const EditRequest& request, torch::Dtype precision, torch::Device device);
+bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::Device device);
 
 }  // namespace item3d

@@ -4,6 +4,8 @@
 #include "item3d/core/progress.h"
 #include "item3d/edit/memory.h"
 #include "item3d/io/load.h"
+#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/running_pipeline.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/tensors/checkpoint.h"
 #include "item3d/tensors/precision.h"
@@ -15,7 +17,7 @@ namespace {
 constexpr int small_picture = 128;
 
 std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& request,
-                                                       torch::Dtype precision) {
+                                                       at::ScalarType precision) {
     if (!wants_captions(request.settings)) return nullptr;
     if (request.captioner.empty())
         throw InputError("--adjust " + request.settings.adjust,
@@ -27,41 +29,45 @@ std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& reques
 
 /// What of a scene the prior is loaded by.
 struct PriorNeeds {
-    torch::Device device = torch::kCPU;
-    torch::Dtype precision = torch::kFloat32;
+    at::Device device = at::kCPU;
+    at::ScalarType precision = at::kFloat;
     bool any_sentence = false;  ///< some are not known yet: a captioner will say them
     bool low_memory = false;
     std::string from, to;  ///< as the prior reads them
 };
 
-Pipeline load_networks(const EditRequest& request, const PriorNeeds& prior_needs) {
+std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request,
+                                              const PriorNeeds& prior_needs) {
     const EditSettings& settings = request.settings;
     if (prior_needs.any_sentence) {
-        Pipeline prior = Pipeline::load(request.prior, prior_needs.device, prior_needs.precision);
-        apply_extras(prior, settings);
+        auto prior = std::make_shared<Pipeline>(
+            Pipeline::load(request.prior, prior_needs.device, prior_needs.precision));
+        prior->add(settings);
         return prior;
     }
     RunNeeds needs;
     needs.prompts = {prior_needs.from, prior_needs.to, settings.negative_prompt,
                      default_negative_prompt()};
     needs.decoder = wants_detail(settings);
-    return load_to_run(request.prior, prior_needs.device, prior_needs.precision, settings, needs);
+    return std::make_shared<RunningPipeline>(RunningPipeline::load(
+        request.prior, prior_needs.device, prior_needs.precision, settings, needs));
 }
 
-std::shared_ptr<Pipeline> load_prior(const EditRequest& request, const PriorNeeds& needs) {
-    const auto prior = std::make_shared<Pipeline>(load_networks(request, needs));
+std::shared_ptr<const DiffusionModel> load_prior(const EditRequest& request,
+                                                 const PriorNeeds& needs) {
+    const auto prior = load_networks(request, needs);
     const EditSettings& settings = request.settings;
     for (const auto& [option, text] :
          {std::pair("--from", settings.from), std::pair("--to", settings.to)})
-        warn_of_lost_words(*prior->tokenizer, option, text);
-    if (needs.low_memory) prior->vae->recompute_in_backward(true);
+        warn_of_lost_words(prior->tokenizer(), option, text);
+    if (needs.low_memory) prior->recompute_in_backward(true);
     return prior;
 }
 
 }  // namespace
 
 EditScene load_scene(const EditRequest& request) {
-    const torch::Device device = request.device;
+    const at::Device device = request.device;
     const EditSettings& settings = request.settings;
 
     EditScene scene;

@@ -5,10 +5,10 @@
 #include "item3d/edit/material_source.h"
 #include "item3d/edit/views.h"
 #include "item3d/field/atlas/atlas.h"
-#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/diffusion_model.h"
 #include "item3d/networks/vision_language/captioner.h"
 #include "item3d/render/geometry.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/textured_materials.h"
 #include "item3d/scene/model.h"
 
 #include <future>
@@ -30,12 +30,12 @@ struct EditScene {
     std::unique_ptr<MaterialSource> source;
     std::unique_ptr<LightRig> lights;
     /// Ready some time after the rest: who asks earlier waits, or hears why it cannot be loaded.
-    std::shared_future<std::shared_ptr<Pipeline>> loading_prior;
-    const std::shared_ptr<Pipeline>& prior() const { return loading_prior.get(); }
+    std::shared_future<std::shared_ptr<const DiffusionModel>> loading_prior;
+    const std::shared_ptr<const DiffusionModel>& prior() const { return loading_prior.get(); }
     std::shared_future<std::string> hashing_weights;  ///< hash_of_weights() of the prior
     std::shared_ptr<const Captioner> captioner;       ///< none unless wants_captions()
-    torch::Dtype precision = torch::kFloat32;
-    torch::Device device = torch::kCPU;  ///< where all tensors of the edit are
+    at::ScalarType precision = at::kFloat;
+    at::Device device = at::kCPU;  ///< where all tensors of the edit are
 };
 
 /// Returns while the prior is still being loaded. Throws InputError for what cannot be read of the

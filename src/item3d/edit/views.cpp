@@ -2,8 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
+#include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
 #include "item3d/metrics/color.h"
 
 #include <array>
@@ -62,9 +62,9 @@ std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std:
     return cameras;
 }
 
-torch::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
-                                 std::int64_t iteration) {
-    torch::Tensor colors = torch::empty({count, 3});
+at::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
+                              std::int64_t iteration) {
+    at::Tensor colors = at::empty({count, 3});
     const Vec3 named = background == "vary" ? Vec3(0) : linear_background(background);
     Random random = iteration_random(seed, background_stream, iteration);
     for (int i = 0; i < count; ++i) {
@@ -78,7 +78,7 @@ torch::Tensor sample_backgrounds(const std::string& background, int count, std::
 }
 
 LightRig::LightRig(const std::string& light, const std::string& augment, int cube_size,
-                   torch::Device device)
+                   at::Device device)
     : cube_size_(cube_size), device_(device) {
     const auto add = [&](Source source, int rotations, float first) {
         for (int i = 0; i < rotations; ++i)
@@ -119,7 +119,7 @@ EnvironmentLight LightRig::pick(std::uint64_t seed, std::int64_t iteration) {
     if (exposure_range_ == 0) return light;
     const double factor = std::exp2(random.uniform(-exposure_range_, exposure_range_));
     light.diffuse = light.diffuse * factor;
-    for (torch::Tensor& level : light.specular)
+    for (at::Tensor& level : light.specular)
         level = level * factor;
     return light;
 }

@@ -6,8 +6,7 @@
 #include "item3d/scene/camera.h"
 #include "item3d/scene/image.h"
 #include "item3d/scene/model.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <cstdint>
 #include <optional>
@@ -30,8 +29,8 @@ std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std:
 
 /// Linear RGB backgrounds [count, 3]: one colour (see parse_color), or another grey each time for
 /// "vary". On the CPU. Throws InputError.
-torch::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
-                                 std::int64_t iteration);
+at::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
+                              std::int64_t iteration);
 
 /// The lights of an edit, each prefiltered when it is first wanted. Shading that stays the same in
 /// every picture could be painted into the base colour; a light that moves cannot. augment:
@@ -43,7 +42,7 @@ class LightRig {
   public:
     /// light: preset or file. Throws InputError.
     LightRig(const std::string& light, const std::string& augment, int cube_size,
-             torch::Device device);
+             at::Device device);
     EnvironmentLight pick(std::uint64_t seed, std::int64_t iteration);
     /// The light as it was given, for pictures.
     const EnvironmentLight& front() { return at(0); }
@@ -66,7 +65,7 @@ class LightRig {
     std::vector<Light> lights_;
     std::optional<EnvironmentLight> studio_;  ///< where it is not the first, once it was wanted
     int cube_size_;
-    torch::Device device_;
+    at::Device device_;
     float exposure_range_ = 0;  ///< stops
 };
 

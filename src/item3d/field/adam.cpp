@@ -18,17 +18,16 @@ AdamRates make_rates(const AdamOptions& options, int updates) {
 }
 
 /// The rates of each number of updates where a parameter is; for the CPU a view of `rates`.
-torch::Tensor rates_on(std::vector<AdamRates>& rates, torch::Device device) {
+at::Tensor rates_on(std::vector<AdamRates>& rates, at::Device device) {
     static_assert(std::is_trivially_copyable_v<AdamRates>);
-    return torch::from_blob(rates.data(),
-                            {static_cast<std::int64_t>(rates.size() * sizeof(AdamRates))},
-                            torch::kUInt8)
+    return at::from_blob(rates.data(),
+                         {static_cast<std::int64_t>(rates.size() * sizeof(AdamRates))}, at::kByte)
         .to(device);
 }
 
 /// Whether a sparse gradient's rows are unique and in rising order. Not looked at on devices: those
 /// are sorted again when in doubt.
-bool rows_rise(const torch::Tensor& indices) {
+bool rows_rise(const at::Tensor& indices) {
     if (!indices.is_cpu()) return false;
     if (indices.size(0) != 1 || !indices.is_contiguous()) return false;
     const std::int64_t* index = indices.data_ptr<std::int64_t>();
@@ -40,33 +39,39 @@ bool rows_rise(const torch::Tensor& indices) {
 
 }  // namespace
 
-std::size_t Adam::add_group(std::vector<torch::Tensor> parameters, const AdamOptions& options) {
-    Group group;
-    group.options = options;
-    const torch::Tensor& factors = options.row_factors;
+void Adam::add_group(const std::string& name, std::vector<at::Tensor> parameters,
+                     const AdamOptions& options) {
+    for (const Group& other : groups_)
+        ITEM3D_CHECK(other.name != name, "two groups of parameters are named " + name);
+    Group group{name, {}, options};
+    const at::Tensor& factors = options.row_factors;
     ITEM3D_CHECK(!factors.defined() ||
                      (parameters.size() == 1 && factors.numel() == parameters.front().size(0) &&
-                      factors.scalar_type() == torch::kFloat32 && factors.is_contiguous() &&
+                      factors.scalar_type() == at::kFloat && factors.is_contiguous() &&
                       factors.device() == parameters.front().device()),
                  "row factors are a float32 for each row of a group's one parameter");
-    for (torch::Tensor& parameter : parameters) {
+    for (at::Tensor& parameter : parameters) {
         ITEM3D_CHECK((parameter.is_cpu() || parameter.is_cuda()) && parameter.is_contiguous() &&
-                         parameter.dim() > 0 && parameter.scalar_type() == torch::kFloat32,
+                         parameter.dim() > 0 && parameter.scalar_type() == at::kFloat,
                      "Adam updates contiguous float32 tensors on the CPU or CUDA");
         Slot slot;
         slot.parameter = parameter;
-        slot.momentum = torch::zeros_like(parameter, torch::TensorOptions().requires_grad(false));
-        slot.variance = torch::zeros_like(slot.momentum);
-        slot.updates =
-            torch::zeros({parameter.size(0)}, slot.momentum.options().dtype(torch::kInt32));
+        slot.momentum = at::zeros_like(parameter, at::TensorOptions().requires_grad(false));
+        slot.variance = at::zeros_like(slot.momentum);
+        slot.updates = at::zeros({parameter.size(0)}, slot.momentum.options().dtype(at::kInt));
         group.slots.push_back(std::move(slot));
     }
     groups_.push_back(std::move(group));
-    return groups_.size() - 1;
+}
+
+AdamOptions& Adam::options(const std::string& group) {
+    for (Group& own : groups_)
+        if (own.name == group) return own.options;
+    ITEM3D_CHECK(false, "no group of parameters is named " + group);
 }
 
 void Adam::step() {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     ++most_updates_;
     for (Group& group : groups_) {
         // Rows were updated differently often, but few counts are many rows': powers are taken once
@@ -76,12 +81,12 @@ void Adam::step() {
             rates.push_back(make_rates(group.options, std::max(1, updates)));
         }
         for (Slot& slot : group.slots) {
-            torch::Tensor gradient = slot.parameter.grad();
+            at::Tensor gradient = slot.parameter.grad();
             if (!gradient.defined()) continue;
             const std::int64_t width =
                 slot.parameter.numel() / std::max<std::int64_t>(1, slot.parameter.size(0));
             std::int64_t rows = slot.parameter.size(0);
-            torch::Tensor row_index;  // undefined: all rows
+            at::Tensor row_index;  // undefined: all rows
             if (gradient.is_sparse()) {
                 // Accumulation drops the mark that says "coalesced", so the rows themselves are
                 // looked at.
@@ -91,8 +96,8 @@ void Adam::step() {
                 rows = row_index.size(0);
             }
             gradient = gradient.contiguous();
-            const torch::Device device = slot.parameter.device();
-            const torch::Tensor own_rates = rates_on(rates, device);
+            const at::Device device = slot.parameter.device();
+            const at::Tensor own_rates = rates_on(rates, device);
             const AdamParameters p{
                 row_index.defined() ? row_index.const_data_ptr<std::int64_t>() : nullptr,
                 gradient.const_data_ptr<float>(),
@@ -117,16 +122,16 @@ void Adam::step() {
 void Adam::zero_grad() {
     for (Group& group : groups_) {
         for (Slot& slot : group.slots)
-            slot.parameter.mutable_grad() = torch::Tensor();
+            slot.parameter.mutable_grad() = at::Tensor();
     }
 }
 
-std::map<std::string, torch::Tensor> Adam::state() const {
-    std::map<std::string, torch::Tensor> all;
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-        for (std::size_t p = 0; p < groups_[g].slots.size(); ++p) {
-            const Slot& slot = groups_[g].slots[p];
-            const std::string prefix = std::to_string(g) + "." + std::to_string(p) + ".";
+std::map<std::string, at::Tensor> Adam::state() const {
+    std::map<std::string, at::Tensor> all;
+    for (const Group& group : groups_) {
+        for (std::size_t p = 0; p < group.slots.size(); ++p) {
+            const Slot& slot = group.slots[p];
+            const std::string prefix = group.name + "." + std::to_string(p) + ".";
             all[prefix + "momentum"] = slot.momentum;
             all[prefix + "variance"] = slot.variance;
             all[prefix + "updates"] = slot.updates;
@@ -135,15 +140,15 @@ std::map<std::string, torch::Tensor> Adam::state() const {
     return all;
 }
 
-void Adam::load_state(const std::map<std::string, torch::Tensor>& state) {
+void Adam::load_state(const std::map<std::string, at::Tensor>& state) {
     for (auto& [name, own] : this->state()) {
         const auto found = state.find(name);
         ITEM3D_CHECK(found != state.end(), "optimiser state " + name + " is missing");
         ITEM3D_CHECK(found->second.sizes() == own.sizes(),
                      "optimiser state " + name + " has the wrong shape");
-        torch::Tensor target = own;
+        at::Tensor target = own;
         target.copy_(found->second);
-        if (target.scalar_type() == torch::kInt32 && target.numel() > 0) {
+        if (target.scalar_type() == at::kInt && target.numel() > 0) {
             most_updates_ = std::max(most_updates_, target.max().item<int>());
         }
     }

@@ -1,7 +1,7 @@
 // Adam (Kingma and Ba 2015) for parameters of which a step touches few rows.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <cstdint>
 #include <map>
@@ -17,7 +17,7 @@ struct AdamOptions {
     double epsilon = 1e-15;
     /// [rows] float32, for groups of one parameter: what each row's learning rate is multiplied by.
     /// Undefined: by 1.
-    torch::Tensor row_factors = {};
+    at::Tensor row_factors = {};
 };
 
 /// Groups of parameters, each with its own options. A parameter whose gradient is dense is updated
@@ -28,30 +28,32 @@ struct AdamOptions {
 /// of threads.
 class Adam {
   public:
-    /// Returns the group's index. Parameters keep their order; names in state() follow it.
-    std::size_t add_group(std::vector<torch::Tensor> parameters, const AdamOptions& options);
-    AdamOptions& options(std::size_t group) { return groups_.at(group).options; }
-    std::size_t group_count() const { return groups_.size(); }
+    /// Each group has a name of its own. Throws std::logic_error for one that is there already.
+    void add_group(const std::string& name, std::vector<at::Tensor> parameters,
+                   const AdamOptions& options);
+    /// Of a group; throws std::logic_error where none has this name.
+    AdamOptions& options(const std::string& group);
 
     /// Parameters without a gradient are left alone.
     void step();
     /// Gradients become undefined (the next backward makes new ones).
     void zero_grad();
 
-    /// All that a resumed run needs, by name ("0.1.momentum": group 0, parameter 1). The tensors
-    /// are the optimiser's own: clone them to keep them beyond the next step.
-    std::map<std::string, torch::Tensor> state() const;
+    /// All that a resumed run needs, by name ("network.1.momentum": of the group's parameter 1). The
+    /// tensors are the optimiser's own: clone them to keep them beyond the next step.
+    std::map<std::string, at::Tensor> state() const;
     /// Copies values of state() back. Throws std::logic_error for a missing name or a wrong shape.
-    void load_state(const std::map<std::string, torch::Tensor>& state);
+    void load_state(const std::map<std::string, at::Tensor>& state);
 
   private:
     struct Slot {
-        torch::Tensor parameter;
-        torch::Tensor momentum;  ///< running mean of gradients, as the parameter
-        torch::Tensor variance;  ///< running mean of squares, as the parameter
-        torch::Tensor updates;   ///< [rows] int32: how often each row was updated
+        at::Tensor parameter;
+        at::Tensor momentum;  ///< running mean of gradients, as the parameter
+        at::Tensor variance;  ///< running mean of squares, as the parameter
+        at::Tensor updates;   ///< [rows] int32: how often each row was updated
     };
     struct Group {
+        std::string name;
         std::vector<Slot> slots;
         AdamOptions options;
     };

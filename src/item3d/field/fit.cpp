@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/field/adam.h"
+#include "item3d/render/pictures.h"
 
 #include <algorithm>
 #include <chrono>
@@ -22,38 +23,38 @@ constexpr double negligible_gradient = 1e-6;
 constexpr int network_steps = 40;
 
 /// [8] what the squared error of each encoded value counts.
-torch::Tensor column_weights() {
+at::Tensor column_weights() {
     constexpr float base_color = 1.0f / 3, orm = 0.5f / 3, slope = 0.1f / 3;
-    return torch::tensor({base_color, base_color, base_color, orm, orm, orm, slope, slope});
+    return at::tensor({base_color, base_color, base_color, orm, orm, orm, slope, slope});
 }
 
 /// Points of the surface, and what the field should return there as NeuralTexture::encoded() has
 /// it, for some steps. Constants.
 struct Examples {
-    torch::Tensor positions;  ///< [steps, P, 3]
-    torch::Tensor values;     ///< [steps, P, 8]
+    at::Tensor positions;  ///< [steps, P, 3]
+    at::Tensor values;     ///< [steps, P, 8]
 };
 
 Examples draw_examples(const SurfaceSampler& sampler, const FieldSpace& space,
                        const TexturedMaterials& materials, float steepest, std::int64_t steps,
                        std::int64_t points, Random& random) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Surface surface = sampler.sample(steps * points, random);
     const MaterialSample own = materials.sample(surface);
-    torch::Tensor slopes = torch::zeros({steps * points, 2}, own.orm.options());
+    at::Tensor slopes = at::zeros({steps * points, 2}, own.orm.options());
     if (own.normal.defined())
         slopes = (own.normal.narrow(1, 0, 2) / own.normal.narrow(1, 2, 1).clamp_min(1e-3f))
                      .clamp(-steepest, steepest);
-    const torch::Tensor values = torch::cat(
+    const at::Tensor values = at::cat(
         {linear_to_srgb(own.base_color.clamp(0.0f, 1.0f)), own.orm.clamp(0.0f, 1.0f), slopes}, 1);
     // The sampler goes over the surface in order: each step takes one of `steps` neighbours.
-    const auto deal = [&](const torch::Tensor& rows) {
+    const auto deal = [&](const at::Tensor& rows) {
         return rows.reshape({points, steps, -1}).transpose(0, 1).contiguous();
     };
     return {deal(space.positions(surface)), deal(values)};
 }
 
-double psnr(const torch::Tensor& difference) {
+double psnr(const at::Tensor& difference) {
     return -10.0 * std::log10(std::max(1e-12, difference.square().mean().item<double>()));
 }
 
@@ -81,17 +82,17 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
                            const TexturedMaterials& materials, const FitOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     const SurfaceSampler sampler(geometry, space);
-    Random random(options.seed, 0x666974);
+    Random random(options.seed, RandomStream::fit);
     Adam adam;
     AdamOptions adam_options;
     adam_options.epsilon = negligible_gradient;
-    const std::size_t table = adam.add_group({field->table()}, adam_options);
-    const std::size_t network = adam.add_group(field->network_parameters(), adam_options);
+    adam.add_group("table", {field->table()}, adam_options);
+    adam.add_group("network", field->network_parameters(), adam_options);
     const int alone = std::min(network_steps, options.steps), steps = alone + options.steps;
     std::optional<Progress> progress;
     if (options.show_progress) progress.emplace("fit", steps);
     const float steepest = field->options().ranges.normal_slope;
-    const torch::Tensor weights = column_weights().to(field->table().device());
+    const at::Tensor weights = column_weights().to(field->table().device());
     Examples drawn;
     for (int step = 0; step < steps; ++step) {
         // Many at once: to draw few takes as long.
@@ -100,17 +101,16 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
         if (place == 0)
             drawn = draw_examples(sampler, space, materials, steepest,
                                   std::min(steps_drawn, steps - step), options.batch, random);
-        const torch::Tensor difference =
-            field->encoded(drawn.positions[place]) - drawn.values[place];
+        const at::Tensor difference = field->encoded(drawn.positions[place]) - drawn.values[place];
         adam.zero_grad();
         (difference.square() * weights).sum().div(double(options.batch)).backward();
-        if (step < alone) field->table().mutable_grad() = torch::Tensor();
+        if (step < alone) field->table().mutable_grad() = at::Tensor();
         // A cosine from the full rate to a hundredth: the last steps average out the batches'
         // noise.
         const double part = static_cast<double>(std::max(0, step - alone)) / options.steps;
         const double decay = 0.01 + 0.99 * 0.5 * (1.0 + std::cos(3.14159265358979 * part));
-        adam.options(table).learning_rate = options.table_learning_rate * decay;
-        adam.options(network).learning_rate = options.network_learning_rate * decay;
+        adam.options("table").learning_rate = options.table_learning_rate * decay;
+        adam.options("network").learning_rate = options.network_learning_rate * decay;
         adam.step();
         if (progress) progress->update(step + 1);
         if (interrupted()) throw Interrupted("interrupted while the neural texture was fitted");
@@ -118,9 +118,9 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
     adam.zero_grad();
     progress.reset();
 
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Examples fresh = draw_examples(sampler, space, materials, steepest, 1, 32768, random);
-    const torch::Tensor difference = field->encoded(fresh.positions[0]) - fresh.values[0];
+    const at::Tensor difference = field->encoded(fresh.positions[0]) - fresh.values[0];
     FitResult result;
     result.base_color_psnr = psnr(difference.narrow(1, 0, 3));
     result.orm_psnr = psnr(difference.narrow(1, 3, 3));
@@ -131,11 +131,11 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
 
 void shift_metallic(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
                     float mean) {
-    const torch::NoGradGuard no_grad;
-    Random random(0, 0x6d6574616c);
-    const torch::Tensor positions =
+    const at::NoGradGuard no_grad;
+    Random random(0, RandomStream::metallic);
+    const at::Tensor positions =
         space.positions(SurfaceSampler(geometry, space).sample(4096, random));
-    torch::Tensor bias = field->metallic_bias();
+    at::Tensor bias = field->metallic_bias();
     const float start = bias.item<float>();
     // Metallic rises with the bias; a sigmoid is flat beyond these.
     float low = start - 16.0f;

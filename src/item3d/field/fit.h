@@ -3,7 +3,7 @@
 
 #include "item3d/field/neural_texture.h"
 #include "item3d/field/surface_points.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/textured_materials.h"
 
 namespace item3d {
 

@@ -15,13 +15,11 @@ namespace {
 
 constexpr std::int64_t chunk_size = 512;  // points that a thread takes at a time
 
-void check_arguments(const HashGrid& grid, const torch::Tensor& points,
-                     const torch::Tensor& table) {
-    ITEM3D_CHECK(
-        points.dim() == 2 && points.size(1) == 3 && points.scalar_type() == torch::kFloat32,
-        c10::str("points must be [P, 3] float32, are ", points.sizes()));
+void check_arguments(const HashGrid& grid, const at::Tensor& points, const at::Tensor& table) {
+    ITEM3D_CHECK(points.dim() == 2 && points.size(1) == 3 && points.scalar_type() == at::kFloat,
+                 c10::str("points must be [P, 3] float32, are ", points.sizes()));
     ITEM3D_CHECK(table.dim() == 2 && table.size(0) == grid.entries() &&
-                     table.size(1) == grid.features && table.scalar_type() == torch::kFloat32,
+                     table.size(1) == grid.features && table.scalar_type() == at::kFloat,
                  c10::str("table must be [", grid.entries(), ", ", grid.features, "] float32, is ",
                           table.sizes()));
     ITEM3D_CHECK((points.is_cpu() || points.is_cuda()) && points.device() == table.device(),
@@ -122,8 +120,8 @@ class RankedSet {
 
 /// Threads take whole levels: each sums its points in order, without atomics.
 template <int F>
-torch::Tensor encode_table_backward(const HashGrid& grid, const float* points, std::int64_t count,
-                                    const float* grad) {
+at::Tensor encode_table_backward(const HashGrid& grid, const float* points, std::int64_t count,
+                                 const float* grad) {
     const int width = grid.output_width();
     const std::int64_t level_count = static_cast<std::int64_t>(grid.levels.size());
     std::vector<RankedSet> touched;
@@ -148,8 +146,8 @@ torch::Tensor encode_table_backward(const HashGrid& grid, const float* points, s
         first_row[l + 1] += first_row[l];
 
     const std::int64_t rows = first_row.back();
-    torch::Tensor indices = torch::empty({1, rows}, torch::kInt64);
-    torch::Tensor values = torch::zeros({rows, F}, torch::kFloat32);
+    at::Tensor indices = at::empty({1, rows}, at::kLong);
+    at::Tensor values = at::zeros({rows, F}, at::kFloat);
     std::int64_t* index_data = indices.data_ptr<std::int64_t>();
     float* value_data = values.data_ptr<float>();
     parallel_for(
@@ -186,11 +184,11 @@ torch::Tensor encode_table_backward(const HashGrid& grid, const float* points, s
         1);
     // Rows are unique and in rising order.
     return at::_sparse_coo_tensor_unsafe(indices, values, {grid.entries(), F},
-                                         torch::TensorOptions().dtype(torch::kFloat32), true);
+                                         at::TensorOptions().dtype(at::kFloat), true);
 }
 
-HashGridParameters cuda_parameters(const HashGrid& grid, const torch::Tensor& points,
-                                   const torch::Tensor& table) {
+HashGridParameters cuda_parameters(const HashGrid& grid, const at::Tensor& points,
+                                   const at::Tensor& table) {
     HashGridParameters p{};
     std::copy(grid.levels.begin(), grid.levels.end(), p.levels);
     p.level_count = static_cast<int>(grid.levels.size());
@@ -203,22 +201,21 @@ HashGridParameters cuda_parameters(const HashGrid& grid, const torch::Tensor& po
 
 /// As encode_table_backward: the sums are taken for the whole table, and the rows that points
 /// touched are then picked.
-torch::Tensor table_backward_on_cuda(const HashGrid& grid, HashGridParameters p,
-                                     torch::Device device) {
-    const torch::Tensor touched =
-        torch::zeros({grid.entries()}, torch::TensorOptions().dtype(torch::kUInt8).device(device));
+at::Tensor table_backward_on_cuda(const HashGrid& grid, HashGridParameters p, at::Device device) {
+    const at::Tensor touched =
+        at::zeros({grid.entries()}, at::TensorOptions().dtype(at::kByte).device(device));
     p.touched = touched.data_ptr<std::uint8_t>();
-    const torch::Tensor sums = cuda::sum_on_device(
+    const at::Tensor sums = cuda::sum_on_device(
         grid.entries() * grid.features, 8 * p.count, device, [&](const Accumulator& accumulator) {
             p.table_gradient = accumulator;
             cuda::run(cuda::field_table().hash_grid_table_backward, p, p.level_count * p.count,
                       device);
         });
-    const torch::Tensor rows = touched.nonzero().squeeze(1);
+    const at::Tensor rows = touched.nonzero().squeeze(1);
     return at::_sparse_coo_tensor_unsafe(
         rows.unsqueeze(0), sums.view({grid.entries(), grid.features}).index_select(0, rows),
-        {grid.entries(), grid.features},
-        torch::TensorOptions().dtype(torch::kFloat32).device(device), true);
+        {grid.entries(), grid.features}, at::TensorOptions().dtype(at::kFloat).device(device),
+        true);
 }
 
 /// Calls f.operator()<F>() for the grid's number of features.
@@ -238,12 +235,11 @@ auto with_features(int features, const Function& f) {
 
 class EncodeFunction : public torch::autograd::Function<EncodeFunction> {
   public:
-    static torch::Tensor forward(torch::autograd::AutogradContext* context,
-                                 const torch::Tensor& points, const torch::Tensor& table,
-                                 const HashGrid& grid) {
-        const torch::Tensor p = points.contiguous();
-        const torch::Tensor t = table.contiguous();
-        torch::Tensor out = torch::empty({p.size(0), grid.output_width()}, p.options());
+    static at::Tensor forward(torch::autograd::AutogradContext* context, const at::Tensor& points,
+                              const at::Tensor& table, const HashGrid& grid) {
+        const at::Tensor p = points.contiguous();
+        const at::Tensor t = table.contiguous();
+        at::Tensor out = at::empty({p.size(0), grid.output_width()}, p.options());
         if (p.is_cuda()) {
             HashGridParameters parameters = cuda_parameters(grid, p, t);
             parameters.features = out.data_ptr<float>();
@@ -269,9 +265,9 @@ class EncodeFunction : public torch::autograd::Function<EncodeFunction> {
     static torch::autograd::variable_list backward(torch::autograd::AutogradContext* context,
                                                    torch::autograd::variable_list grads) {
         const auto saved = context->get_saved_variables();
-        const torch::Tensor& points = saved[0];
-        const torch::Tensor& table = saved[1];
-        const torch::Tensor grad = grads[0].contiguous();
+        const at::Tensor& points = saved[0];
+        const at::Tensor& table = saved[1];
+        const at::Tensor grad = grads[0].contiguous();
         const std::vector<std::int64_t> shape = context->saved_data["grid"].toIntVector();
         HashGrid grid;
         grid.features = static_cast<int>(shape[0]);
@@ -280,26 +276,26 @@ class EncodeFunction : public torch::autograd::Function<EncodeFunction> {
                                    static_cast<std::uint32_t>(shape[i + 1]),
                                    static_cast<std::uint32_t>(shape[i + 2]), shape[i + 3] != 0});
         }
-        torch::Tensor grad_points, grad_table;
+        at::Tensor grad_points, grad_table;
         if (points.is_cuda()) {
             HashGridParameters parameters = cuda_parameters(grid, points, table);
             parameters.feature_gradient = grad.const_data_ptr<float>();
             if (context->saved_data["needs_points"].toBool()) {
-                grad_points = torch::empty_like(points);
+                grad_points = at::empty_like(points);
                 parameters.point_gradient = grad_points.data_ptr<float>();
                 cuda::run(cuda::field_table().hash_grid_points_backward, parameters, points.size(0),
                           points.device());
             }
             if (context->saved_data["needs_table"].toBool())
                 grad_table = table_backward_on_cuda(grid, parameters, points.device());
-            return {grad_points, grad_table, torch::Tensor()};
+            return {grad_points, grad_table, at::Tensor()};
         }
         with_features(grid.features, [&]<int F>() {
             const float* p = points.data_ptr<float>();
             const float* g = grad.data_ptr<float>();
             const std::int64_t count = points.size(0);
             if (context->saved_data["needs_points"].toBool()) {
-                grad_points = torch::empty_like(points);
+                grad_points = at::empty_like(points);
                 encode_points_backward<F>(grid, p, count, table.data_ptr<float>(), g,
                                           grad_points.data_ptr<float>());
             }
@@ -307,7 +303,7 @@ class EncodeFunction : public torch::autograd::Function<EncodeFunction> {
                 grad_table = encode_table_backward<F>(grid, p, count, g);
             }
         });
-        return {grad_points, grad_table, torch::Tensor()};
+        return {grad_points, grad_table, at::Tensor()};
     }
 };
 
@@ -347,8 +343,7 @@ std::int64_t HashGrid::entries() const {
                           : static_cast<std::int64_t>(levels.back().first) + levels.back().entries;
 }
 
-torch::Tensor encode(const HashGrid& grid, const torch::Tensor& points,
-                     const torch::Tensor& table) {
+at::Tensor encode(const HashGrid& grid, const at::Tensor& points, const at::Tensor& table) {
     check_arguments(grid, points, table);
     return EncodeFunction::apply(points, table, grid);
 }

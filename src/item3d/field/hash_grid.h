@@ -2,8 +2,7 @@
 #pragma once
 
 #include "item3d/field/kernels/hash_grid.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <vector>
 
@@ -31,6 +30,6 @@ struct HashGrid {
 /// just the entries that the points touched: a step of an edit touches thousands of an table's
 /// million. On the CPU sums run in the order of the points within a level, so the result does
 /// not depend on threads; on CUDA only where LibTorch was asked for deterministic algorithms.
-torch::Tensor encode(const HashGrid& grid, const torch::Tensor& points, const torch::Tensor& table);
+at::Tensor encode(const HashGrid& grid, const at::Tensor& points, const at::Tensor& table);
 
 }  // namespace item3d

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
+#include "item3d/render/pictures.h"
 
 #include <torch/csrc/autograd/custom_function.h>
 
@@ -20,18 +21,18 @@ constexpr float awake = 0.5f;  ///< bound of hidden units' first biases
 /// Clamps the value and lets the gradient through.
 class ClampValue : public torch::autograd::Function<ClampValue> {
   public:
-    static torch::Tensor forward(torch::autograd::AutogradContext*, const torch::Tensor& value,
-                                 const torch::Tensor& low, const torch::Tensor& high) {
-        return torch::clamp(value, low, high);
+    static at::Tensor forward(torch::autograd::AutogradContext*, const at::Tensor& value,
+                              const at::Tensor& low, const at::Tensor& high) {
+        return at::clamp(value, low, high);
     }
     static torch::autograd::variable_list backward(torch::autograd::AutogradContext*,
                                                    torch::autograd::variable_list grads) {
-        return {grads[0], torch::Tensor(), torch::Tensor()};
+        return {grads[0], at::Tensor(), at::Tensor()};
     }
 };
 
-torch::Tensor uniform_tensor(std::vector<std::int64_t> shape, float bound, Random& random) {
-    torch::Tensor tensor = torch::empty(shape, torch::kFloat32);
+at::Tensor uniform_tensor(std::vector<std::int64_t> shape, float bound, Random& random) {
+    at::Tensor tensor = at::empty(shape, at::kFloat);
     float* data = tensor.data_ptr<float>();
     for (std::int64_t i = 0; i < tensor.numel(); ++i) {
         data[i] = static_cast<float>(random.uniform(-bound, bound));
@@ -45,79 +46,88 @@ NeuralTextureImpl::NeuralTextureImpl(const NeuralTextureOptions& options)
     : options_(options),
       grid_(HashGrid::make(options.levels, options.features, options.log2_table_size,
                            options.base_resolution, options.finest_resolution)) {
-    Random random(options.seed, 0x6669656c64);
-    table_ = register_parameter("table",
-                                uniform_tensor({grid_.entries(), grid_.features}, 1e-4f, random));
+    Random random(options.seed, RandomStream::field);
+    table_ = uniform_tensor({grid_.entries(), grid_.features}, 1e-4f, random);
     const std::array<int, 4> widths{grid_.output_width(), options.hidden_width,
                                     options.hidden_width, output_width};
     for (std::size_t i = 0; i + 1 < widths.size(); ++i) {
         const bool last = i + 2 == widths.size();
         const float bound = std::sqrt((last ? 1.0f : 6.0f) / widths[i]);
-        weights_.push_back(
-            register_parameter("weight" + std::to_string(i),
-                               uniform_tensor({widths[i + 1], widths[i]}, bound, random)));
+        weights_.push_back(uniform_tensor({widths[i + 1], widths[i]}, bound, random));
         // Hidden units are awake where the table is empty, so that a plain surface's colour can
         // change by the network's weights: by the last biases alone it would take far longer.
-        biases_.push_back(
-            register_parameter("bias" + std::to_string(i),
-                               uniform_tensor({widths[i + 1]}, last ? 0.0f : awake, random)));
+        biases_.push_back(uniform_tensor({widths[i + 1]}, last ? 0.0f : awake, random));
     }
     const MaterialRanges& r = options.ranges;
     const float slope = r.normal_slope;
-    low_ = register_buffer(
-        "low", torch::tensor({r.base_color[0], r.base_color[0], r.base_color[0], r.occlusion[0],
-                              r.roughness[0], r.metallic[0], -slope, -slope}));
-    high_ = register_buffer(
-        "high", torch::tensor({r.base_color[1], r.base_color[1], r.base_color[1], r.occlusion[1],
-                               r.roughness[1], r.metallic[1], slope, slope}));
+    low_ = at::tensor({r.base_color[0], r.base_color[0], r.base_color[0], r.occlusion[0],
+                       r.roughness[0], r.metallic[0], -slope, -slope});
+    high_ = at::tensor({r.base_color[1], r.base_color[1], r.base_color[1], r.occlusion[1],
+                        r.roughness[1], r.metallic[1], slope, slope});
     const Vec3 origin = options.bounds[0];
-    origin_ = register_buffer("origin", torch::tensor({origin.x, origin.y, origin.z}));
-    ITEM3D_CHECK(torch::all(high_ >= low_).item<bool>(), "a material range is empty");
+    origin_ = at::tensor({origin.x, origin.y, origin.z});
+    ITEM3D_CHECK(at::all(high_ >= low_).item<bool>(), "a material range is empty");
+    for (const auto& [name, parameter] : named_parameters())
+        parameter.requires_grad_(true);
 }
 
-torch::Tensor NeuralTextureImpl::encoded(const torch::Tensor& positions) {
+void NeuralTextureImpl::to(at::Device device) {
+    for (const auto& [name, parameter] : named_parameters())
+        parameter.set_data(parameter.to(device));
+    for (at::Tensor* constant : {&low_, &high_, &origin_})
+        *constant = constant->to(device);
+}
+
+NamedTensors NeuralTextureImpl::named_parameters() const {
+    NamedTensors named{{"table", table_}};
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+        named.emplace_back("weight" + std::to_string(i), weights_[i]);
+        named.emplace_back("bias" + std::to_string(i), biases_[i]);
+    }
+    return named;
+}
+
+at::Tensor NeuralTextureImpl::encoded(const at::Tensor& positions) {
     const Vec3 size = options_.bounds[1] - options_.bounds[0];
     // One scale for all axes: cells are cubes.
     const float extent = std::max({size.x, size.y, size.z, 1e-20f});
-    const torch::Tensor points = (positions - origin_) * (1.0f / extent);
-    torch::Tensor x = encode(grid_, points, table_);
+    const at::Tensor points = (positions - origin_) * (1.0f / extent);
+    at::Tensor x = encode(grid_, points, table_);
     for (std::size_t i = 0; i < weights_.size(); ++i) {
-        x = torch::linear(x, weights_[i], biases_[i]);
-        if (i + 1 < weights_.size()) x = torch::relu(x);
+        x = at::linear(x, weights_[i], biases_[i]);
+        if (i + 1 < weights_.size()) x = at::relu(x);
     }
-    const torch::Tensor span = high_ - low_;
-    const torch::Tensor wide = torch::addcmul(low_ - overshoot * span, torch::sigmoid(x),
-                                              (1.0f + 2.0f * overshoot) * span);
+    const at::Tensor span = high_ - low_;
+    const at::Tensor wide =
+        at::addcmul(low_ - overshoot * span, at::sigmoid(x), (1.0f + 2.0f * overshoot) * span);
     return ClampValue::apply(wide, low_, high_);
 }
 
-MaterialSample NeuralTextureImpl::forward(const torch::Tensor& positions) {
-    const torch::Tensor values = encoded(positions);
+MaterialSample NeuralTextureImpl::forward(const at::Tensor& positions) {
+    const at::Tensor values = encoded(positions);
     MaterialSample sample;
     sample.base_color = srgb_to_linear(values.narrow(1, 0, 3));
     sample.orm = values.narrow(1, 3, 3);
-    const torch::Tensor tangent = values.narrow(1, 6, 2);
-    const torch::Tensor normal =
-        torch::cat({tangent, torch::ones_like(tangent.narrow(1, 0, 1))}, 1);
-    sample.normal = normal * torch::rsqrt(normal.square().sum(1, true));
+    const at::Tensor tangent = values.narrow(1, 6, 2);
+    const at::Tensor normal = at::cat({tangent, at::ones_like(tangent.narrow(1, 0, 1))}, 1);
+    sample.normal = normal * at::rsqrt(normal.square().sum(1, true));
     return sample;
 }
 
-std::vector<torch::Tensor> NeuralTextureImpl::network_parameters() const {
-    std::vector<torch::Tensor> all = weights_;
+std::vector<at::Tensor> NeuralTextureImpl::network_parameters() const {
+    std::vector<at::Tensor> all = weights_;
     all.insert(all.end(), biases_.begin(), biases_.end());
     return all;
 }
 
 NeuralTexture snapshot(const NeuralTexture& field) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     NeuralTexture copy(field->options());
     copy->to(field->table().device());
-    auto targets = copy->named_parameters();
-    for (const auto& source : field->named_parameters()) {
-        targets[source.key()].copy_(source.value());
-        targets[source.key()].set_requires_grad(false);
-    }
+    const NamedTensors sources = field->named_parameters();
+    const NamedTensors targets = copy->named_parameters();
+    for (std::size_t i = 0; i < sources.size(); ++i)
+        targets[i].second.copy_(sources[i].second).set_requires_grad(false);
     return copy;
 }
 

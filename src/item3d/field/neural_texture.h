@@ -4,13 +4,15 @@
 #include "item3d/core/math.h"
 #include "item3d/field/hash_grid.h"
 #include "item3d/render/shade.h"
-
-#include <torch/nn/module.h>
-#include <torch/nn/pimpl.h>
-#include <torch/types.h>
+#include "item3d/tensors/safetensors.h"
+#include "item3d/tensors/tensor.h"
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace item3d {
 
@@ -43,40 +45,58 @@ struct NeuralTextureOptions {
 /// A hash grid and a network with two hidden layers. Parameters: "table", the grid's features with
 /// sparse gradients (for Adam of adam.h), and "weight0", "bias0", ... of the network. Made on the
 /// CPU; to(device) moves it.
-class NeuralTextureImpl : public torch::nn::Module {
+class NeuralTextureImpl {
   public:
     explicit NeuralTextureImpl(const NeuralTextureOptions& options);
+
+    /// Moves parameters and ranges.
+    void to(at::Device device);
+    /// The parameters themselves, as a checkpoint has them: "table", "weight0", "bias0", ...
+    NamedTensors named_parameters() const;
 
     /// positions [P, 3] world space (first instances', see FieldSpace) -> base colour, orm and
     /// tangent-space normal; emissive and alpha stay undefined. Differentiable in the parameters
     /// and, inside the bounds, in the positions.
-    MaterialSample forward(const torch::Tensor& positions);
+    MaterialSample forward(const at::Tensor& positions);
 
     /// The same as the network has it, [P, 8]: base colour sRGB-encoded, orm, the normal's x / z
     /// and y / z.
-    torch::Tensor encoded(const torch::Tensor& positions);
+    at::Tensor encoded(const at::Tensor& positions);
 
     const NeuralTextureOptions& options() const { return options_; }
-    const torch::Tensor& table() const { return table_; }
+    const at::Tensor& table() const { return table_; }
     const HashGrid& grid() const { return grid_; }  ///< the table's levels
     /// Weights and biases of the network.
-    std::vector<torch::Tensor> network_parameters() const;
+    std::vector<at::Tensor> network_parameters() const;
 
     /// A view of the one bias that all metallic values share.
-    torch::Tensor metallic_bias() { return biases_.back().detach().select(0, metallic_output); }
+    at::Tensor metallic_bias() { return biases_.back().detach().select(0, metallic_output); }
 
   private:
     static constexpr int metallic_output = 5;  ///< after base colour 3, occlusion, roughness
 
     NeuralTextureOptions options_;
     HashGrid grid_;
-    torch::Tensor table_;                 ///< [entries, features]
-    std::vector<torch::Tensor> weights_;  ///< [out, in] each
-    std::vector<torch::Tensor> biases_;   ///< [out]
-    torch::Tensor low_, high_;            ///< [8] ranges of the outputs
-    torch::Tensor origin_;                ///< [3] the lower corner of the bounds
+    at::Tensor table_;                 ///< [entries, features]
+    std::vector<at::Tensor> weights_;  ///< [out, in] each
+    std::vector<at::Tensor> biases_;   ///< [out]
+    at::Tensor low_, high_;            ///< [8] ranges of the outputs
+    at::Tensor origin_;                ///< [3] the lower corner of the bounds
 };
-TORCH_MODULE(NeuralTexture);
+
+/// A shared handle of a neural texture: copies are the same texture.
+class NeuralTexture {
+  public:
+    explicit NeuralTexture(const NeuralTextureOptions& options)
+        : field_(std::make_shared<NeuralTextureImpl>(options)) {}
+    /* implicit */ NeuralTexture(std::nullptr_t) {}  ///< none
+
+    bool is_empty() const { return !field_; }
+    NeuralTextureImpl* operator->() const { return field_.get(); }
+
+  private:
+    std::shared_ptr<NeuralTextureImpl> field_;
+};
 
 /// A copy that training leaves alone, on the same device: what the field was, to compare with what
 /// it has become.

@@ -11,7 +11,7 @@ namespace item3d {
 namespace {
 
 /// [4, 3] float32 affine map that takes `from` to `to`, two sets of corresponding points.
-torch::Tensor affine_between(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+at::Tensor affine_between(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
     constexpr std::size_t most = 4096;  // points are plenty: twelve numbers are sought
     const std::size_t stride = std::max<std::size_t>(1, from.size() / most);
     std::vector<double> a, b;
@@ -19,45 +19,44 @@ torch::Tensor affine_between(const std::vector<Vec3>& from, const std::vector<Ve
         a.insert(a.end(), {from[i].x, from[i].y, from[i].z, 1.0});
         b.insert(b.end(), {to[i].x, to[i].y, to[i].z});
     }
-    const torch::Tensor lhs = torch::tensor(a, torch::kFloat64).view({-1, 4});
-    const torch::Tensor rhs = torch::tensor(b, torch::kFloat64).view({-1, 3});
+    const at::Tensor lhs = at::tensor(a, at::kDouble).view({-1, 4});
+    const at::Tensor rhs = at::tensor(b, at::kDouble).view({-1, 3});
     // The pseudo-inverse: flat primitives determine the map within their plane alone.
-    return torch::matmul(torch::linalg_pinv(lhs, 1e-7), rhs).to(torch::kFloat32);
+    return at::matmul(at::linalg_pinv(lhs, 1e-7), rhs).to(at::kFloat);
 }
 
 }  // namespace
 
-Surface surface_at(const Geometry& geometry, const torch::Tensor& triangle,
-                   const torch::Tensor& barycentrics) {
-    const torch::Tensor corners = geometry.triangles.index_select(0, triangle).to(torch::kInt64);
-    const torch::Tensor u = barycentrics.narrow(1, 0, 1);
-    const torch::Tensor v = barycentrics.narrow(1, 1, 1);
-    const torch::Tensor w = 1.0f - u - v;
-    const auto interpolate = [&](const torch::Tensor& attribute) {
+Surface surface_at(const Geometry& geometry, const at::Tensor& triangle,
+                   const at::Tensor& barycentrics) {
+    const at::Tensor corners = geometry.triangles.index_select(0, triangle).to(at::kLong);
+    const at::Tensor u = barycentrics.narrow(1, 0, 1);
+    const at::Tensor v = barycentrics.narrow(1, 1, 1);
+    const at::Tensor w = 1.0f - u - v;
+    const auto interpolate = [&](const at::Tensor& attribute) {
         return attribute.index_select(0, corners.select(1, 0)) * u +
                attribute.index_select(0, corners.select(1, 1)) * v +
                attribute.index_select(0, corners.select(1, 2)) * w;
     };
-    const auto unit = [](const torch::Tensor& vector) {
-        return vector / torch::sqrt(vector.square().sum(1, true)).clamp_min(1e-12);
+    const auto unit = [](const at::Tensor& vector) {
+        return vector / at::sqrt(vector.square().sum(1, true)).clamp_min(1e-12);
     };
     Surface surface;
-    surface.pixel = torch::arange(triangle.size(0), triangle.options());
+    surface.pixel = at::arange(triangle.size(0), triangle.options());
     surface.position = interpolate(geometry.positions);
     surface.normal = unit(interpolate(geometry.normals));
     surface.tangent = interpolate(geometry.tangents);
     surface.uv = interpolate(geometry.uvs);
     surface.color = interpolate(geometry.colors);
     surface.view = surface.normal;
-    surface.material = geometry.triangle_material.index_select(0, triangle).to(torch::kInt64);
-    surface.primitive = geometry.triangle_primitive.index_select(0, triangle).to(torch::kInt64);
+    surface.material = geometry.triangle_material.index_select(0, triangle).to(at::kLong);
+    surface.primitive = geometry.triangle_primitive.index_select(0, triangle).to(at::kLong);
     return surface;
 }
 
-FieldSpace::FieldSpace(const Model& model, const std::vector<int>& materials,
-                       torch::Device device) {
+FieldSpace::FieldSpace(const Model& model, const std::vector<int>& materials, at::Device device) {
     std::map<std::pair<int, int>, int> seen;
-    std::vector<torch::Tensor> transforms;
+    std::vector<at::Tensor> transforms;
     bounds_ = {Vec3(1e30f), Vec3(-1e30f)};
     bool any = false;
     for (std::size_t i = 0; i < model.primitives.size(); ++i) {
@@ -75,7 +74,7 @@ FieldSpace::FieldSpace(const Model& model, const std::vector<int>& materials,
         edited_.push_back(std::find(materials.begin(), materials.end(), primitive.material) !=
                           materials.end());
         if (first == static_cast<int>(i)) {
-            transforms.push_back(torch::eye(4).narrow(1, 0, 3));
+            transforms.push_back(at::eye(4).narrow(1, 0, 3));
             if (!edited_.back()) continue;
             any = true;
             for (const Vec3& p : primitive.positions) {
@@ -88,21 +87,21 @@ FieldSpace::FieldSpace(const Model& model, const std::vector<int>& materials,
         }
     }
     ITEM3D_CHECK(any, "no primitive has one of the edited materials");
-    transforms_ = torch::stack(transforms).to(device);
+    transforms_ = at::stack(transforms).to(device);
 }
 
-torch::Tensor FieldSpace::positions(const Surface& surface) const {
+at::Tensor FieldSpace::positions(const Surface& surface) const {
     if (!has_instances_) return surface.position;
-    const torch::Tensor transform = transforms_.index_select(0, surface.primitive);  // [P, 4, 3]
-    return torch::matmul(surface.position.unsqueeze(1), transform.narrow(1, 0, 3)).squeeze(1) +
+    const at::Tensor transform = transforms_.index_select(0, surface.primitive);  // [P, 4, 3]
+    return at::matmul(surface.position.unsqueeze(1), transform.narrow(1, 0, 3)).squeeze(1) +
            transform.select(1, 3);
 }
 
 SurfaceSampler::SurfaceSampler(const Geometry& geometry, const FieldSpace& space)
     : geometry_(geometry) {
-    const torch::Tensor positions = geometry.positions.detach().cpu().contiguous();
-    const torch::Tensor corners = geometry.triangles.cpu().contiguous();
-    const torch::Tensor owners = geometry.triangle_primitive.cpu().contiguous();
+    const at::Tensor positions = geometry.positions.detach().cpu().contiguous();
+    const at::Tensor corners = geometry.triangles.cpu().contiguous();
+    const at::Tensor owners = geometry.triangle_primitive.cpu().contiguous();
     const float* p = positions.data_ptr<float>();
     const std::int32_t* triangle = corners.data_ptr<std::int32_t>();
     const std::int32_t* primitive = owners.data_ptr<std::int32_t>();
@@ -125,8 +124,8 @@ SurfaceSampler::SurfaceSampler(const Geometry& geometry, const FieldSpace& space
 }
 
 Surface SurfaceSampler::sample(std::int64_t count, Random& random) const {
-    torch::Tensor triangle = torch::empty({count}, torch::kInt64);
-    torch::Tensor barycentrics = torch::empty({count, 2}, torch::kFloat32);
+    at::Tensor triangle = at::empty({count}, at::kLong);
+    at::Tensor barycentrics = at::empty({count, 2}, at::kFloat);
     std::int64_t* t = triangle.data_ptr<std::int64_t>();
     float* b = barycentrics.data_ptr<float>();
     for (std::int64_t i = 0; i < count; ++i) {
@@ -140,7 +139,7 @@ Surface SurfaceSampler::sample(std::int64_t count, Random& random) const {
         b[2 * i] = static_cast<float>(1.0 - root);
         b[2 * i + 1] = static_cast<float>(v);
     }
-    const torch::Device device = geometry_.positions.device();
+    const at::Device device = geometry_.positions.device();
     return surface_at(geometry_, triangle.to(device), barycentrics.to(device));
 }
 

@@ -3,10 +3,9 @@
 
 #include "item3d/core/random.h"
 #include "item3d/render/geometry.h"
-#include "item3d/render/rasterize.h"
+#include "item3d/render/interpolate.h"
 #include "item3d/scene/model.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <array>
 #include <vector>
@@ -15,8 +14,8 @@ namespace item3d {
 
 /// The surface at `barycentrics` [P, 2] float32 (weights of vertices 0 and 1) of triangles [P]
 /// int64. `pixel` counts the points and `view` is the normal.
-Surface surface_at(const Geometry& geometry, const torch::Tensor& triangle,
-                   const torch::Tensor& barycentrics);
+Surface surface_at(const Geometry& geometry, const at::Tensor& triangle,
+                   const at::Tensor& barycentrics);
 
 /// The space in which the neural texture lives: world space, except that copies of one primitive
 /// (instances: the same source mesh under several nodes) all lie where the first one is. They share
@@ -24,11 +23,10 @@ Surface surface_at(const Geometry& geometry, const torch::Tensor& triangle,
 class FieldSpace {
   public:
     /// materials: indices of the materials that are edited. device: of the surfaces to come.
-    FieldSpace(const Model& model, const std::vector<int>& materials,
-               torch::Device device = torch::kCPU);
+    FieldSpace(const Model& model, const std::vector<int>& materials, at::Device device = at::kCPU);
 
     /// [P, 3]: surface.position, moved from instances to their first.
-    torch::Tensor positions(const Surface& surface) const;
+    at::Tensor positions(const Surface& surface) const;
 
     /// Of each primitive of the model: itself or the first of its instances.
     const std::vector<int>& first_instance() const { return first_instance_; }
@@ -42,8 +40,7 @@ class FieldSpace {
     std::vector<bool> edited_;
     std::array<Vec3, 2> bounds_;
     bool has_instances_ = false;
-    torch::Tensor
-        transforms_;  ///< [primitives, 4, 3]: (x, y, z, 1) times it is the first's position
+    at::Tensor transforms_;  ///< [primitives, 4, 3]: (x, y, z, 1) times it is the first's position
 };
 
 /// Draws points uniformly by area from the first instances of edited materials: on the CPU, for the

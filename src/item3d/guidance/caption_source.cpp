@@ -41,7 +41,7 @@ bool mentions(const std::string& caption, const std::vector<std::string>& words)
     });
 }
 
-CaptionSource::CaptionSource(std::shared_ptr<const Pipeline> pipeline,
+CaptionSource::CaptionSource(std::shared_ptr<const DiffusionModel> pipeline,
                              const std::string& source_prompt, const std::string& target_prompt,
                              const CaptionSourceOptions& options)
     : pipeline_(std::move(pipeline)),
@@ -61,7 +61,7 @@ double CaptionSource::weight(const Caption& before, const Caption& now) const {
 std::optional<TextEmbedding> CaptionSource::shift(const std::vector<Caption>& before,
                                                   const std::vector<Caption>& now) const {
     ITEM3D_CHECK(!now.empty() && before.size() == now.size(), "captions of the same views");
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const double share = 1.0 / static_cast<double>(now.size());
     TextEmbedding sum = scaled(direction_, 0);
     bool useful = false;

@@ -13,7 +13,7 @@
 #pragma once
 
 #include "item3d/guidance/text_direction.h"
-#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/diffusion_model.h"
 #include "item3d/networks/vision_language/captioner.h"
 
 #include <memory>
@@ -38,7 +38,7 @@ bool mentions(const std::string& caption, const std::vector<std::string>& words)
 
 class CaptionSource {
   public:
-    CaptionSource(std::shared_ptr<const Pipeline> pipeline, const std::string& source_prompt,
+    CaptionSource(std::shared_ptr<const DiffusionModel> pipeline, const std::string& source_prompt,
                   const std::string& target_prompt, const CaptionSourceOptions& options);
 
     /// What to add to the source prompt's embedding (one row), from the captions of the same views
@@ -49,7 +49,7 @@ class CaptionSource {
   private:
     double weight(const Caption& before, const Caption& now) const;
 
-    std::shared_ptr<const Pipeline> pipeline_;
+    std::shared_ptr<const DiffusionModel> pipeline_;
     CaptionSourceOptions options_;
     std::vector<std::string> object_words_;
     TextEmbedding direction_;  ///< e(y_target) - e(y_source)

@@ -26,10 +26,10 @@ GuidanceOutput ClassifierScore::step(const GuidanceInput& input, std::int64_t it
     const NoisedLatents start =
         noise_latents(*pipeline_, input, narrowed(options_, progress), iteration);
     const double before = seconds_now();
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const auto eps =
         predict_each(*pipeline_, noisy_input(start), {target_text_, negative_text_, no_text_});
-    const torch::Tensor direction =
+    const at::Tensor direction =
         target_weight * eps[0] + (-1 + 0.5 * progress) * eps[1] - 0.5 * progress * eps[2];
     return finish_step(start, direction, start.weight * direction, before);
 }

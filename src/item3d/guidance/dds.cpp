@@ -5,7 +5,7 @@
 
 namespace item3d {
 
-DeltaDenoising::DeltaDenoising(std::shared_ptr<const Pipeline> pipeline,
+DeltaDenoising::DeltaDenoising(std::shared_ptr<const DiffusionModel> pipeline,
                                const std::string& source_prompt, const std::string& target_prompt,
                                const GuidanceOptions& options)
     : pipeline_(std::move(pipeline)),
@@ -18,12 +18,12 @@ GuidanceOutput DeltaDenoising::step(const GuidanceInput& input, std::int64_t ite
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
     ITEM3D_CHECK(start.reference.defined(), "dds needs pictures of the unedited model");
     const double before = seconds_now();
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     NoisyInput unedited = noisy_input(start);
     unedited.latents =
-        pipeline_->scheduler.add_noise(start.reference, start.noise, start.timesteps);
+        pipeline_->schedule().add_noise(start.reference, start.noise, start.timesteps);
     const float w = options_.guidance_scale;
-    const torch::Tensor direction =
+    const at::Tensor direction =
         predict_guided(*pipeline_, noisy_input(start), target_text_, base_text_, w) -
         predict_guided(*pipeline_, unedited, source_text_, base_text_, w);
     return finish_step(start, direction, direction, before);

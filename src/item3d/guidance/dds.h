@@ -11,13 +11,13 @@ namespace item3d {
 
 class DeltaDenoising : public Guidance {
   public:
-    DeltaDenoising(std::shared_ptr<const Pipeline> pipeline, const std::string& source_prompt,
+    DeltaDenoising(std::shared_ptr<const DiffusionModel> pipeline, const std::string& source_prompt,
                    const std::string& target_prompt, const GuidanceOptions& options);
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
     bool needs_reference() const override { return true; }
 
   private:
-    std::shared_ptr<const Pipeline> pipeline_;
+    std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row each
     TextEmbedding source_text_;

@@ -24,25 +24,32 @@ void require_one_of(const std::string& option, const std::string& value,
     }
 }
 
+template <typename Enum>
+Enum parse_enum(const std::string& option, const std::string& name,
+                const std::vector<std::string>& names) {
+    require_one_of(option, name, names);
+    return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
 bool is_blank(const std::string& text) {
     return std::all_of(text.begin(), text.end(),
                        [](unsigned char c) { return std::isspace(c) != 0; });
 }
 
-using PipelinePointer = std::shared_ptr<const Pipeline>;
-using Maker = std::unique_ptr<Guidance> (*)(PipelinePointer, const std::string& source_prompt,
+using ModelPointer = std::shared_ptr<const DiffusionModel>;
+using Maker = std::unique_ptr<Guidance> (*)(ModelPointer, const std::string& source_prompt,
                                             const std::string& target_prompt,
                                             const GuidanceOptions&);
 
 template <typename Method>
-std::unique_ptr<Guidance> from_both(PipelinePointer pipeline, const std::string& source_prompt,
+std::unique_ptr<Guidance> from_both(ModelPointer pipeline, const std::string& source_prompt,
                                     const std::string& target_prompt,
                                     const GuidanceOptions& options) {
     return std::make_unique<Method>(std::move(pipeline), source_prompt, target_prompt, options);
 }
 
 template <typename Method>
-std::unique_ptr<Guidance> from_target(PipelinePointer pipeline, const std::string&,
+std::unique_ptr<Guidance> from_target(ModelPointer pipeline, const std::string&,
                                       const std::string& target_prompt,
                                       const GuidanceOptions& options) {
     return std::make_unique<Method>(std::move(pipeline), target_prompt, options);
@@ -102,21 +109,30 @@ const std::vector<std::string>& adjustment_names() {
     return names;
 }
 
-bool adjusts_by_captions(const std::string& adjustment) {
-    return adjustment == "caption" || adjustment == "caption-paper";
+const std::vector<std::string>& weighting_names() {
+    static const std::vector<std::string> names = {"early", "late", "dreamfusion", "uniform"};
+    return names;
+}
+
+const std::vector<std::string>& timestep_schedule_names() {
+    static const std::vector<std::string> names = {"uniform", "anneal", "dreamtime"};
+    return names;
+}
+
+Adjustment parse_adjustment(const std::string& name) {
+    return parse_enum<Adjustment>("--adjust", name, adjustment_names());
 }
 
 Weighting parse_weighting(const std::string& name) {
-    static const std::vector<std::string> names = {"early", "late", "dreamfusion", "uniform"};
-    require_one_of("--weighting", name, names);
-    return static_cast<Weighting>(std::find(names.begin(), names.end(), name) - names.begin());
+    return parse_enum<Weighting>("--weighting", name, weighting_names());
 }
 
 TimestepSchedule parse_timestep_schedule(const std::string& name) {
-    static const std::vector<std::string> names = {"uniform", "anneal", "dreamtime"};
-    require_one_of("--timestep-schedule", name, names);
-    return static_cast<TimestepSchedule>(std::find(names.begin(), names.end(), name) -
-                                         names.begin());
+    return parse_enum<TimestepSchedule>("--timestep-schedule", name, timestep_schedule_names());
+}
+
+bool adjusts_by_captions(Adjustment adjustment) {
+    return adjustment == Adjustment::caption || adjustment == Adjustment::caption_paper;
 }
 
 const std::string& default_negative_prompt() {
@@ -126,12 +142,11 @@ const std::string& default_negative_prompt() {
     return words;
 }
 
-std::unique_ptr<Guidance> make_guidance(std::shared_ptr<const Pipeline> pipeline,
+std::unique_ptr<Guidance> make_guidance(std::shared_ptr<const DiffusionModel> pipeline,
                                         const std::string& source_prompt,
                                         const std::string& target_prompt,
                                         const GuidanceOptions& options) {
     require_one_of("--guidance", options.method, guidance_methods());
-    require_one_of("--adjust", options.adjust, adjustment_names());
     if (is_blank(source_prompt)) {
         throw InputError("--from", "the prompt is empty", "describe the model as it looks now");
     }

@@ -2,11 +2,10 @@
 #pragma once
 
 #include "item3d/guidance/text_direction.h"
-#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/diffusion_model.h"
 #include "item3d/networks/diffusion/shape_condition.h"
 #include "item3d/tensors/safetensors.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <memory>
 #include <optional>
@@ -19,13 +18,18 @@ namespace item3d {
 /// omega(t), how much a timestep counts: sqrt(abar)(1 - abar), 1/(1 - abar), 1 - abar, 1.
 enum class Weighting { early, late, dreamfusion, uniform };
 
+/// What moves rdl's source: its denoising loss (learned_source.h), captions (caption_source.h), which
+/// whoever makes them hands to Guidance::shift_source(), or nothing. caption_paper: with the sign of
+/// the paper's formula.
+enum class Adjustment { learned, caption, caption_paper, off };
+
 /// How the timesteps of the iterations follow one another, see scheduled_timestep().
 enum class TimestepSchedule { uniform, anneal, dreamtime };
 
 struct GuidanceOptions {
-    std::string method = "rdl";      ///< one of guidance_methods()
-    std::string adjust = "learned";  ///< of adjustment_names(); only rdl has a direction to adjust
-    float guidance_scale = 7.5f;     ///< w of classifier-free guidance
+    std::string method = "rdl";  ///< one of guidance_methods()
+    Adjustment adjust = Adjustment::learned;  ///< only rdl has a direction to adjust
+    float guidance_scale = 7.5f;  ///< w of classifier-free guidance
     /// What classifier-free guidance starts from, in place of the empty prompt; it cancels in rdl's
     /// direction. nfsd and csd have a term of its own for it, default_negative_prompt() when empty.
     std::string negative_prompt;
@@ -42,18 +46,18 @@ struct GuidanceOptions {
 
 /// Renders of one iteration.
 struct GuidanceInput {
-    torch::Tensor images;  ///< [N, 3, H, W] sRGB in [0, 1]; what the gradient is with respect to
-    SeenShape shape;       ///< read where the prior takes it
+    at::Tensor images;  ///< [N, 3, H, W] sRGB in [0, 1]; what the gradient is with respect to
+    SeenShape shape;    ///< read where the prior takes it
     /// [N, 3, H, W] the unedited model from the same cameras in the same light; undefined unless
     /// Guidance::needs_reference().
-    torch::Tensor reference = {};
+    at::Tensor reference = {};
 };
 
 struct GuidanceOutput {
     /// [N, C, h, w] with its graph back to the images.
-    torch::Tensor latents;
+    at::Tensor latents;
     /// [N, C, h, w] g of docs/method.md, a constant: call latents.backward(latents_gradient).
-    torch::Tensor latents_gradient;
+    at::Tensor latents_gradient;
     float direction_length = 0;  ///< RMS of the direction before weighting; the report's curve
     float source_loss = 0;       ///< rdl: denoising loss of the source, as the model was trained
     double seconds_encode = 0;
@@ -88,20 +92,20 @@ struct GuidanceKind {
 const std::vector<GuidanceKind>& guidance_kinds();
 /// Their names.
 const std::vector<std::string>& guidance_methods();
-/// learned: see learned_source.h; caption, caption-paper: see caption_source.h, whoever makes the
-/// captions calls Guidance::shift_source(); off.
+/// Names of an enumeration's values, in their order; parsing throws InputError on others.
 const std::vector<std::string>& adjustment_names();
-/// True of caption and caption-paper.
-bool adjusts_by_captions(const std::string& adjustment);
-/// "early", "late", "dreamfusion", "uniform"; throws InputError on others.
+const std::vector<std::string>& weighting_names();
+const std::vector<std::string>& timestep_schedule_names();
+Adjustment parse_adjustment(const std::string& name);
 Weighting parse_weighting(const std::string& name);
-/// "uniform", "anneal", "dreamtime"; throws InputError on others.
 TimestepSchedule parse_timestep_schedule(const std::string& name);
+/// True of caption and caption_paper.
+bool adjusts_by_captions(Adjustment adjustment);
 /// What nfsd and csd push away from when nothing else is said (Katzir et al. 2023).
 const std::string& default_negative_prompt();
 
-/// Throws InputError on an unknown method or adjustment, or an empty prompt.
-std::unique_ptr<Guidance> make_guidance(std::shared_ptr<const Pipeline> pipeline,
+/// Throws InputError on an unknown method or an empty prompt.
+std::unique_ptr<Guidance> make_guidance(std::shared_ptr<const DiffusionModel> pipeline,
                                         const std::string& source_prompt,
                                         const std::string& target_prompt,
                                         const GuidanceOptions& options);

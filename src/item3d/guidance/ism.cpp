@@ -28,8 +28,8 @@ GuidanceOutput IntervalScore::step(const GuidanceInput& input, std::int64_t iter
     const NoisedLatents start =
         noise_latents(*pipeline_, input, warmed_up(options_, warm_up), iteration);
     const double before = seconds_now();
-    const torch::NoGradGuard no_grad;
-    const std::int64_t training_steps = pipeline_->scheduler.alphas_cumprod().size(0);
+    const at::NoGradGuard no_grad;
+    const std::int64_t training_steps = pipeline_->schedule().alphas_cumprod().size(0);
     const double interval = last_interval + (first_interval - last_interval) * warm_up;
     const auto delta =
         static_cast<std::int64_t>(std::ceil(interval * static_cast<double>(training_steps)));
@@ -38,15 +38,14 @@ GuidanceOutput IntervalScore::step(const GuidanceInput& input, std::int64_t iter
     const std::int64_t stride = of_thousand(path_stride, training_steps);
     const std::int64_t first = std::max<std::int64_t>(s - path_steps * stride, 0);
 
-    const torch::Tensor offsets = iteration_draws(options_, iteration)
-                                      .normal_like(start.latents.slice(2, 0, 1).slice(3, 0, 1));
-    torch::Tensor latents =
-        add_noise(start.latents.detach(), start.noise + channel_offset * offsets,
-                  alpha_at(*pipeline_, first));
+    const at::Tensor offsets = iteration_draws(options_, iteration)
+                                   .normal_like(start.latents.slice(2, 0, 1).slice(3, 0, 1));
+    at::Tensor latents = add_noise(start.latents.detach(), start.noise + channel_offset * offsets,
+                                   alpha_at(*pipeline_, first));
     const auto predict_base = [&](std::int64_t timestep) {
         return predict_each(*pipeline_, noisy_input(start, latents, timestep), {base_text_})[0];
     };
-    const auto step_up = [&](const torch::Tensor& noise, std::int64_t from, std::int64_t to) {
+    const auto step_up = [&](const at::Tensor& noise, std::int64_t from, std::int64_t to) {
         return add_noise(clean_latents(latents, noise, alpha_at(*pipeline_, from)), noise,
                          alpha_at(*pipeline_, to));
     };
@@ -55,12 +54,11 @@ GuidanceOutput IntervalScore::step(const GuidanceInput& input, std::int64_t iter
         latents = step_up(predict_base(level), level, next);
         level = next;
     }
-    const torch::Tensor lower = predict_base(s);
+    const at::Tensor lower = predict_base(s);
     latents = step_up(lower, s, t);
-    const torch::Tensor direction =
-        predict_guided(*pipeline_, noisy_input(start, latents, t), target_text_, base_text_,
-                       options_.guidance_scale) -
-        lower;
+    const at::Tensor direction = predict_guided(*pipeline_, noisy_input(start, latents, t),
+                                                target_text_, base_text_, options_.guidance_scale) -
+                                 lower;
     const double alpha = alpha_at(*pipeline_, t);
     return finish_step(start, direction, std::sqrt((1 - alpha) / alpha) * direction, before);
 }

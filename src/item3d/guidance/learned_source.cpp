@@ -14,7 +14,7 @@ constexpr double beta1 = 0.9;
 constexpr double beta2 = 0.999;
 constexpr double epsilon = 1e-8;
 
-torch::Tensor find(const NamedTensors& state, const std::string& name) {
+at::Tensor find(const NamedTensors& state, const std::string& name) {
     for (const auto& [key, tensor] : state) {
         if (key == name) return tensor;
     }
@@ -25,31 +25,30 @@ torch::Tensor find(const NamedTensors& state, const std::string& name) {
 
 LearnedSource::LearnedSource(const TextEmbedding& source, const GuidanceOptions& options)
     : options_(options) {
-    const auto add = [&](const std::string& name, const torch::Tensor& start) {
-        const torch::Tensor embedding = start.detach().clone().to(torch::kFloat32);
-        parts_.push_back(
-            {name, embedding, torch::zeros_like(embedding), torch::zeros_like(embedding)});
+    const auto add = [&](const std::string& name, const at::Tensor& start) {
+        const at::Tensor embedding = start.detach().clone().to(at::kFloat);
+        parts_.push_back({name, embedding, at::zeros_like(embedding), at::zeros_like(embedding)});
     };
     add("source.", source.states);
     if (source.pooled.defined()) add("source.pooled_", source.pooled);
 }
 
-torch::Tensor LearnedSource::predict_and_follow(const Pipeline& pipeline, const NoisedLatents& own,
-                                                std::int64_t iteration) {
+at::Tensor LearnedSource::predict_and_follow(const DiffusionModel& pipeline,
+                                             const NoisedLatents& own, std::int64_t iteration) {
     const int more = options_.adjust_samples - 1;
     const NoisedLatents latents =
         more > 0 ? join_rows(own, renoise_latents(pipeline, own, options_, iteration, more)) : own;
-    std::vector<torch::Tensor> embeddings;
+    std::vector<at::Tensor> embeddings;
     for (const Part& part : parts_)
         embeddings.push_back(part.embedding.detach().requires_grad_(true));
-    const TextEmbedding text{embeddings[0], parts_.size() > 1 ? embeddings[1] : torch::Tensor()};
-    const torch::Tensor prediction =
+    const TextEmbedding text{embeddings[0], parts_.size() > 1 ? embeddings[1] : at::Tensor()};
+    const at::Tensor prediction =
         pipeline.predict_noise(latents.noisy, latents.timesteps, text, latents.condition);
-    const torch::Tensor loss = denoising_loss(pipeline, prediction, latents);
+    const at::Tensor loss = denoising_loss(pipeline, prediction, latents);
     const auto gradients = torch::autograd::grad({loss}, embeddings);
     loss_ = loss.item<float>();
 
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     ++steps_;
     const double correction1 = 1 - std::pow(beta1, static_cast<double>(steps_));
     const double correction2 = 1 - std::pow(beta2, static_cast<double>(steps_));
@@ -65,7 +64,7 @@ torch::Tensor LearnedSource::predict_and_follow(const Pipeline& pipeline, const 
 }
 
 TextEmbedding LearnedSource::embedding() const {
-    return {parts_[0].embedding, parts_.size() > 1 ? parts_[1].embedding : torch::Tensor()};
+    return {parts_[0].embedding, parts_.size() > 1 ? parts_[1].embedding : at::Tensor()};
 }
 
 NamedTensors LearnedSource::state() const {
@@ -75,18 +74,18 @@ NamedTensors LearnedSource::state() const {
         state.emplace_back(part.name + "first_moment", part.first_moment);
         state.emplace_back(part.name + "second_moment", part.second_moment);
     }
-    state.emplace_back("source.steps", torch::tensor({steps_}, torch::kInt64));
+    state.emplace_back("source.steps", at::tensor({steps_}, at::kLong));
     return state;
 }
 
 void LearnedSource::load_state(const NamedTensors& state) {
     for (Part& part : parts_) {
-        const torch::Tensor embedding = find(state, part.name + "embedding");
+        const at::Tensor embedding = find(state, part.name + "embedding");
         if (embedding.sizes() != part.embedding.sizes())
             throw InputError("checkpoint",
                              "its source embedding has another shape than this prior's",
                              "resume with the prior that began the edit");
-        const torch::Device device = part.embedding.device();
+        const at::Device device = part.embedding.device();
         part.embedding = embedding.to(device);
         part.first_moment = find(state, part.name + "first_moment").to(device).clone();
         part.second_moment = find(state, part.name + "second_moment").to(device).clone();

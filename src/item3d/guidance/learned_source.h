@@ -22,8 +22,8 @@ class LearnedSource {
 
     /// eps(source) for these latents (constant), then one step of the embedding. The step looks at
     /// options.adjust_samples noises for each of the latents, this iteration's own among them.
-    torch::Tensor predict_and_follow(const Pipeline& pipeline, const NoisedLatents& latents,
-                                     std::int64_t iteration);
+    at::Tensor predict_and_follow(const DiffusionModel& pipeline, const NoisedLatents& latents,
+                                  std::int64_t iteration);
     /// Denoising loss of the last call, in the U-Net's own target (eps or v).
     float loss() const { return loss_; }
     /// One row: what stands for the source now.
@@ -36,9 +36,9 @@ class LearnedSource {
     /// A tensor of the embedding and what Adam remembers about it.
     struct Part {
         std::string name;  ///< in a checkpoint, before that of the tensor
-        torch::Tensor embedding;
-        torch::Tensor first_moment;
-        torch::Tensor second_moment;
+        at::Tensor embedding;
+        at::Tensor first_moment;
+        at::Tensor second_moment;
     };
 
     GuidanceOptions options_;

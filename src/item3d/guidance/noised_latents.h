@@ -8,25 +8,25 @@
 namespace item3d {
 
 struct NoisedLatents {
-    torch::Tensor latents;         ///< [N, C, h, w] with graph to the images
-    torch::Tensor noise;           ///< [N, C, h, w] eps
-    torch::Tensor noisy;           ///< [N, C, h, w] z_t, no graph
-    torch::Tensor timesteps;       ///< [N] int64
-    torch::Tensor alphas_cumprod;  ///< [N, 1, 1, 1] abar_t
-    torch::Tensor weight;          ///< [N, 1, 1, 1] omega(t)
-    torch::Tensor condition;       ///< of Pipeline::predict_noise; undefined: none
-    torch::Tensor reference;       ///< [N, C, h, w] of GuidanceInput::reference, no graph
+    at::Tensor latents;         ///< [N, C, h, w] with graph to the images
+    at::Tensor noise;           ///< [N, C, h, w] eps
+    at::Tensor noisy;           ///< [N, C, h, w] z_t, no graph
+    at::Tensor timesteps;       ///< [N] int64
+    at::Tensor alphas_cumprod;  ///< [N, 1, 1, 1] abar_t
+    at::Tensor weight;          ///< [N, 1, 1, 1] omega(t)
+    at::Tensor condition;       ///< of DiffusionModel::predict_noise; undefined: none
+    at::Tensor reference;       ///< [N, C, h, w] of GuidanceInput::reference, no graph
     double seconds_encode = 0;
 };
 
 /// The same timestep for all rows of an iteration, as scheduled_timestep() has it; it and the noise
 /// are drawn from (seed, iteration).
-NoisedLatents noise_latents(const Pipeline& pipeline, const GuidanceInput& input,
+NoisedLatents noise_latents(const DiffusionModel& pipeline, const GuidanceInput& input,
                             const GuidanceOptions& options, std::int64_t iteration);
 
 /// The latents of `start`, as constants, under `count` other noises for each; their timesteps are
 /// spread evenly over the range of the options. Drawn from (seed, iteration) like the first.
-NoisedLatents renoise_latents(const Pipeline& pipeline, const NoisedLatents& start,
+NoisedLatents renoise_latents(const DiffusionModel& pipeline, const NoisedLatents& start,
                               const GuidanceOptions& options, std::int64_t iteration, int count);
 
 /// Rows of both, one after the other; neither has a graph then.
@@ -37,18 +37,18 @@ struct IterationDraws {
     double uniform = 0;  ///< in [0, 1)
     at::Generator generator;
     /// Standard normal, another each time.
-    torch::Tensor normal_like(const torch::Tensor& latents);
+    at::Tensor normal_like(const at::Tensor& latents);
 };
 IterationDraws iteration_draws(const GuidanceOptions& options, std::int64_t iteration);
 
-torch::Tensor timestep_weight(Weighting weighting, const torch::Tensor& alphas_cumprod);
+at::Tensor timestep_weight(Weighting weighting, const at::Tensor& alphas_cumprod);
 
 /// What a step returns: the gradient, and the direction before weighting for its length.
 /// `unet_began`: seconds_now() before the first prediction.
-GuidanceOutput finish_step(const NoisedLatents& start, const torch::Tensor& direction,
-                           const torch::Tensor& gradient, double unet_began);
+GuidanceOutput finish_step(const NoisedLatents& start, const at::Tensor& direction,
+                           const at::Tensor& gradient, double unet_began);
 
 double seconds_now();
-float root_mean_square(const torch::Tensor& tensor);
+float root_mean_square(const at::Tensor& tensor);
 
 }  // namespace item3d

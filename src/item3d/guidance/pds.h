@@ -12,7 +12,7 @@ namespace item3d {
 
 class PosteriorDistillation : public Guidance {
   public:
-    PosteriorDistillation(std::shared_ptr<const Pipeline> pipeline,
+    PosteriorDistillation(std::shared_ptr<const DiffusionModel> pipeline,
                           const std::string& source_prompt, const std::string& target_prompt,
                           const GuidanceOptions& options);
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
@@ -21,10 +21,10 @@ class PosteriorDistillation : public Guidance {
   private:
     /// s(z, y) at a grid step, see above.
     struct Step;
-    torch::Tensor stochastic_latents(const NoisedLatents& start, const Step& step,
-                                     const torch::Tensor& latents, const TextEmbedding& text) const;
+    at::Tensor stochastic_latents(const NoisedLatents& start, const Step& step,
+                                  const at::Tensor& latents, const TextEmbedding& text) const;
 
-    std::shared_ptr<const Pipeline> pipeline_;
+    std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row each
     TextEmbedding source_text_;

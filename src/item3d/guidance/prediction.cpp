@@ -8,33 +8,33 @@ NoisyInput noisy_input(const NoisedLatents& start) {
     return {start.noisy, start.timesteps, start.condition};
 }
 
-NoisyInput noisy_input(const NoisedLatents& start, const torch::Tensor& latents,
+NoisyInput noisy_input(const NoisedLatents& start, const at::Tensor& latents,
                        std::int64_t timestep) {
-    return {latents, torch::full_like(start.timesteps, timestep), start.condition};
+    return {latents, at::full_like(start.timesteps, timestep), start.condition};
 }
 
-TextEmbedding encode_base(const Pipeline& pipeline, const GuidanceOptions& options) {
+TextEmbedding encode_base(const DiffusionModel& pipeline, const GuidanceOptions& options) {
     return options.negative_prompt.empty() ? pipeline.encode_no_text()
                                            : pipeline.encode_text({options.negative_prompt});
 }
 
-TextEmbedding encode_negative(const Pipeline& pipeline, const GuidanceOptions& options) {
+TextEmbedding encode_negative(const DiffusionModel& pipeline, const GuidanceOptions& options) {
     return pipeline.encode_text(
         {options.negative_prompt.empty() ? default_negative_prompt() : options.negative_prompt});
 }
 
-std::vector<torch::Tensor> predict_each(const Pipeline& pipeline, const NoisyInput& input,
-                                        const std::vector<TextEmbedding>& texts) {
-    const torch::NoGradGuard no_grad;
+std::vector<at::Tensor> predict_each(const DiffusionModel& pipeline, const NoisyInput& input,
+                                     const std::vector<TextEmbedding>& texts) {
+    const at::NoGradGuard no_grad;
     const std::int64_t rows = input.latents.size(0);
     const auto count = static_cast<std::int64_t>(texts.size());
     TextEmbedding text = texts.front().expand(rows);
     for (std::size_t i = 1; i < texts.size(); ++i)
         text = TextEmbedding::join(text, texts[i].expand(rows));
-    const auto repeated = [&](const torch::Tensor& tensor) {
+    const auto repeated = [&](const at::Tensor& tensor) {
         if (!tensor.defined()) return tensor;
-        std::vector<torch::Tensor> copies(texts.size(), tensor);
-        return torch::cat(copies);
+        std::vector<at::Tensor> copies(texts.size(), tensor);
+        return at::cat(copies);
     };
     return pipeline
         .predict_noise(repeated(input.latents), repeated(input.timesteps), text,
@@ -42,31 +42,31 @@ std::vector<torch::Tensor> predict_each(const Pipeline& pipeline, const NoisyInp
         .chunk(count);
 }
 
-torch::Tensor predict_guided(const Pipeline& pipeline, const NoisyInput& input,
-                             const TextEmbedding& text, const TextEmbedding& base,
-                             double guidance_scale) {
-    const torch::NoGradGuard no_grad;
+at::Tensor predict_guided(const DiffusionModel& pipeline, const NoisyInput& input,
+                          const TextEmbedding& text, const TextEmbedding& base,
+                          double guidance_scale) {
+    const at::NoGradGuard no_grad;
     const auto predictions = predict_each(pipeline, input, {text, base});
     return predictions[1] + guidance_scale * (predictions[0] - predictions[1]);
 }
 
-torch::Tensor denoising_loss(const Pipeline& pipeline, const torch::Tensor& prediction,
-                             const NoisedLatents& latents) {
-    torch::Tensor error = prediction - latents.noise;
+at::Tensor denoising_loss(const DiffusionModel& pipeline, const at::Tensor& prediction,
+                          const NoisedLatents& latents) {
+    at::Tensor error = prediction - latents.noise;
     // An error of v is an error of eps divided by sqrt(abar).
-    if (pipeline.scheduler.predicts_velocity()) error = error / latents.alphas_cumprod.sqrt();
+    if (pipeline.schedule().predicts_velocity()) error = error / latents.alphas_cumprod.sqrt();
     return error.square().mean();
 }
 
-double alpha_at(const Pipeline& pipeline, std::int64_t timestep) {
-    return pipeline.scheduler.alphas_cumprod()[timestep].item<double>();
+double alpha_at(const DiffusionModel& pipeline, std::int64_t timestep) {
+    return pipeline.schedule().alphas_cumprod()[timestep].item<double>();
 }
 
-torch::Tensor clean_latents(const torch::Tensor& noisy, const torch::Tensor& noise, double alpha) {
+at::Tensor clean_latents(const at::Tensor& noisy, const at::Tensor& noise, double alpha) {
     return (noisy - std::sqrt(1 - alpha) * noise) / std::sqrt(alpha);
 }
 
-torch::Tensor add_noise(const torch::Tensor& clean, const torch::Tensor& noise, double alpha) {
+at::Tensor add_noise(const at::Tensor& clean, const at::Tensor& noise, double alpha) {
     return std::sqrt(alpha) * clean + std::sqrt(1 - alpha) * noise;
 }
 

@@ -7,42 +7,42 @@ namespace item3d {
 
 /// What the U-Net is asked about.
 struct NoisyInput {
-    torch::Tensor latents;    ///< [N, C, h, w] z_t
-    torch::Tensor timesteps;  ///< [N] int64
-    torch::Tensor condition;  ///< of Pipeline::predict_noise; undefined: none
+    at::Tensor latents;    ///< [N, C, h, w] z_t
+    at::Tensor timesteps;  ///< [N] int64
+    at::Tensor condition;  ///< of DiffusionModel::predict_noise; undefined: none
 };
 NoisyInput noisy_input(const NoisedLatents& start);
 /// The same pictures at another level of noise.
-NoisyInput noisy_input(const NoisedLatents& start, const torch::Tensor& latents,
+NoisyInput noisy_input(const NoisedLatents& start, const at::Tensor& latents,
                        std::int64_t timestep);
 
 /// What classifier-free guidance starts from: the options' negative prompt, or no text.
-TextEmbedding encode_base(const Pipeline& pipeline, const GuidanceOptions& options);
+TextEmbedding encode_base(const DiffusionModel& pipeline, const GuidanceOptions& options);
 
 /// What nfsd and csd push away from: the options' negative prompt, or default_negative_prompt().
-TextEmbedding encode_negative(const Pipeline& pipeline, const GuidanceOptions& options);
+TextEmbedding encode_negative(const DiffusionModel& pipeline, const GuidanceOptions& options);
 
 /// eps(y) for each of these texts (one row each), in one call of the U-Net; constants.
-std::vector<torch::Tensor> predict_each(const Pipeline& pipeline, const NoisyInput& input,
-                                        const std::vector<TextEmbedding>& texts);
+std::vector<at::Tensor> predict_each(const DiffusionModel& pipeline, const NoisyInput& input,
+                                     const std::vector<TextEmbedding>& texts);
 
 /// eps^w(y) = eps(base) + w (eps(y) - eps(base)), two rows an image.
-torch::Tensor predict_guided(const Pipeline& pipeline, const NoisyInput& input,
-                             const TextEmbedding& text, const TextEmbedding& base,
-                             double guidance_scale);
+at::Tensor predict_guided(const DiffusionModel& pipeline, const NoisyInput& input,
+                          const TextEmbedding& text, const TextEmbedding& base,
+                          double guidance_scale);
 
 /// How far eps(y) is from the noise that is there: the mean square error that the model was trained
 /// with, of eps or of the velocity. A scalar, differentiable in the prediction.
-torch::Tensor denoising_loss(const Pipeline& pipeline, const torch::Tensor& prediction,
-                             const NoisedLatents& latents);
+at::Tensor denoising_loss(const DiffusionModel& pipeline, const at::Tensor& prediction,
+                          const NoisedLatents& latents);
 
 /// abar_t, a number.
-double alpha_at(const Pipeline& pipeline, std::int64_t timestep);
+double alpha_at(const DiffusionModel& pipeline, std::int64_t timestep);
 
 /// The clean latents that z_t is made of if its noise is this: (z_t - sqrt(1 - a) eps) / sqrt(a).
-torch::Tensor clean_latents(const torch::Tensor& noisy, const torch::Tensor& noise, double alpha);
+at::Tensor clean_latents(const at::Tensor& noisy, const at::Tensor& noise, double alpha);
 
 /// sqrt(a) clean + sqrt(1 - a) noise.
-torch::Tensor add_noise(const torch::Tensor& clean, const torch::Tensor& noise, double alpha);
+at::Tensor add_noise(const at::Tensor& clean, const at::Tensor& noise, double alpha);
 
 }  // namespace item3d

@@ -4,7 +4,7 @@
 
 namespace item3d {
 
-RelativeDirection::RelativeDirection(std::shared_ptr<const Pipeline> pipeline,
+RelativeDirection::RelativeDirection(std::shared_ptr<const DiffusionModel> pipeline,
                                      const std::string& source_prompt,
                                      const std::string& target_prompt,
                                      const GuidanceOptions& options)
@@ -12,12 +12,12 @@ RelativeDirection::RelativeDirection(std::shared_ptr<const Pipeline> pipeline,
     const TextEmbedding text = pipeline_->encode_text({target_prompt, source_prompt});
     target_text_ = text.row(0);
     source_text_ = text.row(1);
-    if (options_.adjust == "learned") {
+    if (options_.adjust == Adjustment::learned) {
         learned_source_.emplace(source_text_, options_);
     }
 }
 
-PromptPair predict_pair(const Pipeline& pipeline, const NoisedLatents& start,
+PromptPair predict_pair(const DiffusionModel& pipeline, const NoisedLatents& start,
                         const TextEmbedding& target_text, const TextEmbedding& source_text) {
     const auto both = predict_each(pipeline, noisy_input(start), {target_text, source_text});
     return {both[0], both[1]};
@@ -39,9 +39,9 @@ std::optional<TextDirection> RelativeDirection::text_direction() const {
 
 PromptPair RelativeDirection::predict(const NoisedLatents& start, std::int64_t iteration) {
     if (!learned_source_) return predict_pair(*pipeline_, start, target_text_, source());
-    const torch::Tensor source = learned_source_->predict_and_follow(*pipeline_, start, iteration);
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor target =
+    const at::Tensor source = learned_source_->predict_and_follow(*pipeline_, start, iteration);
+    const at::NoGradGuard no_grad;
+    const at::Tensor target =
         pipeline_->predict_noise(start.noisy, start.timesteps, target_text_, start.condition);
     return {target, source};
 }
@@ -51,9 +51,9 @@ GuidanceOutput RelativeDirection::step(const GuidanceInput& input, std::int64_t 
     const double before = seconds_now();
     const PromptPair predictions = predict(start, iteration);
 
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor direction = predictions.target - predictions.source;
-    torch::Tensor gradient = options_.guidance_scale * direction;
+    const at::NoGradGuard no_grad;
+    const at::Tensor direction = predictions.target - predictions.source;
+    at::Tensor gradient = options_.guidance_scale * direction;
     if (options_.anchor != 0)
         gradient = gradient + options_.anchor * (predictions.target - start.noise);
 
@@ -78,7 +78,7 @@ void RelativeDirection::load_state(const NamedTensors& state) {
         return;
     }
     for (const auto& [name, tensor] : state) {
-        const torch::Tensor value = tensor.to(source_text_.states.device()).clone();
+        const at::Tensor value = tensor.to(source_text_.states.device()).clone();
         (name == "shift.pooled" ? source_shift_.pooled : source_shift_.states) = value;
     }
 }

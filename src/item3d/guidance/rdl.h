@@ -15,18 +15,19 @@ namespace item3d {
 
 /// eps(y_target) and eps(y_source) of the same noised latents, constants.
 struct PromptPair {
-    torch::Tensor target;  ///< [N, C, h, w]
-    torch::Tensor source;  ///< [N, C, h, w]
+    at::Tensor target;  ///< [N, C, h, w]
+    at::Tensor source;  ///< [N, C, h, w]
 };
 
 /// Both in one batch of two rows an image; texts are one row.
-PromptPair predict_pair(const Pipeline& pipeline, const NoisedLatents& start,
+PromptPair predict_pair(const DiffusionModel& pipeline, const NoisedLatents& start,
                         const TextEmbedding& target_text, const TextEmbedding& source_text);
 
 class RelativeDirection : public Guidance {
   public:
-    RelativeDirection(std::shared_ptr<const Pipeline> pipeline, const std::string& source_prompt,
-                      const std::string& target_prompt, const GuidanceOptions& options);
+    RelativeDirection(std::shared_ptr<const DiffusionModel> pipeline,
+                      const std::string& source_prompt, const std::string& target_prompt,
+                      const GuidanceOptions& options);
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
     /// Without a learned source.
     void shift_source(const TextEmbedding& shift) override;
@@ -39,7 +40,7 @@ class RelativeDirection : public Guidance {
     TextEmbedding source() const;
     PromptPair predict(const NoisedLatents& start, std::int64_t iteration);
 
-    std::shared_ptr<const Pipeline> pipeline_;
+    std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row, as the source's
     TextEmbedding source_text_;

@@ -13,8 +13,8 @@ constexpr std::int64_t inversion_stride = 100;  ///< of 1000
 constexpr double variance_part = 0.3;           ///< eta
 
 /// Negative timesteps come before the first of the training.
-double alpha_of_level(const Pipeline& pipeline, std::int64_t level) {
-    if (level < 0 && pipeline.scheduler.config().set_alpha_to_one) return 1;
+double alpha_of_level(const DiffusionModel& pipeline, std::int64_t level) {
+    if (level < 0 && pipeline.schedule().config().set_alpha_to_one) return 1;
     return alpha_at(pipeline, std::max<std::int64_t>(level, 0));
 }
 
@@ -22,9 +22,9 @@ double alpha_of_level(const Pipeline& pipeline, std::int64_t level) {
 
 std::vector<std::int64_t> InversionDistillation::inversion_levels(std::int64_t t,
                                                                   double draw) const {
-    const std::int64_t training_steps = pipeline_->scheduler.alphas_cumprod().size(0);
+    const std::int64_t training_steps = pipeline_->schedule().alphas_cumprod().size(0);
     const std::int64_t stride = of_thousand(inversion_stride, training_steps);
-    const std::int64_t offset = pipeline_->scheduler.config().steps_offset;
+    const std::int64_t offset = pipeline_->schedule().config().steps_offset;
     std::vector<std::int64_t> levels;
     for (std::int64_t level = offset - stride; level < t; level += stride)
         levels.push_back(level);
@@ -33,17 +33,17 @@ std::vector<std::int64_t> InversionDistillation::inversion_levels(std::int64_t t
     return levels;
 }
 
-torch::Tensor InversionDistillation::invert(const NoisedLatents& start, std::int64_t t,
-                                            std::int64_t iteration) const {
+at::Tensor InversionDistillation::invert(const NoisedLatents& start, std::int64_t t,
+                                         std::int64_t iteration) const {
     IterationDraws draws = iteration_draws(options_, iteration);
     const std::vector<std::int64_t> levels = inversion_levels(t, draws.uniform);
-    torch::Tensor latents = start.latents.detach();
+    at::Tensor latents = start.latents.detach();
     for (std::size_t i = 0; i + 1 < levels.size(); ++i) {
         const double from = alpha_of_level(*pipeline_, levels[i]);
         const double to = alpha_of_level(*pipeline_, levels[i + 1]);
         const NoisyInput input = noisy_input(start, latents, std::max<std::int64_t>(levels[i], 0));
-        const torch::Tensor noise = predict_guided(*pipeline_, input, target_text_, base_text_,
-                                                   2 - options_.guidance_scale);
+        const at::Tensor noise = predict_guided(*pipeline_, input, target_text_, base_text_,
+                                                2 - options_.guidance_scale);
         const double variance = (1 - from) / (1 - to) * (1 - to / from);
         latents = add_noise(clean_latents(latents, noise, from), noise, to) +
                   variance_part * std::sqrt(variance) * draws.normal_like(latents);
@@ -54,13 +54,13 @@ torch::Tensor InversionDistillation::invert(const NoisedLatents& start, std::int
 GuidanceOutput InversionDistillation::step(const GuidanceInput& input, std::int64_t iteration) {
     const NoisedLatents start = noise_latents(*pipeline_, input, options_, iteration);
     const double before = seconds_now();
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const std::int64_t t = start.timesteps[0].item<std::int64_t>();
     // The inversion ends a little above t, and is taken to be at t.
-    const torch::Tensor latents = invert(start, t, iteration);
-    const torch::Tensor noise = predict_guided(*pipeline_, noisy_input(start, latents, t),
-                                               target_text_, base_text_, options_.guidance_scale);
-    const torch::Tensor direction =
+    const at::Tensor latents = invert(start, t, iteration);
+    const at::Tensor noise = predict_guided(*pipeline_, noisy_input(start, latents, t),
+                                            target_text_, base_text_, options_.guidance_scale);
+    const at::Tensor direction =
         start.latents.detach() - clean_latents(latents, noise, alpha_at(*pipeline_, t));
     return finish_step(start, direction, direction, before);
 }

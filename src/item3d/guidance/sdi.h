@@ -23,7 +23,7 @@ class InversionDistillation : public TargetGuidance {
     std::vector<std::int64_t> inversion_levels(std::int64_t t, double draw) const;
 
   private:
-    torch::Tensor invert(const NoisedLatents& start, std::int64_t t, std::int64_t iteration) const;
+    at::Tensor invert(const NoisedLatents& start, std::int64_t t, std::int64_t iteration) const;
 };
 
 }  // namespace item3d

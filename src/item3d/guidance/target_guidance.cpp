@@ -4,14 +4,14 @@
 
 namespace item3d {
 
-TargetGuidance::TargetGuidance(std::shared_ptr<const Pipeline> pipeline,
+TargetGuidance::TargetGuidance(std::shared_ptr<const DiffusionModel> pipeline,
                                const std::string& target_prompt, const GuidanceOptions& options)
     : pipeline_(std::move(pipeline)),
       options_(options),
       target_text_(pipeline_->encode_text({target_prompt})),
       base_text_(encode_base(*pipeline_, options)) {}
 
-NegativeGuidance::NegativeGuidance(std::shared_ptr<const Pipeline> pipeline,
+NegativeGuidance::NegativeGuidance(std::shared_ptr<const DiffusionModel> pipeline,
                                    const std::string& target_prompt, const GuidanceOptions& options)
     : pipeline_(std::move(pipeline)),
       options_(options),

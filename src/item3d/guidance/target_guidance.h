@@ -8,11 +8,11 @@ namespace item3d {
 /// Those that weigh the target against one other prediction.
 class TargetGuidance : public Guidance {
   public:
-    TargetGuidance(std::shared_ptr<const Pipeline> pipeline, const std::string& target_prompt,
+    TargetGuidance(std::shared_ptr<const DiffusionModel> pipeline, const std::string& target_prompt,
                    const GuidanceOptions& options);
 
   protected:
-    std::shared_ptr<const Pipeline> pipeline_;
+    std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row each
     TextEmbedding base_text_;    ///< none, or the negative prompt
@@ -22,11 +22,11 @@ class TargetGuidance : public Guidance {
 /// where none is given.
 class NegativeGuidance : public Guidance {
   public:
-    NegativeGuidance(std::shared_ptr<const Pipeline> pipeline, const std::string& target_prompt,
-                     const GuidanceOptions& options);
+    NegativeGuidance(std::shared_ptr<const DiffusionModel> pipeline,
+                     const std::string& target_prompt, const GuidanceOptions& options);
 
   protected:
-    std::shared_ptr<const Pipeline> pipeline_;
+    std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row each
     TextEmbedding no_text_;

@@ -1,7 +1,9 @@
 #include "item3d/io/load.h"
 
 #include "item3d/core/error.h"
-#include "item3d/io/readers.h"
+#include "item3d/io/gltf/read.h"
+#include "item3d/io/image/formats.h"
+#include "item3d/io/obj/read.h"
 #include "item3d/io/text.h"
 
 namespace item3d {
@@ -24,6 +26,10 @@ Model load_model(const std::filesystem::path& path) {
     throw InputError(path.string(),
                      "a model was expected (.glb, .gltf or .obj), found '" + extension + "'",
                      "convert it to one of these");
+}
+
+Image load_image(const std::filesystem::path& path) {
+    return decode_image(read_bytes(path), path.string()).image;
 }
 
 }  // namespace item3d

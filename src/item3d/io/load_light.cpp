@@ -1,10 +1,11 @@
-// Lights by name and from files, brought to what the rest of the program takes for granted.
+#include "item3d/io/load_light.h"
+
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/gltf/image_light.h"
 #include "item3d/io/image/formats.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

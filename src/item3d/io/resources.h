@@ -1,4 +1,4 @@
-// Files and data that a model refers to, without ever leaving its folder. Internal to scene/io.
+// Files and data that a model refers to, without ever leaving its folder. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"

@@ -1,4 +1,4 @@
-// Small helpers for the text formats (OBJ, MTL). Internal to scene/io.
+// Small helpers for the text formats (OBJ, MTL). Internal to io.
 #pragma once
 
 #include <optional>

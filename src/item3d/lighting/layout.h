@@ -47,12 +47,6 @@ struct CubeFaceAxes {
 /// Six square faces in a row to an equirectangular light of two faces' height.
 Image faces_to_equirectangular(const Image& row, const std::array<CubeFaceAxes, 6>& axes);
 
-/// A preset by name, or a file: .hdr and .exr; .png and .jpg, which are taken as sRGB with a
-/// warning; or the image-based light of a .glb or .gltf (EXT_lights_image_based). Three channels,
-/// equirectangular. Negative values become 0, with a warning. Throws InputError for what cannot be
-/// read, is not finite, or black all over.
-Image load_light(const std::string& name_or_path, LightLayout layout = LightLayout::automatic);
-
 /// An equirectangular light of `height` rows from radiance by direction, four samples a texel.
 Image light_from(int height, const std::function<Vec3(Vec3)>& radiance);
 

@@ -12,36 +12,36 @@ constexpr int pictures_at_once = 8;
 constexpr double least_length = 1e-5;
 
 /// Cosine of each row of a [N, D] with b [1, D]; 0 where either is too short.
-torch::Tensor cosines(const torch::Tensor& a, const torch::Tensor& b) {
-    const torch::Tensor lengths = a.norm(2, {-1}) * b.norm(2, {-1});
-    const torch::Tensor products = (a * b).sum(-1);
-    const torch::Tensor too_short =
+at::Tensor cosines(const at::Tensor& a, const at::Tensor& b) {
+    const at::Tensor lengths = a.norm(2, {-1}) * b.norm(2, {-1});
+    const at::Tensor products = (a * b).sum(-1);
+    const at::Tensor too_short =
         a.norm(2, {-1}).lt(least_length) | b.norm(2, {-1}).lt(least_length);
     return (products / lengths.clamp_min(1e-12)).masked_fill(too_short, 0);
 }
 
 }  // namespace
 
-ClipScores clip_scores(const Clip& clip, const torch::Tensor& before, const torch::Tensor& after,
+ClipScores clip_scores(const Clip& clip, const at::Tensor& before, const at::Tensor& after,
                        const std::string& from, const std::string& to) {
     ITEM3D_CHECK(before.sizes() == after.sizes() && before.size(0) > 0,
                  "both image sets must be of one shape");
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor texts = clip.embed_texts({from, to}).cpu().to(torch::kFloat64);
-    std::vector<torch::Tensor> rows;
-    for (const torch::Tensor& some : torch::cat({before, after}).split(pictures_at_once))
-        rows.push_back(clip.embed_images(some).cpu().to(torch::kFloat64));
-    const auto both = torch::cat(rows).chunk(2);
-    const torch::Tensor was = both[0], is = both[1];
-    const torch::Tensor target = texts.narrow(0, 1, 1);
-    const torch::Tensor scores = torch::stack({cosines(is, target), cosines(was, target),
-                                               cosines(is - was, target - texts.narrow(0, 0, 1))},
-                                              1);
-    const auto score_of = [](const torch::Tensor& row) {
+    const at::NoGradGuard no_grad;
+    const at::Tensor texts = clip.embed_texts({from, to}).cpu().to(at::kDouble);
+    std::vector<at::Tensor> rows;
+    for (const at::Tensor& some : at::cat({before, after}).split(pictures_at_once))
+        rows.push_back(clip.embed_images(some).cpu().to(at::kDouble));
+    const auto both = at::cat(rows).chunk(2);
+    const at::Tensor was = both[0], is = both[1];
+    const at::Tensor target = texts.narrow(0, 1, 1);
+    const at::Tensor scores = at::stack({cosines(is, target), cosines(was, target),
+                                         cosines(is - was, target - texts.narrow(0, 0, 1))},
+                                        1);
+    const auto score_of = [](const at::Tensor& row) {
         return ClipScore{row[0].item<double>(), row[1].item<double>(), row[2].item<double>()};
     };
     ClipScores result;
-    for (const torch::Tensor& row : scores.unbind(0))
+    for (const at::Tensor& row : scores.unbind(0))
         result.views.push_back(score_of(row));
     result.mean = score_of(scores.mean(0));
     return result;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>
-#include <torch/types.h>
 
 #include <string>
 #include <vector>
@@ -26,7 +26,7 @@ struct ClipScores {
 };
 
 /// before, after: [N, 3, H, W] sRGB in [0, 1], the same views in the same light.
-ClipScores clip_scores(const Clip& clip, const torch::Tensor& before, const torch::Tensor& after,
+ClipScores clip_scores(const Clip& clip, const at::Tensor& before, const at::Tensor& after,
                        const std::string& from, const std::string& to);
 
 void to_json(nlohmann::json& json, const ClipScore& score);

@@ -1,7 +1,7 @@
 // How much of a surface's pattern an edit kept.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
@@ -12,10 +12,10 @@ namespace item3d {
 /// detail of a pixel is its L* (CIELAB lightness, / 100) less the mean of its surroundings inside
 /// the mask, a Gaussian of `sigma` pixels. Returns 0 where either picture has no detail at all
 /// (standard deviation below 0.001).
-double detail_correlation(const torch::Tensor& before, const torch::Tensor& after,
-                          const torch::Tensor& mask, double sigma = 8.0);
+double detail_correlation(const at::Tensor& before, const at::Tensor& after, const at::Tensor& mask,
+                          double sigma = 8.0);
 
 /// Standard deviation of that detail, one picture set alone.
-double detail_strength(const torch::Tensor& images, const torch::Tensor& mask, double sigma = 8.0);
+double detail_strength(const at::Tensor& images, const at::Tensor& mask, double sigma = 8.0);
 
 }  // namespace item3d

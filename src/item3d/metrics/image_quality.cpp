@@ -14,45 +14,44 @@ constexpr int window = 11;
 constexpr double window_sigma = 1.5;
 
 /// Gaussian mean of each channel over the window, where it lies inside the picture.
-torch::Tensor windowed_mean(const torch::Tensor& images, const torch::Tensor& weights) {
+at::Tensor windowed_mean(const at::Tensor& images, const at::Tensor& weights) {
     const std::int64_t channels = images.size(1);
     const auto kernel = [&](std::int64_t height, std::int64_t width) {
         return weights.view({1, 1, height, width}).expand({channels, 1, height, width});
     };
-    const auto convolve = [&](const torch::Tensor& input, const torch::Tensor& weight) {
+    const auto convolve = [&](const at::Tensor& input, const at::Tensor& weight) {
         const std::array<std::int64_t, 2> one{1, 1}, none{0, 0};
-        return torch::conv2d(input, weight, torch::Tensor(), at::IntArrayRef(one),
-                             at::IntArrayRef(none), at::IntArrayRef(one), /*groups=*/channels);
+        return at::conv2d(input, weight, at::Tensor(), at::IntArrayRef(one), at::IntArrayRef(none),
+                          at::IntArrayRef(one), /*groups=*/channels);
     };
     return convolve(convolve(images, kernel(1, window)), kernel(window, 1));
 }
 
 }  // namespace
 
-double psnr(const torch::Tensor& picture, const torch::Tensor& truth) {
+double psnr(const at::Tensor& picture, const at::Tensor& truth) {
     ITEM3D_CHECK(picture.sizes() == truth.sizes() && picture.numel() > 0, "psnr: two of one shape");
     const double error =
-        (picture.to(torch::kFloat64) - truth.to(torch::kFloat64)).square().mean().item<double>();
+        (picture.to(at::kDouble) - truth.to(at::kDouble)).square().mean().item<double>();
     return -10.0 * std::log10(std::max(error, 1e-10));
 }
 
-double ssim(const torch::Tensor& picture, const torch::Tensor& truth) {
+double ssim(const at::Tensor& picture, const at::Tensor& truth) {
     ITEM3D_CHECK(picture.dim() == 4 && picture.sizes() == truth.sizes() &&
                      picture.size(2) >= window && picture.size(3) >= window,
                  "ssim: two of one shape [N, C, H, W], at least 11 pixels a side");
-    const torch::NoGradGuard no_gradient;
-    const torch::Tensor at = torch::arange(window, picture.options()) - (window - 1) / 2.0;
-    torch::Tensor weights = torch::exp(-at.square() / (2 * window_sigma * window_sigma));
+    const at::NoGradGuard no_gradient;
+    const at::Tensor at = at::arange(window, picture.options()) - (window - 1) / 2.0;
+    at::Tensor weights = at::exp(-at.square() / (2 * window_sigma * window_sigma));
     weights = weights / weights.sum();
-    const auto mean = [&](const torch::Tensor& images) { return windowed_mean(images, weights); };
-    const torch::Tensor a = mean(picture), b = mean(truth);
-    const torch::Tensor variance_a = mean(picture.square()) - a.square();
-    const torch::Tensor variance_b = mean(truth.square()) - b.square();
-    const torch::Tensor covariance = mean(picture * truth) - a * b;
+    const auto mean = [&](const at::Tensor& images) { return windowed_mean(images, weights); };
+    const at::Tensor a = mean(picture), b = mean(truth);
+    const at::Tensor variance_a = mean(picture.square()) - a.square();
+    const at::Tensor variance_b = mean(truth.square()) - b.square();
+    const at::Tensor covariance = mean(picture * truth) - a * b;
     constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
-    const torch::Tensor similarity =
-        ((2 * a * b + c1) * (2 * covariance + c2)) /
-        ((a.square() + b.square() + c1) * (variance_a + variance_b + c2));
+    const at::Tensor similarity = ((2 * a * b + c1) * (2 * covariance + c2)) /
+                                  ((a.square() + b.square() + c1) * (variance_a + variance_b + c2));
     return similarity.mean().item<double>();
 }
 

@@ -1,15 +1,15 @@
 // How near a picture is to the true one.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
 /// Peak signal-to-noise ratio in dB of values in [0, 1], of any equal shapes; at most 100.
-double psnr(const torch::Tensor& picture, const torch::Tensor& truth);
+double psnr(const at::Tensor& picture, const at::Tensor& truth);
 
 /// Structural similarity (Wang et al. 2004) of [N, C, H, W] in [0, 1], mean over all; 1: the same.
 /// Gaussian window of 11 pixels, sigma 1.5, no padding: pictures of at least 11 pixels a side.
-double ssim(const torch::Tensor& picture, const torch::Tensor& truth);
+double ssim(const at::Tensor& picture, const at::Tensor& truth);
 
 }  // namespace item3d

@@ -52,16 +52,16 @@ std::string class_of(const Config& index, const std::string& part) {
 
 std::int64_t count_parameters(const torch::nn::Module& module) {
     std::int64_t count = 0;
-    for (const torch::Tensor& parameter : module.parameters())
+    for (const at::Tensor& parameter : module.parameters())
         count += parameter.numel();
     return count;
 }
 
 /// "fp16" and the like, as --precision calls them.
-std::string name_of(torch::Dtype dtype) {
-    if (dtype == torch::kFloat32) return "fp32";
-    if (dtype == torch::kFloat16) return "fp16";
-    if (dtype == torch::kBFloat16) return "bf16";
+std::string name_of(at::ScalarType dtype) {
+    if (dtype == at::kFloat) return "fp32";
+    if (dtype == at::kHalf) return "fp16";
+    if (dtype == at::kBFloat16) return "bf16";
     return c10::toString(dtype);
 }
 
@@ -170,14 +170,14 @@ class Verification {
             return;
         }
         if (part.name == "unet") {
-            const UNet2DCondition unet = load_unet(folder, torch::kMeta);
+            const UNet2DCondition unet = load_unet(folder, at::kMeta);
             unet_ = unet->config();
             describe_weights(part, *unet);
         } else if (part.name == "vae") {
-            vae_ = load_autoencoder(folder, torch::kMeta);
+            vae_ = load_autoencoder(folder, at::kMeta);
             describe_weights(part, *vae_);
         } else {
-            const ClipTextModel text = load_clip_text(folder, torch::kMeta);
+            const ClipTextModel text = load_clip_text(folder, at::kMeta);
             text_.push_back(text->config());
             describe_weights(part, *text);
         }
@@ -193,9 +193,9 @@ class Verification {
             const auto classes = Config::read(folder / "config.json").texts("architectures", {});
             if (!classes.empty()) part.class_name = classes.front();
             if (name == "clip")
-                Clip::load(folder, torch::kMeta);
+                Clip::load(folder, at::kMeta);
             else
-                load_captioner(folder, torch::kMeta);
+                load_captioner(folder, at::kMeta);
             part.parameters = describe_weights(part).total_elements();
         });
         report_.parts.push_back(std::move(part));
@@ -214,7 +214,7 @@ class Verification {
         std::set<std::string> types;
         for (const std::string& name : weights.names()) {
             const TensorInfo info = weights.info(name);
-            std::uint64_t bytes = torch::elementSize(info.dtype);
+            std::uint64_t bytes = at::elementSize(info.dtype);
             for (const std::int64_t extent : info.shape)
                 bytes *= static_cast<std::uint64_t>(extent);
             types.insert(name_of(info.dtype));
@@ -271,7 +271,7 @@ class Verification {
         // fp32 and bf16. In fp32, most weights that a file has as fp16 stay so.
         constexpr double packed_float = 0.12, packed_half = 0.1, bytes_of_halves = 2.8;
         const bool halves =
-            PackedMatrix::runs(torch::kCPU, torch::kFloat16) &&
+            PackedMatrix::runs(at::kCPU, at::kHalf) &&
             std::any_of(report_.parts.begin(), report_.parts.end(), [](const PartReport& part) {
                 return part.name == "unet" && part.stored_as == "fp16";
             });

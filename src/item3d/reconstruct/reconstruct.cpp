@@ -5,11 +5,12 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
 #include "item3d/reconstruct/dataset/photograph.h"
 #include "item3d/reconstruct/outputs/outputs.h"
+#include "item3d/reconstruct/outputs/report.h"
 #include "item3d/reconstruct/stage_runner.h"
 #include "item3d/reconstruct/surface/plain_model.h"
 

@@ -1,5 +1,8 @@
 #include "item3d/reconstruct/stage.h"
 
+#include <numeric>
+#include <utility>
+
 namespace item3d {
 
 bool Learning::update_light(const Appearance& appearance, int index, int every) {
@@ -8,44 +11,53 @@ bool Learning::update_light(const Appearance& appearance, int index, int every) 
         light = appearance.light.prefiltered();
     } else if (index % every == 1 || light.specular.empty()) {
         // Between, the light stands still: what a resumed run prefilters is what there was.
-        const torch::NoGradGuard no_gradient;
+        const at::NoGradGuard no_gradient;
         light = appearance.light.prefiltered();
     }
     return learns;
 }
 
-void Learning::note_losses(const torch::Tensor& picture, const torch::Tensor& mask) {
+void Learning::note_losses(const at::Tensor& picture, const at::Tensor& mask) {
     curves.picture.push_back(picture.item<double>());
     curves.mask.push_back(mask.item<double>());
 }
 
-torch::Tensor curve_tensor(const std::vector<double>& values) {
-    return torch::tensor(values, torch::kFloat64);
+void ViewOrder::shuffle(std::int64_t round) {
+    Random random(seed_, RandomStream::view_order, static_cast<std::uint64_t>(round) << 32);
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    for (std::size_t i = order_.size(); i > 1; --i)
+        std::swap(order_[i - 1],
+                  order_[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(i)))]);
+    round_ = round;
 }
 
-std::vector<double> curve_values(const torch::Tensor& tensor) {
-    const torch::Tensor flat = tensor.contiguous();
+at::Tensor curve_tensor(const std::vector<double>& values) {
+    return at::tensor(values, at::kDouble);
+}
+
+std::vector<double> curve_values(const at::Tensor& tensor) {
+    const at::Tensor flat = tensor.contiguous();
     return {flat.const_data_ptr<double>(), flat.const_data_ptr<double>() + flat.numel()};
 }
 
 NamedTensors Stage::state() const {
     NamedTensors tensors;
-    append_parameters(tensors, "field.", *appearance_.field);
+    append_parameters(tensors, "field.", appearance_.field->named_parameters());
     const auto& levels = appearance_.light.parameters();
     for (std::size_t i = 0; i < levels.size(); ++i)
         tensors.emplace_back("light." + std::to_string(i), levels[i].detach());
     for (const auto& [name, tensor] : learning_.optimizer.state())
         tensors.emplace_back("optimizer." + name, tensor);
     tensors.emplace_back("random",
-                         torch::tensor({static_cast<std::int64_t>(learning_.random.counter())}));
-    tensors.emplace_back("iteration", torch::tensor({std::int64_t{learning_.iteration}}));
+                         at::tensor({static_cast<std::int64_t>(learning_.random.counter())}));
+    tensors.emplace_back("iteration", at::tensor({std::int64_t{learning_.iteration}}));
     tensors.emplace_back("curve.picture", curve_tensor(learning_.curves.picture));
     tensors.emplace_back("curve.mask", curve_tensor(learning_.curves.mask));
     return tensors;
 }
 
 void Stage::load_state(const CheckpointReader& reader) {
-    reader.parameters("field.", *appearance_.field);
+    reader.parameters("field.", appearance_.field->named_parameters());
     const auto& levels = appearance_.light.parameters();
     for (std::size_t i = 0; i < levels.size(); ++i)
         reader.copy("light." + std::to_string(i), levels[i]);

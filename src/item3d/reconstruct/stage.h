@@ -8,6 +8,8 @@
 #include "item3d/reconstruct/surface/view_render.h"
 #include "item3d/tensors/checkpoint.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -30,7 +32,27 @@ struct Learning {
     /// Prefilters where an iteration asks for it, every `every` ones of `index`; says whether the
     /// light learns in this one. A function of the light and `index` alone.
     bool update_light(const Appearance& appearance, int index, int every);
-    void note_losses(const torch::Tensor& picture, const torch::Tensor& mask);
+    void note_losses(const at::Tensor& picture, const at::Tensor& mask);
+};
+
+/// All views in a random order, then all in another, and so on: a function of seed and iteration.
+class ViewOrder {
+  public:
+    ViewOrder(std::size_t views, std::uint64_t seed) : order_(views), seed_(seed) {}
+
+    std::size_t at(std::int64_t iteration) {
+        const auto count = static_cast<std::int64_t>(order_.size());
+        const std::int64_t round = iteration / count;
+        if (round != round_) shuffle(round);
+        return order_[static_cast<std::size_t>(iteration % count)];
+    }
+
+  private:
+    void shuffle(std::int64_t round);
+
+    std::vector<std::size_t> order_;
+    std::uint64_t seed_;
+    std::int64_t round_ = -1;
 };
 
 class Stage {
@@ -63,7 +85,7 @@ class Stage {
 };
 
 /// A curve as a tensor, and back.
-torch::Tensor curve_tensor(const std::vector<double>& values);
-std::vector<double> curve_values(const torch::Tensor& tensor);
+at::Tensor curve_tensor(const std::vector<double>& values);
+std::vector<double> curve_values(const at::Tensor& tensor);
 
 }  // namespace item3d

@@ -1,10 +1,10 @@
-#include "item3d/render/kernels/antialias.h"
+#include "item3d/render/antialias.h"
 
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
 #include "item3d/render/cuda/module.h"
-#include "item3d/render/rasterize.h"
+#include "item3d/render/kernels/antialias.h"
 #include "item3d/render/topology.h"
 
 #include <torch/csrc/autograd/custom_function.h>
@@ -20,11 +20,11 @@ using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
 struct AntialiasInput {
-    torch::Tensor triangles, neighbours, triangle, depth;
+    at::Tensor triangles, neighbours, triangle, depth;
 };
 
 AntialiasParameters antialias_parameters(const AntialiasInput& input,
-                                         const torch::Tensor& positions_clip) {
+                                         const at::Tensor& positions_clip) {
     return {positions_clip.const_data_ptr<float>(),
             input.triangles.const_data_ptr<std::int32_t>(),
             input.neighbours.const_data_ptr<std::int32_t>(),
@@ -36,7 +36,7 @@ AntialiasParameters antialias_parameters(const AntialiasInput& input,
 }
 
 /// All crossings in the order of their pixels, as bytes.
-torch::Tensor find_crossings(const AntialiasParameters& p, std::int64_t views) {
+at::Tensor find_crossings(const AntialiasParameters& p, std::int64_t views) {
     const std::int64_t rows = views * p.height;
     std::vector<std::vector<Crossing>> by_row(static_cast<std::size_t>(rows));
     parallel_for(
@@ -57,8 +57,7 @@ torch::Tensor find_crossings(const AntialiasParameters& p, std::int64_t views) {
     std::size_t count = 0;
     for (const auto& row : by_row)
         count += row.size();
-    torch::Tensor bytes =
-        torch::empty({static_cast<std::int64_t>(count * sizeof(Crossing))}, torch::kUInt8);
+    at::Tensor bytes = at::empty({static_cast<std::int64_t>(count * sizeof(Crossing))}, at::kByte);
     std::uint8_t* out = bytes.data_ptr<std::uint8_t>();
     for (const auto& row : by_row) {
         if (row.empty()) continue;
@@ -69,7 +68,7 @@ torch::Tensor find_crossings(const AntialiasParameters& p, std::int64_t views) {
 }
 
 template <typename F>
-void for_each_crossing(const torch::Tensor& bytes, const F& f) {
+void for_each_crossing(const at::Tensor& bytes, const F& f) {
     const std::uint8_t* in = bytes.const_data_ptr<std::uint8_t>();
     Crossing crossing;
     for (std::int64_t offset = 0; offset < bytes.numel();
@@ -80,8 +79,8 @@ void for_each_crossing(const torch::Tensor& bytes, const F& f) {
 }
 
 /// On a device each thread gathers what its own pixel takes on.
-torch::Tensor blend_on_cuda(const AntialiasParameters& raster, const torch::Tensor& image) {
-    torch::Tensor result = torch::empty_like(image);
+at::Tensor blend_on_cuda(const AntialiasParameters& raster, const at::Tensor& image) {
+    at::Tensor result = at::empty_like(image);
     kernels::BlendParameters p{};
     p.raster = raster;
     p.image = image.const_data_ptr<float>();
@@ -93,9 +92,9 @@ torch::Tensor blend_on_cuda(const AntialiasParameters& raster, const torch::Tens
 }
 
 /// clip: positions_clip if its gradient is wanted.
-tensor_list blend_backward_on_cuda(const AntialiasParameters& raster, const torch::Tensor& image,
-                                   const torch::Tensor& gradient, const torch::Tensor& clip) {
-    torch::Tensor by_image = torch::empty_like(image);
+tensor_list blend_backward_on_cuda(const AntialiasParameters& raster, const at::Tensor& image,
+                                   const at::Tensor& gradient, const at::Tensor& clip) {
+    at::Tensor by_image = at::empty_like(image);
     kernels::BlendParameters p{};
     p.raster = raster;
     p.image = image.const_data_ptr<float>();
@@ -109,26 +108,25 @@ tensor_list blend_backward_on_cuda(const AntialiasParameters& raster, const torc
     };
     if (!clip.defined()) {
         launch({});
-        return {by_image, torch::Tensor(), torch::Tensor()};
+        return {by_image, at::Tensor(), at::Tensor()};
     }
-    const torch::Tensor sums =
-        cuda::sum_on_device(clip.numel(), 2 * pixels, image.device(), launch);
-    return {by_image, sums.view(clip.sizes()), torch::Tensor()};
+    const at::Tensor sums = cuda::sum_on_device(clip.numel(), 2 * pixels, image.device(), launch);
+    return {by_image, sums.view(clip.sizes()), at::Tensor()};
 }
 
 /// On the CPU, pairs are found by all threads and blended by one: pixels belong to several pairs,
 /// and sums in a fixed order give the same bytes again.
 struct Antialias : torch::autograd::Function<Antialias> {
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& image,
-                                 const torch::Tensor& positions_clip, const AntialiasInput& input) {
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& image,
+                              const at::Tensor& positions_clip, const AntialiasInput& input) {
         const AntialiasParameters p = antialias_parameters(input, positions_clip);
         if (image.is_cuda()) {
             context->save_for_backward({image, positions_clip, input.triangles, input.neighbours,
                                         input.triangle, input.depth});
             return blend_on_cuda(p, image);
         }
-        const torch::Tensor crossings = find_crossings(p, image.size(0));
-        torch::Tensor result = image.clone();
+        const at::Tensor crossings = find_crossings(p, image.size(0));
+        at::Tensor result = image.clone();
         const std::int64_t channels = image.size(3);
         const float* in = image.const_data_ptr<float>();
         float* out = result.data_ptr<float>();
@@ -144,21 +142,21 @@ struct Antialias : torch::autograd::Function<Antialias> {
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const auto saved = context->get_saved_variables();
-        const torch::Tensor gradient = gradients[0].contiguous();
-        const torch::Tensor& image = saved[0];
+        const at::Tensor gradient = gradients[0].contiguous();
+        const at::Tensor& image = saved[0];
         const AntialiasParameters p =
             antialias_parameters({saved[2], saved[3], saved[4], saved[5]}, saved[1]);
         if (image.is_cuda())
-            return blend_backward_on_cuda(
-                p, image, gradient, context->needs_input_grad(1) ? saved[1] : torch::Tensor());
+            return blend_backward_on_cuda(p, image, gradient,
+                                          context->needs_input_grad(1) ? saved[1] : at::Tensor());
         const std::int64_t channels = image.size(3);
         const float* in = image.const_data_ptr<float>();
         const float* by_out = gradient.const_data_ptr<float>();
-        torch::Tensor by_image = gradient.clone(), by_clip;
+        at::Tensor by_image = gradient.clone(), by_clip;
         float* by_in = by_image.data_ptr<float>();
         Accumulator clip_gradient;
         if (context->needs_input_grad(1)) {
-            by_clip = torch::zeros_like(saved[1]);
+            by_clip = at::zeros_like(saved[1]);
             clip_gradient.values = by_clip.data_ptr<float>();
         }
         for_each_crossing(saved[6], [&](const Crossing& crossing) {
@@ -174,34 +172,33 @@ struct Antialias : torch::autograd::Function<Antialias> {
             if (clip_gradient.wanted())
                 kernels::crossing_backward(p, crossing, by_distance, clip_gradient);
         });
-        return {by_image, by_clip, torch::Tensor()};
+        return {by_image, by_clip, at::Tensor()};
     }
 };
 
 }  // namespace
 
-torch::Tensor antialias(const torch::Tensor& image_, const Raster& raster,
-                        const Geometry& geometry) {
+at::Tensor antialias(const at::Tensor& image_, const Raster& raster, const Geometry& geometry) {
     constexpr const char* op = "antialias";
-    const torch::Device device = operation_device(op, image_);
+    const at::Device device = operation_device(op, image_);
     const std::int64_t views = raster.views(), height = raster.height(), width = raster.width();
-    const torch::Tensor image =
-        checked(op, "image", image_, torch::kFloat32, {views, height, width, -1}, device);
-    const torch::Tensor positions_clip =
-        checked(op, "raster.positions_clip", raster.positions_clip, torch::kFloat32,
+    const at::Tensor image =
+        checked(op, "image", image_, at::kFloat, {views, height, width, -1}, device);
+    const at::Tensor positions_clip =
+        checked(op, "raster.positions_clip", raster.positions_clip, at::kFloat,
                 {views, geometry.positions.size(0), 4}, device);
     AntialiasInput input;
-    input.triangles = checked(op, "triangles", geometry.triangles, torch::kInt32, {-1, 3}, device);
+    input.triangles = checked(op, "triangles", geometry.triangles, at::kInt, {-1, 3}, device);
     input.neighbours = checked(
         op, "neighbours",
         geometry.neighbours.defined()
             ? geometry.neighbours
             : triangle_neighbours(geometry.positions.cpu(), geometry.triangles.cpu()).to(device),
-        torch::kInt32, {input.triangles.size(0), 3}, device);
-    input.triangle = checked(op, "raster.triangle", raster.triangle, torch::kInt32,
-                             {views, height, width}, device);
+        at::kInt, {input.triangles.size(0), 3}, device);
+    input.triangle =
+        checked(op, "raster.triangle", raster.triangle, at::kInt, {views, height, width}, device);
     input.depth =
-        checked(op, "raster.depth", raster.depth, torch::kFloat32, {views, height, width}, device);
+        checked(op, "raster.depth", raster.depth, at::kFloat, {views, height, width}, device);
     return Antialias::apply(image, positions_clip, input);
 }
 

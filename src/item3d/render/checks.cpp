@@ -6,9 +6,9 @@
 
 namespace item3d {
 
-torch::Tensor checked(const char* operation, const char* name, const torch::Tensor& tensor,
-                      torch::ScalarType type, std::initializer_list<std::int64_t> shape,
-                      torch::Device device) {
+at::Tensor checked(const char* operation, const char* name, const at::Tensor& tensor,
+                   at::ScalarType type, std::initializer_list<std::int64_t> shape,
+                   at::Device device) {
     const std::vector<std::int64_t> wanted(shape);
     bool good = tensor.defined() && tensor.device() == device && tensor.scalar_type() == type &&
                 tensor.dim() == static_cast<std::int64_t>(wanted.size());
@@ -16,13 +16,13 @@ torch::Tensor checked(const char* operation, const char* name, const torch::Tens
         good = wanted[i] < 0 || tensor.size(static_cast<std::int64_t>(i)) == wanted[i];
     if (!good) {
         std::ostringstream message;
-        message << operation << ": " << name << " must be a " << torch::toString(type)
+        message << operation << ": " << name << " must be a " << at::toString(type)
                 << (device.is_cpu() ? " CPU" : " CUDA") << " tensor [";
         for (std::size_t i = 0; i < wanted.size(); ++i)
             message << (i ? ", " : "") << (wanted[i] < 0 ? "*" : std::to_string(wanted[i]));
         message << "], found ";
         if (tensor.defined())
-            message << torch::toString(tensor.scalar_type()) << " " << tensor.device() << " "
+            message << at::toString(tensor.scalar_type()) << " " << tensor.device() << " "
                     << tensor.sizes();
         else
             message << "an undefined tensor";
@@ -31,7 +31,7 @@ torch::Tensor checked(const char* operation, const char* name, const torch::Tens
     return tensor.contiguous();
 }
 
-torch::Device operation_device(const char* operation, const torch::Tensor& tensor) {
+at::Device operation_device(const char* operation, const at::Tensor& tensor) {
     if (!tensor.defined() || !(tensor.is_cpu() || tensor.is_cuda()))
         throw std::logic_error(std::string(operation) +
                                ": a tensor on the CPU or on CUDA is wanted");

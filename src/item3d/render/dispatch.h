@@ -9,7 +9,7 @@ namespace item3d {
 /// Runs a kernel over the indices in [0, count): kernel(parameters, i) on the CPU, or the entry of
 /// the device's table. Throws as cuda::run does.
 template <auto kernel, typename Parameters>
-void dispatch(torch::Device device, const char* name,
+void dispatch(at::Device device, const char* name,
               cuda::Kernel<Parameters> cuda::RenderTable::*entry, const Parameters& parameters,
               std::int64_t count, std::int64_t grain = 256) {
     if (device.is_cuda())

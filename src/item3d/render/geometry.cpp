@@ -7,8 +7,8 @@ namespace item3d {
 namespace {
 
 template <typename T>
-torch::Tensor to_rows(const std::vector<T>& values, std::int64_t channels) {
-    torch::Tensor tensor = torch::empty({static_cast<std::int64_t>(values.size()), channels});
+at::Tensor to_rows(const std::vector<T>& values, std::int64_t channels) {
+    at::Tensor tensor = at::empty({static_cast<std::int64_t>(values.size()), channels});
     float* out = tensor.data_ptr<float>();
     for (const T& value : values)
         for (std::int64_t c = 0; c < channels; ++c)
@@ -18,7 +18,7 @@ torch::Tensor to_rows(const std::vector<T>& values, std::int64_t channels) {
 
 }  // namespace
 
-Geometry Geometry::from_model(const Model& model, torch::Device device) {
+Geometry Geometry::from_model(const Model& model, at::Device device) {
     std::vector<Vec3> positions, normals;
     std::vector<Vec4> tangents, colors;
     std::vector<Vec2> uvs;
@@ -49,7 +49,7 @@ Geometry Geometry::from_model(const Model& model, torch::Device device) {
                           static_cast<std::int32_t>(index));
     }
     const auto to_indices = [](const std::vector<std::int32_t>& values) {
-        return torch::tensor(values, torch::kInt32);
+        return at::tensor(values, at::kInt);
     };
     Geometry geometry;
     geometry.positions = to_rows(positions, 3);
@@ -61,7 +61,7 @@ Geometry Geometry::from_model(const Model& model, torch::Device device) {
     geometry.triangle_material = to_indices(materials);
     geometry.triangle_primitive = to_indices(primitives);
     geometry.neighbours = triangle_neighbours(geometry.positions, geometry.triangles);
-    for (torch::Tensor* tensor :
+    for (at::Tensor* tensor :
          {&geometry.positions, &geometry.normals, &geometry.tangents, &geometry.uvs,
           &geometry.colors, &geometry.triangles, &geometry.triangle_material,
           &geometry.triangle_primitive, &geometry.neighbours})

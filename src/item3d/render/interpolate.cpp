@@ -1,10 +1,11 @@
-#include "item3d/render/kernels/interpolate.h"
+#include "item3d/render/interpolate.h"
 
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
 #include "item3d/render/dispatch.h"
-#include "item3d/render/rasterize.h"
+#include "item3d/render/kernels/footprint.h"
+#include "item3d/render/kernels/interpolate.h"
 
 #include <torch/csrc/autograd/custom_function.h>
 
@@ -15,7 +16,7 @@ using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
 /// Indices of covered pixels, ascending: [P] int64.
-torch::Tensor covered_pixels(const torch::Tensor& triangle) {
+at::Tensor covered_pixels(const at::Tensor& triangle) {
     if (triangle.is_cuda()) return triangle.reshape({-1}).ge(0).nonzero().squeeze(1);
     const std::int64_t rows = triangle.size(0) * triangle.size(1), width = triangle.size(2);
     const std::int32_t* ids = triangle.const_data_ptr<std::int32_t>();
@@ -32,7 +33,7 @@ torch::Tensor covered_pixels(const torch::Tensor& triangle) {
         rows_a_block);
     for (std::size_t row = 1; row < start.size(); ++row)
         start[row] += start[row - 1];
-    torch::Tensor pixel = torch::empty({start.back()}, torch::kInt64);
+    at::Tensor pixel = at::empty({start.back()}, at::kLong);
     std::int64_t* out = pixel.data_ptr<std::int64_t>();
     parallel_for(
         "list_covered", rows,
@@ -46,12 +47,12 @@ torch::Tensor covered_pixels(const torch::Tensor& triangle) {
 }
 
 struct InterpolateInput {
-    torch::Tensor triangles, barycentrics, triangle, pixel;
+    at::Tensor triangles, barycentrics, triangle, pixel;
 };
 
 kernels::InterpolateParameters interpolate_parameters(const InterpolateInput& input,
-                                                      const torch::Tensor& attributes,
-                                                      const torch::Tensor& positions_clip) {
+                                                      const at::Tensor& attributes,
+                                                      const at::Tensor& positions_clip) {
     kernels::InterpolateParameters p{};
     p.attributes = attributes.const_data_ptr<float>();
     p.positions_clip = positions_clip.const_data_ptr<float>();
@@ -68,11 +69,10 @@ kernels::InterpolateParameters interpolate_parameters(const InterpolateInput& in
 
 /// attributes [V, A], positions_clip [N, V, 4] -> [P, A].
 struct Interpolate : torch::autograd::Function<Interpolate> {
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& attributes,
-                                 const torch::Tensor& positions_clip,
-                                 const InterpolateInput& input) {
-        torch::Tensor values =
-            torch::empty({input.pixel.size(0), attributes.size(1)}, attributes.options());
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& attributes,
+                              const at::Tensor& positions_clip, const InterpolateInput& input) {
+        at::Tensor values =
+            at::empty({input.pixel.size(0), attributes.size(1)}, attributes.options());
         kernels::InterpolateParameters p =
             interpolate_parameters(input, attributes, positions_clip);
         p.values = values.data_ptr<float>();
@@ -86,14 +86,14 @@ struct Interpolate : torch::autograd::Function<Interpolate> {
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const auto saved = context->get_saved_variables();
         const InterpolateInput input{saved[2], saved[3], saved[4], saved[5]};
-        const torch::Tensor gradient = gradients[0].contiguous();
+        const at::Tensor gradient = gradients[0].contiguous();
         const std::int64_t count = input.pixel.size(0);
         kernels::InterpolateParameters p = interpolate_parameters(input, saved[0], saved[1]);
         p.value_gradient = gradient.const_data_ptr<float>();
         if (gradient.is_cuda()) {
             const std::int64_t attributes = saved[0].numel();
             const bool moves = context->needs_input_grad(1);
-            const torch::Tensor sums =
+            const at::Tensor sums =
                 cuda::sum_on_device(attributes + (moves ? saved[1].numel() : 0), 3 * count,
                                     gradient.device(), [&](const Accumulator& accumulator) {
                                         p.attribute_gradient = accumulator;
@@ -103,25 +103,25 @@ struct Interpolate : torch::autograd::Function<Interpolate> {
                                     });
             return {sums.narrow(0, 0, attributes).view(saved[0].sizes()),
                     moves ? sums.narrow(0, attributes, saved[1].numel()).view(saved[1].sizes())
-                          : torch::Tensor(),
-                    torch::Tensor()};
+                          : at::Tensor(),
+                    at::Tensor()};
         }
-        torch::Tensor attribute_gradient = torch::zeros_like(saved[0]);
-        torch::Tensor clip_gradient;
+        at::Tensor attribute_gradient = at::zeros_like(saved[0]);
+        at::Tensor clip_gradient;
         p.attribute_gradient.values = attribute_gradient.data_ptr<float>();
         if (context->needs_input_grad(1)) {
-            clip_gradient = torch::zeros_like(saved[1]);
+            clip_gradient = at::zeros_like(saved[1]);
             p.clip_gradient.values = clip_gradient.data_ptr<float>();
         }
         // One thread: pixels share vertices, and sums in a fixed order give the same bytes again.
         for (std::int64_t i = 0; i < count; ++i)
             kernels::interpolate_backward(p, i);
-        return {attribute_gradient, clip_gradient, torch::Tensor()};
+        return {attribute_gradient, clip_gradient, at::Tensor()};
     }
 };
 
-torch::Tensor camera_positions(const std::vector<Camera>& cameras) {
-    torch::Tensor positions = torch::empty({static_cast<std::int64_t>(cameras.size()), 3});
+at::Tensor camera_positions(const std::vector<Camera>& cameras) {
+    at::Tensor positions = at::empty({static_cast<std::int64_t>(cameras.size()), 3});
     float* out = positions.data_ptr<float>();
     for (const Camera& camera : cameras) {
         kernels::store3(out, camera.position());
@@ -130,7 +130,7 @@ torch::Tensor camera_positions(const std::vector<Camera>& cameras) {
     return positions;
 }
 
-torch::Tensor unit_rows(const torch::Tensor& rows) {
+at::Tensor unit_rows(const at::Tensor& rows) {
     return rows / rows.norm(2, 1, true).clamp_min(1e-12f);
 }
 
@@ -139,28 +139,27 @@ torch::Tensor unit_rows(const torch::Tensor& rows) {
 Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
                             const std::vector<Camera>& cameras) {
     constexpr const char* op = "interpolate_surface";
-    constexpr auto real = torch::kFloat32;
-    const torch::Device device = operation_device(op, geometry.positions);
+    constexpr auto real = at::kFloat;
+    const at::Device device = operation_device(op, geometry.positions);
     const std::int64_t vertices = geometry.positions.size(0);
     const std::int64_t triangle_count = geometry.triangles.size(0);
-    const torch::Tensor positions =
+    const at::Tensor positions =
         checked(op, "positions", geometry.positions, real, {-1, 3}, device);
-    const torch::Tensor normals =
+    const at::Tensor normals =
         checked(op, "normals", geometry.normals, real, {vertices, 3}, device);
-    const torch::Tensor tangents =
+    const at::Tensor tangents =
         checked(op, "tangents", geometry.tangents, real, {vertices, 4}, device);
-    const torch::Tensor uvs = checked(op, "uvs", geometry.uvs, real, {vertices, 2}, device);
-    const torch::Tensor colors =
-        checked(op, "colors", geometry.colors, real, {vertices, 4}, device);
-    const torch::Tensor triangles =
-        checked(op, "triangles", geometry.triangles, torch::kInt32, {-1, 3}, device);
-    const torch::Tensor materials = checked(op, "triangle_material", geometry.triangle_material,
-                                            torch::kInt32, {triangle_count}, device);
-    const torch::Tensor primitives = checked(op, "triangle_primitive", geometry.triangle_primitive,
-                                             torch::kInt32, {triangle_count}, device);
-    const torch::Tensor triangle =
-        checked(op, "raster.triangle", raster.triangle, torch::kInt32, {-1, -1, -1}, device);
-    const torch::Tensor barycentrics =
+    const at::Tensor uvs = checked(op, "uvs", geometry.uvs, real, {vertices, 2}, device);
+    const at::Tensor colors = checked(op, "colors", geometry.colors, real, {vertices, 4}, device);
+    const at::Tensor triangles =
+        checked(op, "triangles", geometry.triangles, at::kInt, {-1, 3}, device);
+    const at::Tensor materials = checked(op, "triangle_material", geometry.triangle_material,
+                                         at::kInt, {triangle_count}, device);
+    const at::Tensor primitives = checked(op, "triangle_primitive", geometry.triangle_primitive,
+                                          at::kInt, {triangle_count}, device);
+    const at::Tensor triangle =
+        checked(op, "raster.triangle", raster.triangle, at::kInt, {-1, -1, -1}, device);
+    const at::Tensor barycentrics =
         checked(op, "raster.barycentrics", raster.barycentrics, real,
                 {raster.views(), raster.height(), raster.width(), 2}, device);
     ITEM3D_CHECK(static_cast<int>(cameras.size()) == raster.views(),
@@ -170,16 +169,16 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
     Surface surface;
     surface.pixel = covered_pixels(triangle);
     const std::int64_t count = surface.count();
-    const torch::Tensor eyes = camera_positions(cameras).to(device);
-    const auto options = torch::TensorOptions().dtype(real).device(device);
-    surface.position = torch::empty({count, 3}, options);
-    surface.normal = torch::empty({count, 3}, options);
-    surface.tangent = torch::empty({count, 4}, options);
-    surface.uv = torch::empty({count, 2}, options);
-    surface.color = torch::empty({count, 4}, options);
-    surface.view = torch::empty({count, 3}, options);
-    surface.material = torch::empty({count}, options.dtype(torch::kInt64));
-    surface.primitive = torch::empty({count}, options.dtype(torch::kInt64));
+    const at::Tensor eyes = camera_positions(cameras).to(device);
+    const auto options = at::TensorOptions().dtype(real).device(device);
+    surface.position = at::empty({count, 3}, options);
+    surface.normal = at::empty({count, 3}, options);
+    surface.tangent = at::empty({count, 4}, options);
+    surface.uv = at::empty({count, 2}, options);
+    surface.color = at::empty({count, 4}, options);
+    surface.view = at::empty({count, 3}, options);
+    surface.material = at::empty({count}, options.dtype(at::kLong));
+    surface.primitive = at::empty({count}, options.dtype(at::kLong));
     const kernels::SurfaceParameters parameters{
         positions.const_data_ptr<float>(),
         normals.const_data_ptr<float>(),
@@ -207,22 +206,50 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
                                                  parameters, count, 8192);
 
     const bool moves = positions.requires_grad() || raster.positions_clip.requires_grad();
-    if (torch::GradMode::is_enabled() && (moves || normals.requires_grad())) {
-        const torch::Tensor attributes = torch::cat({positions, normals}, 1);
-        const torch::Tensor values =
+    if (at::GradMode::is_enabled() && (moves || normals.requires_grad())) {
+        const at::Tensor attributes = at::cat({positions, normals}, 1);
+        const at::Tensor values =
             Interpolate::apply(attributes, raster.positions_clip,
                                InterpolateInput{triangles, barycentrics, triangle, surface.pixel});
-        const torch::Tensor raw = values.narrow(1, 3, 3);
-        const torch::Tensor turned = ((raw.detach() * surface.normal).sum(1, true) < 0).to(real);
+        const at::Tensor raw = values.narrow(1, 3, 3);
+        const at::Tensor turned = ((raw.detach() * surface.normal).sum(1, true) < 0).to(real);
         surface.normal = unit_rows(raw) * (1 - 2 * turned);
         if (moves) {
             surface.position = values.narrow(1, 0, 3);
-            const torch::Tensor view_index = torch::floor_divide(
+            const at::Tensor view_index = at::floor_divide(
                 surface.pixel, static_cast<std::int64_t>(raster.height()) * raster.width());
             surface.view = unit_rows(eyes.index_select(0, view_index) - surface.position);
         }
     }
     return surface;
+}
+
+at::Tensor uv_footprints(const Geometry& geometry, const Raster& raster, const Surface& surface) {
+    constexpr const char* op = "uv_footprints";
+    constexpr auto real = at::kFloat;
+    const at::Device device = operation_device(op, geometry.positions);
+    const std::int64_t vertices = geometry.positions.size(0);
+    const at::Tensor positions_clip = checked(op, "raster.positions_clip", raster.positions_clip,
+                                              real, {raster.views(), vertices, 4}, device);
+    const at::Tensor triangles =
+        checked(op, "triangles", geometry.triangles, at::kInt, {-1, 3}, device);
+    const at::Tensor uvs = checked(op, "uvs", geometry.uvs, real, {vertices, 2}, device);
+    const at::Tensor triangle =
+        checked(op, "raster.triangle", raster.triangle, at::kInt, {-1, -1, -1}, device);
+    const at::Tensor pixel = checked(op, "surface.pixel", surface.pixel, at::kLong, {-1}, device);
+    at::Tensor footprint = at::empty({surface.count(), 4}, uvs.options());
+    const kernels::FootprintParameters parameters{positions_clip.const_data_ptr<float>(),
+                                                  triangles.const_data_ptr<std::int32_t>(),
+                                                  uvs.const_data_ptr<float>(),
+                                                  triangle.const_data_ptr<std::int32_t>(),
+                                                  pixel.const_data_ptr<std::int64_t>(),
+                                                  vertices,
+                                                  raster.width(),
+                                                  raster.height(),
+                                                  footprint.data_ptr<float>()};
+    dispatch<kernels::uv_footprint>(device, "uv_footprints", &cuda::RenderTable::uv_footprints,
+                                    parameters, surface.count(), 4096);
+    return footprint;
 }
 
 }  // namespace item3d

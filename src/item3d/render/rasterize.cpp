@@ -20,10 +20,10 @@ using torch::autograd::tensor_list;
 
 /// [V, 3], [N, 4, 4] column-major -> [N, V, 4].
 struct ProjectVertices : torch::autograd::Function<ProjectVertices> {
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& positions,
-                                 const torch::Tensor& world_to_clip) {
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& positions,
+                              const at::Tensor& world_to_clip) {
         const std::int64_t vertices = positions.size(0), views = world_to_clip.size(0);
-        torch::Tensor positions_clip = torch::empty({views, vertices, 4}, positions.options());
+        at::Tensor positions_clip = at::empty({views, vertices, 4}, positions.options());
         const kernels::ProjectParameters parameters{positions.const_data_ptr<float>(),
                                                     world_to_clip.const_data_ptr<float>(),
                                                     positions_clip.data_ptr<float>(), vertices};
@@ -35,13 +35,13 @@ struct ProjectVertices : torch::autograd::Function<ProjectVertices> {
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         // Column-major matrices read as rows are transposes: [N, 4, 4] with [n][k][row].
-        const torch::Tensor transposed = context->get_saved_variables()[0].narrow(1, 0, 3);
-        return {torch::matmul(gradients[0], transposed.transpose(1, 2)).sum(0), torch::Tensor()};
+        const at::Tensor transposed = context->get_saved_variables()[0].narrow(1, 0, 3);
+        return {at::matmul(gradients[0], transposed.transpose(1, 2)).sum(0), at::Tensor()};
     }
 };
 
-torch::Tensor clip_matrices(const std::vector<Camera>& cameras, int width, int height) {
-    torch::Tensor matrices = torch::empty({static_cast<std::int64_t>(cameras.size()), 4, 4});
+at::Tensor clip_matrices(const std::vector<Camera>& cameras, int width, int height) {
+    at::Tensor matrices = at::empty({static_cast<std::int64_t>(cameras.size()), 4, 4});
     float* out = matrices.data_ptr<float>();
     for (std::size_t n = 0; n < cameras.size(); ++n) {
         const Mat4 matrix = cameras[n].world_to_clip(width, height);
@@ -130,13 +130,13 @@ void rasterize_on_cpu(const kernels::RasterParameters& parameters, std::int64_t 
 /// A thread draws one triangle into one band of rows. Bands, where triangles are few, keep a large
 /// one from being a single thread's work.
 void rasterize_on_cuda(const kernels::RasterParameters& parameters, std::int64_t views,
-                       torch::Device device) {
+                       at::Device device) {
     constexpr std::int64_t enough_threads = 1 << 20;
     const std::int64_t triangles = views * parameters.triangle_count;
     const std::int64_t pixels =
         views * static_cast<std::int64_t>(parameters.width) * parameters.height;
-    const torch::Tensor keys =
-        torch::zeros({pixels}, torch::TensorOptions().dtype(torch::kInt64).device(device));
+    const at::Tensor keys =
+        at::zeros({pixels}, at::TensorOptions().dtype(at::kLong).device(device));
     const kernels::KeyedRasterParameters keyed{
         parameters, static_cast<unsigned long long*>(keys.data_ptr()), views,
         std::clamp<std::int64_t>(enough_threads / std::max<std::int64_t>(1, triangles), 1,
@@ -150,34 +150,34 @@ void rasterize_on_cuda(const kernels::RasterParameters& parameters, std::int64_t
 }  // namespace
 
 Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, int width,
-                 int height, const torch::Tensor& behind_) {
+                 int height, const at::Tensor& behind_) {
     ITEM3D_CHECK(width > 0 && height > 0 && width <= 16384 && height <= 16384,
                  "rasterize: width and height must be in [1, 16384], found " +
                      std::to_string(width) + " x " + std::to_string(height));
     ITEM3D_CHECK(!cameras.empty(), "rasterize: at least one camera");
-    const torch::Device device = operation_device("rasterize", geometry.positions);
-    const torch::Tensor positions =
-        checked("rasterize", "positions", geometry.positions, torch::kFloat32, {-1, 3}, device);
-    const torch::Tensor triangles =
-        checked("rasterize", "triangles", geometry.triangles, torch::kInt32, {-1, 3}, device);
+    const at::Device device = operation_device("rasterize", geometry.positions);
+    const at::Tensor positions =
+        checked("rasterize", "positions", geometry.positions, at::kFloat, {-1, 3}, device);
+    const at::Tensor triangles =
+        checked("rasterize", "triangles", geometry.triangles, at::kInt, {-1, 3}, device);
     const std::int64_t views = static_cast<std::int64_t>(cameras.size());
-    const torch::Tensor behind = behind_.defined()
-                                     ? checked("rasterize", "behind", behind_, torch::kFloat32,
-                                               {views, height, width}, device)
-                                     : torch::Tensor();
+    const at::Tensor behind =
+        behind_.defined()
+            ? checked("rasterize", "behind", behind_, at::kFloat, {views, height, width}, device)
+            : at::Tensor();
 
     Raster raster;
     raster.positions_clip =
         ProjectVertices::apply(positions, clip_matrices(cameras, width, height).to(device));
-    const auto real = torch::TensorOptions().dtype(torch::kFloat32).device(device);
-    raster.barycentrics = torch::zeros({views, height, width, 2}, real);
-    raster.depth = torch::zeros({views, height, width}, real);
-    raster.triangle = torch::full({views, height, width}, -1, real.dtype(torch::kInt32));
+    const auto real = at::TensorOptions().dtype(at::kFloat).device(device);
+    raster.barycentrics = at::zeros({views, height, width, 2}, real);
+    raster.depth = at::zeros({views, height, width}, real);
+    raster.triangle = at::full({views, height, width}, -1, real.dtype(at::kInt));
 
     const std::int64_t triangle_count = triangles.size(0);
-    torch::Tensor boxes =
-        torch::empty({views * triangle_count, static_cast<std::int64_t>(sizeof(kernels::PixelBox))},
-                     real.dtype(torch::kUInt8));
+    at::Tensor boxes =
+        at::empty({views * triangle_count, static_cast<std::int64_t>(sizeof(kernels::PixelBox))},
+                  real.dtype(at::kByte));
     const kernels::RasterParameters parameters{
         raster.positions_clip.const_data_ptr<float>(),
         triangles.const_data_ptr<std::int32_t>(),

@@ -1,6 +1,9 @@
+#include "item3d/render/render.h"
+
 #include "item3d/core/error.h"
+#include "item3d/render/antialias.h"
 #include "item3d/render/occlusion/occlusion.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/scatter.h"
 
 namespace item3d {
 namespace {
@@ -9,40 +12,39 @@ namespace {
 constexpr int most_layers = 8;
 
 /// One layer, front to back: [1, H, W, 4] premultiplied.
-torch::Tensor shade_layer(const Raster& raster, const Geometry& geometry,
-                          const TexturedMaterials& materials, const EnvironmentLight& light,
-                          const std::vector<Camera>& camera, const RenderOptions& options) {
+at::Tensor shade_layer(const Raster& raster, const Geometry& geometry,
+                       const TexturedMaterials& materials, const EnvironmentLight& light,
+                       const std::vector<Camera>& camera, const RenderOptions& options) {
     Surface surface = interpolate_surface(geometry, raster, camera);
     surface.uv_footprint = uv_footprints(geometry, raster, surface);
     MaterialSample material = materials.sample(surface);
     if (options.occlusion) material = options.occlusion->shadowed(material, raster, surface);
-    const torch::Tensor radiance = shade(surface, material, light, options.shade);
-    const torch::Tensor alpha = material.alpha.defined()
-                                    ? material.alpha.unsqueeze(1)
-                                    : torch::ones({surface.count(), 1}, radiance.options());
-    return scatter(torch::cat({radiance * alpha, alpha}, 1), surface, raster,
-                   torch::zeros({4}, radiance.options()));
+    const at::Tensor radiance = shade(surface, material, light, options.shade);
+    const at::Tensor alpha = material.alpha.defined()
+                                 ? material.alpha.unsqueeze(1)
+                                 : at::ones({surface.count(), 1}, radiance.options());
+    return scatter(at::cat({radiance * alpha, alpha}, 1), surface, raster,
+                   at::zeros({4}, radiance.options()));
 }
 
-torch::Tensor render_view(const Geometry& geometry, const TexturedMaterials& materials,
-                          const EnvironmentLight& light, const Camera& camera,
-                          const RenderOptions& options) {
+at::Tensor render_view(const Geometry& geometry, const TexturedMaterials& materials,
+                       const EnvironmentLight& light, const Camera& camera,
+                       const RenderOptions& options) {
     const std::vector<Camera> cameras{camera};
     const int samples = options.supersampling;
     const int width = options.width * samples, height = options.height * samples;
     const Raster first = rasterize(geometry, cameras, width, height);
-    torch::Tensor picture = shade_layer(first, geometry, materials, light, cameras, options);
+    at::Tensor picture = shade_layer(first, geometry, materials, light, cameras, options);
 
     if (materials.has_alpha()) {
         Raster layer = first;
         for (int depth = 1; depth < most_layers; ++depth) {
-            const torch::Tensor open =
+            const at::Tensor open =
                 (picture.select(3, 3) < 0.999f).logical_and(layer.triangle >= 0);
             if (!open.any().item<bool>()) break;
             // Nothing lies behind the farthest depth, so closed pixels stay as they are.
-            layer =
-                rasterize(geometry, cameras, width, height,
-                          torch::where(open, layer.depth, torch::full_like(layer.depth, 1e30f)));
+            layer = rasterize(geometry, cameras, width, height,
+                              at::where(open, layer.depth, at::full_like(layer.depth, 1e30f)));
             picture =
                 picture + (1 - picture.narrow(3, 3, 1)) *
                               shade_layer(layer, geometry, materials, light, cameras, options);
@@ -50,8 +52,7 @@ torch::Tensor render_view(const Geometry& geometry, const TexturedMaterials& mat
     }
     if (options.background) {
         const Vec3 color = *options.background;
-        const torch::Tensor behind =
-            torch::tensor({color.x, color.y, color.z, 1.0f}, picture.options());
+        const at::Tensor behind = at::tensor({color.x, color.y, color.z, 1.0f}, picture.options());
         picture = picture + (1 - picture.narrow(3, 3, 1)) * behind;
     }
     picture = antialias(picture, first, geometry);
@@ -61,17 +62,17 @@ torch::Tensor render_view(const Geometry& geometry, const TexturedMaterials& mat
 
 }  // namespace
 
-torch::Tensor render(const Geometry& geometry, const TexturedMaterials& materials,
-                     const EnvironmentLight& light, const std::vector<Camera>& cameras,
-                     const RenderOptions& options) {
+at::Tensor render(const Geometry& geometry, const TexturedMaterials& materials,
+                  const EnvironmentLight& light, const std::vector<Camera>& cameras,
+                  const RenderOptions& options) {
     ITEM3D_CHECK(options.supersampling >= 1 && options.width >= 1 && options.height >= 1,
                  "render: width, height and supersampling of at least 1");
     // One view at a time: memory stays that of one supersampled picture.
-    std::vector<torch::Tensor> pictures;
+    std::vector<at::Tensor> pictures;
     for (const Camera& camera : cameras)
         pictures.push_back(render_view(geometry, materials, light, camera, options));
     ITEM3D_CHECK(!pictures.empty(), "render: at least one camera");
-    return torch::cat(pictures);
+    return at::cat(pictures);
 }
 
 }  // namespace item3d

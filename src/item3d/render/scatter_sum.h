@@ -2,8 +2,7 @@
 #pragma once
 
 #include "item3d/core/parallel.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <algorithm>
 
@@ -12,10 +11,9 @@ namespace item3d {
 /// Sum over i in [0, count) of what add(i, buffer) adds to a float buffer of `elements`. Work is
 /// cut into a fixed number of chunks with a buffer each, summed in order: memory is 8 * elements.
 template <typename F>
-torch::Tensor scatter_sum(const char* name, std::int64_t count, std::int64_t elements,
-                          const F& add) {
+at::Tensor scatter_sum(const char* name, std::int64_t count, std::int64_t elements, const F& add) {
     constexpr std::int64_t chunks = 8;
-    torch::Tensor buffers = torch::zeros({chunks, elements}, torch::kFloat32);
+    at::Tensor buffers = at::zeros({chunks, elements}, at::kFloat);
     float* data = buffers.data_ptr<float>();
     parallel_for(
         name, chunks,

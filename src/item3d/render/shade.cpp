@@ -5,6 +5,7 @@
 #include "item3d/render/checks.h"
 #include "item3d/render/dispatch.h"
 #include "item3d/render/kernels/shade.h"
+#include "item3d/render/prefilter/bsdf_table.h"
 #include "item3d/render/prefilter/specular_chain.h"
 #include "item3d/render/scatter_sum.h"
 
@@ -22,7 +23,7 @@ using torch::autograd::tensor_list;
 
 /// What is not differentiated.
 struct ShadeSettings {
-    torch::Tensor tangent, view;
+    at::Tensor tangent, view;
     std::vector<float> roughness;
     bool multiple_scattering;
 };
@@ -32,16 +33,16 @@ struct ShadeSettings {
 constexpr std::size_t first_level = 5;
 
 /// The BSDF table, which is copied to the first device that asks for it once.
-torch::Tensor bsdf_table_on(torch::Device device) {
+at::Tensor bsdf_table_on(at::Device device) {
     if (device.is_cpu()) return bsdf_table();
-    static const torch::Tensor first = bsdf_table().to(device);
+    static const at::Tensor first = bsdf_table().to(device);
     return first.device() == device ? first : bsdf_table().to(device);
 }
 
 /// bsdf: bsdf_table_on() the inputs' device.
 ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings& settings,
-                                 const torch::Tensor& bsdf) {
-    const auto pointer = [](const torch::Tensor& tensor) {
+                                 const at::Tensor& bsdf) {
+    const auto pointer = [](const at::Tensor& tensor) {
         return tensor.numel() > 0 ? tensor.const_data_ptr<float>() : nullptr;
     };
     ShadeParameters p{};
@@ -61,9 +62,9 @@ ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings&
 }
 
 /// Returns the light's gradient [light_elements].
-torch::Tensor shade_backward_on_cuda(const ShadeParameters& p, const LightGradient& light,
-                                     std::int64_t light_elements, std::int64_t count,
-                                     torch::Device device) {
+at::Tensor shade_backward_on_cuda(const ShadeParameters& p, const LightGradient& light,
+                                  std::int64_t light_elements, std::int64_t count,
+                                  at::Device device) {
     kernels::ShadeBackwardParameters parameters{p, light};
     const auto launch = [&](const Accumulator& sums) {
         parameters.light.sums = sums;
@@ -75,11 +76,11 @@ torch::Tensor shade_backward_on_cuda(const ShadeParameters& p, const LightGradie
 }
 
 struct Shade : torch::autograd::Function<Shade> {
-    static torch::Tensor forward(AutogradContext* context, at::TensorList inputs_,
-                                 const ShadeSettings& settings) {
+    static at::Tensor forward(AutogradContext* context, at::TensorList inputs_,
+                              const ShadeSettings& settings) {
         const tensor_list inputs = inputs_.vec();
-        torch::Tensor radiance = torch::empty_like(inputs[0]);
-        const torch::Tensor bsdf = bsdf_table_on(radiance.device());
+        at::Tensor radiance = at::empty_like(inputs[0]);
+        const at::Tensor bsdf = bsdf_table_on(radiance.device());
         ShadeParameters p = shade_parameters(inputs, settings, bsdf);
         p.radiance = radiance.data_ptr<float>();
         dispatch<kernels::shade_forward>(radiance.device(), "shade", &cuda::RenderTable::shade, p,
@@ -106,15 +107,15 @@ struct Shade : torch::autograd::Function<Shade> {
             settings.roughness.push_back(static_cast<float>(roughness));
         settings.multiple_scattering = context->saved_data["multiple_scattering"].toBool();
 
-        const torch::Tensor radiance_gradient = gradients[0].contiguous();
-        const torch::Device device = radiance_gradient.device();
-        const torch::Tensor bsdf = bsdf_table_on(device);
+        const at::Tensor radiance_gradient = gradients[0].contiguous();
+        const at::Device device = radiance_gradient.device();
+        const at::Tensor bsdf = bsdf_table_on(device);
         ShadeParameters p = shade_parameters(inputs, settings, bsdf);
         p.radiance_gradient = radiance_gradient.const_data_ptr<float>();
         tensor_list results(inputs.size() + 1);
         const auto wanted = [&](std::size_t i) -> float* {
             if (inputs[i].numel() == 0 || !context->needs_input_grad(i)) return nullptr;
-            results[i] = torch::empty_like(inputs[i]);
+            results[i] = at::empty_like(inputs[i]);
             return results[i].data_ptr<float>();
         };
         p.base_color_gradient = wanted(0);
@@ -133,7 +134,7 @@ struct Shade : torch::autograd::Function<Shade> {
         LightGradient light;
         light.diffuse = offsets[first_level - 1];
         std::copy(offsets.begin() + first_level, offsets.end(), light.specular);
-        torch::Tensor light_gradient;
+        at::Tensor light_gradient;
         if (device.is_cuda())
             light_gradient = shade_backward_on_cuda(p, light, light_elements, count, device);
         else if (light_elements > 0)
@@ -157,36 +158,35 @@ struct Shade : torch::autograd::Function<Shade> {
 
 }  // namespace
 
-torch::Tensor shade(const Surface& surface, const MaterialSample& material,
-                    const EnvironmentLight& light, const ShadeOptions& options) {
+at::Tensor shade(const Surface& surface, const MaterialSample& material,
+                 const EnvironmentLight& light, const ShadeOptions& options) {
     constexpr const char* op = "shade";
-    constexpr auto real = torch::kFloat32;
-    const torch::Device device = operation_device(op, material.base_color);
+    constexpr auto real = at::kFloat;
+    const at::Device device = operation_device(op, material.base_color);
     const std::int64_t count = surface.count();
     ITEM3D_CHECK(light.specular.size() >= 4 && light.specular.size() == light.roughness.size() &&
                      light.specular.size() <= kernels::max_specular_levels,
                  "shade: light.specular needs 4 to 16 levels with a roughness each, ascending");
-    const auto cube = [&](const char* name, const torch::Tensor& map) {
-        torch::Tensor good = checked(op, name, map, real, {6, -1, -1, 3}, device);
+    const auto cube = [&](const char* name, const at::Tensor& map) {
+        at::Tensor good = checked(op, name, map, real, {6, -1, -1, 3}, device);
         ITEM3D_CHECK(good.size(1) == good.size(2) && good.size(1) >= 2,
                      std::string("shade: ") + name + " must have square faces of at least 2 x 2");
         return good;
     };
-    tensor_list inputs{
-        checked(op, "base_color", material.base_color, real, {count, 3}, device),
-        checked(op, "orm", material.orm, real, {count, 3}, device),
-        material.normal.defined()
-            ? checked(op, "normal", material.normal, real, {count, 3}, device)
-            : torch::empty({0, 3}, torch::TensorOptions().dtype(real).device(device)),
-        checked(op, "surface.normal", surface.normal, real, {count, 3}, device),
-        cube("light.diffuse", light.diffuse)};
-    for (const torch::Tensor& level : light.specular)
+    tensor_list inputs{checked(op, "base_color", material.base_color, real, {count, 3}, device),
+                       checked(op, "orm", material.orm, real, {count, 3}, device),
+                       material.normal.defined()
+                           ? checked(op, "normal", material.normal, real, {count, 3}, device)
+                           : at::empty({0, 3}, at::TensorOptions().dtype(real).device(device)),
+                       checked(op, "surface.normal", surface.normal, real, {count, 3}, device),
+                       cube("light.diffuse", light.diffuse)};
+    for (const at::Tensor& level : light.specular)
         inputs.push_back(cube("light.specular", level));
     const ShadeSettings settings{
         checked(op, "surface.tangent", surface.tangent.detach(), real, {count, 4}, device),
         checked(op, "surface.view", surface.view.detach(), real, {count, 3}, device),
         light.roughness, options.multiple_scattering};
-    torch::Tensor radiance = Shade::apply(at::TensorList(inputs), settings);
+    at::Tensor radiance = Shade::apply(at::TensorList(inputs), settings);
     if (material.emissive.defined())
         radiance = radiance + checked(op, "emissive", material.emissive, real, {count, 3}, device);
     return radiance;

@@ -1,20 +1,19 @@
-// Light and material to radiance, at covered pixels alone; and pictures from radiance.
+// Light and material to radiance, at covered pixels alone.
 #pragma once
 
+#include "item3d/render/interpolate.h"
 #include "item3d/render/prefilter/environment_light.h"
-#include "item3d/render/rasterize.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
 /// Material values at P surface points, linear. What a texture lookup or the neural field returns.
 struct MaterialSample {
-    torch::Tensor base_color;  ///< [P, 3] linear, [0, 1]
-    torch::Tensor orm;         ///< [P, 3] occlusion, roughness (perceptual), metallic, [0, 1]
-    torch::Tensor normal;      ///< [P, 3] tangent space, unit; undefined tensor: the surface's own
-    torch::Tensor emissive;    ///< [P, 3] linear radiance; undefined: none
-    torch::Tensor alpha;       ///< [P] coverage; undefined: opaque
+    at::Tensor base_color;  ///< [P, 3] linear, [0, 1]
+    at::Tensor orm;         ///< [P, 3] occlusion, roughness (perceptual), metallic, [0, 1]
+    at::Tensor normal;      ///< [P, 3] tangent space, unit; undefined tensor: the surface's own
+    at::Tensor emissive;    ///< [P, 3] linear radiance; undefined: none
+    at::Tensor alpha;       ///< [P] coverage; undefined: opaque
 };
 
 struct ShadeOptions {
@@ -31,18 +30,7 @@ struct ShadeOptions {
 ///   occlusion
 /// with F0 = lerp(0.04, base_color, metallic); emissive is added; r leans towards n as roughness
 /// grows. Roughness below the chain's first (0.08) looks like it.
-torch::Tensor shade(const Surface& surface, const MaterialSample& material,
-                    const EnvironmentLight& light, const ShadeOptions& options = {});
-
-/// Scatters [P, C] values into [N, H, W, C] with `background` [C] or [N, H, W, C] elsewhere.
-torch::Tensor scatter(const torch::Tensor& values, const Surface& surface, const Raster& raster,
-                      const torch::Tensor& background);
-
-/// Both differentiable; the gradient of linear_to_srgb is bounded near 0.
-torch::Tensor linear_to_srgb(const torch::Tensor& linear);
-torch::Tensor srgb_to_linear(const torch::Tensor& encoded);
-
-torch::Tensor to_tensor(const Image& image, torch::Device device = torch::kCPU);  ///< [H, W, C]
-Image to_image(const torch::Tensor& tensor);  ///< from [H, W, C]
+at::Tensor shade(const Surface& surface, const MaterialSample& material,
+                 const EnvironmentLight& light, const ShadeOptions& options = {});
 
 }  // namespace item3d

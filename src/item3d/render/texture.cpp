@@ -1,10 +1,10 @@
-#include "item3d/render/kernels/texture.h"
+#include "item3d/render/texture.h"
 
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
 #include "item3d/render/dispatch.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/kernels/texture.h"
 
 #include <torch/csrc/autograd/custom_function.h>
 
@@ -29,7 +29,7 @@ TextureWrap kernel_wrap(Wrap wrap) {
 
 /// What is not differentiated.
 struct SampleSettings {
-    torch::Tensor footprint;  ///< [P, 4] or undefined
+    at::Tensor footprint;  ///< [P, 4] or undefined
     TextureWrap wrap_u, wrap_v;
 };
 
@@ -53,9 +53,9 @@ TextureParameters texture_parameters(const tensor_list& inputs, const SampleSett
 }
 
 /// [total]: the gradients of all levels, one after the other.
-torch::Tensor texel_gradient(const TextureParameters& p, const float* value_gradient,
-                             std::int64_t count, std::int64_t total) {
-    const torch::Tensor gradient = torch::zeros({total});
+at::Tensor texel_gradient(const TextureParameters& p, const float* value_gradient,
+                          std::int64_t count, std::int64_t total) {
+    const at::Tensor gradient = at::zeros({total});
     Accumulator sums;
     sums.values = gradient.data_ptr<float>();
     // One thread, for the same bytes again; buffers of many threads would cost more to sum.
@@ -64,8 +64,8 @@ torch::Tensor texel_gradient(const TextureParameters& p, const float* value_grad
     return gradient;
 }
 
-torch::Tensor texel_gradient_on_cuda(const TextureParameters& p, const float* value_gradient,
-                                     std::int64_t count, std::int64_t total, torch::Device device) {
+at::Tensor texel_gradient_on_cuda(const TextureParameters& p, const float* value_gradient,
+                                  std::int64_t count, std::int64_t total, at::Device device) {
     // A level of one texel gets all four taps of each probe.
     const std::int64_t most_terms = 4 * kernels::most_texture_probes * count;
     return cuda::sum_on_device(total, most_terms, device, [&](const Accumulator& sums) {
@@ -75,11 +75,11 @@ torch::Tensor texel_gradient_on_cuda(const TextureParameters& p, const float* va
 }
 
 struct SampleTexture : torch::autograd::Function<SampleTexture> {
-    static torch::Tensor forward(AutogradContext* context, at::TensorList inputs_,
-                                 const SampleSettings& settings) {
+    static at::Tensor forward(AutogradContext* context, at::TensorList inputs_,
+                              const SampleSettings& settings) {
         const tensor_list inputs = inputs_.vec();
         const std::int64_t count = inputs[0].size(0);
-        torch::Tensor values = torch::empty({count, inputs[1].size(2)}, inputs[0].options());
+        at::Tensor values = at::empty({count, inputs[1].size(2)}, inputs[0].options());
         float* out = values.data_ptr<float>();
         const TextureParameters p = texture_parameters(inputs, settings);
         if (values.is_cuda())
@@ -103,13 +103,13 @@ struct SampleTexture : torch::autograd::Function<SampleTexture> {
             static_cast<TextureWrap>(context->saved_data["wrap_v"].toInt())};
         inputs.pop_back();
         const TextureParameters p = texture_parameters(inputs, settings);
-        const torch::Tensor gradient = gradients[0].contiguous();
+        const at::Tensor gradient = gradients[0].contiguous();
         const float* in = gradient.const_data_ptr<float>();
         const std::int64_t count = inputs[0].size(0);
-        const torch::Device device = gradient.device();
+        const at::Device device = gradient.device();
         tensor_list results(inputs.size() + 1);
         if (context->needs_input_grad(0)) {
-            results[0] = torch::empty_like(inputs[0]);
+            results[0] = at::empty_like(inputs[0]);
             float* out = results[0].data_ptr<float>();
             if (device.is_cuda())
                 cuda::run(cuda::render_table().texture_uv_backward, {p, nullptr, in, out, {}},
@@ -127,9 +127,9 @@ struct SampleTexture : torch::autograd::Function<SampleTexture> {
         std::int64_t total = 0;
         for (std::size_t i = 1; i < inputs.size(); ++i)
             total += inputs[i].numel();
-        const torch::Tensor by_texels = device.is_cuda()
-                                            ? texel_gradient_on_cuda(p, in, count, total, device)
-                                            : texel_gradient(p, in, count, total);
+        const at::Tensor by_texels = device.is_cuda()
+                                         ? texel_gradient_on_cuda(p, in, count, total, device)
+                                         : texel_gradient(p, in, count, total);
         for (std::size_t i = 1; i < inputs.size(); ++i)
             results[i] =
                 by_texels.narrow(0, p.levels[i - 1].first, inputs[i].numel()).view_as(inputs[i]);
@@ -139,9 +139,9 @@ struct SampleTexture : torch::autograd::Function<SampleTexture> {
 
 /// [2H, 2W, C] -> [H, W, C], the mean of 2 x 2 texels.
 struct HalveTexture : torch::autograd::Function<HalveTexture> {
-    static torch::Tensor forward(AutogradContext*, const torch::Tensor& fine) {
-        torch::Tensor coarse =
-            torch::empty({fine.size(0) / 2, fine.size(1) / 2, fine.size(2)}, fine.options());
+    static at::Tensor forward(AutogradContext*, const at::Tensor& fine) {
+        at::Tensor coarse =
+            at::empty({fine.size(0) / 2, fine.size(1) / 2, fine.size(2)}, fine.options());
         const kernels::HalveParameters p{fine.const_data_ptr<float>(),
                                          static_cast<int>(fine.size(1)),
                                          static_cast<int>(fine.size(2)), coarse.data_ptr<float>()};
@@ -151,9 +151,9 @@ struct HalveTexture : torch::autograd::Function<HalveTexture> {
         return coarse;
     }
     static tensor_list backward(AutogradContext*, tensor_list gradients) {
-        const torch::Tensor coarse = gradients[0].contiguous();
-        torch::Tensor fine = torch::empty({2 * coarse.size(0), 2 * coarse.size(1), coarse.size(2)},
-                                          coarse.options());
+        const at::Tensor coarse = gradients[0].contiguous();
+        at::Tensor fine =
+            at::empty({2 * coarse.size(0), 2 * coarse.size(1), coarse.size(2)}, coarse.options());
         const kernels::HalveParameters p{coarse.const_data_ptr<float>(),
                                          static_cast<int>(fine.size(1)),
                                          static_cast<int>(fine.size(2)), fine.data_ptr<float>()};
@@ -167,45 +167,45 @@ struct HalveTexture : torch::autograd::Function<HalveTexture> {
 
 }  // namespace
 
-std::vector<torch::Tensor> texture_pyramid(const torch::Tensor& texture) {
-    std::vector<torch::Tensor> levels{texture.contiguous()};
+std::vector<at::Tensor> texture_pyramid(const at::Tensor& texture) {
+    std::vector<at::Tensor> levels{texture.contiguous()};
     while (levels.size() < kernels::max_texture_levels &&
            std::max(levels.back().size(0), levels.back().size(1)) > 1) {
-        const torch::Tensor& fine = levels.back();
+        const at::Tensor& fine = levels.back();
         const std::int64_t height = std::max<std::int64_t>(1, fine.size(0) / 2);
         const std::int64_t width = std::max<std::int64_t>(1, fine.size(1) / 2);
         if (fine.size(0) == 2 * height && fine.size(1) == 2 * width) {
             levels.push_back(HalveTexture::apply(fine));
             continue;
         }
-        const torch::Tensor planes = fine.permute({2, 0, 1}).unsqueeze(0);
-        const torch::Tensor coarse = torch::adaptive_avg_pool2d(planes, {height, width});
+        const at::Tensor planes = fine.permute({2, 0, 1}).unsqueeze(0);
+        const at::Tensor coarse = at::adaptive_avg_pool2d(planes, {height, width});
         levels.push_back(coarse.squeeze(0).permute({1, 2, 0}).contiguous());
     }
     return levels;
 }
 
-torch::Tensor sample_texture(const std::vector<torch::Tensor>& levels, const torch::Tensor& uv_,
-                             const torch::Tensor& footprint, Wrap wrap_u, Wrap wrap_v) {
+at::Tensor sample_texture(const std::vector<at::Tensor>& levels, const at::Tensor& uv_,
+                          const at::Tensor& footprint, Wrap wrap_u, Wrap wrap_v) {
     constexpr const char* op = "sample_texture";
     ITEM3D_CHECK(!levels.empty() && levels.size() <= kernels::max_texture_levels &&
                      levels[0].dim() == 3 && levels[0].numel() > 0,
                  "sample_texture: 1 to 16 levels of a texture [H, W, C] with texels");
-    const torch::Device device = operation_device(op, uv_);
-    tensor_list inputs{checked(op, "uv", uv_, torch::kFloat32, {-1, 2}, device)};
-    for (const torch::Tensor& level : levels)
+    const at::Device device = operation_device(op, uv_);
+    tensor_list inputs{checked(op, "uv", uv_, at::kFloat, {-1, 2}, device)};
+    for (const at::Tensor& level : levels)
         inputs.push_back(
-            checked(op, "texture", level, torch::kFloat32, {-1, -1, levels[0].size(2)}, device));
+            checked(op, "texture", level, at::kFloat, {-1, -1, levels[0].size(2)}, device));
     SampleSettings settings{{}, kernel_wrap(wrap_u), kernel_wrap(wrap_v)};
     if (footprint.defined())
-        settings.footprint = checked(op, "footprint", footprint.detach(), torch::kFloat32,
+        settings.footprint = checked(op, "footprint", footprint.detach(), at::kFloat,
                                      {inputs[0].size(0), 4}, device);
     return SampleTexture::apply(at::TensorList(inputs), settings);
 }
 
-torch::Tensor sample_texture(const torch::Tensor& texture, const torch::Tensor& uv, Wrap wrap_u,
-                             Wrap wrap_v) {
-    return sample_texture(std::vector<torch::Tensor>{texture}, uv, {}, wrap_u, wrap_v);
+at::Tensor sample_texture(const at::Tensor& texture, const at::Tensor& uv, Wrap wrap_u,
+                          Wrap wrap_v) {
+    return sample_texture(std::vector<at::Tensor>{texture}, uv, {}, wrap_u, wrap_v);
 }
 
 }  // namespace item3d

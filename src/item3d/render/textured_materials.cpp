@@ -1,7 +1,9 @@
+#include "item3d/render/textured_materials.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/math.h"
 #include "item3d/core/parallel.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/texture.h"
 
 #include <algorithm>
 #include <array>
@@ -12,11 +14,11 @@ namespace {
 
 /// A texture of one use, with the channels that this use wants.
 struct MaterialTexture {
-    std::vector<torch::Tensor> levels;  ///< [H, W, C] and its mip levels; empty: none
+    std::vector<at::Tensor> levels;  ///< [H, W, C] and its mip levels; empty: none
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 
     bool defined() const { return !levels.empty(); }
-    torch::Tensor at(const Surface& surface) const {
+    at::Tensor at(const Surface& surface) const {
         return sample_texture(levels, surface.uv, surface.uv_footprint, wrap_u, wrap_v);
     }
 };
@@ -44,8 +46,8 @@ class SrgbDecoder {
 
 /// [H, W, channels], in one pass. channels: 3 or 4. Grey images fill all colours; a missing alpha
 /// is 1.
-torch::Tensor linear_texels(const Image& image, int channels, bool srgb) {
-    torch::Tensor texels = torch::empty({image.height, image.width, channels}, torch::kFloat32);
+at::Tensor linear_texels(const Image& image, int channels, bool srgb) {
+    at::Tensor texels = at::empty({image.height, image.width, channels}, at::kFloat);
     const int have = image.channels;
     const int alpha = have == 2 ? 1 : (have >= 4 ? 3 : -1);
     const SrgbDecoder decoder;
@@ -67,7 +69,7 @@ torch::Tensor linear_texels(const Image& image, int channels, bool srgb) {
 }
 
 MaterialTexture load_texture(const Model& model, int index, int channels, bool srgb,
-                             torch::Device device) {
+                             at::Device device) {
     MaterialTexture texture;
     if (index < 0 || index >= static_cast<int>(model.textures.size())) return texture;
     const Texture& source = model.textures[static_cast<std::size_t>(index)];
@@ -78,18 +80,18 @@ MaterialTexture load_texture(const Model& model, int index, int channels, bool s
     return texture;
 }
 
-torch::Tensor row(std::initializer_list<float> values, torch::Device device) {
-    return torch::tensor(std::vector<float>(values)).to(device);
+at::Tensor row(std::initializer_list<float> values, at::Device device) {
+    return at::tensor(std::vector<float>(values)).to(device);
 }
 
 /// A material's factors as rows on the device, moved there once and not at each lookup.
 struct FactorRows {
-    torch::Tensor base_color;          ///< [4]
-    torch::Tensor roughness_metallic;  ///< [2]
-    torch::Tensor normal_scale;        ///< [3]
-    torch::Tensor emissive;            ///< [3]
+    at::Tensor base_color;          ///< [4]
+    at::Tensor roughness_metallic;  ///< [2]
+    at::Tensor normal_scale;        ///< [3]
+    at::Tensor emissive;            ///< [3]
 
-    FactorRows(const Material& material, torch::Device device)
+    FactorRows(const Material& material, at::Device device)
         : base_color(row({material.base_color_factor.x, material.base_color_factor.y,
                           material.base_color_factor.z, material.base_color_factor.w},
                          device)),
@@ -115,16 +117,16 @@ struct MaterialTextures {
 
 struct TexturedMaterials::State {
     std::vector<MaterialTextures> materials;
-    torch::Tensor flat_normal;  ///< [3] where a material has no normal texture
-    torch::Tensor unlit_orm;    ///< [3] what orm is multiplied by, to be black to the light
+    at::Tensor flat_normal;  ///< [3] where a material has no normal texture
+    at::Tensor unlit_orm;    ///< [3] what orm is multiplied by, to be black to the light
     bool any_normal = false, any_emissive = false, any_alpha = false;
 
     /// Of all points of a surface: its UV, footprints and colours alone are looked at.
     MaterialSample sample_one(const MaterialTextures& material, const Surface& surface) const;
 };
 
-TexturedMaterials::TexturedMaterials(const Model& model, torch::Device device) {
-    const torch::NoGradGuard no_gradient;
+TexturedMaterials::TexturedMaterials(const Model& model, at::Device device) {
+    const at::NoGradGuard no_gradient;
     auto state = std::make_shared<State>();
     state->flat_normal = row({0, 0, 1}, device);
     state->unlit_orm = row({0, 1, 1}, device);
@@ -154,24 +156,24 @@ MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& mate
     const FactorRows& rows = material.rows;
     const std::int64_t count = surface.uv.size(0);
 
-    torch::Tensor base_color = surface.color * rows.base_color;
+    at::Tensor base_color = surface.color * rows.base_color;
     if (material.base_color.defined()) base_color = base_color * material.base_color.at(surface);
 
     MaterialSample sample;
     sample.base_color = base_color.narrow(1, 0, 3).clamp(0, 1);
-    torch::Tensor roughness_metallic = rows.roughness_metallic.expand({count, 2});
+    at::Tensor roughness_metallic = rows.roughness_metallic.expand({count, 2});
     if (material.metallic_roughness.defined())
         roughness_metallic =
             roughness_metallic * material.metallic_roughness.at(surface).narrow(1, 1, 2);
-    torch::Tensor occlusion = torch::ones({count, 1}, surface.uv.options());
+    at::Tensor occlusion = at::ones({count, 1}, surface.uv.options());
     if (material.occlusion.defined())
         occlusion =
             1 + factors.occlusion_strength * (material.occlusion.at(surface).narrow(1, 0, 1) - 1);
-    sample.orm = torch::cat({occlusion, roughness_metallic}, 1).clamp(0, 1);
+    sample.orm = at::cat({occlusion, roughness_metallic}, 1).clamp(0, 1);
 
     if (any_normal) {
         if (material.normal.defined()) {
-            const torch::Tensor normal = (2 * material.normal.at(surface) - 1) * rows.normal_scale;
+            const at::Tensor normal = (2 * material.normal.at(surface) - 1) * rows.normal_scale;
             sample.normal = normal / normal.norm(2, 1, true).clamp_min(1e-6f);
         } else {
             sample.normal = flat_normal.expand({count, 3});
@@ -187,13 +189,13 @@ MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& mate
             sample.emissive = sample.emissive * material.emissive.at(surface);
     }
     if (any_alpha) {
-        const torch::Tensor alpha = base_color.select(1, 3);
+        const at::Tensor alpha = base_color.select(1, 3);
         if (factors.alpha == Material::Alpha::mask)
-            sample.alpha = (alpha >= factors.alpha_cutoff).to(torch::kFloat32);
+            sample.alpha = (alpha >= factors.alpha_cutoff).to(at::kFloat);
         else if (factors.alpha == Material::Alpha::blend)
             sample.alpha = alpha.clamp(0, 1);
         else
-            sample.alpha = torch::ones_like(alpha);
+            sample.alpha = at::ones_like(alpha);
     }
     return sample;
 }
@@ -205,9 +207,9 @@ MaterialSample TexturedMaterials::sample(const Surface& surface) const {
 
     // Each point is sampled from its own material, then put back in its place.
     std::vector<MaterialSample> parts;
-    std::vector<torch::Tensor> places;
+    std::vector<at::Tensor> places;
     for (std::size_t m = 0; m < materials; ++m) {
-        const torch::Tensor place =
+        const at::Tensor place =
             (surface.material == static_cast<std::int64_t>(m)).nonzero().squeeze(1);
         if (place.size(0) == 0 && !(parts.empty() && m + 1 == materials)) continue;
         places.push_back(place);
@@ -218,13 +220,13 @@ MaterialSample TexturedMaterials::sample(const Surface& surface) const {
             part.uv_footprint = surface.uv_footprint.index_select(0, place);
         parts.push_back(state_->sample_one(state_->materials[m], part));
     }
-    const torch::Tensor order = torch::argsort(torch::cat(places));
-    const auto gather = [&](torch::Tensor MaterialSample::*member) -> torch::Tensor {
+    const at::Tensor order = at::argsort(at::cat(places));
+    const auto gather = [&](at::Tensor MaterialSample::*member) -> at::Tensor {
         if (!(parts[0].*member).defined()) return {};
-        std::vector<torch::Tensor> values;
+        std::vector<at::Tensor> values;
         for (const MaterialSample& part : parts)
             values.push_back(part.*member);
-        return torch::cat(values).index_select(0, order);
+        return at::cat(values).index_select(0, order);
     };
     return {gather(&MaterialSample::base_color), gather(&MaterialSample::orm),
             gather(&MaterialSample::normal), gather(&MaterialSample::emissive),

@@ -40,14 +40,13 @@ struct Edge {
 
 }  // namespace
 
-torch::Tensor triangle_neighbours(const torch::Tensor& positions_,
-                                  const torch::Tensor& triangles_) {
-    const torch::Tensor positions =
-        checked("triangle_neighbours", "positions", positions_.detach(), torch::kFloat32, {-1, 3});
-    const torch::Tensor triangles =
-        checked("triangle_neighbours", "triangles", triangles_, torch::kInt32, {-1, 3});
+at::Tensor triangle_neighbours(const at::Tensor& positions_, const at::Tensor& triangles_) {
+    const at::Tensor positions =
+        checked("triangle_neighbours", "positions", positions_.detach(), at::kFloat, {-1, 3});
+    const at::Tensor triangles =
+        checked("triangle_neighbours", "triangles", triangles_, at::kInt, {-1, 3});
     // Adding zero turns -0 into 0, whose bits differ.
-    const torch::Tensor unsigned_zeros = positions + 0.0f;
+    const at::Tensor unsigned_zeros = positions + 0.0f;
     const std::vector<std::int32_t> merged =
         merge_by_position(unsigned_zeros.const_data_ptr<float>(), positions.size(0));
     const std::int32_t* corners = triangles.const_data_ptr<std::int32_t>();
@@ -65,7 +64,7 @@ torch::Tensor triangle_neighbours(const torch::Tensor& positions_,
         return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
     });
 
-    torch::Tensor neighbours = torch::full_like(triangles, -1);
+    at::Tensor neighbours = at::full_like(triangles, -1);
     std::int32_t* out = neighbours.data_ptr<std::int32_t>();
     for (std::size_t i = 0; i < edges.size();) {
         std::size_t end = i + 1;

@@ -18,23 +18,6 @@ struct ReportImage {
     Bytes bytes;
 };
 
-/// One line of a chart: values[i] stands at x = first + i * step. Values that are not finite leave
-/// a gap.
-struct Curve {
-    std::string name;
-    std::vector<double> values;
-    double first = 0;
-    double step = 1;
-};
-
-struct Chart {
-    std::string title;
-    std::string x_label;
-    std::vector<Curve> curves;
-    /// Draws a running mean over the faint raw line; for noisy curves.
-    bool smooth = false;
-};
-
 using TableRows = std::vector<std::pair<std::string, std::string>>;
 
 std::string html_escape(const std::string& text);
@@ -50,8 +33,6 @@ std::string html_comparison(const ReportImage& before, const ReportImage& after,
                             const std::string& caption);
 /// Two columns: what, and its value.
 std::string html_table(const TableRows& rows);
-/// A line chart as inline SVG. Charts without a finite value say so.
-std::string html_chart(const Chart& chart);
 /// Horizontal bars with their share of the sum: seconds by stage.
 std::string html_timings(const std::vector<std::pair<std::string, double>>& seconds);
 /// Horizontal bars of parts in [0, 1], each with a remark (may be empty).

@@ -1,3 +1,5 @@
+#include "item3d/report/html_chart.h"
+
 #include "item3d/core/format.h"
 #include "item3d/report/html.h"
 

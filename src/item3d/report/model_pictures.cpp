@@ -1,6 +1,8 @@
 #include "item3d/report/model_pictures.h"
 
 #include "item3d/metrics/detail.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/render.h"
 
 #include <utility>
 
@@ -11,7 +13,7 @@ constexpr float elevation = 0.32f;
 constexpr float field_of_view = 0.6f;
 
 /// [N, H, W, 3 or more] linear -> [N, 3, H, W] sRGB in [0, 1].
-torch::Tensor to_planes(const torch::Tensor& linear) {
+at::Tensor to_planes(const at::Tensor& linear) {
     return linear_to_srgb(linear.narrow(3, 0, 3).clamp(0, 1)).permute({0, 3, 1, 2}).contiguous();
 }
 
@@ -26,27 +28,27 @@ ModelDrawing::ModelDrawing(const Model& model, EnvironmentLight light)
       geometry_(Geometry::from_model(model, light_.diffuse.device())),
       materials_(model, light_.diffuse.device()) {}
 
-torch::Tensor ModelDrawing::draw(const std::vector<Camera>& cameras, int pixels) const {
-    const torch::NoGradGuard no_grad;
+at::Tensor ModelDrawing::draw(const std::vector<Camera>& cameras, int pixels) const {
+    const at::NoGradGuard no_grad;
     RenderOptions options;
     options.width = pixels;
     options.height = pixels;
-    std::vector<torch::Tensor> pictures;
+    std::vector<at::Tensor> pictures;
     for (const Camera& camera : cameras)
         pictures.push_back(render(geometry_, materials_, light_, {camera}, options));
-    return torch::cat(pictures);
+    return at::cat(pictures);
 }
 
-torch::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
-                            const std::vector<Camera>& cameras, int pixels) {
+at::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
+                         const std::vector<Camera>& cameras, int pixels) {
     return ModelDrawing(model, light).draw(cameras, pixels);
 }
 
-torch::Tensor over_white(const torch::Tensor& linear) {
+at::Tensor over_white(const at::Tensor& linear) {
     return to_planes(linear.narrow(3, 0, 3) + (1 - linear.narrow(3, 3, 1)));
 }
 
-double detail_kept(const torch::Tensor& before, const torch::Tensor& after) {
+double detail_kept(const at::Tensor& before, const at::Tensor& after) {
     return detail_correlation(to_planes(before), to_planes(after), before.select(3, 3));
 }
 

@@ -1,11 +1,10 @@
 // Pictures of a whole model from all around, for reports, scores and captions.
 #pragma once
 
-#include "item3d/render/textured.h"
+#include "item3d/render/textured_materials.h"
 #include "item3d/scene/camera.h"
 #include "item3d/scene/model.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <vector>
 
@@ -21,7 +20,7 @@ class ModelDrawing {
 
     /// [N, pixels, pixels, 4] linear radiance, premultiplied, on the light's device; one view at a
     /// time to keep memory low.
-    torch::Tensor draw(const std::vector<Camera>& cameras, int pixels) const;
+    at::Tensor draw(const std::vector<Camera>& cameras, int pixels) const;
 
   private:
     EnvironmentLight light_;
@@ -30,13 +29,13 @@ class ModelDrawing {
 };
 
 /// ModelDrawing::draw() once.
-torch::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
-                            const std::vector<Camera>& cameras, int pixels);
+at::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
+                         const std::vector<Camera>& cameras, int pixels);
 
 /// Those over white: [N, 3, H, W] sRGB in [0, 1].
-torch::Tensor over_white(const torch::Tensor& linear);
+at::Tensor over_white(const at::Tensor& linear);
 
 /// detail_correlation (detail.h) of two such sets of pictures, where the first shows the model.
-double detail_kept(const torch::Tensor& before, const torch::Tensor& after);
+double detail_kept(const at::Tensor& before, const at::Tensor& after);
 
 }  // namespace item3d

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/report/html.h"
+#include "item3d/report/html_chart.h"
 
 #include <optional>
 #include <string>

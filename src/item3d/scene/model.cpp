@@ -1,6 +1,6 @@
 #include "item3d/scene/model.h"
 
-#include "item3d/scene/smooth_normals.h"
+#include "item3d/scene/normals.h"
 
 #include <limits>
 

@@ -7,9 +7,8 @@
 #include "item3d/edit/edit.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
-#include "item3d/lighting/layout.h"
-#include "item3d/render/shade.h"
 #include "item3d/report/html.h"
 #include "item3d/report/model_pictures.h"
 #include "item3d/suite/look_by_clip.h"
@@ -54,8 +53,8 @@ EditRequest request_of(const SuiteEdit& edit, const SuiteOptions& options, const
     return request;
 }
 
-torch::Tensor pictures_of(const fs::path& model_file, const std::string& light_name) {
-    const torch::NoGradGuard no_grad;
+at::Tensor pictures_of(const fs::path& model_file, const std::string& light_name) {
+    const at::NoGradGuard no_grad;
     const Model model = load_model(model_file);
     const EnvironmentLight light = prefilter(load_light(light_name), 64);
     return over_white(
@@ -79,8 +78,7 @@ json verdict_of(const SuiteCase& test, const json& summary, const EditRequest& r
                 {"right", metallic > metal_enough}};
     }
     if (test.word.empty() || !judge.clip) return json::object();
-    const torch::Tensor pictures =
-        pictures_of(request.output / "model.glb", request.settings.light);
+    const at::Tensor pictures = pictures_of(request.output / "model.glb", request.settings.light);
     const std::string found =
         look_by_clip(pictures, test.mesh, *judge.clip, judge.vocabulary, {"materials", "patterns"});
     return {{"found", found}, {"right", found == test.word}};

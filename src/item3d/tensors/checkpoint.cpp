@@ -20,12 +20,12 @@ constexpr std::int64_t large = 65536;  ///< rows
 const std::string all_rows = "#all", row_places = "#rows", row_values = "#values";
 
 /// Appends the tensor, or the rows of it that are not 0.
-void append_rows(NamedTensors& tensors, const std::string& name, const torch::Tensor& tensor) {
+void append_rows(NamedTensors& tensors, const std::string& name, const at::Tensor& tensor) {
     if (tensor.dim() > 0 && tensor.size(0) >= large) {
-        const torch::Tensor used =
+        const at::Tensor used =
             tensor.reshape({tensor.size(0), -1}).ne(0).any(1).nonzero().select(1, 0);
         if (2 * used.size(0) < tensor.size(0)) {
-            tensors.emplace_back(name + all_rows, torch::tensor({tensor.size(0)}));
+            tensors.emplace_back(name + all_rows, at::tensor({tensor.size(0)}));
             tensors.emplace_back(name + row_places, used);
             tensors.emplace_back(name + row_values, tensor.index_select(0, used));
             return;
@@ -44,10 +44,10 @@ NamedTensors whole_tensors(const SafeTensors& file) {
             continue;
         }
         const std::string own = name.substr(0, name.size() - all_rows.size());
-        const torch::Tensor values = file.tensor(own + row_values);
+        const at::Tensor values = file.tensor(own + row_values);
         std::vector<std::int64_t> shape = values.sizes().vec();
         shape.front() = file.tensor(name).item<std::int64_t>();
-        tensors.emplace_back(own, torch::zeros(shape, values.options())
+        tensors.emplace_back(own, at::zeros(shape, values.options())
                                       .index_copy_(0, file.tensor(own + row_places), values));
     }
     return tensors;
@@ -132,9 +132,9 @@ void require_same_identity(const std::filesystem::path& path, const nlohmann::js
 }
 
 void append_parameters(NamedTensors& tensors, const std::string& prefix,
-                       const torch::nn::Module& module) {
-    for (const auto& item : module.named_parameters())
-        tensors.emplace_back(prefix + item.key(), item.value().detach());
+                       const NamedTensors& parameters) {
+    for (const auto& [name, parameter] : parameters)
+        tensors.emplace_back(prefix + name, parameter.detach());
 }
 
 CheckpointReader::CheckpointReader(std::string subject, const NamedTensors& tensors)
@@ -143,28 +143,27 @@ CheckpointReader::CheckpointReader(std::string subject, const NamedTensors& tens
         tensors_[name] = tensor;
 }
 
-torch::Tensor CheckpointReader::get(const std::string& name) const {
+at::Tensor CheckpointReader::get(const std::string& name) const {
     const auto found = tensors_.find(name);
     if (found == tensors_.end()) throw InputError(subject_, "has no tensor " + name, begin_anew);
     return found->second;
 }
 
-void CheckpointReader::copy(const std::string& name, torch::Tensor target) const {
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor saved = get(name);
+void CheckpointReader::copy(const std::string& name, at::Tensor target) const {
+    const at::NoGradGuard no_grad;
+    const at::Tensor saved = get(name);
     if (saved.sizes() != target.sizes())
         throw InputError(subject_, "tensor " + name + " has another shape", begin_anew);
     target.copy_(saved);
 }
 
-void CheckpointReader::parameters(const std::string& prefix, torch::nn::Module& module) const {
-    for (const auto& item : module.named_parameters())
-        copy(prefix + item.key(), item.value());
+void CheckpointReader::parameters(const std::string& prefix, const NamedTensors& parameters) const {
+    for (const auto& [name, parameter] : parameters)
+        copy(prefix + name, parameter);
 }
 
-std::map<std::string, torch::Tensor> CheckpointReader::with_prefix(
-    const std::string& prefix) const {
-    std::map<std::string, torch::Tensor> found;
+std::map<std::string, at::Tensor> CheckpointReader::with_prefix(const std::string& prefix) const {
+    std::map<std::string, at::Tensor> found;
     for (const auto& [name, tensor] : tensors_) {
         if (name.starts_with(prefix)) found[name.substr(prefix.size())] = tensor;
     }

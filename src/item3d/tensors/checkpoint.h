@@ -4,7 +4,6 @@
 #include "item3d/tensors/safetensors.h"
 
 #include <nlohmann/json.hpp>
-#include <torch/nn/module.h>
 
 #include <filesystem>
 #include <map>
@@ -41,9 +40,9 @@ void require_same_identity(const std::filesystem::path& path, const nlohmann::js
                            const nlohmann::json& now,
                            const std::map<std::string, std::string>& inputs);
 
-/// A module's parameters as they are, named prefix + their own names.
+/// Appends parameters as they are, named prefix + their own names.
 void append_parameters(NamedTensors& tensors, const std::string& prefix,
-                       const torch::nn::Module& module);
+                       const NamedTensors& parameters);
 
 /// A checkpoint's tensors by name. What is missing or of another shape is an InputError.
 class CheckpointReader {
@@ -51,17 +50,17 @@ class CheckpointReader {
     CheckpointReader(std::string subject, const NamedTensors& tensors);
 
     bool has(const std::string& name) const { return tensors_.count(name) != 0; }
-    torch::Tensor get(const std::string& name) const;
+    at::Tensor get(const std::string& name) const;
     /// Copied into `target`, which has its shape.
-    void copy(const std::string& name, torch::Tensor target) const;
-    /// As append_parameters() wrote them.
-    void parameters(const std::string& prefix, torch::nn::Module& module) const;
+    void copy(const std::string& name, at::Tensor target) const;
+    /// Copies what append_parameters() wrote into these parameters.
+    void parameters(const std::string& prefix, const NamedTensors& parameters) const;
     /// What begins with prefix, without it.
-    std::map<std::string, torch::Tensor> with_prefix(const std::string& prefix) const;
+    std::map<std::string, at::Tensor> with_prefix(const std::string& prefix) const;
 
   private:
     std::string subject_;
-    std::map<std::string, torch::Tensor> tensors_;
+    std::map<std::string, at::Tensor> tensors_;
 };
 
 }  // namespace item3d

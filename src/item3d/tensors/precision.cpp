@@ -9,19 +9,19 @@ const std::vector<std::string>& precision_names() {
     return names;
 }
 
-torch::Dtype choose_precision(const std::string& name, torch::Device device) {
-    if (name == "fp32") return torch::kFloat32;
-    if (name == "bf16") return torch::kBFloat16;
+at::ScalarType choose_precision(const std::string& name, at::Device device) {
+    if (name == "fp32") return at::kFloat;
+    if (name == "bf16") return at::kBFloat16;
     if (name == "auto") {
 #if defined(__x86_64__)
         const bool fast_bf16 = device.is_cuda() || __builtin_cpu_supports("avx512bf16");
 #else
         const bool fast_bf16 = device.is_cuda();
 #endif
-        return fast_bf16 ? torch::kBFloat16 : torch::kFloat32;
+        return fast_bf16 ? at::kBFloat16 : at::kFloat;
     }
     if (name == "fp16") {
-        if (device.is_cuda()) return torch::kFloat16;
+        if (device.is_cuda()) return at::kHalf;
         throw InputError("--precision", "fp16 is for CUDA devices",
                          "choose auto, fp32 or bf16 on the CPU");
     }
@@ -29,11 +29,11 @@ torch::Dtype choose_precision(const std::string& name, torch::Device device) {
                      "choose auto, fp32, bf16 or fp16");
 }
 
-std::string precision_name(torch::Dtype dtype) {
+std::string precision_name(at::ScalarType dtype) {
     switch (dtype) {
-        case torch::kFloat16:
+        case at::kHalf:
             return "fp16";
-        case torch::kBFloat16:
+        case at::kBFloat16:
             return "bf16";
         default:
             return "fp32";

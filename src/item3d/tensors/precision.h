@@ -1,7 +1,7 @@
 // Which floating-point type a network computes in.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <string>
 #include <vector>
@@ -14,9 +14,9 @@ const std::vector<std::string>& precision_names();
 /// auto: bf16 where the device computes in it (any CUDA device, CPUs with AVX512-BF16), else fp32.
 /// Throws InputError on an unknown name, and on fp16 on the CPU, whose kernels are slower than
 /// fp32's and overflow in Stable Diffusion's autoencoder.
-torch::Dtype choose_precision(const std::string& name, torch::Device device);
+at::ScalarType choose_precision(const std::string& name, at::Device device);
 
 /// "fp32", "bf16" or "fp16".
-std::string precision_name(torch::Dtype dtype);
+std::string precision_name(at::ScalarType dtype);
 
 }  // namespace item3d

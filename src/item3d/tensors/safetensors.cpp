@@ -22,22 +22,21 @@ constexpr std::uint64_t max_header_length = 100'000'000;  // the reference imple
 
 struct NamedDtype {
     const char* name;
-    torch::Dtype dtype;
+    at::ScalarType dtype;
 };
 constexpr NamedDtype dtypes[] = {
-    {"F64", torch::kFloat64},   {"F32", torch::kFloat32}, {"F16", torch::kFloat16},
-    {"BF16", torch::kBFloat16}, {"I64", torch::kInt64},   {"I32", torch::kInt32},
-    {"I16", torch::kInt16},     {"I8", torch::kInt8},     {"U8", torch::kUInt8},
-    {"BOOL", torch::kBool},
+    {"F64", at::kDouble}, {"F32", at::kFloat}, {"F16", at::kHalf},  {"BF16", at::kBFloat16},
+    {"I64", at::kLong},   {"I32", at::kInt},   {"I16", at::kShort}, {"I8", at::kChar},
+    {"U8", at::kByte},    {"BOOL", at::kBool},
 };
 
-std::optional<torch::Dtype> dtype_of_name(const std::string& name) {
+std::optional<at::ScalarType> dtype_of_name(const std::string& name) {
     for (const NamedDtype& entry : dtypes)
         if (name == entry.name) return entry.dtype;
     return std::nullopt;
 }
 
-const char* name_of_dtype(torch::Dtype dtype) {
+const char* name_of_dtype(at::ScalarType dtype) {
     for (const NamedDtype& entry : dtypes)
         if (dtype == entry.dtype) return entry.name;
     return nullptr;
@@ -136,7 +135,7 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
             fail(name, fmt::format("type {} is not supported", value["dtype"].get<std::string>()));
 
         Entry entry{*dtype, {}, 0, 0};
-        std::uint64_t bytes = torch::elementSize(*dtype);
+        std::uint64_t bytes = at::elementSize(*dtype);
         for (const auto& extent : value["shape"]) {
             if (!extent.is_number_unsigned()) fail(name, "its shape is not made of sizes >= 0");
             const auto count = extent.get<std::uint64_t>();
@@ -183,7 +182,7 @@ std::int64_t SafeTensors::total_elements() const {
     std::int64_t total = 0;
     for (const auto& [name, entry] : entries_)
         total +=
-            static_cast<std::int64_t>((entry.end - entry.begin) / torch::elementSize(entry.dtype));
+            static_cast<std::int64_t>((entry.end - entry.begin) / at::elementSize(entry.dtype));
     return total;
 }
 
@@ -199,18 +198,18 @@ TensorInfo SafeTensors::info(const std::string& name) const {
     return {found.dtype, found.shape};
 }
 
-torch::Tensor SafeTensors::tensor(const std::string& name) const {
+at::Tensor SafeTensors::tensor(const std::string& name) const {
     const Entry& found = entry(name);
     std::uint8_t* bytes = map_->bytes + data_start_ + found.begin;
-    const auto options = torch::TensorOptions().dtype(found.dtype);
-    if (found.begin == found.end) return torch::empty(found.shape, options);
-    if (reinterpret_cast<std::uintptr_t>(bytes) % torch::elementSize(found.dtype) != 0) {
+    const auto options = at::TensorOptions().dtype(found.dtype);
+    if (found.begin == found.end) return at::empty(found.shape, options);
+    if (reinterpret_cast<std::uintptr_t>(bytes) % at::elementSize(found.dtype) != 0) {
         // The format does not promise alignment; kernels expect it.
-        torch::Tensor copy = torch::empty(found.shape, options);
+        at::Tensor copy = at::empty(found.shape, options);
         std::memcpy(copy.data_ptr(), bytes, found.end - found.begin);
         return copy;
     }
-    return torch::from_blob(
+    return at::from_blob(
         bytes, found.shape, [map = map_](void*) {}, options);
 }
 
@@ -238,7 +237,7 @@ void save_safetensors(const std::filesystem::path& path, const NamedTensors& ten
     for (const auto& [name, tensor] : tensors) {
         ITEM3D_CHECK(tensor.defined() && name_of_dtype(tensor.scalar_type()),
                      "safetensors cannot hold the tensor " + name);
-        sorted.emplace_back(name, tensor.detach().to(torch::kCPU).contiguous());
+        sorted.emplace_back(name, tensor.detach().to(at::kCPU).contiguous());
     }
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
         const auto left = a.second.element_size();

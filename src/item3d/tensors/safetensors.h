@@ -3,7 +3,7 @@
 // {name: {dtype, shape, data_offsets}}, then the tensors' bytes without holes.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -17,11 +17,11 @@ namespace item3d {
 
 /// What a file's header says of a tensor.
 struct TensorInfo {
-    torch::Dtype dtype;
+    at::ScalarType dtype;
     std::vector<std::int64_t> shape;
 };
 
-using NamedTensors = std::vector<std::pair<std::string, torch::Tensor>>;
+using NamedTensors = std::vector<std::pair<std::string, at::Tensor>>;
 
 /// One open file. Tensors that it hands out share its memory map and keep it alive; writing to one
 /// changes private memory, never the file.
@@ -43,7 +43,7 @@ class SafeTensors {
     /// Of one tensor, without touching its bytes. Throws InputError when absent.
     TensorInfo info(const std::string& name) const;
     /// A view of the file's bytes, in the file's own type. Throws InputError when absent.
-    torch::Tensor tensor(const std::string& name) const;
+    at::Tensor tensor(const std::string& name) const;
     /// Lets go of the memory that a tensor's bytes take, for who has copied them; they are read
     /// from the file again when somebody looks.
     void forget(const std::string& name) const;
@@ -52,7 +52,7 @@ class SafeTensors {
 
   private:
     struct Entry {
-        torch::Dtype dtype;
+        at::ScalarType dtype;
         std::vector<std::int64_t> shape;
         std::uint64_t begin;  ///< offset from the start of the data
         std::uint64_t end;

@@ -36,25 +36,25 @@ struct WeightMemory::Pages {
 
 WeightMemory::WeightMemory(std::size_t bytes) : pages_(std::make_shared<Pages>(bytes)) {}
 
-std::size_t WeightMemory::room_for(torch::IntArrayRef sizes, torch::Dtype dtype) {
+std::size_t WeightMemory::room_for(at::IntArrayRef sizes, at::ScalarType dtype) {
     const std::size_t bytes =
-        static_cast<std::size_t>(c10::multiply_integers(sizes)) * torch::elementSize(dtype);
+        static_cast<std::size_t>(c10::multiply_integers(sizes)) * at::elementSize(dtype);
     return (bytes + alignment - 1) / alignment * alignment;
 }
 
-torch::Tensor WeightMemory::empty(torch::IntArrayRef sizes, torch::Dtype dtype) {
+at::Tensor WeightMemory::empty(at::IntArrayRef sizes, at::ScalarType dtype) {
     const std::size_t room = room_for(sizes, dtype);
     ITEM3D_CHECK(used_ + room <= pages_->size - huge_page, "more weights than there is room for");
     auto* place = reinterpret_cast<void*>(pages_->begin + used_);
     used_ += room;
-    return torch::from_blob(
-        place, sizes, [pages = pages_](void*) {}, torch::TensorOptions().dtype(dtype));
+    return at::from_blob(
+        place, sizes, [pages = pages_](void*) {}, at::TensorOptions().dtype(dtype));
 }
 
-torch::Tensor empty_weight(torch::IntArrayRef sizes, torch::Dtype dtype) {
+at::Tensor empty_weight(at::IntArrayRef sizes, at::ScalarType dtype) {
     const std::size_t room = WeightMemory::room_for(sizes, dtype);
     constexpr std::size_t small = 64 << 10;
-    if (room < small) return torch::empty(sizes, torch::TensorOptions().dtype(dtype));
+    if (room < small) return at::empty(sizes, at::TensorOptions().dtype(dtype));
     return WeightMemory(room).empty(sizes, dtype);
 }
 

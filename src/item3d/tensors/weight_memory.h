@@ -1,7 +1,7 @@
 // Memory for a network's weights, apart from what comes and goes while it runs.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <cstddef>
 #include <memory>
@@ -17,10 +17,10 @@ class WeightMemory {
     explicit WeightMemory(std::size_t bytes);
 
     /// What a tensor takes of it.
-    static std::size_t room_for(torch::IntArrayRef sizes, torch::Dtype dtype);
+    static std::size_t room_for(at::IntArrayRef sizes, at::ScalarType dtype);
 
     /// Numbers not yet written (zero), contiguous, in the next part of the memory.
-    torch::Tensor empty(torch::IntArrayRef sizes, torch::Dtype dtype);
+    at::Tensor empty(at::IntArrayRef sizes, at::ScalarType dtype);
 
   private:
     struct Pages;
@@ -29,6 +29,6 @@ class WeightMemory {
 };
 
 /// One tensor in such memory, or on the heap where it is small.
-torch::Tensor empty_weight(torch::IntArrayRef sizes, torch::Dtype dtype);
+at::Tensor empty_weight(at::IntArrayRef sizes, at::ScalarType dtype);
 
 }  // namespace item3d

@@ -1,7 +1,9 @@
+#include "item3d/text/bert_tokenizer.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
-#include "item3d/text/caption_tokenizer.h"
+#include "item3d/text/special_tokens.h"
 
 #include <algorithm>
 #include <sstream>

@@ -128,10 +128,9 @@ std::string ClipTokenizer::lost_words(const std::string& text, int length) const
     return decode({ids.begin() + static_cast<std::ptrdiff_t>(most) - 1, ids.end()});
 }
 
-torch::Tensor ClipTokenizer::encode_batch(const std::vector<std::string>& texts, int length) const {
+at::Tensor ClipTokenizer::encode_batch(const std::vector<std::string>& texts, int length) const {
     const std::int64_t columns = length > 0 ? length : options_.model_max_length;
-    torch::Tensor result =
-        torch::empty({static_cast<std::int64_t>(texts.size()), columns}, torch::kInt64);
+    at::Tensor result = at::empty({static_cast<std::int64_t>(texts.size()), columns}, at::kLong);
     auto rows = result.accessor<std::int64_t, 2>();
     for (std::size_t i = 0; i < texts.size(); ++i) {
         const std::vector<int> ids = encode_padded(texts[i], length);

@@ -1,10 +1,9 @@
 // CLIP's byte-level BPE tokenizer, as transformers' CLIPTokenizer does it.
 #pragma once
 
+#include "item3d/tensors/tensor.h"
 #include "item3d/text/byte_pairs.h"
 #include "item3d/text/special_tokens.h"
-
-#include <torch/types.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -48,7 +47,7 @@ class ClipTokenizer {
     /// As above, truncated and padded to `length` ids (0: model_max_length).
     std::vector<int> encode_padded(const std::string& text, int length = 0) const;
     /// [N, length] int64, row by row encode_padded.
-    torch::Tensor encode_batch(const std::vector<std::string>& texts, int length = 0) const;
+    at::Tensor encode_batch(const std::vector<std::string>& texts, int length = 0) const;
     /// What encode_padded leaves out at the end of a text that is too long; empty where it fits.
     std::string lost_words(const std::string& text, int length = 0) const;
     /// Lower-cased text with one space between tokens' words.

@@ -1,6 +1,9 @@
+#include "item3d/text/gpt2_tokenizer.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
-#include "item3d/text/caption_tokenizer.h"
+#include "item3d/text/normalization.h"
+#include "item3d/text/special_tokens.h"
 
 #include <algorithm>
 

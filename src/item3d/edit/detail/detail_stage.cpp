@@ -5,6 +5,7 @@
 #include "item3d/edit/optimize/checkpoint_writer.h"
 #include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/optimize/render_view.h"
+#include "item3d/networks/diffusion/generate.h"
 #include "item3d/networks/diffusion/shape_condition.h"
 
 #include <torch/nn/functional/pooling.h>
@@ -39,23 +40,23 @@ constexpr float spread = 0.5f;  ///< pixels, see ViewOptions
 constexpr int largest_kept = 128;
 constexpr std::uint64_t choice_stream = 7;  // of the edit's seed
 
-torch::Tensor blur(torch::Tensor images) {
+at::Tensor blur(at::Tensor images) {
     const auto size = images.size(2) / filter_share | 1;
     for (int i = 0; i < 2; ++i) {
-        images = torch::avg_pool2d(images, {size, size}, {1, 1}, {size / 2, size / 2}, false,
-                                   /*count_include_pad=*/false);
+        images = at::avg_pool2d(images, {size, size}, {1, 1}, {size / 2, size / 2}, false,
+                                /*count_include_pad=*/false);
     }
     return images;
 }
 
 /// Without what varies slowly over the covered part; the background does not count.
-torch::Tensor fine_part(const torch::Tensor& images, const torch::Tensor& coverage) {
+at::Tensor fine_part(const at::Tensor& images, const at::Tensor& coverage) {
     return images - blur(images * coverage) / (blur(coverage) + 1e-4f);
 }
 
 /// Pixels whose neighbours are covered too: at silhouettes the prior draws its own outline.
-torch::Tensor inner(const torch::Tensor& coverage) {
-    return -torch::max_pool2d(-coverage, 3, 1, 1);
+at::Tensor inner(const at::Tensor& coverage) {
+    return -at::max_pool2d(-coverage, 3, 1, 1);
 }
 
 /// What a view of the plan shows whatever the stage has painted so far.
@@ -66,8 +67,8 @@ struct PaintedView {
 
 /// How far the channels that the stage leaves alone have moved; the field's features are shared by
 /// all of them. `now` is as of up to half a pixel aside, which they vary little over.
-torch::Tensor drift(const MaterialSample& now, const MaterialSample& before) {
-    torch::Tensor moved = (now.orm - before.orm).square().mean();
+at::Tensor drift(const MaterialSample& now, const MaterialSample& before) {
+    at::Tensor moved = (now.orm - before.orm).square().mean();
     if (before.normal.defined()) moved = moved + (now.normal - before.normal).square().mean();
     return moved;
 }
@@ -87,9 +88,9 @@ class Painter {
     PaintedView see(std::size_t index);
     EditView render(std::size_t index, const SeenModel& seen, float spread_pixels = 0,
                     std::uint64_t draw = 0) const;
-    torch::Tensor known_pixels(std::size_t index) const;
+    at::Tensor known_pixels(std::size_t index) const;
     double strength(const PaintingView& planned) const;
-    torch::Tensor target(std::size_t index, const SeenModel& seen) const;
+    at::Tensor target(std::size_t index, const SeenModel& seen) const;
     void fit_step(std::size_t chosen, std::uint64_t draw);
     void set_learning_rate(double factor);
     void fit_all();
@@ -105,7 +106,7 @@ class Painter {
 PaintedView Painter::see(std::size_t index) {
     const auto found = kept_.find(index);
     if (found != kept_.end()) return found->second;
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     PaintedView view{see_model(scene_, settings_, {plan_[index].camera}), {}};
     const auto& [raster, surface, shape, own] = view.seen;
     view.before = scene_.source->sample(surface, state_.detail.before, own);
@@ -123,9 +124,9 @@ EditView Painter::render(std::size_t index, const SeenModel& seen, float spread_
 }
 
 /// [1, 1, R, R] 0 .. 1.
-torch::Tensor Painter::known_pixels(std::size_t index) const {
-    return torch::upsample_bilinear2d(plan_[index].known, plan_[index].facing.sizes().slice(2),
-                                      /*align_corners=*/false);
+at::Tensor Painter::known_pixels(std::size_t index) const {
+    return at::upsample_bilinear2d(plan_[index].known, plan_[index].facing.sizes().slice(2),
+                                   /*align_corners=*/false);
 }
 
 double Painter::strength(const PaintingView& planned) const {
@@ -141,12 +142,12 @@ double Painter::strength(const PaintingView& planned) const {
 }
 
 /// What the prior would rather see from here.
-torch::Tensor Painter::target(std::size_t index, const SeenModel& seen) const {
-    const torch::NoGradGuard no_grad;
+at::Tensor Painter::target(std::size_t index, const SeenModel& seen) const {
+    const at::NoGradGuard no_grad;
     const EditView view = render(index, seen);
-    const Pipeline& prior = *scene_.prior();
+    const DiffusionModel& prior = *scene_.prior();
     const PaintingView& planned = plan_[index];
-    const torch::Tensor latents = prior.encode_image(view.images * 2 - 1);
+    const at::Tensor latents = prior.encode_image(view.images * 2 - 1);
     GenerateOptions options;
     options.prompt = scene_.to;
     options.negative_prompt = settings_.negative_prompt;
@@ -159,22 +160,22 @@ torch::Tensor Painter::target(std::size_t index, const SeenModel& seen) const {
     options.eta = 1;
     options.seed = mix_bits(settings_.seed) + index;
     options.show_progress = false;
-    const torch::Tensor condition = condition_of_shape(prior, seen.shape, latents);
-    const torch::Tensor sampled = generate_latents(prior, options, condition);
-    const torch::Tensor decoded = prior.decode_image(sampled) / 2 + 0.5f;
+    const at::Tensor condition = condition_of_shape(prior, seen.shape, latents);
+    const at::Tensor sampled = generate_latents(prior, options, condition);
+    const at::Tensor decoded = prior.decode_image(sampled) / 2 + 0.5f;
     // Not the render with what has changed: it has what a pixel of the round before was too coarse
     // to see, as noise, and close-ups would keep it.
-    const torch::Tensor fresh = 1 - known_pixels(index);
-    const torch::Tensor painted = view.images + fresh * (decoded - view.images);
+    const at::Tensor fresh = 1 - known_pixels(index);
+    const at::Tensor painted = view.images + fresh * (decoded - view.images);
     return (painted + sharpening * fresh * fine_part(decoded, view.coverage)).clamp(0, 1);
 }
 
 void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
     const auto& [seen, before] = see(chosen);
     const EditView view = render(chosen, seen, spread, draw);
-    const torch::Tensor weight = inner(view.coverage) * plan_[chosen].facing *
-                                 (1 - (1 - known_weight) * known_pixels(chosen));
-    const torch::Tensor apart =
+    const at::Tensor weight = inner(view.coverage) * plan_[chosen].facing *
+                              (1 - (1 - known_weight) * known_pixels(chosen));
+    const at::Tensor apart =
         ((view.images - state_.detail.targets[chosen]).square() * weight).sum() /
         (weight.sum() + 1e-4f);
     (apart + drift(view.material, before)).backward();

@@ -49,9 +49,9 @@ Camera paint_camera(const BoundingSphere& sphere, int index, bool close_up, std:
 /// What a view sees, one row a covered sample.
 struct Sight {
     Camera camera;
-    torch::Tensor depth;  ///< [S, S]
+    at::Tensor depth;  ///< [S, S]
     Surface surface;
-    torch::Tensor cosine;  ///< [P] between the normal and the way to the camera
+    at::Tensor cosine;  ///< [P] between the normal and the way to the camera
 
     Sight(const Geometry& geometry, const Camera& from, int size) : camera(from) {
         const Raster raster = rasterize(geometry, {camera}, size, size);
@@ -61,48 +61,48 @@ struct Sight {
     }
 
     /// [P'] of another view's points: the cosine at which this one sees them, 0 where it does not.
-    torch::Tensor cosine_of(const Surface& points, float tolerance) const {
+    at::Tensor cosine_of(const Surface& points, float tolerance) const {
         const auto options = points.position.options();
         const Mat4 view = camera.world_to_camera();
         const auto row = [&](int r) {
-            const torch::Tensor axis = torch::tensor({view[0][r], view[1][r], view[2][r]}, options);
+            const at::Tensor axis = at::tensor({view[0][r], view[1][r], view[2][r]}, options);
             return points.position.mv(axis) + view[3][r];
         };
-        const torch::Tensor ahead = -row(2);
+        const at::Tensor ahead = -row(2);
         const std::int64_t size = depth.size(0);
         const float scale = 0.5f * static_cast<float>(size) / std::tan(camera.field_of_view_x / 2);
-        const torch::Tensor x = (row(0) / ahead * scale + 0.5f * size).floor().to(torch::kInt64);
-        const torch::Tensor y = (row(1) / -ahead * scale + 0.5f * size).floor().to(torch::kInt64);
-        const torch::Tensor inside = (ahead > 0) * (x >= 0) * (x < size) * (y >= 0) * (y < size);
-        const torch::Tensor seen =
-            depth.flatten().index_select(0, (y * size + x) * inside.to(torch::kInt64));
-        const torch::Tensor origin =
-            torch::tensor({camera.position().x, camera.position().y, camera.position().z}, options);
-        const torch::Tensor way = origin - points.position;
-        const torch::Tensor cosines =
+        const at::Tensor x = (row(0) / ahead * scale + 0.5f * size).floor().to(at::kLong);
+        const at::Tensor y = (row(1) / -ahead * scale + 0.5f * size).floor().to(at::kLong);
+        const at::Tensor inside = (ahead > 0) * (x >= 0) * (x < size) * (y >= 0) * (y < size);
+        const at::Tensor seen =
+            depth.flatten().index_select(0, (y * size + x) * inside.to(at::kLong));
+        const at::Tensor origin =
+            at::tensor({camera.position().x, camera.position().y, camera.position().z}, options);
+        const at::Tensor way = origin - points.position;
+        const at::Tensor cosines =
             (points.normal * way).sum(1) / way.square().sum(1).sqrt().clamp_min(1e-12);
         return cosines.clamp_min(0) * (inside * (seen > 0) * (ahead < seen + tolerance));
     }
 };
 
 /// Values of a view's points as pixels [1, 1, R, R], 0 where there is none.
-torch::Tensor as_pixels(const Sight& sight, const torch::Tensor& values) {
+at::Tensor as_pixels(const Sight& sight, const at::Tensor& values) {
     const std::int64_t size = sight.depth.size(0);
-    const torch::Tensor pixels = torch::zeros({size * size}, values.options())
-                                     .index_copy(0, sight.surface.pixel, values)
-                                     .view({1, 1, size, size});
-    return torch::avg_pool2d(pixels, samples);
+    const at::Tensor pixels = at::zeros({size * size}, values.options())
+                                  .index_copy(0, sight.surface.pixel, values)
+                                  .view({1, 1, size, size});
+    return at::avg_pool2d(pixels, samples);
 }
 
-torch::Tensor known_cells(const torch::Tensor& fresh, std::int64_t pixels_each) {
-    const torch::Tensor settled = 1 - torch::max_pool2d(fresh, 3, 1, 1);
-    return (torch::avg_pool2d(settled, pixels_each) > known_share).to(torch::kFloat32);
+at::Tensor known_cells(const at::Tensor& fresh, std::int64_t pixels_each) {
+    const at::Tensor settled = 1 - at::max_pool2d(fresh, 3, 1, 1);
+    return (at::avg_pool2d(settled, pixels_each) > known_share).to(at::kFloat);
 }
 
 }  // namespace
 
 std::vector<PaintingView> plan_painting(const EditScene& scene, const EditSettings& settings) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const std::int64_t pixels_each = scene.prior()->downscale();
     std::vector<PaintingView> plan;
     std::vector<Sight> earlier;
@@ -115,15 +115,15 @@ std::vector<PaintingView> plan_painting(const EditScene& scene, const EditSettin
         view.camera =
             paint_camera(scene.sphere, i, view.round == PaintingRound::close_up, settings.seed);
         const Sight sight(scene.geometry, view.camera, settings.resolution * samples);
-        const torch::Tensor own = as_pixels(sight, sight.cosine);
-        view.facing = (own > flattest).to(torch::kFloat32);
-        torch::Tensor best = torch::zeros_like(sight.cosine);
+        const at::Tensor own = as_pixels(sight, sight.cosine);
+        view.facing = (own > flattest).to(at::kFloat);
+        at::Tensor best = at::zeros_like(sight.cosine);
         for (const Sight& other : earlier) {
-            best = torch::maximum(
+            best = at::maximum(
                 best, other.cosine_of(sight.surface, depth_tolerance * scene.sphere.radius));
         }
-        const torch::Tensor fresh =
-            view.facing * (as_pixels(sight, best) < clearly_better * own).to(torch::kFloat32);
+        const at::Tensor fresh =
+            view.facing * (as_pixels(sight, best) < clearly_better * own).to(at::kFloat);
         view.known = known_cells(fresh, pixels_each);
         earlier.push_back(sight);
         earlier.back().surface = {};  // large; later views ask for its depth alone

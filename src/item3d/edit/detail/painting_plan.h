@@ -2,8 +2,7 @@
 #pragma once
 
 #include "item3d/edit/scene.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <vector>
 
@@ -22,8 +21,8 @@ struct PaintingView {
     int first_of_round = 0;  ///< where its round begins in the plan
     /// [1, 1, h, w] on the grid of the prior's latents. 1: what earlier views of its round painted
     /// (or the background) stays as it is; 0: painted anew.
-    torch::Tensor known;
-    torch::Tensor facing;  ///< [1, 1, R, R] 0 or 1: not seen at too flat an angle
+    at::Tensor known;
+    at::Tensor facing;  ///< [1, 1, R, R] 0 or 1: not seen at too flat an angle
 };
 
 /// Two fifths of the views begin, three tenths paint again, the others are close-ups. The views go

@@ -29,8 +29,8 @@ std::optional<double> recent_mean(const std::vector<float>& curve,
 }
 
 /// [N, H, W, 3] in [0, 1] -> bytes [H, W, 3] of each, on the CPU.
-std::vector<torch::Tensor> to_bytes(const torch::Tensor& pictures) {
-    return (pictures * 255).round().to(torch::kUInt8).cpu().unbind(0);
+std::vector<at::Tensor> to_bytes(const at::Tensor& pictures) {
+    return (pictures * 255).round().to(at::kByte).cpu().unbind(0);
 }
 
 }  // namespace
@@ -59,8 +59,8 @@ void DirectionAdjustment::observe(EditState& state) const {
     // The first view alone where only people look.
     const std::vector<Camera> cameras(cameras_.begin(),
                                       asks ? cameras_.end() : cameras_.begin() + 1);
-    const torch::Tensor pictures = draw_field(scene_, state.field, light_as_it_is(scene_, state),
-                                              cameras, caption_pixels(settings_));
+    const at::Tensor pictures = draw_field(scene_, state.field, light_as_it_is(scene_, state),
+                                           cameras, caption_pixels(settings_));
 
     AdjustmentRecord record;
     record.iteration = static_cast<std::int64_t>(state.direction_length.size());
@@ -77,7 +77,7 @@ void DirectionAdjustment::observe(EditState& state) const {
 }
 
 std::vector<Caption> DirectionAdjustment::follow(EditState& state,
-                                                 const torch::Tensor& pictures) const {
+                                                 const at::Tensor& pictures) const {
     AdjustmentState& adjustment = state.adjustment;
     std::vector<Caption> captions;
     try {

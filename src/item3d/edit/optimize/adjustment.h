@@ -36,7 +36,7 @@ class DirectionAdjustment {
 
   private:
     void observe(EditState& state) const;
-    std::vector<Caption> follow(EditState& state, const torch::Tensor& pictures) const;
+    std::vector<Caption> follow(EditState& state, const at::Tensor& pictures) const;
     void give_up(AdjustmentState& state, const std::string& reason) const;
 
     const EditSettings& settings_;

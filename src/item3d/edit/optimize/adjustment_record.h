@@ -2,9 +2,9 @@
 #pragma once
 
 #include "item3d/guidance/text_direction.h"
+#include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>
-#include <torch/types.h>
 
 #include <cstdint>
 #include <optional>
@@ -19,7 +19,7 @@ struct AdjustmentRecord {
     std::optional<TextDirection> text;  ///< of methods with a source: after this adjustment
     std::optional<double> direction;    ///< mean of direction_length since the line before
     std::optional<double> source_loss;  ///< the same of the source's denoising loss
-    torch::Tensor picture;              ///< [P, P, 3] uint8 sRGB; not in the JSON
+    at::Tensor picture;                 ///< [P, P, 3] uint8 sRGB; not in the JSON
 };
 
 /// "iteration", and of the rest what is there: "captions", "angle", "length", "direction",

@@ -5,6 +5,7 @@
 #include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/outputs/surface_means.h"
 #include "item3d/field/fit.h"
+#include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/lighting/layout.h"
 
@@ -26,8 +27,8 @@ AdamOptions adam_options(const EditSettings& settings) {
 /// [table rows] What the learning rate of a level of the field's grid is multiplied by. Cells finer
 /// than the prior's pixels get no say from it, only noise, which Adam would make as large as any
 /// other step.
-torch::Tensor level_factors(const NeuralTexture& field, int resolution) {
-    const torch::Tensor factors = torch::ones({field->grid().entries()});
+at::Tensor level_factors(const NeuralTexture& field, int resolution) {
+    const at::Tensor factors = at::ones({field->grid().entries()});
     for (const HashGridLevel& level : field->grid().levels) {
         const float pixels_a_cell =
             static_cast<float>(resolution) / static_cast<float>(level.resolution);
@@ -90,7 +91,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     }
     if (edits_light(settings)) {
         state.light = begin_light(scene, settings);
-        const torch::NoGradGuard no_grad;
+        const at::NoGradGuard no_grad;
         state.first_light = prefilter(state.light->cube(optimized_light_size).to(scene.device));
         state.optimizer.add_group(state.light->parameters(), adam_options(settings));
     }

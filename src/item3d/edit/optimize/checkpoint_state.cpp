@@ -27,15 +27,15 @@ void append_adjustment(NamedTensors& tensors, const AdjustmentState& adjustment)
         {"records", adjustment.records}, {"before", before}, {"failure", adjustment.failure}};
     const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     tensors.emplace_back("adjustment.json",
-                         torch::tensor(std::vector<std::uint8_t>(text.begin(), text.end())));
-    std::vector<torch::Tensor> pictures;
+                         at::tensor(std::vector<std::uint8_t>(text.begin(), text.end())));
+    std::vector<at::Tensor> pictures;
     for (const AdjustmentRecord& record : adjustment.records)
         pictures.push_back(record.picture);
-    if (!pictures.empty()) tensors.emplace_back("adjustment.pictures", torch::stack(pictures));
+    if (!pictures.empty()) tensors.emplace_back("adjustment.pictures", at::stack(pictures));
 }
 
 void read_adjustment(const CheckpointReader& reader, AdjustmentState& adjustment) {
-    const torch::Tensor bytes = reader.get("adjustment.json").contiguous();
+    const at::Tensor bytes = reader.get("adjustment.json").contiguous();
     const auto* text = bytes.const_data_ptr<std::uint8_t>();
     const auto json = nlohmann::json::parse(text, text + bytes.numel());
     json.at("records").get_to(adjustment.records);
@@ -48,8 +48,8 @@ void read_adjustment(const CheckpointReader& reader, AdjustmentState& adjustment
             reader.get("adjustment.pictures")[static_cast<std::int64_t>(i)];
 }
 
-std::vector<float> to_floats(const torch::Tensor& tensor) {
-    const torch::Tensor flat = tensor.contiguous();
+std::vector<float> to_floats(const at::Tensor& tensor) {
+    const at::Tensor flat = tensor.contiguous();
     return {flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel()};
 }
 
@@ -59,10 +59,10 @@ void save_state(const EditRequest& request, const EditState& state) {
     Checkpoint checkpoint;
     checkpoint.identity = identity_of(request, state);
     checkpoint.iteration = state.iteration;
-    append_parameters(checkpoint.tensors, "fitted.", *state.fitted);
-    append_parameters(checkpoint.tensors, "field.", *state.field);
+    append_parameters(checkpoint.tensors, "fitted.", state.fitted->named_parameters());
+    append_parameters(checkpoint.tensors, "field.", state.field->named_parameters());
     if (state.light) {
-        for (const torch::Tensor& parameter : state.light->parameters())
+        for (const at::Tensor& parameter : state.light->parameters())
             checkpoint.tensors.emplace_back("light", parameter.detach());
     }
     for (const auto& [name, tensor] : state.optimizer.state()) {
@@ -72,16 +72,16 @@ void save_state(const EditRequest& request, const EditState& state) {
         checkpoint.tensors.emplace_back("guidance." + name, tensor);
     }
     if (!state.detail.before.is_empty()) {
-        append_parameters(checkpoint.tensors, "detail.before.", *state.detail.before);
+        append_parameters(checkpoint.tensors, "detail.before.",
+                          state.detail.before->named_parameters());
         for (const auto& [name, tensor] : state.detail.optimizer.state()) {
             checkpoint.tensors.emplace_back("detail.optimizer." + name, tensor);
         }
         if (!state.detail.targets.empty())
-            checkpoint.tensors.emplace_back("detail.targets", torch::cat(state.detail.targets));
+            checkpoint.tensors.emplace_back("detail.targets", at::cat(state.detail.targets));
     }
-    checkpoint.tensors.emplace_back("curve.direction_length",
-                                    torch::tensor(state.direction_length));
-    checkpoint.tensors.emplace_back("curve.source_loss", torch::tensor(state.source_loss));
+    checkpoint.tensors.emplace_back("curve.direction_length", at::tensor(state.direction_length));
+    checkpoint.tensors.emplace_back("curve.source_loss", at::tensor(state.source_loss));
     append_adjustment(checkpoint.tensors, state.adjustment);
     save_checkpoint(checkpoint_path(request), checkpoint);
 }
@@ -95,10 +95,10 @@ bool load_state(const EditRequest& request, EditState& state) {
                            {"prior_weights", "belongs to a prior of other weights"}});
 
     const CheckpointReader reader(checkpoint_path(request).string(), checkpoint->tensors);
-    reader.parameters("fitted.", *state.fitted);
-    reader.parameters("field.", *state.field);
+    reader.parameters("fitted.", state.fitted->named_parameters());
+    reader.parameters("field.", state.field->named_parameters());
     if (state.light) {
-        for (const torch::Tensor& parameter : state.light->parameters())
+        for (const at::Tensor& parameter : state.light->parameters())
             reader.copy("light", parameter);
     }
     state.optimizer.load_state(reader.with_prefix("optimizer."));
@@ -109,7 +109,7 @@ bool load_state(const EditRequest& request, EditState& state) {
     state.guidance->load_state(guidance);
     if (reader.has("detail.before.table")) {
         begin_detail(state);
-        reader.parameters("detail.before.", *state.detail.before);
+        reader.parameters("detail.before.", state.detail.before->named_parameters());
         state.detail.optimizer.load_state(reader.with_prefix("detail.optimizer."));
         if (reader.has("detail.targets"))
             state.detail.targets =

@@ -2,8 +2,7 @@
 
 #include "item3d/core/random.h"
 #include "item3d/field/surface_points.h"
-
-#include <ATen/ops/linalg_solve.h>
+#include "item3d/tensors/tensor.h"
 
 namespace item3d {
 namespace {
@@ -20,20 +19,19 @@ constexpr std::uint64_t point_stream = 9;  // of the edit's seed; others are in 
 
 }  // namespace
 
-Departures departures(const torch::Tensor& change, const torch::Tensor& color, float scale) {
+Departures departures(const at::Tensor& change, const at::Tensor& color, float scale) {
     const std::int64_t count = change.size(0);
-    const torch::Tensor features =
-        torch::cat({torch::ones_like(color.narrow(1, 0, 1)), color - color.mean(0)}, 1);
-    const torch::Tensor ridge =
-        least_variance * static_cast<float>(count) *
-        torch::diag(torch::tensor({0.0f, 1.0f, 1.0f, 1.0f}, color.options()));
-    Departures found{change, torch::ones({count, 1}, change.options())};
+    const at::Tensor features =
+        at::cat({at::ones_like(color.narrow(1, 0, 1)), color - color.mean(0)}, 1);
+    const at::Tensor ridge = least_variance * static_cast<float>(count) *
+                             at::diag(at::tensor({0.0f, 1.0f, 1.0f, 1.0f}, color.options()));
+    Departures found{change, at::ones({count, 1}, change.options())};
     for (int i = 0; i < refits; ++i) {
-        const torch::Tensor weighted = (features * found.weights).t();
-        const torch::Tensor slopes =
+        const at::Tensor weighted = (features * found.weights).t();
+        const at::Tensor slopes =
             at::linalg_solve(weighted.mm(features) + ridge, weighted.mm(change));
         found.values = change - features.mm(slopes);
-        const torch::Tensor squared = found.values.square().sum(1, true);
+        const at::Tensor squared = found.values.square().sum(1, true);
         found.weights = (1 + squared / (scale * scale)).square().reciprocal();
     }
     return found;
@@ -41,33 +39,33 @@ Departures departures(const torch::Tensor& change, const torch::Tensor& color, f
 
 Evenness::Evenness(const EditScene& scene, const EditSettings& settings, const EditState& state) {
     if (settings.evenness == 0 || !edits_texture(settings) || names_detail(settings)) return;
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     weight_ = settings.evenness;
     Random random(settings.seed, point_stream);
     const Surface surface =
         SurfaceSampler(scene.geometry, *scene.space).sample(draws * points, random);
-    const torch::Tensor positions = scene.space->positions(surface);
+    const at::Tensor positions = scene.space->positions(surface);
     // The sampler goes over the surface in order: each draw takes one of as many neighbours.
-    const auto deal = [](const torch::Tensor& rows) {
+    const auto deal = [](const at::Tensor& rows) {
         return rows.reshape({points, draws, -1}).transpose(0, 1).contiguous();
     };
     positions_ = deal(positions);
     fitted_ = deal(NeuralTexture(state.fitted)->encoded(positions));
     const float base_color = scene.channels.base_color ? 1 : 0;
-    channels_ = torch::tensor({base_color, base_color, base_color, 0.0f,
-                               scene.channels.roughness ? 1.0f : 0.0f,
-                               scene.channels.metallic ? 1.0f : 0.0f, 0.0f, 0.0f})
+    channels_ = at::tensor({base_color, base_color, base_color, 0.0f,
+                            scene.channels.roughness ? 1.0f : 0.0f,
+                            scene.channels.metallic ? 1.0f : 0.0f, 0.0f, 0.0f})
                     .to(scene.device);
 }
 
 void Evenness::backward(EditState& state) const {
     if (weight_ == 0) return;
     const std::int64_t draw = state.iteration % draws;
-    const torch::Tensor before = fitted_[draw];
-    const torch::Tensor now = state.field->encoded(positions_[draw]);
-    torch::Tensor gradient;
+    const at::Tensor before = fitted_[draw];
+    const at::Tensor now = state.field->encoded(positions_[draw]);
+    at::Tensor gradient;
     {
-        const torch::NoGradGuard no_grad;
+        const at::NoGradGuard no_grad;
         const Departures found =
             departures((now - before) * channels_, before.narrow(1, 0, 3), blotch);
         gradient = found.values * found.weights * (weight_ / points);

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "item3d/edit/optimize/optimize.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
@@ -22,19 +21,18 @@ class Evenness {
 
   private:
     float weight_ = 0;
-    torch::Tensor positions_;  ///< [draws, P, 3] of the surface
-    torch::Tensor fitted_;     ///< [draws, P, 8] as NeuralTexture::encoded(), before the edit
-    torch::Tensor
-        channels_;  ///< [8] 1 for those of base colour, roughness and metallic that change
+    at::Tensor positions_;  ///< [draws, P, 3] of the surface
+    at::Tensor fitted_;     ///< [draws, P, 8] as NeuralTexture::encoded(), before the edit
+    at::Tensor channels_;   ///< [8] 1 for those of base colour, roughness and metallic that change
 };
 
 struct Departures {
-    torch::Tensor values;   ///< [P, C]
-    torch::Tensor weights;  ///< [P, 1] 0 to 1: what each point counted
+    at::Tensor values;   ///< [P, C]
+    at::Tensor weights;  ///< [P, 1] 0 to 1: what each point counted
 };
 
 /// `change` [P, C] without its best affine function of `color` [P, 3]. Points that depart by much
 /// more than `scale` hardly count. For Evenness and its tests.
-Departures departures(const torch::Tensor& change, const torch::Tensor& color, float scale);
+Departures departures(const at::Tensor& change, const at::Tensor& color, float scale);
 
 }  // namespace item3d

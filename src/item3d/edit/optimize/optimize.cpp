@@ -71,7 +71,7 @@ GuidanceInput look(const EditScene& scene, const EditSettings& settings, EditSta
     GuidanceInput input{render_view(scene, settings, state.field, seen, options).images,
                         seen.shape};
     if (state.guidance->needs_reference()) {
-        const torch::NoGradGuard no_grad;
+        const at::NoGradGuard no_grad;
         if (state.light) options.light = &state.first_light;
         input.reference = render_view(scene, settings, state.fitted, seen, options).images;
     }
@@ -87,7 +87,7 @@ void run_iteration(const EditScene& scene, const EditSettings& settings, const E
     const double guided = seconds_now();
 
     // A single bad prediction (an overflow in bf16) must not destroy the field.
-    const torch::Tensor gradient = torch::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
+    const at::Tensor gradient = at::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
     guidance.latents.backward(gradient / settings.batch);
     evenness.backward(state);
     if (state.light) state.light->regularization().backward();
@@ -118,7 +118,7 @@ void run_iteration(const EditScene& scene, const EditSettings& settings, const E
 
 EnvironmentLight light_as_it_is(const EditScene& scene, const EditState& state) {
     if (!state.light) return scene.lights->front();
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     return prefilter(state.light->cube(optimized_light_size).to(scene.device));
 }
 

@@ -21,7 +21,7 @@ namespace item3d {
 struct DetailState {
     NeuralTexture before{nullptr};  ///< the field at its beginning; empty: not begun
     Adam optimizer;
-    std::vector<torch::Tensor> targets;  ///< [1, 3, R, R] sRGB, one for each view so far
+    std::vector<at::Tensor> targets;  ///< [1, 3, R, R] sRGB, one for each view so far
 };
 
 /// Everything that an edit changes; what a checkpoint holds.

@@ -4,6 +4,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/edit/field_pictures.h"
 #include "item3d/io/save.h"
+#include "item3d/render/pictures.h"
 
 namespace item3d {
 namespace {
@@ -17,9 +18,9 @@ Preview::Preview(std::filesystem::path path, const EditScene& scene)
 
 void Preview::update(NeuralTexture& field, const EnvironmentLight& light) {
     if (!enabled_) return;
-    const torch::Tensor pictures = draw_field(scene_, field, light, cameras_, picture_size);
+    const at::Tensor pictures = draw_field(scene_, field, light, cameras_, picture_size);
     try {
-        save_image(path_, to_image(torch::cat(pictures.unbind(0), 1)));
+        save_image(path_, to_image(at::cat(pictures.unbind(0), 1)));
     } catch (const Error& error) {
         warn(std::string("no more previews: ") + error.what());
         enabled_ = false;

@@ -1,6 +1,9 @@
 #include "item3d/edit/optimize/render_view.h"
 
 #include "item3d/core/random.h"
+#include "item3d/render/antialias.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/scatter.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 
@@ -15,24 +18,24 @@ int supersampling(int resolution) {
     return resolution <= 128 ? 2 : 1;
 }
 
-torch::Tensor offsets(const torch::Tensor& positions, const EditScene& scene,
-                      const EditSettings& settings, const ViewOptions& options) {
+at::Tensor offsets(const at::Tensor& positions, const EditScene& scene,
+                   const EditSettings& settings, const ViewOptions& options) {
     Random random(settings.seed, spread_stream, options.spread_draw);
     auto generator = at::detail::createCPUGenerator(random.bits());
     const float pixel = 2 * scene.sphere.radius / static_cast<float>(settings.resolution);
-    const torch::Tensor directions = torch::randn(positions.sizes(), generator, torch::kFloat32);
+    const at::Tensor directions = at::randn(positions.sizes(), generator, at::kFloat);
     return options.spread * pixel * directions.to(positions.device());
 }
 
 }  // namespace
 
 SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const auto options = surface.position.options();
-    const torch::Tensor center =
-        torch::tensor({sphere.center.x, sphere.center.y, sphere.center.z}, options);
-    const auto pixels = [&](const torch::Tensor& values) {
-        return scatter(values, surface, raster, torch::zeros({3}, options));
+    const at::Tensor center =
+        at::tensor({sphere.center.x, sphere.center.y, sphere.center.z}, options);
+    const auto pixels = [&](const at::Tensor& values) {
+        return scatter(values, surface, raster, at::zeros({3}, options));
     };
     return {raster.depth, pixels((surface.position - center) / sphere.radius),
             pixels(surface.normal)};
@@ -61,23 +64,23 @@ EditView render_view(const EditScene& scene, const EditSettings& settings, Neura
             surface.position + offsets(surface.position, scene, settings, options);
     }
     view.material = scene.source->sample(view.surface, field, own);
-    torch::Tensor radiance = shade(surface, view.material, light);
+    at::Tensor radiance = shade(surface, view.material, light);
     if (view.material.emissive.defined()) radiance = radiance + view.material.emissive;
 
     const int views = raster.views(), size = raster.width();
-    const torch::Tensor background =
+    const at::Tensor background =
         sample_backgrounds(settings.background, views, settings.seed, options.iteration)
             .to(scene.device)
             .view({views, 1, 1, 3})
             .expand({views, size, size, 3});
-    torch::Tensor picture = scatter(radiance, surface, raster, background);
+    at::Tensor picture = scatter(radiance, surface, raster, background);
     const int scale = size / settings.resolution;
     if (scale == 1) picture = antialias(picture, raster, scene.geometry);
     view.images = linear_to_srgb(picture.clamp(0, 1)).permute({0, 3, 1, 2});
-    view.coverage = (raster.triangle >= 0).to(torch::kFloat32).unsqueeze(1);
+    view.coverage = (raster.triangle >= 0).to(at::kFloat).unsqueeze(1);
     if (scale > 1) {
-        view.images = torch::avg_pool2d(view.images, scale);
-        view.coverage = torch::avg_pool2d(view.coverage, scale);
+        view.images = at::avg_pool2d(view.images, scale);
+        view.coverage = at::avg_pool2d(view.coverage, scale);
     }
     return view;
 }

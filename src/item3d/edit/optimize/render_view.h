@@ -3,8 +3,7 @@
 
 #include "item3d/edit/scene.h"
 #include "item3d/networks/diffusion/shape_condition.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <cstdint>
 #include <vector>
@@ -23,8 +22,8 @@ SeenModel see_model(const EditScene& scene, const EditSettings& settings,
                     const std::vector<Camera>& cameras);
 
 struct EditView {
-    torch::Tensor images;     ///< [N, 3, R, R] sRGB, differentiable in the field
-    torch::Tensor coverage;   ///< [N, 1, R, R] 0 .. 1, how much of each pixel the model covers
+    at::Tensor images;        ///< [N, 3, R, R] sRGB, differentiable in the field
+    at::Tensor coverage;      ///< [N, 1, R, R] 0 .. 1, how much of each pixel the model covers
     MaterialSample material;  ///< at the surface points of the picture
     Surface surface;          ///< those points, where the material was looked up
 };

@@ -78,7 +78,7 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
 }  // namespace
 
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     EditedModel edited;
     if (edits_texture(request.settings)) {
         edited = bake_textures(request, scene, state);

@@ -1,8 +1,10 @@
+#include "item3d/render/pictures.h"
+
 #include "item3d/core/files.h"
 #include "item3d/edit/outputs/outputs.h"
+#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/layout.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
 #include "item3d/report/model_pictures.h"
@@ -15,9 +17,9 @@ constexpr int view_count = 6;
 constexpr int turntable_frames = 30;
 const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
 
-std::vector<Image> to_pictures(const torch::Tensor& linear) {
+std::vector<Image> to_pictures(const at::Tensor& linear) {
     std::vector<Image> pictures;
-    for (const torch::Tensor& picture : linear.unbind(0)) {
+    for (const at::Tensor& picture : linear.unbind(0)) {
         pictures.push_back(to_display(to_image(picture)));
     }
     return pictures;
@@ -48,11 +50,11 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     const EnvironmentLight light = prefilter(load_light(request.settings.light), 256, scene.device);
     const int view_pixels = request.picture_pixels;
     const auto cameras = picture_cameras(scene.model, view_count);
-    const torch::Tensor before = draw_pictures(scene.model, light, cameras, view_pixels);
+    const at::Tensor before = draw_pictures(scene.model, light, cameras, view_pixels);
     const EnvironmentLight new_light =
         edited.light ? prefilter(*edited.light, 256, scene.device) : light;
     const ModelDrawing drawing(edited.model, new_light);
-    const torch::Tensor after = drawing.draw(cameras, view_pixels);
+    const at::Tensor after = drawing.draw(cameras, view_pixels);
 
     Pictures pictures;
     const auto before_pictures = to_pictures(before);
@@ -64,7 +66,7 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
 
     std::vector<Image> frames;
     for (const Camera& camera : picture_cameras(scene.model, turntable_frames)) {
-        const torch::Tensor frame = drawing.draw({camera}, view_pixels * 3 / 4);
+        const at::Tensor frame = drawing.draw({camera}, view_pixels * 3 / 4);
         frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
     }
     pictures.turntable = {request.settings.to, encode_animation(frames)};

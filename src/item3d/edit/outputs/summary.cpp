@@ -3,11 +3,12 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/version.h"
 #include "item3d/edit/outputs/outputs.h"
+#include "item3d/render/pictures.h"
 #include "item3d/report/animation.h"
 #include "item3d/tensors/precision.h"
+#include "item3d/tensors/tensor.h"
 
 #include <ATen/Parallel.h>
-#include <torch/types.h>
 
 #include <cmath>
 
@@ -157,7 +158,7 @@ std::vector<Chart> charts_of(const EditSettings& settings, const EditState& stat
 TimelineEntry entry_of(const AdjustmentRecord& record) {
     TimelineEntry entry;
     entry.title = record.iteration == 0 ? "start" : fmt::format("step {}", record.iteration);
-    entry.picture = {entry.title, encode_webp(to_image(record.picture.to(torch::kFloat32) / 255))};
+    entry.picture = {entry.title, encode_webp(to_image(record.picture.to(at::kFloat) / 255))};
     if (!record.captions.empty()) entry.caption = record.captions.front();
     if (record.direction)
         entry.facts.emplace_back("direction", fmt::format("{:.3f}", *record.direction));

@@ -13,7 +13,7 @@
 #include "item3d/field/atlas/atlas.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/io/save.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/textured_materials.h"
 
 namespace item3d {
 

@@ -21,15 +21,15 @@ std::pair<int, int> grid_size(int width, int height) {
             std::max(1, static_cast<int>(std::lround(height * scale)))};
 }
 
-torch::Tensor window_mean(const torch::Tensor& cells) {
+at::Tensor window_mean(const at::Tensor& cells) {
     constexpr int size = 2 * radius + 1;
-    return torch::avg_pool2d(cells, {size, size}, {1, 1}, {radius, radius});
+    return at::avg_pool2d(cells, {size, size}, {1, 1}, {radius, radius});
 }
 
 /// Encoded base colours of both fields and coverage, [1, 7, height, width].
-torch::Tensor sample_cells(const BakeScene& scene, int material, int width, int height,
-                           NeuralTexture& fitted, NeuralTexture& now) {
-    torch::Tensor cells = torch::zeros({1, 7, height, width});
+at::Tensor sample_cells(const BakeScene& scene, int material, int width, int height,
+                        NeuralTexture& fitted, NeuralTexture& now) {
+    at::Tensor cells = at::zeros({1, 7, height, width});
     auto cell = cells.accessor<float, 4>();
     const TexelEvaluator evaluator(scene, material, width, height, 1, false);
     for (int first = 0; first < height; first += evaluator.rows_at_once()) {
@@ -51,25 +51,25 @@ RemainderGain::RemainderGain(const BakeScene& scene, int material, int width, in
                              NeuralTexture& fitted, NeuralTexture& now)
     : width_(width), height_(height) {
     const auto [columns, rows] = grid_size(width, height);
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor cells = sample_cells(scene, material, columns, rows, fitted, now);
-    const torch::Tensor covered = cells.narrow(1, 6, 1);
-    const torch::Tensor share = window_mean(covered).clamp_min(1e-6);
-    const auto mean = [&](const torch::Tensor& values) {
+    const at::NoGradGuard no_grad;
+    const at::Tensor cells = sample_cells(scene, material, columns, rows, fitted, now);
+    const at::Tensor covered = cells.narrow(1, 6, 1);
+    const at::Tensor share = window_mean(covered).clamp_min(1e-6);
+    const auto mean = [&](const at::Tensor& values) {
         return window_mean(values * covered) / share;
     };
-    const torch::Tensor before = cells.narrow(1, 0, 3), after = cells.narrow(1, 3, 3);
-    const torch::Tensor mean_before = mean(before);
-    const auto contrast = [&](const torch::Tensor& with) {
+    const at::Tensor before = cells.narrow(1, 0, 3), after = cells.narrow(1, 3, 3);
+    const at::Tensor mean_before = mean(before);
+    const auto contrast = [&](const at::Tensor& with) {
         return (mean(before * with) - mean_before * mean(with)).sum(1, true);
     };
-    const torch::Tensor slope = (contrast(after) + flat) / (contrast(before).clamp_min(0) + flat);
-    const torch::Tensor gain = mean(slope.clamp(0, 1)).contiguous();
+    const at::Tensor slope = (contrast(after) + flat) / (contrast(before).clamp_min(0) + flat);
+    const at::Tensor gain = mean(slope.clamp(0, 1)).contiguous();
 
     gain_ = Image(columns, rows, 1);
     std::copy_n(gain.data_ptr<float>(), gain_.pixels.size(), gain_.pixels.begin());
     std::vector<std::uint8_t> has_value(gain_.pixels.size());
-    const torch::Tensor mask = covered.contiguous();
+    const at::Tensor mask = covered.contiguous();
     std::transform(mask.data_ptr<float>(), mask.data_ptr<float>() + has_value.size(),
                    has_value.begin(), [](float value) { return value > 0; });
     fill_uncovered(gain_, has_value);

@@ -11,14 +11,14 @@ constexpr int packed_width = 10;
 constexpr int samples_at_once = 65536;
 
 /// [P, 3, 3] with rows tangent, bitangent, normal of glTF's tangent space.
-torch::Tensor tangent_frame(const torch::Tensor& normal, const torch::Tensor& tangent) {
-    const auto unit = [](const torch::Tensor& v) {
-        return v / torch::sqrt(v.square().sum(1, true)).clamp_min(1e-12);
+at::Tensor tangent_frame(const at::Tensor& normal, const at::Tensor& tangent) {
+    const auto unit = [](const at::Tensor& v) {
+        return v / at::sqrt(v.square().sum(1, true)).clamp_min(1e-12);
     };
-    const torch::Tensor direction = tangent.narrow(1, 0, 3);
-    const torch::Tensor t = unit(direction - normal * (normal * direction).sum(1, true));
-    const torch::Tensor b = torch::cross(normal, t, 1) * tangent.narrow(1, 3, 1).sign();
-    return torch::stack({t, b, normal}, 1);
+    const at::Tensor direction = tangent.narrow(1, 0, 3);
+    const at::Tensor t = unit(direction - normal * (normal * direction).sum(1, true));
+    const at::Tensor b = at::cross(normal, t, 1) * tangent.narrow(1, 3, 1).sign();
+    return at::stack({t, b, normal}, 1);
 }
 
 }  // namespace
@@ -53,27 +53,26 @@ int TexelEvaluator::rows_at_once() const {
     return std::max(1, samples_at_once / (width_ * samples_ * samples_));
 }
 
-torch::Tensor TexelEvaluator::frame_change(const Surface& surface, const torch::Tensor& triangle,
-                                           const torch::Tensor& barycentrics) const {
+at::Tensor TexelEvaluator::frame_change(const Surface& surface, const at::Tensor& triangle,
+                                        const at::Tensor& barycentrics) const {
     if (!atlas_geometry_) return {};
     const Surface remade = surface_at(*atlas_geometry_, triangle, barycentrics);
     // Old tangent space -> world -> new tangent space.
-    return torch::matmul(tangent_frame(surface.normal, remade.tangent),
-                         tangent_frame(surface.normal, surface.tangent).transpose(1, 2));
+    return at::matmul(tangent_frame(surface.normal, remade.tangent),
+                      tangent_frame(surface.normal, surface.tangent).transpose(1, 2));
 }
 
-torch::Tensor TexelEvaluator::pack(const MaterialSample& sample,
-                                   const torch::Tensor& rotation) const {
+at::Tensor TexelEvaluator::pack(const MaterialSample& sample, const at::Tensor& rotation) const {
     const std::int64_t count = sample.base_color.size(0);
-    torch::Tensor normal =
+    at::Tensor normal =
         sample.normal.defined()
             ? sample.normal
-            : torch::tensor({0.0f, 0.0f, 1.0f}, sample.base_color.options()).expand({count, 3});
-    if (rotation.defined()) normal = torch::matmul(rotation, normal.unsqueeze(2)).squeeze(2);
-    const torch::Tensor alpha = sample.alpha.defined()
-                                    ? sample.alpha.unsqueeze(1)
-                                    : torch::ones({count, 1}, sample.base_color.options());
-    return torch::cat(
+            : at::tensor({0.0f, 0.0f, 1.0f}, sample.base_color.options()).expand({count, 3});
+    if (rotation.defined()) normal = at::matmul(rotation, normal.unsqueeze(2)).squeeze(2);
+    const at::Tensor alpha = sample.alpha.defined()
+                                 ? sample.alpha.unsqueeze(1)
+                                 : at::ones({count, 1}, sample.base_color.options());
+    return at::cat(
                {sample.base_color.clamp(0.0f, 1.0f), sample.orm.clamp(0.0f, 1.0f), normal, alpha},
                1)
         .cpu()
@@ -118,17 +117,16 @@ std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture&
     if (texels.empty()) return texels;
     first_sample.push_back(triangle.size());
 
-    const torch::NoGradGuard no_grad;
-    const torch::Device device = scene_.geometry.positions.device();
-    const torch::Tensor triangles = torch::tensor(triangle, torch::kInt64).to(device);
-    const torch::Tensor weights =
-        torch::tensor(barycentrics, torch::kFloat32).view({-1, 2}).to(device);
+    const at::NoGradGuard no_grad;
+    const at::Device device = scene_.geometry.positions.device();
+    const at::Tensor triangles = at::tensor(triangle, at::kLong).to(device);
+    const at::Tensor weights = at::tensor(barycentrics, at::kFloat).view({-1, 2}).to(device);
     const Surface surface = surface_at(scene_.geometry, triangles, weights);
-    const torch::Tensor rotation = frame_change(surface, triangles, weights);
-    const torch::Tensor positions = scene_.space.positions(surface);
-    const torch::Tensor values[3] = {pack(scene_.materials.sample(surface), rotation),
-                                     pack(fitted->forward(positions), rotation),
-                                     pack(now->forward(positions), rotation)};
+    const at::Tensor rotation = frame_change(surface, triangles, weights);
+    const at::Tensor positions = scene_.space.positions(surface);
+    const at::Tensor values[3] = {pack(scene_.materials.sample(surface), rotation),
+                                  pack(fitted->forward(positions), rotation),
+                                  pack(now->forward(positions), rotation)};
     for (std::size_t i = 0; i < texels.size(); ++i) {
         const float share = 1.0f / static_cast<float>(first_sample[i + 1] - first_sample[i]);
         TexelMaterial* targets[3] = {&texels[i].source, &texels[i].fitted, &texels[i].now};

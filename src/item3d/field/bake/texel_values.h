@@ -40,9 +40,9 @@ class TexelEvaluator {
     TexelMaterial read(const float* row) const;
     /// [P, 10] on the CPU, of a sample at `surface`; rotation [P, 3, 3] or undefined goes to the
     /// normals.
-    torch::Tensor pack(const MaterialSample& sample, const torch::Tensor& rotation) const;
-    torch::Tensor frame_change(const Surface& surface, const torch::Tensor& triangle,
-                               const torch::Tensor& barycentrics) const;
+    at::Tensor pack(const MaterialSample& sample, const at::Tensor& rotation) const;
+    at::Tensor frame_change(const Surface& surface, const at::Tensor& triangle,
+                            const at::Tensor& barycentrics) const;
 
     const BakeScene& scene_;
     int width_, height_, samples_;

@@ -5,27 +5,6 @@
 namespace item3d::cuda {
 namespace {
 
-template <int F>
-int launch_forward(const HashGridParameters& p, std::int64_t count, Stream stream) {
-    return launch(
-        "hash_grid_encode", count,
-        [=] __device__(std::int64_t i) { item3d::hash_grid_forward<F>(p, i); }, stream);
-}
-
-template <int F>
-int launch_points_backward(const HashGridParameters& p, std::int64_t count, Stream stream) {
-    return launch(
-        "hash_grid_points_backward", count,
-        [=] __device__(std::int64_t i) { item3d::hash_grid_points_backward<F>(p, i); }, stream);
-}
-
-template <int F>
-int launch_table_backward(const HashGridParameters& p, std::int64_t count, Stream stream) {
-    return launch(
-        "hash_grid_table_backward", count,
-        [=] __device__(std::int64_t i) { item3d::hash_grid_table_backward<F>(p, i); }, stream);
-}
-
 /// The one of four launches that is for the grid's number of features.
 int by_width(const HashGridParameters& p, std::int64_t count, Stream stream,
              Kernel<HashGridParameters> one, Kernel<HashGridParameters> two,
@@ -44,31 +23,27 @@ int by_width(const HashGridParameters& p, std::int64_t count, Stream stream,
     }
 }
 
-int hash_grid(const HashGridParameters& p, std::int64_t count, Stream stream) {
-    return by_width(p, count, stream, launch_forward<1>, launch_forward<2>, launch_forward<4>,
-                    launch_forward<8>);
-}
+/// A line of ITEM3D_HASH_GRID_KERNELS: a launch for each number of features, and the one of them
+/// that is for the grid's. hash_grid becomes
+/// template <int F>
+/// int hash_grid_of(const HashGridParameters& p, std::int64_t count, Stream stream) {...}
+/// int hash_grid(const HashGridParameters& p, std::int64_t count, Stream stream) {
+///     return by_width(p, count, stream, hash_grid_of<1>, hash_grid_of<2>, hash_grid_of<4>,
+///                     hash_grid_of<8>);
+/// }
+#define HASH_GRID_DEFINITION(entry, Parameters, body, name)                            \
+    template <int F>                                                                   \
+    ITEM3D_KERNEL_DEFINITION(entry##_of, Parameters, body, name)                       \
+    int entry(const Parameters& p, std::int64_t count, Stream stream) {                \
+        return by_width(p, count, stream, entry##_of<1>, entry##_of<2>, entry##_of<4>, \
+                        entry##_of<8>);                                                \
+    }
 
-int hash_grid_points_backward(const HashGridParameters& p, std::int64_t count, Stream stream) {
-    return by_width(p, count, stream, launch_points_backward<1>, launch_points_backward<2>,
-                    launch_points_backward<4>, launch_points_backward<8>);
-}
+ITEM3D_HASH_GRID_KERNELS(HASH_GRID_DEFINITION)
+ITEM3D_OPTIMIZER_KERNELS(ITEM3D_KERNEL_DEFINITION)
 
-int hash_grid_table_backward(const HashGridParameters& p, std::int64_t count, Stream stream) {
-    return by_width(p, count, stream, launch_table_backward<1>, launch_table_backward<2>,
-                    launch_table_backward<4>, launch_table_backward<8>);
-}
-
-int adam_step(const AdamParameters& p, std::int64_t count, Stream stream) {
-    return launch(
-        "adam_step", count, [=] __device__(std::int64_t i) { adam_step_row(p, i); }, stream);
-}
-
-constexpr FieldTable table{{table_version, sizeof(FieldTable)},
-                           hash_grid,
-                           hash_grid_points_backward,
-                           hash_grid_table_backward,
-                           adam_step};
+constexpr FieldTable table{.header = {table_version, sizeof(FieldTable)},
+                           ITEM3D_FIELD_KERNELS(ITEM3D_KERNEL_INITIALIZER)};
 
 }  // namespace
 }  // namespace item3d::cuda

@@ -7,12 +7,26 @@
 
 namespace item3d::cuda {
 
+/// Kernels of the hash grid, compiled for each number of features F of an entry. hash_grid and
+/// hash_grid_table_backward take a count of levels * points, hash_grid_points_backward of points.
+#define ITEM3D_HASH_GRID_KERNELS(X)                                                              \
+    X(hash_grid, HashGridParameters, item3d::hash_grid_forward<F>(p, i), "hash_grid_encode")     \
+    X(hash_grid_points_backward, HashGridParameters, item3d::hash_grid_points_backward<F>(p, i), \
+      "hash_grid_points_backward")                                                               \
+    X(hash_grid_table_backward, HashGridParameters, item3d::hash_grid_table_backward<F>(p, i),   \
+      "hash_grid_table_backward")
+
+/// The others. adam_step takes a count of the gradient's rows.
+#define ITEM3D_OPTIMIZER_KERNELS(X) X(adam_step, AdamParameters, adam_step_row(p, i), "adam_step")
+
+/// All of them, in the order of FieldTable.
+#define ITEM3D_FIELD_KERNELS(X) \
+    ITEM3D_HASH_GRID_KERNELS(X) \
+    ITEM3D_OPTIMIZER_KERNELS(X)
+
 struct FieldTable {
     TableHeader header;
-    Kernel<HashGridParameters> hash_grid;                  ///< count: levels * points
-    Kernel<HashGridParameters> hash_grid_points_backward;  ///< count: points
-    Kernel<HashGridParameters> hash_grid_table_backward;   ///< count: levels * points
-    Kernel<AdamParameters> adam_step;                      ///< count: rows of the gradient
+    ITEM3D_FIELD_KERNELS(ITEM3D_KERNEL_MEMBER)
 };
 
 /// Exported as item3d_cuda_field.

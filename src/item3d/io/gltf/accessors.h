@@ -1,4 +1,4 @@
-// Typed lists in glTF buffers. Internal to scene/io.
+// Typed lists in glTF buffers. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"

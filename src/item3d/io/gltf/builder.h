@@ -1,4 +1,4 @@
-// Appends buffer views, accessors and images to a glTF's JSON. Internal to scene/io.
+// Appends buffer views, accessors and images to a glTF's JSON. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/accessors.h"

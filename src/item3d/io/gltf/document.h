@@ -1,5 +1,5 @@
 // A glTF document in memory: the JSON as it stands in the file and the bytes of its buffers. Kept
-// beside the model so that an edited copy can be written by patching it. Internal to scene/io.
+// beside the model so that an edited copy can be written by patching it. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"

@@ -1,5 +1,5 @@
 // KHR_draco_mesh_compression: primitives whose vertices and triangles are one compressed mesh.
-// Internal to scene/io.
+// Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"
@@ -16,5 +16,12 @@ bool needs_draco(const SourceDocument& document, const GltfObject& primitive);
 /// What comes out is checked against the primitive's accessors, what it takes against the size of
 /// the file. Throws InputError.
 void decode_draco_primitive(SourceDocument& document, const GltfObject& primitive);
+
+/// Compressed attributes are named twice, in a primitive and in its Draco extension: makes those of
+/// the extension agree with those of the primitive, which was `original` before.
+void match_draco(const Json& original, Json& primitive);
+
+/// Takes the Draco extension off the document's lists when no primitive has it any more.
+void forget_unused_draco(Json& json);
 
 }  // namespace item3d

@@ -4,6 +4,7 @@
 #include "item3d/io/gltf/builder.h"
 #include "item3d/io/gltf/document.h"
 #include "item3d/io/image/formats.h"
+#include "item3d/io/image/png.h"
 #include "item3d/lighting/environment.h"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ namespace item3d {
 namespace {
 
 constexpr float gamma = 2.2f;
-constexpr float largest = 255;  ///< that RGBD holds
+constexpr float largest_rgbd = 255;  ///< that RGBD holds
 
 float brightest(const Image& image) {
     return *std::max_element(image.pixels.begin(), image.pixels.end());
@@ -47,7 +48,8 @@ Vec3 decoded(const Image& image, int x, int y) {
     Vec3 radiance;
     for (int c = 0; c < 3; ++c)
         radiance[c] = std::pow(image.at(x, y, image.channels >= 3 ? c : 0), gamma);
-    return image.channels == 4 ? radiance / std::max(image.at(x, y, 3), 1 / largest) : radiance;
+    return image.channels == 4 ? radiance / std::max(image.at(x, y, 3), 1 / largest_rgbd)
+                               : radiance;
 }
 
 /// The extension's light of the document: of its scene, else the first.
@@ -100,7 +102,7 @@ std::size_t add_image_based_light(GltfBuilder& builder, const ImageBasedLight& l
     // A sun keeps all of its light: the dark parts have fewer steps instead.
     float intensity = 1;
     for (const Image& level : light.specular)
-        intensity = std::max(intensity, brightest(level) / largest);
+        intensity = std::max(intensity, brightest(level) / largest_rgbd);
 
     Json levels = Json::array();
     for (std::size_t level = 0; level < light.specular.size(); ++level) {

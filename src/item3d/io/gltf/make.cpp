@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/io/gltf/builder.h"
-#include "item3d/io/image/formats.h"
+#include "item3d/io/image/png.h"
 
 #include <algorithm>
 #include <set>

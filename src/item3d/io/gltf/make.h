@@ -1,4 +1,4 @@
-// A new glTF document for a model that came from elsewhere. Internal to scene/io.
+// A new glTF document for a model that came from elsewhere. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"

@@ -1,4 +1,4 @@
-// Materials and textures of a glTF. Internal to scene/io.
+// Materials and textures of a glTF. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"

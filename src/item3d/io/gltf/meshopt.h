@@ -1,4 +1,4 @@
-// EXT_meshopt_compression: buffer views that hold compressed bytes. Internal to scene/io.
+// EXT_meshopt_compression: buffer views that hold compressed bytes. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"

@@ -1,4 +1,4 @@
-// The node tree of a glTF. Internal to scene/io.
+// The node tree of a glTF. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"

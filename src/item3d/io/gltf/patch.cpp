@@ -2,6 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/io/gltf/draco.h"
+#include "item3d/io/gltf/materials.h"
+#include "item3d/io/gltf/patch_material.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,7 @@
-#include "item3d/io/gltf/patch.h"
-#include "item3d/io/image/formats.h"
+#include "item3d/io/gltf/patch_material.h"
+
+#include "item3d/io/gltf/materials.h"
+#include "item3d/io/image/png.h"
 
 #include <algorithm>
 

@@ -1,14 +1,14 @@
 // glTF 2.0 (Khronos, ISO/IEC 12113:2022) to a Model: one primitive for each triangle primitive of
 // each node of the default scene, in world space, at rest (default morph weights, nodes as they
 // are).
+#include "item3d/io/gltf/read.h"
+
 #include "item3d/core/error.h"
 #include "item3d/io/gltf/accessors.h"
 #include "item3d/io/gltf/draco.h"
 #include "item3d/io/gltf/materials.h"
 #include "item3d/io/gltf/nodes.h"
-#include "item3d/io/readers.h"
-#include "item3d/scene/flat_normals.h"
-#include "item3d/scene/smooth_normals.h"
+#include "item3d/scene/normals.h"
 
 #include <fmt/format.h>
 

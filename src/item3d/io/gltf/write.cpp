@@ -1,4 +1,3 @@
-// Documents to .glb and .gltf files.
 #include "item3d/io/gltf/write.h"
 
 #include "item3d/core/error.h"
@@ -6,7 +5,6 @@
 #include "item3d/io/gltf/make.h"
 #include "item3d/io/gltf/patch.h"
 #include "item3d/io/image/formats.h"
-#include "item3d/io/readers.h"
 #include "item3d/io/resources.h"
 #include "item3d/io/text.h"
 

@@ -1,8 +1,10 @@
 #include "item3d/io/image/formats.h"
 
 #include "item3d/core/error.h"
-
-#include <fmt/format.h>
+#include "item3d/io/image/jpeg.h"
+#include "item3d/io/image/openexr.h"
+#include "item3d/io/image/png.h"
+#include "item3d/io/image/radiance.h"
 
 #include <cstring>
 
@@ -44,26 +46,6 @@ DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string
                      bytes.empty() ? "an image was expected, the file is empty"
                                    : "an image was expected, found an unknown format",
                      "use PNG, JPEG, Radiance HDR or OpenEXR");
-}
-
-void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels,
-                      std::uint64_t available, std::uint64_t most_pixels_per_byte,
-                      const std::string& subject) {
-    constexpr std::uint64_t most_values = 1ull << 28;
-    if (width == 0 || height == 0 || channels == 0) {
-        throw InputError(subject, fmt::format("declares {} x {} pixels", width, height));
-    }
-    if (width > most_values || height > most_values || width * height > most_values / channels) {
-        throw InputError(
-            subject, fmt::format("declares {} x {} pixels, more than can be used", width, height),
-            "scale it down");
-    }
-    if (width * height > (available + 64) * most_pixels_per_byte) {
-        throw InputError(subject,
-                         fmt::format("declares {} x {} pixels, but {} bytes cannot hold them",
-                                     width, height, available),
-                         "the file is damaged");
-    }
 }
 
 }  // namespace item3d

@@ -6,7 +6,7 @@
 #include <jpeglib.h>
 // jerror.h needs jpeglib.h first.
 #include "item3d/core/error.h"
-#include "item3d/io/image/formats.h"
+#include "item3d/io/image/jpeg.h"
 
 #include <jerror.h>
 

@@ -1,6 +1,7 @@
 // OpenEXR through its library, from and to memory.
+#include "item3d/io/image/openexr.h"
+
 #include "item3d/core/error.h"
-#include "item3d/io/image/formats.h"
 
 #include <ImfArray.h>
 #include <ImfChannelList.h>

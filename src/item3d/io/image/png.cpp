@@ -1,8 +1,9 @@
 // PNG through libpng. libpng reports errors by longjmp, so the functions between setjmp and libpng
 // hold nothing that needs a destructor.
+#include "item3d/io/image/png.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/io/image/formats.h"
 
 #include <png.h>
 

@@ -1,7 +1,8 @@
 // Radiance pictures (Ward, "Real Pixels", Graphics Gems II): RGBE and XYZE, flat, old and new run
 // lengths, EXPOSURE and COLORCORR undone, all eight orientations.
+#include "item3d/io/image/radiance.h"
+
 #include "item3d/core/error.h"
-#include "item3d/io/image/formats.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// MTL materials to the model's metallic-roughness ones. Internal to scene/io.
+// MTL materials to the model's metallic-roughness ones. Internal to io.
 #pragma once
 
 #include "item3d/io/obj/mtl.h"

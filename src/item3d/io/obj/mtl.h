@@ -1,4 +1,4 @@
-// Material libraries of OBJ files. Internal to scene/io.
+// Material libraries of OBJ files. Internal to io.
 #pragma once
 
 #include "item3d/core/math.h"

@@ -1,12 +1,13 @@
+#include "item3d/io/obj/read.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/io/obj/materials.h"
 #include "item3d/io/obj/triangulate.h"
-#include "item3d/io/readers.h"
 #include "item3d/io/resources.h"
 #include "item3d/io/text.h"
-#include "item3d/scene/smooth_normals.h"
+#include "item3d/scene/normals.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// Polygons to triangles. Internal to scene/io.
+// Polygons to triangles. Internal to io.
 #pragma once
 
 #include "item3d/core/math.h"

@@ -1,10 +1,11 @@
 // OBJ and MTL in world space. Metallic-roughness goes into Pm, Pr, map_Pm and map_Pr (grey
 // pictures), normals into norm, occlusion into map_AO, which this project reads back and others
 // skip.
+#include "item3d/io/obj/write.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/io/image/formats.h"
-#include "item3d/io/readers.h"
+#include "item3d/io/image/png.h"
 #include "item3d/io/text.h"
 
 #include <fmt/format.h>

@@ -13,8 +13,8 @@ void store(float*& out, const Vec3& direction) {
 
 }  // namespace
 
-torch::Tensor cube_directions(int size) {
-    torch::Tensor directions = torch::empty({6, size, size, 3});
+at::Tensor cube_directions(int size) {
+    at::Tensor directions = at::empty({6, size, size, 3});
     float* out = directions.data_ptr<float>();
     for (int face = 0; face < 6; ++face)
         for (int y = 0; y < size; ++y)
@@ -25,9 +25,9 @@ torch::Tensor cube_directions(int size) {
     return directions;
 }
 
-torch::Tensor map_directions(int height) {
+at::Tensor map_directions(int height) {
     const int width = 2 * height;
-    torch::Tensor directions = torch::empty({height, width, 3});
+    at::Tensor directions = at::empty({height, width, 3});
     float* out = directions.data_ptr<float>();
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)

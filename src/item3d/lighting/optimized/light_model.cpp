@@ -1,15 +1,21 @@
 #include "item3d/lighting/optimized/light_model.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/format.h"
 #include "item3d/lighting/optimized/physical_light.h"
 #include "item3d/lighting/optimized/texel_light.h"
 
 namespace item3d {
 
-const std::vector<std::string>& light_model_names() {
+const std::vector<std::string>& light_kind_names() {
     static const std::vector<std::string> names = {"physical", "texels"};
     return names;
+}
+
+std::vector<at::Tensor> LightModel::parameters() const {
+    std::vector<at::Tensor> tensors;
+    for (const auto& [name, tensor] : named_parameters())
+        tensors.push_back(tensor);
+    return tensors;
 }
 
 std::unique_ptr<LightModel> make_light_model(const Image& light, const LightModelOptions& options) {
@@ -17,10 +23,13 @@ std::unique_ptr<LightModel> make_light_model(const Image& light, const LightMode
         throw InputError("the light", "is black; there is nothing to begin with",
                          "begin with another one, as --from-light studio");
     }
-    if (options.kind == "texels") return std::make_unique<TexelLight>(light, options);
-    if (options.kind == "physical") return std::make_unique<PhysicalLight>(light, options);
-    throw InputError("--light-model", fmt::format("'{}' is not known", options.kind),
-                     fmt::format("choose one of {}", fmt::join(light_model_names(), ", ")));
+    switch (options.kind) {
+        case LightKind::physical:
+            return std::make_unique<PhysicalLight>(light, options);
+        case LightKind::texels:
+            return std::make_unique<TexelLight>(light, options);
+    }
+    ITEM3D_CHECK(false, "unknown kind of light");
 }
 
 }  // namespace item3d

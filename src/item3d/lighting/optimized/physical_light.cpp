@@ -1,7 +1,7 @@
 #include "item3d/lighting/optimized/physical_light.h"
 
 #include "item3d/lighting/optimized/directions.h"
-#include "item3d/render/shade.h"
+#include "item3d/render/pictures.h"
 
 #include <algorithm>
 #include <array>
@@ -40,8 +40,8 @@ constexpr float white_mired = 1e6f / 6504;
 /// Natural logarithm of RGB per mired: c2 / lambda at 610, 550 and 465 nm, less green's.
 constexpr std::array<float, 3> log_color_per_mired{2.573e-3f, 0.0f, -4.782e-3f};
 
-torch::Tensor bounded(const torch::Tensor& number, Bounds range) {
-    return range.low + (range.high - range.low) * torch::sigmoid(number);
+at::Tensor bounded(const at::Tensor& number, Bounds range) {
+    return range.low + (range.high - range.low) * at::sigmoid(number);
 }
 
 float unbounded(float value, Bounds range) {
@@ -51,11 +51,11 @@ float unbounded(float value, Bounds range) {
 }
 
 /// [3] linear RGB of luminance 1.
-torch::Tensor color_of(const torch::Tensor& mired_from_white) {
-    const torch::Tensor slope =
-        torch::tensor({log_color_per_mired[0], log_color_per_mired[1], log_color_per_mired[2]});
-    const torch::Tensor color = torch::exp(mired_from_white * slope);
-    const torch::Tensor weights = torch::tensor({0.2126f, 0.7152f, 0.0722f});
+at::Tensor color_of(const at::Tensor& mired_from_white) {
+    const at::Tensor slope =
+        at::tensor({log_color_per_mired[0], log_color_per_mired[1], log_color_per_mired[2]});
+    const at::Tensor color = at::exp(mired_from_white * slope);
+    const at::Tensor weights = at::tensor({0.2126f, 0.7152f, 0.0722f});
     return color / (color * weights).sum();
 }
 
@@ -70,7 +70,7 @@ PhysicalLight::PhysicalLight(const Image& light, const LightModelOptions& option
         description.color_temperature
             ? static_cast<float>(1e6 / *description.color_temperature) - white_mired
             : 0.0f;
-    torch::Tensor numbers = torch::zeros({number_count});
+    at::Tensor numbers = at::zeros({number_count});
     const auto set = [&](Number number, float value) {
         numbers[number] = unbounded(value, bounds[number]);
     };
@@ -85,74 +85,73 @@ PhysicalLight::PhysicalLight(const Image& light, const LightModelOptions& option
     numbers_ = numbers.set_requires_grad(true);
 }
 
-torch::Tensor PhysicalLight::sun_direction() const {
+at::Tensor PhysicalLight::sun_direction() const {
     if (held_) {
         const Vec3 d = to_direction(*held_);
-        return torch::tensor({d.x, d.y, d.z});
+        return at::tensor({d.x, d.y, d.z});
     }
-    const torch::Tensor warmth = bounded(numbers_[sun_warmth], bounds[sun_warmth]);
-    const torch::Tensor air = 1 + torch::softplus(warmth / warmth_of_low_sun - 0.5f);
-    const torch::Tensor up = bounded(numbers_[elevation], bounds[elevation]) / air * (pi / 180);
-    const torch::Tensor around = start_azimuth_ + numbers_[azimuth];
-    return torch::stack({up.cos() * around.sin(), up.sin(), -(up.cos() * around.cos())});
+    const at::Tensor warmth = bounded(numbers_[sun_warmth], bounds[sun_warmth]);
+    const at::Tensor air = 1 + at::softplus(warmth / warmth_of_low_sun - 0.5f);
+    const at::Tensor up = bounded(numbers_[elevation], bounds[elevation]) / air * (pi / 180);
+    const at::Tensor around = start_azimuth_ + numbers_[azimuth];
+    return at::stack({up.cos() * around.sin(), up.sin(), -(up.cos() * around.cos())});
 }
 
-torch::Tensor PhysicalLight::radiance(const torch::Tensor& directions) const {
+at::Tensor PhysicalLight::radiance(const at::Tensor& directions) const {
     const auto value = [&](Number number) { return bounded(numbers_[number], bounds[number]); };
-    const torch::Tensor sun = sun_direction();
+    const at::Tensor sun = sun_direction();
     // What follows from the numbers is no way to move them, hence the constants.
-    const torch::Tensor warm = torch::sigmoid((value(sun_warmth) - 50) / 20).detach();
-    const torch::Tensor dark = torch::sigmoid((dusk - value(exposure)) / 0.3f).detach();
-    const torch::Tensor moonlight = (1 - warm) * dark * moonlight_mired;
-    const torch::Tensor sun_color = color_of(value(sun_warmth) + moonlight);
-    const torch::Tensor sky_color = color_of(value(sky_warmth) + moonlight);
-    torch::Tensor share = value(sun_share);
+    const at::Tensor warm = at::sigmoid((value(sun_warmth) - 50) / 20).detach();
+    const at::Tensor dark = at::sigmoid((dusk - value(exposure)) / 0.3f).detach();
+    const at::Tensor moonlight = (1 - warm) * dark * moonlight_mired;
+    const at::Tensor sun_color = color_of(value(sun_warmth) + moonlight);
+    const at::Tensor sky_color = color_of(value(sky_warmth) + moonlight);
+    at::Tensor share = value(sun_share);
     if (held_) share = least_spoken_share + (1 - least_spoken_share) * share;
 
-    const torch::Tensor facing = (directions * sun).sum(-1, true);
-    const torch::Tensor up = directions.select(-1, 1).unsqueeze(-1);
+    const at::Tensor facing = (directions * sun).sum(-1, true);
+    const at::Tensor up = directions.select(-1, 1).unsqueeze(-1);
     // Of the sky's light near the horizon, what has come the long way through the air.
-    const torch::Tensor low =
-        torch::exp(-up.clamp_min(0) / glow_height) * (0.25f + 0.1875f * (1 + facing).square());
-    const torch::Tensor sky = (sky_color * (1 - low) + sun_color * low) * (1 + value(glow) * low);
-    const torch::Tensor earth =
-        value(ground) * (0.5f * sky_color + 0.5f * sun_color) * torch::ones_like(up);
-    const torch::Tensor above = torch::sigmoid(up / horizon_softness);
-    const torch::Tensor ambient = above * sky + (1 - above) * earth;
+    const at::Tensor low =
+        at::exp(-up.clamp_min(0) / glow_height) * (0.25f + 0.1875f * (1 + facing).square());
+    const at::Tensor sky = (sky_color * (1 - low) + sun_color * low) * (1 + value(glow) * low);
+    const at::Tensor earth =
+        value(ground) * (0.5f * sky_color + 0.5f * sun_color) * at::ones_like(up);
+    const at::Tensor above = at::sigmoid(up / horizon_softness);
+    const at::Tensor ambient = above * sky + (1 - above) * earth;
 
     // A Gaussian in the angle, as much energy as a mean radiance of 1.
     const float spread = 1 / (lobe_radius * lobe_radius);
-    const torch::Tensor lobe = (4 * spread) * torch::exp(2 * spread * (facing - 1)) * sun_color;
-    const torch::Tensor stops =
+    const at::Tensor lobe = (4 * spread) * at::exp(2 * spread * (facing - 1)) * sun_color;
+    const at::Tensor stops =
         warm * bounded(numbers_[exposure], warm_exposure) + (1 - warm) * value(exposure);
-    return torch::exp2(stops) / (1 + 3 * share) * ((1 - share) * ambient + share * lobe);
+    return at::exp2(stops) / (1 + 3 * share) * ((1 - share) * ambient + share * lobe);
 }
 
-torch::Tensor PhysicalLight::cube(int size) const {
+at::Tensor PhysicalLight::cube(int size) const {
     return radiance(cube_directions(size));
 }
 
 Image PhysicalLight::image(int height) const {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     return to_image(radiance(map_directions(height)));
 }
 
-torch::Tensor PhysicalLight::regularization() const {
-    const torch::Tensor weights =
-        torch::tensor(std::vector<float>(firmness.begin(), firmness.end()));
+at::Tensor PhysicalLight::regularization() const {
+    const at::Tensor weights = at::tensor(std::vector<float>(firmness.begin(), firmness.end()));
     return (weights * (numbers_ - start_).square()).sum();
 }
 
-std::vector<torch::Tensor> PhysicalLight::parameters() const {
-    return {numbers_};
+NamedTensors PhysicalLight::named_parameters() const {
+    return {{"numbers", numbers_}};
 }
 
 PhysicalValues PhysicalLight::values() const {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const auto value = [&](Number number) {
         return bounded(numbers_[number], bounds[number]).item<float>();
     };
-    const torch::Tensor d = sun_direction();
+    const at::Tensor d = sun_direction();
     PhysicalValues values{value(exposure),
                           value(sun_share),
                           value(sun_warmth),

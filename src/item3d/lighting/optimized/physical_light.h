@@ -32,20 +32,20 @@ struct PhysicalValues {
 class PhysicalLight : public LightModel {
   public:
     PhysicalLight(const Image& light, const LightModelOptions& options);
-    torch::Tensor cube(int size) const override;
+    at::Tensor cube(int size) const override;
     Image image(int height) const override;
-    torch::Tensor regularization() const override;
-    std::vector<torch::Tensor> parameters() const override;
+    at::Tensor regularization() const override;
+    NamedTensors named_parameters() const override;
     PhysicalValues values() const;
 
   private:
-    torch::Tensor radiance(const torch::Tensor& directions) const;
-    torch::Tensor sun_direction() const;
+    at::Tensor radiance(const at::Tensor& directions) const;
+    at::Tensor sun_direction() const;
 
     std::optional<SkyAngles> held_;  ///< the sun's direction, where it is none of the parameters
     float start_azimuth_ = 0;        ///< radians
-    torch::Tensor numbers_;          ///< [8], unbounded; see physical_light.cpp
-    torch::Tensor start_;
+    at::Tensor numbers_;             ///< [8], unbounded; see physical_light.cpp
+    at::Tensor start_;
 };
 
 }  // namespace item3d

@@ -2,8 +2,8 @@
 
 #include "item3d/lighting/adjust.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/render/prefilter/environment_light.h"
-#include "item3d/render/shade.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/prefilter/equirectangular.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +21,8 @@ constexpr float least_color = 0.02f;  ///< of the object, before its logarithm i
 /// In log RGB, across the way that light takes from warm to cool (physical_light.h).
 const Vec3 green_direction = glm::normalize(Vec3(-0.65f, 1.0f, -0.35f));
 
-torch::Tensor as_direction(const Vec3& v) {
-    return torch::tensor({v.x, v.y, v.z}).view({1, 3, 1, 1});
+at::Tensor as_direction(const Vec3& v) {
+    return at::tensor({v.x, v.y, v.z}).view({1, 3, 1, 1});
 }
 
 }  // namespace
@@ -32,8 +32,8 @@ TexelLight::TexelLight(const Image& light, const LightModelOptions& options)
                                     : light)
                  .permute({2, 0, 1})
                  .unsqueeze(0)),
-      change_(torch::zeros({1, 3, change_height, 2 * change_height}).set_requires_grad(true)),
-      solid_angles_(torch::empty({1, 1, change_height, 1})) {
+      change_(at::zeros({1, 3, change_height, 2 * change_height}).set_requires_grad(true)),
+      solid_angles_(at::empty({1, 1, change_height, 1})) {
     for (int y = 0; y < change_height; ++y)
         solid_angles_[0][0][y][0] = texel_solid_angle(y, change_height);
     solid_angles_ = solid_angles_ / solid_angles_.mean();
@@ -45,45 +45,45 @@ TexelLight::TexelLight(const Image& light, const LightModelOptions& options)
     object_direction_ = as_direction(length > 0 ? chroma / length : Vec3(0));
 }
 
-torch::Tensor TexelLight::radiance(int height) const {
+at::Tensor TexelLight::radiance(int height) const {
     const int width = 2 * height;
     // The interpolation would stop at the map's left and right ends, which are neighbours.
-    const torch::Tensor around =
-        torch::cat({change_.narrow(3, change_width - 1, 1), change_, change_.narrow(3, 0, 1)}, 3);
+    const at::Tensor around =
+        at::cat({change_.narrow(3, change_width - 1, 1), change_, change_.narrow(3, 0, 1)}, 3);
     const int margin = width / change_width;
-    const torch::Tensor finer =
-        torch::upsample_bilinear2d(around, {height, width + 2 * margin}, /*align_corners=*/false);
-    const torch::Tensor light =
-        torch::adaptive_avg_pool2d(start_, {height, width}) * finer.narrow(3, margin, width).exp();
+    const at::Tensor finer =
+        at::upsample_bilinear2d(around, {height, width + 2 * margin}, /*align_corners=*/false);
+    const at::Tensor light =
+        at::adaptive_avg_pool2d(start_, {height, width}) * finer.narrow(3, margin, width).exp();
     return light[0].permute({1, 2, 0}).contiguous();
 }
 
-torch::Tensor TexelLight::cube(int size) const {
+at::Tensor TexelLight::cube(int size) const {
     return equirectangular_to_cube(radiance(std::max(change_height, 2 * size)), size);
 }
 
 Image TexelLight::image(int height) const {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     return to_image(radiance(std::max(change_height, height / change_height * change_height)));
 }
 
-torch::Tensor TexelLight::regularization() const {
-    const auto mean_square = [&](const torch::Tensor& values) {
+at::Tensor TexelLight::regularization() const {
+    const auto mean_square = [&](const at::Tensor& values) {
         return (values.square() * solid_angles_.narrow(2, 0, values.size(2))).mean();
     };
-    const torch::Tensor along = change_ - change_.roll(1, 3);
-    const torch::Tensor down =
+    const at::Tensor along = change_ - change_.roll(1, 3);
+    const at::Tensor down =
         change_.narrow(2, 1, change_height - 1) - change_.narrow(2, 0, change_height - 1);
-    const torch::Tensor chroma = change_ - change_.mean(1, true);
-    const torch::Tensor green = (chroma * as_direction(green_direction)).sum(1, true);
-    const torch::Tensor object = (chroma * object_direction_).sum(1, true);
+    const at::Tensor chroma = change_ - change_.mean(1, true);
+    const at::Tensor green = (chroma * as_direction(green_direction)).sum(1, true);
+    const at::Tensor object = (chroma * object_direction_).sum(1, true);
     return smoothness_weight * (mean_square(along) + mean_square(down)) +
            start_weight * mean_square(change_) + green_weight * mean_square(green) +
            object_weight * object_chroma_ * mean_square(object);
 }
 
-std::vector<torch::Tensor> TexelLight::parameters() const {
-    return {change_};
+NamedTensors TexelLight::named_parameters() const {
+    return {{"change", change_}};
 }
 
 }  // namespace item3d

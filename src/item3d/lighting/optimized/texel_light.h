@@ -15,19 +15,19 @@ namespace item3d {
 class TexelLight : public LightModel {
   public:
     TexelLight(const Image& light, const LightModelOptions& options);
-    torch::Tensor cube(int size) const override;
+    at::Tensor cube(int size) const override;
     Image image(int height) const override;
-    torch::Tensor regularization() const override;
-    std::vector<torch::Tensor> parameters() const override;
+    at::Tensor regularization() const override;
+    NamedTensors named_parameters() const override;
 
   private:
-    torch::Tensor radiance(int height) const;
+    at::Tensor radiance(int height) const;
 
-    torch::Tensor start_;             ///< [1, 3, H, W]
-    torch::Tensor change_;            ///< r, [1, 3, 32, 64]
-    torch::Tensor solid_angles_;      ///< [1, 1, 32, 1], their mean is 1
-    torch::Tensor object_direction_;  ///< [1, 3, 1, 1] of the object's colour in log RGB, unit
-    float object_chroma_ = 0;         ///< how coloured it is, 0 .. 1
+    at::Tensor start_;             ///< [1, 3, H, W]
+    at::Tensor change_;            ///< r, [1, 3, 32, 64]
+    at::Tensor solid_angles_;      ///< [1, 1, 32, 1], their mean is 1
+    at::Tensor object_direction_;  ///< [1, 3, 1, 1] of the object's colour in log RGB, unit
+    float object_chroma_ = 0;      ///< how coloured it is, 0 .. 1
 };
 
 }  // namespace item3d

@@ -1,11 +1,11 @@
+#include "item3d/networks/diffusion/autoencoder_kl.h"
+
 #include "item3d/core/error.h"
-#include "item3d/networks/diffusion/autoencoder.h"
 #include "item3d/networks/diffusion/unet_blocks.h"
 #include "item3d/networks/layers/group_norm.h"
 #include "item3d/networks/layers/recompute.h"
-#include "item3d/tensors/weights.h"
 
-#include <algorithm>
+#include <torch/nn/modules/container/modulelist.h>
 
 namespace item3d {
 namespace nn = torch::nn;
@@ -30,7 +30,7 @@ class AutoencoderKL::PixelAttention : public AttentionLayerImpl {
             nn::GroupNorm(
                 nn::GroupNormOptions(config.norm_num_groups, channels).eps(norm_epsilon)));
     }
-    torch::Tensor over_pixels(const torch::Tensor& x) {
+    at::Tensor over_pixels(const at::Tensor& x) {
         const auto tokens = group_norm(norm_, x).flatten(2).transpose(1, 2);
         return x + forward(tokens).transpose(1, 2).reshape(x.sizes());
     }
@@ -53,7 +53,7 @@ class AutoencoderKL::MidBlock : public nn::Module {
         register_module("resnets", resnets);
         register_module("attentions", attentions);
     }
-    torch::Tensor forward(torch::Tensor x) {
+    at::Tensor forward(at::Tensor x) {
         x = resnets_[0](x);
         if (attention_) x = attention_->over_pixels(x);
         return resnets_[1](x);
@@ -97,15 +97,14 @@ class AutoencoderKL::Encoder : public nn::Module {
         conv_out_ =
             register_module("conv_out", nn::Conv2d(conv3x3(channels, 2 * config.latent_channels)));
     }
-    torch::Tensor forward(const torch::Tensor& images) {
-        torch::Tensor x = conv_in_(images.to(conv_in_->weight.scalar_type()));
+    at::Tensor forward(const at::Tensor& images) {
+        at::Tensor x = conv_in_(images.to(conv_in_->weight.scalar_type()));
         for (Level& level : levels_) {
             for (ResnetBlock& block : level.resnets)
-                x = recompute
-                        ? recomputed([block = block.ptr()](
-                                         const torch::Tensor& y) { return block->forward(y); },
-                                     x)
-                        : block(x);
+                x = recompute ? recomputed([block = block.ptr()](
+                                               const at::Tensor& y) { return block->forward(y); },
+                                           x)
+                              : block(x);
             if (level.down) x = level.down(x);
         }
         return conv_out_(group_norm(conv_norm_out_, mid_block_->forward(x), Activation::silu));
@@ -158,8 +157,8 @@ class AutoencoderKL::Decoder : public nn::Module {
                 nn::GroupNormOptions(config.norm_num_groups, channels).eps(norm_epsilon)));
         conv_out_ = register_module("conv_out", nn::Conv2d(conv3x3(channels, config.out_channels)));
     }
-    torch::Tensor forward(const torch::Tensor& latents) {
-        torch::Tensor x = mid_block_->forward(conv_in_(latents.to(conv_in_->weight.scalar_type())));
+    at::Tensor forward(const at::Tensor& latents) {
+        at::Tensor x = mid_block_->forward(conv_in_(latents.to(conv_in_->weight.scalar_type())));
         for (Level& level : levels_) {
             for (ResnetBlock& block : level.resnets)
                 x = block(x);
@@ -192,14 +191,14 @@ AutoencoderKL::AutoencoderKL(const AutoencoderKLConfig& config, bool with_decode
             register_module("post_quant_conv", nn::Conv2d(nn::Conv2dOptions(latent, latent, 1)));
 }
 
-LatentDistribution AutoencoderKL::encode_distribution(const torch::Tensor& images) {
-    torch::Tensor moments = encoder_->forward(images);
+LatentDistribution AutoencoderKL::encode_distribution(const at::Tensor& images) {
+    at::Tensor moments = encoder_->forward(images);
     if (quant_conv_) moments = quant_conv_(moments);
     const auto halves = moments.chunk(2, 1);
     return {halves[0], halves[1].clamp(-30.0, 20.0)};
 }
 
-torch::Tensor AutoencoderKL::encode(const torch::Tensor& images) {
+at::Tensor AutoencoderKL::encode(const at::Tensor& images) {
     return encode_distribution(images).mean;
 }
 
@@ -207,7 +206,7 @@ void AutoencoderKL::recompute_in_backward(bool on) {
     encoder_->recompute = on;
 }
 
-torch::Tensor AutoencoderKL::decode(const torch::Tensor& latents) {
+at::Tensor AutoencoderKL::decode(const at::Tensor& latents) {
     ITEM3D_CHECK(decoder_, "was made without a decoder");
     if (!post_quant_conv_) return decoder_->forward(latents);
     return decoder_->forward(post_quant_conv_(latents.to(post_quant_conv_->weight.scalar_type())));
@@ -279,50 +278,6 @@ double AutoencoderKLConfig::least_parameters() const {
     for (const int channels : block_out_channels)
         total += 18.0 * channels * channels * layers_per_block;
     return total;
-}
-
-std::shared_ptr<Autoencoder> load_autoencoder(const std::filesystem::path& folder,
-                                              torch::Device device, torch::Dtype dtype,
-                                              bool with_decoder, WeightUse use) {
-    const Config config = Config::read(folder / "config.json");
-    const std::string kind = config.text("_class_name", "");
-    const bool tiny = kind == "AutoencoderTiny";
-    if (!tiny && kind != "AutoencoderKL")
-        config.fail("_class_name", "AutoencoderKL or AutoencoderTiny");
-
-    Weights weights = Weights::open(folder, "diffusion_pytorch_model");
-    // The first published checkpoints called the attention's layers otherwise.
-    weights.rename([&](const std::string& name) {
-        static const std::pair<std::string, std::string> old_names[] = {
-            {".query.", ".to_q."},
-            {".key.", ".to_k."},
-            {".value.", ".to_v."},
-            {".proj_attn.", ".to_out.0."}};
-        if (!tiny && !with_decoder &&
-            (name.starts_with("decoder.") || name.starts_with("post_quant_conv.")))
-            return std::string();
-        for (const auto& [old_name, new_name] : old_names) {
-            const auto at = name.find(old_name);
-            if (at == std::string::npos || name.find(".attentions.") == std::string::npos) continue;
-            return name.substr(0, at) + new_name + name.substr(at + old_name.size());
-        }
-        return name;
-    });
-
-    std::shared_ptr<Autoencoder> result;
-    if (tiny) {
-        const auto values = AutoencoderTinyConfig::from_config(config);
-        check_plausible(weights, values.least_parameters());
-        result = without_initial_values([&] { return std::make_shared<AutoencoderTiny>(values); });
-    } else {
-        const auto values = AutoencoderKLConfig::from_config(config);
-        check_plausible(weights, values.least_parameters());
-        result = without_initial_values(
-            [&] { return std::make_shared<AutoencoderKL>(values, with_decoder); });
-    }
-    load_parameters(*result, weights, device, dtype, use);
-    result->eval();
-    return result;
 }
 
 }  // namespace item3d

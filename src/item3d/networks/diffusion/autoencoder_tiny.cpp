@@ -1,5 +1,6 @@
+#include "item3d/networks/diffusion/autoencoder_tiny.h"
+
 #include "item3d/core/error.h"
-#include "item3d/networks/diffusion/autoencoder.h"
 #include "item3d/networks/diffusion/unet_blocks.h"
 
 #include <torch/nn/modules/activation.h>
@@ -21,10 +22,10 @@ class AutoencoderTiny::Block : public nn::Module {
         }
         register_module("conv", list);
     }
-    torch::Tensor forward(const torch::Tensor& x) {
-        torch::Tensor hidden = torch::relu(convolutions_[0](x));
-        hidden = torch::relu(convolutions_[1](hidden));
-        return torch::relu(convolutions_[2](hidden) + x);
+    at::Tensor forward(const at::Tensor& x) {
+        at::Tensor hidden = at::relu(convolutions_[0](x));
+        hidden = at::relu(convolutions_[1](hidden));
+        return at::relu(convolutions_[2](hidden) + x);
     }
 
   private:
@@ -93,14 +94,14 @@ AutoencoderTiny::AutoencoderTiny(const AutoencoderTinyConfig& config) : config_(
 
 AutoencoderTiny::~AutoencoderTiny() = default;
 
-torch::Tensor AutoencoderTiny::run(const std::vector<Layer>& layers, torch::Tensor x) {
+at::Tensor AutoencoderTiny::run(const std::vector<Layer>& layers, at::Tensor x) {
     for (Layer layer : layers) {
         if (layer.convolution) {
             x = layer.convolution(x);
         } else if (layer.block) {
             x = layer.block->forward(x);
         } else if (layer.plain == Layer::Plain::relu) {
-            x = torch::relu(x);
+            x = at::relu(x);
         } else {
             x = at::upsample_nearest2d(x, {2 * x.size(2), 2 * x.size(3)});
         }
@@ -108,14 +109,14 @@ torch::Tensor AutoencoderTiny::run(const std::vector<Layer>& layers, torch::Tens
     return x;
 }
 
-torch::Tensor AutoencoderTiny::encode(const torch::Tensor& images) {
-    const torch::Dtype dtype = encoder_[0].convolution->weight.scalar_type();
+at::Tensor AutoencoderTiny::encode(const at::Tensor& images) {
+    const at::ScalarType dtype = encoder_[0].convolution->weight.scalar_type();
     return run(encoder_, (images.to(dtype) + 1) / 2);
 }
 
-torch::Tensor AutoencoderTiny::decode(const torch::Tensor& latents) {
-    const torch::Dtype dtype = decoder_[0].convolution->weight.scalar_type();
-    return run(decoder_, torch::tanh(latents.to(dtype) / 3) * 3) * 2 - 1;
+at::Tensor AutoencoderTiny::decode(const at::Tensor& latents) {
+    const at::ScalarType dtype = decoder_[0].convolution->weight.scalar_type();
+    return run(decoder_, at::tanh(latents.to(dtype) / 3) * 3) * 2 - 1;
 }
 
 int AutoencoderTiny::downscale() const {

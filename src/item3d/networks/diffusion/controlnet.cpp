@@ -1,6 +1,7 @@
 #include "item3d/networks/diffusion/controlnet.h"
 
 #include "item3d/core/error.h"
+#include "item3d/networks/layers/load_parameters.h"
 #include "item3d/tensors/weights.h"
 
 namespace item3d {
@@ -54,10 +55,10 @@ class ControlNetImpl::PictureEmbedding : public nn::Module {
         conv_out_ = register_module(
             "conv_out", nn::Conv2d(conv3x3(channels.back(), config.block_out_channels[0])));
     }
-    torch::Tensor forward(const torch::Tensor& picture) {
-        torch::Tensor x = torch::silu(conv_in_(picture));
+    at::Tensor forward(const at::Tensor& picture) {
+        at::Tensor x = at::silu(conv_in_(picture));
         for (nn::Conv2d& block : blocks_)
-            x = torch::silu(block(x));
+            x = at::silu(block(x));
         return conv_out_(x);
     }
 
@@ -88,9 +89,9 @@ void ControlNetImpl::make_outputs() {
         register_module("controlnet_mid_block", conv1x1(config_.block_out_channels.back()));
 }
 
-UNetResiduals ControlNetImpl::forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
-                                      const torch::Tensor& encoder_hidden_states,
-                                      const torch::Tensor& picture, double scale,
+UNetResiduals ControlNetImpl::forward(const at::Tensor& sample, const at::Tensor& timesteps,
+                                      const at::Tensor& encoder_hidden_states,
+                                      const at::Tensor& picture, double scale,
                                       const AddedCondition& added) {
     ITEM3D_CHECK(sample.dim() == 4 && sample.size(1) == config_.in_channels,
                  "sample must be [N, " + std::to_string(config_.in_channels) + ", H, W]");
@@ -100,10 +101,10 @@ UNetResiduals ControlNetImpl::forward(const torch::Tensor& sample, const torch::
                      picture.size(3) == sample.size(3) * config_.downscale(),
                  "the picture must have " + std::to_string(config_.downscale()) +
                      " pixels for each latent cell");
-    const torch::Tensor context = encoder_hidden_states.to(dtype());
-    const torch::Tensor time = embed(timesteps, sample.size(0), added);
-    const torch::Tensor seen = (config_.reverse_channels ? picture.flip({1}) : picture).to(dtype());
-    const torch::Tensor x = enter(sample.to(dtype())) + picture_embedding_->forward(seen);
+    const at::Tensor context = encoder_hidden_states.to(dtype());
+    const at::Tensor time = embed(timesteps, sample.size(0), added);
+    const at::Tensor seen = (config_.reverse_channels ? picture.flip({1}) : picture).to(dtype());
+    const at::Tensor x = enter(sample.to(dtype())) + picture_embedding_->forward(seen);
 
     UNetResiduals residuals;
     residuals.down = descend(x, time, context);
@@ -113,8 +114,8 @@ UNetResiduals ControlNetImpl::forward(const torch::Tensor& sample, const torch::
     return residuals;
 }
 
-ControlNet load_controlnet(const std::filesystem::path& folder, torch::Device device,
-                           torch::Dtype dtype) {
+ControlNet load_controlnet(const std::filesystem::path& folder, at::Device device,
+                           at::ScalarType dtype) {
     const auto config = ControlNetConfig::from_config(Config::read(folder / "config.json"));
     const Weights weights = Weights::open(folder, "diffusion_pytorch_model");
     check_plausible(weights, config.least_parameters());

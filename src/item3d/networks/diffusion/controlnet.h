@@ -3,8 +3,7 @@
 #pragma once
 
 #include "item3d/networks/diffusion/unet.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <filesystem>
 #include <memory>
@@ -32,8 +31,8 @@ class ControlNetImpl : public UNetEncoderImpl {
     /// sample, timesteps, encoder_hidden_states, added: as the U-Net gets them; picture [N,
     /// conditioning_channels, downscale() x H, downscale() x W] in [0, 1]. Residuals of the
     /// weights' type, times `scale`.
-    UNetResiduals forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
-                          const torch::Tensor& encoder_hidden_states, const torch::Tensor& picture,
+    UNetResiduals forward(const at::Tensor& sample, const at::Tensor& timesteps,
+                          const at::Tensor& encoder_hidden_states, const at::Tensor& picture,
                           double scale = 1, const AddedCondition& added = {});
 
     const ControlNetConfig& config() const { return config_; }
@@ -50,7 +49,7 @@ class ControlNetImpl : public UNetEncoderImpl {
 TORCH_MODULE(ControlNet);
 
 /// Reads FOLDER/config.json and FOLDER/diffusion_pytorch_model.* . Throws InputError.
-ControlNet load_controlnet(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
-                           torch::Dtype dtype = torch::kFloat32);
+ControlNet load_controlnet(const std::filesystem::path& folder, at::Device device = at::kCPU,
+                           at::ScalarType dtype = at::kFloat);
 
 }  // namespace item3d

@@ -4,14 +4,14 @@
 
 namespace item3d {
 
-GenerateOptions generate_defaults(const std::filesystem::path& folder, const Pipeline& pipeline,
+GenerateOptions generate_defaults(const std::filesystem::path& folder, const DiffusionModel& model,
                                   const std::string& scheduler) {
     GenerateOptions options;
-    const std::string own = pipeline.scheduler.config().sampler_name();
+    const std::string own = model.schedule().config().sampler_name();
     options.scheduler = scheduler.empty() ? own : scheduler;
     for (const SamplerKind& kind : sampler_kinds())
         if (kind.name == options.scheduler) options.steps = kind.usual_steps;
-    options.guidance_scale = pipeline.is_sdxl() ? 5.0f : 7.5f;
+    options.guidance_scale = model.is_sdxl() ? 5.0f : 7.5f;
     if (!std::filesystem::exists(folder / "prior.json")) return options;
     const Config config = Config::read(folder / "prior.json");
     const Config defaults(

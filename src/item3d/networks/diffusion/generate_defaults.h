@@ -1,7 +1,7 @@
 // How a prior draws best, by its own word.
 #pragma once
 
-#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/generate.h"
 
 #include <filesystem>
 #include <string>
@@ -12,7 +12,7 @@ namespace item3d {
 /// {"steps", "guidance_scale"}) where it has one, else what is usual for the scheduler and the
 /// model. scheduler: a name of sampler_kinds(); empty: the folder's own, the only one that the
 /// recommended steps are for. Throws InputError for a prior.json that can't be understood.
-GenerateOptions generate_defaults(const std::filesystem::path& folder, const Pipeline& pipeline,
+GenerateOptions generate_defaults(const std::filesystem::path& folder, const DiffusionModel& model,
                                   const std::string& scheduler = "");
 
 }  // namespace item3d

@@ -18,7 +18,7 @@ const char* const another_model = "the LoRA was made for another model";
 
 struct Network {
     std::string name;  ///< in diffusers' metadata
-    torch::OrderedDict<std::string, torch::Tensor> parameters;
+    torch::OrderedDict<std::string, at::Tensor> parameters;
     LoraSpellings spellings;
 };
 using Networks = std::map<LoraNetwork, Network>;
@@ -39,7 +39,7 @@ Networks networks_of(const LoraTargets& targets) {
     return networks;
 }
 
-std::string shape_text(const torch::Tensor& tensor) {
+std::string shape_text(const at::Tensor& tensor) {
     return fmt::format("[{}]", fmt::join(tensor.sizes().vec(), ", "));
 }
 
@@ -50,8 +50,8 @@ using LayerTensors = std::map<LoraRole, std::string>;
 
 /// factor * up x down, to be added to a weight.
 struct Update {
-    torch::Tensor up;    ///< [out, rank]
-    torch::Tensor down;  ///< [rank, in x kernel]
+    at::Tensor up;    ///< [out, rank]
+    at::Tensor down;  ///< [rank, in x kernel]
     double factor;
 };
 
@@ -128,20 +128,20 @@ class LayerReader {
 
     /// Checks a layer against the weight that it changes.
     Update read(const LayerTensors& names, const std::string& network, const std::string& module,
-                const torch::Tensor& weight) const {
+                const at::Tensor& weight) const {
         for (const auto& [role, other] : names)
             if (names.count(LoraRole::down) == 0 || names.count(LoraRole::up) == 0)
                 reject(other, fmt::format("has no tensor '{}' beside it",
                                           names.count(LoraRole::down) ? "up" : "down"));
         const std::string& down_name = names.at(LoraRole::down);
         const std::string& up_name = names.at(LoraRole::up);
-        const torch::Tensor down = matrix(down_name), up = matrix(up_name);
+        const at::Tensor down = matrix(down_name), up = matrix(up_name);
         const std::int64_t rank = down.size(0);
-        const torch::Tensor up_flat = up.flatten(1), down_flat = down.flatten(1);
+        const at::Tensor up_flat = up.flatten(1), down_flat = down.flatten(1);
         if (up_flat.size(1) != rank)
             reject(up_name, fmt::format("of shape {} and '{}' of shape {} do not agree in rank",
                                         shape_text(up), down_name, shape_text(down)));
-        const torch::Tensor flat_weight = weight.flatten(1);
+        const at::Tensor flat_weight = weight.flatten(1);
         if (up_flat.size(0) != flat_weight.size(0))
             reject(up_name, fmt::format("of shape {} does not fit a weight of shape {}",
                                         shape_text(up), shape_text(weight)));
@@ -160,8 +160,8 @@ class LayerReader {
         throw InputError(file_.path().string(), fmt::format("tensor '{}' {}", tensor, problem),
                          another_model);
     }
-    torch::Tensor matrix(const std::string& name) const {
-        const torch::Tensor tensor = file_.tensor(name);
+    at::Tensor matrix(const std::string& name) const {
+        const at::Tensor tensor = file_.tensor(name);
         if (!tensor.is_floating_point()) reject(name, "is not of floating point");
         if ((tensor.dim() != 2 && tensor.dim() != 4) || tensor.numel() == 0)
             reject(name, fmt::format("has shape {}, expected a matrix or a convolution",
@@ -172,9 +172,9 @@ class LayerReader {
                   std::int64_t rank) const {
         const auto found = names.find(LoraRole::alpha);
         if (found == names.end()) return recorded_.factor(network, module, rank).value_or(1.0);
-        const torch::Tensor alpha = file_.tensor(found->second);
+        const at::Tensor alpha = file_.tensor(found->second);
         if (alpha.numel() != 1) reject(found->second, "is not a single number");
-        const double value = alpha.to(torch::kFloat64).item<double>();
+        const double value = alpha.to(at::kDouble).item<double>();
         if (!std::isfinite(value)) reject(found->second, "is not finite");
         return value / static_cast<double>(rank);
     }
@@ -187,7 +187,7 @@ class LayerReader {
 }  // namespace
 
 void fuse_loras(const std::vector<LoraFile>& files, const LoraTargets& targets) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Networks networks = networks_of(targets);
     const auto weight_of = [&](const Place& place) {
         return networks.at(place.first).parameters[place.second + ".weight"];
@@ -201,12 +201,12 @@ void fuse_loras(const std::vector<LoraFile>& files, const LoraTargets& targets) 
                 reader.read(names, networks.at(place.first).name, place.second, weight_of(place)));
     }
     for (const auto& [place, changes] : updates) {
-        torch::Tensor weight = weight_of(place);
-        torch::Tensor sum = weight.to(torch::kFloat32);
+        at::Tensor weight = weight_of(place);
+        at::Tensor sum = weight.to(at::kFloat);
         for (const Update& change : changes) {
-            const auto up = change.up.to(sum.device(), torch::kFloat32);
-            const auto down = change.down.to(sum.device(), torch::kFloat32);
-            sum = sum + change.factor * torch::mm(up, down).reshape(weight.sizes());
+            const auto up = change.up.to(sum.device(), at::kFloat);
+            const auto down = change.down.to(sum.device(), at::kFloat);
+            sum = sum + change.factor * at::mm(up, down).reshape(weight.sizes());
         }
         weight.set_data(sum.to(weight.scalar_type()).contiguous(weight.suggest_memory_format()));
     }

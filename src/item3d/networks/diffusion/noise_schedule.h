@@ -3,8 +3,7 @@
 #pragma once
 
 #include "item3d/networks/diffusion/scheduler_config.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <filesystem>
 
@@ -12,8 +11,8 @@ namespace item3d {
 
 /// What a network's output means.
 struct Prediction {
-    torch::Tensor clean;
-    torch::Tensor noise;
+    at::Tensor clean;
+    at::Tensor noise;
 };
 
 /// x_t = sqrt(abar_t) x_0 + sqrt(1 - abar_t) eps, abar: alphas_cumprod (Ho et al. 2020).
@@ -28,27 +27,27 @@ class NoiseSchedule {
 
     const SchedulerConfig& config() const { return config_; }
     /// [num_train_timesteps] float32 on the CPU: the share of signal variance at each timestep.
-    const torch::Tensor& alphas_cumprod() const { return alphas_cumprod_; }
+    const at::Tensor& alphas_cumprod() const { return alphas_cumprod_; }
     /// alphas_cumprod at integer `timesteps` [N], shaped [N, 1, 1, 1], on their device.
-    torch::Tensor alphas_at(const torch::Tensor& timesteps) const;
+    at::Tensor alphas_at(const at::Tensor& timesteps) const;
     bool predicts_velocity() const { return config_.prediction_type == "v_prediction"; }
 
     /// sqrt(a) sample + sqrt(1 - a) noise; sample [N, C, H, W], timesteps [N] integers.
-    torch::Tensor add_noise(const torch::Tensor& sample, const torch::Tensor& noise,
-                            const torch::Tensor& timesteps) const;
+    at::Tensor add_noise(const at::Tensor& sample, const at::Tensor& noise,
+                         const at::Tensor& timesteps) const;
     /// The target of v-prediction: sqrt(a) noise - sqrt(1 - a) sample.
-    torch::Tensor get_velocity(const torch::Tensor& sample, const torch::Tensor& noise,
-                               const torch::Tensor& timesteps) const;
+    at::Tensor get_velocity(const at::Tensor& sample, const at::Tensor& noise,
+                            const at::Tensor& timesteps) const;
     /// A network's output of the configured type -> the noise that it means.
-    torch::Tensor to_noise(const torch::Tensor& model_output, const torch::Tensor& sample,
-                           const torch::Tensor& timesteps) const;
+    at::Tensor to_noise(const at::Tensor& model_output, const at::Tensor& sample,
+                        const at::Tensor& timesteps) const;
     /// The same for one abar, and the picture that it means. `sample` is x_t.
-    Prediction interpret(const torch::Tensor& model_output, const torch::Tensor& sample,
+    Prediction interpret(const at::Tensor& model_output, const at::Tensor& sample,
                          double alpha_cumprod) const;
 
   private:
     SchedulerConfig config_;
-    torch::Tensor alphas_cumprod_;
+    at::Tensor alphas_cumprod_;
 };
 
 }  // namespace item3d

@@ -3,8 +3,10 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/networks/diffusion/adapter_file.h"
+#include "item3d/networks/diffusion/diffusion_networks.h"
 #include "item3d/networks/diffusion/lora.h"
 #include "item3d/networks/diffusion/textual_inversion.h"
+#include "item3d/networks/layers/load_parameters.h"
 
 #include <charconv>
 #include <cmath>
@@ -26,57 +28,41 @@ LoraFile parse_lora(const std::string& argument) {
     return result;
 }
 
-void add_loras(Pipeline& pipeline, const std::vector<std::string>& arguments) {
-    if (arguments.empty()) return;
-    std::vector<LoraFile> files;
-    for (const std::string& argument : arguments)
-        files.push_back(parse_lora(argument));
-    fuse_loras(files, {pipeline.unet, pipeline.text_encoder, pipeline.text_encoder_2});
-}
-
-void add_embeddings(Pipeline& pipeline, const std::vector<std::string>& arguments) {
-    std::vector<TextEncoderPair> encoders{{pipeline.tokenizer, pipeline.text_encoder}};
-    if (pipeline.is_sdxl()) encoders.push_back({pipeline.tokenizer_2, pipeline.text_encoder_2});
-    for (const std::string& argument : arguments) {
-        const AdapterArgument parts = split_adapter_argument(argument);
-        add_embedding(parts.file, parts.rest, encoders);
-    }
-}
-
-void replace_vae(Pipeline& pipeline, const fs::path& folder, bool with_decoder) {
-    const auto dtype = pipeline.vae->parameters()[0].scalar_type();
-    const auto vae = load_autoencoder(folder, pipeline.device(), dtype, with_decoder);
+void replace_vae(DiffusionNetworks& networks, const fs::path& folder, bool with_decoder) {
+    const auto dtype = networks.vae->parameters()[0].scalar_type();
+    const auto vae = load_autoencoder(folder, networks.device(), dtype, with_decoder);
     const auto reject = [&](const std::string& problem) {
         throw InputError((folder / "config.json").string(), problem,
                          "use an autoencoder that was made for this model");
     };
-    if (vae->latent_channels() != pipeline.latent_channels())
+    if (vae->latent_channels() != networks.latent_channels())
         reject(fmt::format("has {} latent channels, the model's own has {}", vae->latent_channels(),
-                           pipeline.latent_channels()));
-    if (vae->downscale() != pipeline.downscale())
+                           networks.latent_channels()));
+    if (vae->downscale() != networks.vae->downscale())
         reject(fmt::format("has a latent cell for {0}x{0} pixels, the model's own for {1}x{1}",
-                           vae->downscale(), pipeline.downscale()));
+                           vae->downscale(), networks.vae->downscale()));
     use_channels_last(*vae);
-    pipeline.vae = vae;
+    networks.vae = vae;
 }
 
 /// Throws where a ControlNet's residuals would not fit the U-Net's feature maps.
-void check_fit(const ControlNetConfig& control, const Pipeline& pipeline, const fs::path& folder) {
+void check_fit(const ControlNetConfig& control, const DiffusionNetworks& networks,
+               const fs::path& folder) {
     const auto require = [&](bool fits, const std::string& problem) {
         if (!fits)
             throw InputError((folder / "config.json").string(), problem,
                              "use a depth ControlNet that was made for this model");
     };
-    const UNet2DConditionConfig& unet = pipeline.unet->config();
-    require(pipeline.condition_channels() == 0,
+    const UNet2DConditionConfig& unet = networks.unet->config();
+    require(networks.condition_channels() == 0,
             fmt::format("the model's U-Net takes {} further channels, and no ControlNet beside",
-                        pipeline.condition_channels()));
+                        networks.condition_channels()));
     require(control.conditioning_channels == 3,
             fmt::format("conditioning_channels is {}, expected a picture of 3",
                         control.conditioning_channels));
-    require(control.downscale() == pipeline.downscale(),
+    require(control.downscale() == networks.vae->downscale(),
             fmt::format("takes {} pixels for a latent cell, the model's autoencoder {}",
-                        control.downscale(), pipeline.downscale()));
+                        control.downscale(), networks.vae->downscale()));
     require(
         control.in_channels == unet.in_channels,
         fmt::format("in_channels is {}, the U-Net's is {}", control.in_channels, unet.in_channels));
@@ -94,46 +80,39 @@ void check_fit(const ControlNetConfig& control, const Pipeline& pipeline, const 
             "addition_embed_type is another than the U-Net's");
 }
 
-void add_controlnet(Pipeline& pipeline, const fs::path& folder, float scale) {
+void add_controlnet(DiffusionNetworks& networks, const fs::path& folder, float scale) {
     if (!(scale >= 0 && scale <= 10))
         throw InputError("--controlnet-scale", "must be between 0 and 10");
-    const auto dtype = pipeline.unet->parameters()[0].scalar_type();
-    pipeline.controlnet = load_controlnet(folder, pipeline.device(), dtype);
-    check_fit(pipeline.controlnet->config(), pipeline, folder);
-    use_channels_last(*pipeline.controlnet);
-    pipeline.controlnet_scale = scale;
-}
-
-void change_networks(Pipeline& pipeline, const PipelineExtras& extras, bool with_decoder) {
-    if (!extras.vae.empty()) replace_vae(pipeline, extras.vae, with_decoder);
-    if (!extras.controlnet.empty())
-        add_controlnet(pipeline, extras.controlnet, extras.controlnet_scale);
+    const auto dtype = networks.unet->parameters()[0].scalar_type();
+    networks.controlnet = load_controlnet(folder, networks.device(), dtype);
+    check_fit(networks.controlnet->config(), networks, folder);
+    use_channels_last(*networks.controlnet);
+    networks.controlnet_scale = scale;
 }
 
 }  // namespace
 
-void apply_extras(Pipeline& pipeline, const PipelineExtras& extras) {
-    add_loras(pipeline, extras.lora);
-    add_embeddings(pipeline, extras.embedding);
-    change_networks(pipeline, extras, /*with_decoder=*/true);
+void fuse_loras(const PipelineExtras& extras, TextEncoders& text, DiffusionNetworks& networks) {
+    if (extras.lora.empty()) return;
+    std::vector<LoraFile> files;
+    for (const std::string& argument : extras.lora)
+        files.push_back(parse_lora(argument));
+    fuse_loras(files, {networks.unet, text.model, text.model_2});
 }
 
-Pipeline load_to_run(const std::filesystem::path& folder, torch::Device device, torch::Dtype dtype,
-                     const PipelineExtras& extras, const RunNeeds& needs) {
-    Pipeline pipeline = Pipeline::load_text(folder, device);
-    const auto load_networks = [&](WeightUse use) {
-        pipeline.load_networks(folder, device, dtype, needs.decoder, use);
-    };
-    if (!extras.lora.empty()) {
-        load_networks(WeightUse::any);
-        add_loras(pipeline, extras.lora);
+void add_embeddings(const PipelineExtras& extras, TextEncoders& text) {
+    std::vector<TextEncoderPair> encoders{{text.tokenizer, text.model}};
+    if (text.is_sdxl()) encoders.push_back({text.tokenizer_2, text.model_2});
+    for (const std::string& argument : extras.embedding) {
+        const AdapterArgument parts = split_adapter_argument(argument);
+        add_embedding(parts.file, parts.rest, encoders);
     }
-    add_embeddings(pipeline, extras.embedding);
-    pipeline.keep_texts(needs.prompts);
-    if (extras.lora.empty()) load_networks(WeightUse::running);
-    change_networks(pipeline, extras, needs.decoder);
-    pipeline.give_up_weights();
-    return pipeline;
+}
+
+void change_networks(const PipelineExtras& extras, DiffusionNetworks& networks, bool with_decoder) {
+    if (!extras.vae.empty()) replace_vae(networks, extras.vae, with_decoder);
+    if (!extras.controlnet.empty())
+        add_controlnet(networks, extras.controlnet, extras.controlnet_scale);
 }
 
 }  // namespace item3d

@@ -2,14 +2,15 @@
 // autoencoder.
 #pragma once
 
-#include "item3d/networks/diffusion/pipeline.h"
-
 #include <nlohmann/json.hpp>
 
 #include <string>
 #include <vector>
 
 namespace item3d {
+
+struct DiffusionNetworks;  // diffusion_networks.h
+struct TextEncoders;       // text_encoders.h
 
 struct PipelineExtras {
     std::vector<std::string> lora;       ///< FILE or FILE:SCALE
@@ -22,21 +23,13 @@ struct PipelineExtras {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PipelineExtras, lora, embedding, controlnet,
                                                 controlnet_scale, vae)
 
-/// Changes the pipeline's networks, in the types that they have. Throws InputError that names the
-/// file or option for what cannot be read or does not fit this pipeline.
-void apply_extras(Pipeline& pipeline, const PipelineExtras& extras);
-
-/// What a pipeline that runs and does nothing else is asked.
-struct RunNeeds {
-    std::vector<std::string> prompts;  ///< all that encode_text() will be asked for
-    bool decoder = true;               ///< whether decode_image() will be
-};
-
-/// The pipeline of a folder, with its extras, in as little memory as it can run in: the text
-/// encoders are loaded, asked and let go before the other networks are loaded (a LoRA wants all at
-/// once), see Pipeline::keep_texts() and give_up_weights(). Throws as Pipeline::load() and
-/// apply_extras().
-Pipeline load_to_run(const std::filesystem::path& folder, torch::Device device, torch::Dtype dtype,
-                     const PipelineExtras& extras, const RunNeeds& needs);
+/// Adds LoRAs to U-Net and text encoders, in the types that they have. As the two below it throws
+/// InputError that names the file or option for what cannot be read or does not fit the pipeline.
+void fuse_loras(const PipelineExtras& extras, TextEncoders& text, DiffusionNetworks& networks);
+/// Adds learned tokens (textual inversion).
+void add_embeddings(const PipelineExtras& extras, TextEncoders& text);
+/// Puts another autoencoder, without its decoder unless with_decoder, and a ControlNet beside the
+/// U-Net.
+void change_networks(const PipelineExtras& extras, DiffusionNetworks& networks, bool with_decoder);
 
 }  // namespace item3d

@@ -28,67 +28,67 @@ constexpr std::array<std::array<float, 2>, plane_waves> plane_cycles{{{1, 0},
                                                                       {0, 3}}};
 
 /// [N, 1, H, W] disparity, scaled an image to 0.2 (far) .. 1 (near).
-torch::Tensor relative_disparity(const torch::Tensor& depth, double background) {
+at::Tensor relative_disparity(const at::Tensor& depth, double background) {
     ITEM3D_CHECK(depth.dim() == 3, "depth must be [N, H, W]");
     const float infinity = std::numeric_limits<float>::infinity();
-    const torch::Tensor covered = depth > 0;
-    const torch::Tensor disparity = torch::where(covered, 1 / depth.clamp_min(1e-6), 0.0);
-    const torch::Tensor near = disparity.amax({1, 2}, true);
-    const torch::Tensor far =
+    const at::Tensor covered = depth > 0;
+    const at::Tensor disparity = at::where(covered, 1 / depth.clamp_min(1e-6), 0.0);
+    const at::Tensor near = disparity.amax({1, 2}, true);
+    const at::Tensor far =
         disparity.masked_fill(covered.logical_not(), infinity).amin({1, 2}, true);
-    const torch::Tensor relative = (disparity - far) / (near - far).clamp_min(1e-6);
-    return torch::where(covered, 0.2 + 0.8 * relative, background).unsqueeze(1);
+    const at::Tensor relative = (disparity - far) / (near - far).clamp_min(1e-6);
+    return at::where(covered, 0.2 + 0.8 * relative, background).unsqueeze(1);
 }
 
 /// [N, 1, h, w] each: those of the position [N, 3, h, w] on the plane that the normal faces most.
-std::pair<torch::Tensor, torch::Tensor> plane_coordinates(const torch::Tensor& position,
-                                                          const torch::Tensor& normal) {
-    const auto channel = [](const torch::Tensor& of, int c) { return of.slice(1, c, c + 1); };
-    const torch::Tensor facing = normal.abs();
-    const torch::Tensor x = channel(facing, 0), y = channel(facing, 1), z = channel(facing, 2);
-    const torch::Tensor faces_x = (x >= y).logical_and(x >= z);
-    const torch::Tensor faces_y = faces_x.logical_not().logical_and(y >= z);
-    return {torch::where(faces_x, channel(position, 2), channel(position, 0)),
-            torch::where(faces_y, channel(position, 2), channel(position, 1))};
+std::pair<at::Tensor, at::Tensor> plane_coordinates(const at::Tensor& position,
+                                                    const at::Tensor& normal) {
+    const auto channel = [](const at::Tensor& of, int c) { return of.slice(1, c, c + 1); };
+    const at::Tensor facing = normal.abs();
+    const at::Tensor x = channel(facing, 0), y = channel(facing, 1), z = channel(facing, 2);
+    const at::Tensor faces_x = (x >= y).logical_and(x >= z);
+    const at::Tensor faces_y = faces_x.logical_not().logical_and(y >= z);
+    return {at::where(faces_x, channel(position, 2), channel(position, 0)),
+            at::where(faces_y, channel(position, 2), channel(position, 1))};
 }
 
 }  // namespace
 
-torch::Tensor depth_condition(const torch::Tensor& depth, int downscale) {
-    const torch::NoGradGuard no_grad;
-    return torch::avg_pool2d(relative_disparity(depth, -1.0), downscale, downscale, 0,
-                             /*ceil_mode=*/true);
+at::Tensor depth_condition(const at::Tensor& depth, int downscale) {
+    const at::NoGradGuard no_grad;
+    return at::avg_pool2d(relative_disparity(depth, -1.0), downscale, downscale, 0,
+                          /*ceil_mode=*/true);
 }
 
-torch::Tensor depth_picture(const torch::Tensor& depth, std::int64_t height, std::int64_t width) {
-    const torch::NoGradGuard no_grad;
-    return torch::adaptive_avg_pool2d(relative_disparity(depth, 0.0), {height, width})
+at::Tensor depth_picture(const at::Tensor& depth, std::int64_t height, std::int64_t width) {
+    const at::NoGradGuard no_grad;
+    return at::adaptive_avg_pool2d(relative_disparity(depth, 0.0), {height, width})
         .expand({-1, 3, -1, -1});
 }
 
-torch::Tensor shape_cells(const SeenShape& shape, int downscale) {
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor covered = (shape.depth > 0).to(torch::kFloat32).unsqueeze(1);
-    const auto cells = [&](const torch::Tensor& pixels) {
-        return torch::avg_pool2d(pixels, downscale, downscale, 0, /*ceil_mode=*/true);
+at::Tensor shape_cells(const SeenShape& shape, int downscale) {
+    const at::NoGradGuard no_grad;
+    const at::Tensor covered = (shape.depth > 0).to(at::kFloat).unsqueeze(1);
+    const auto cells = [&](const at::Tensor& pixels) {
+        return at::avg_pool2d(pixels, downscale, downscale, 0, /*ceil_mode=*/true);
     };
-    const torch::Tensor share = cells(covered).clamp_min(1e-6);
-    const auto mean = [&](const torch::Tensor& values) {
+    const at::Tensor share = cells(covered).clamp_min(1e-6);
+    const auto mean = [&](const at::Tensor& values) {
         return cells(values.permute({0, 3, 1, 2}) * covered) / share;
     };
-    return torch::cat(
+    return at::cat(
         {depth_condition(shape.depth, downscale), mean(shape.position), mean(shape.normal)}, 1);
 }
 
-torch::Tensor shape_condition(const torch::Tensor& cells, int channels) {
-    const torch::NoGradGuard no_grad;
+at::Tensor shape_condition(const at::Tensor& cells, int channels) {
+    const at::NoGradGuard no_grad;
     if (channels == 0) return {};
-    const torch::Tensor depth = cells.slice(1, 0, 1);
+    const at::Tensor depth = cells.slice(1, 0, 1);
     if (channels == 1) return depth;
     ITEM3D_CHECK(channels == surface_condition_channels, "no condition has so many channels");
-    const torch::Tensor covered = depth > -1;
-    std::vector<torch::Tensor> all{depth, cells.slice(1, 4)};
-    const auto add_wave = [&](const torch::Tensor& cycles) {
+    const at::Tensor covered = depth > -1;
+    std::vector<at::Tensor> all{depth, cells.slice(1, 4)};
+    const auto add_wave = [&](const at::Tensor& cycles) {
         all.push_back((2 * pi * cycles).sin() * covered);
         all.push_back((2 * pi * cycles).cos() * covered);
     };
@@ -97,28 +97,28 @@ torch::Tensor shape_condition(const torch::Tensor& cells, int channels) {
     const auto [u, v] = plane_coordinates(cells.slice(1, 1, 4), cells.slice(1, 4));
     for (const auto& [along_u, along_v] : plane_cycles)
         add_wave(u * along_u + v * along_v);
-    return torch::cat(all, 1);
+    return at::cat(all, 1);
 }
 
-bool takes_shape(const Pipeline& pipeline) {
-    const int channels = pipeline.condition_channels();
-    return !pipeline.controlnet.is_empty() || channels == 1 ||
+bool takes_shape(const DiffusionModel& model) {
+    const int channels = model.condition_channels();
+    return model.controlnet_downscale() > 0 || channels == 1 ||
            channels == surface_condition_channels;
 }
 
-torch::Tensor condition_of_shape(const Pipeline& pipeline, const SeenShape& shape,
-                                 const torch::Tensor& latents) {
-    if (!takes_shape(pipeline)) return {};
+at::Tensor condition_of_shape(const DiffusionModel& model, const SeenShape& shape,
+                              const at::Tensor& latents) {
+    if (!takes_shape(model)) return {};
     ITEM3D_CHECK(shape.depth.defined(), "this prior takes a shape, and none was given");
     const std::int64_t height = latents.size(2), width = latents.size(3);
-    if (!pipeline.controlnet.is_empty()) {
-        const int pixels = pipeline.controlnet->config().downscale();
+    if (model.controlnet_downscale() > 0) {
+        const int pixels = model.controlnet_downscale();
         return depth_picture(shape.depth, height * pixels, width * pixels).to(latents.device());
     }
     const auto downscale = static_cast<int>(shape.depth.size(1) / height);
-    if (pipeline.condition_channels() == 1)
+    if (model.condition_channels() == 1)
         return depth_condition(shape.depth, downscale).to(latents.device());
-    return shape_condition(shape_cells(shape, downscale), pipeline.condition_channels())
+    return shape_condition(shape_cells(shape, downscale), model.condition_channels())
         .to(latents.device());
 }
 

@@ -15,8 +15,8 @@ TextEmbedding TextEmbedding::expand(std::int64_t rows) const {
 
 TextEmbedding TextEmbedding::join(const TextEmbedding& first, const TextEmbedding& second) {
     ITEM3D_CHECK(first.pooled.defined() == second.pooled.defined(), "texts of different models");
-    return {torch::cat({first.states, second.states}),
-            first.pooled.defined() ? torch::cat({first.pooled, second.pooled}) : torch::Tensor()};
+    return {at::cat({first.states, second.states}),
+            first.pooled.defined() ? at::cat({first.pooled, second.pooled}) : at::Tensor()};
 }
 
 }  // namespace item3d

@@ -1,7 +1,7 @@
 // What the text encoders say about prompts, as the U-Net reads it.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <cstdint>
 
@@ -9,8 +9,8 @@ namespace item3d {
 
 /// A row for each prompt. Both tensors take the same path through guidance and sampling.
 struct TextEmbedding {
-    torch::Tensor states;       ///< [N, S, D] hidden states
-    torch::Tensor pooled = {};  ///< [N, P] of the second encoder; undefined but for SDXL
+    at::Tensor states;       ///< [N, S, D] hidden states
+    at::Tensor pooled = {};  ///< [N, P] of the second encoder; undefined but for SDXL
 
     std::int64_t rows() const { return states.size(0); }
     /// [1, ...] of row i.

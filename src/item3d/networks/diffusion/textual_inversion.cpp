@@ -33,9 +33,9 @@ Layout layout_of(const SafeTensors& file, std::size_t encoders) {
 }
 
 /// [count, D], checked against the encoder.
-torch::Tensor read_vectors(const SafeTensors& file, const std::string& name,
-                           const TextEncoderPair& encoder) {
-    torch::Tensor vectors = file.tensor(name);
+at::Tensor read_vectors(const SafeTensors& file, const std::string& name,
+                        const TextEncoderPair& encoder) {
+    at::Tensor vectors = file.tensor(name);
     const auto reject = [&](const std::string& problem) {
         throw InputError(file.path().string(), fmt::format("tensor '{}' {}", name, problem),
                          "use an embedding that was made for this model");
@@ -60,7 +60,7 @@ std::string add_embedding(const std::filesystem::path& file, const std::string& 
     const SafeTensors tensors = open_adapter(file);
     const Layout layout = layout_of(tensors, encoders.size());
     const std::string name = token.empty() ? layout.token : token;
-    std::vector<torch::Tensor> vectors;
+    std::vector<at::Tensor> vectors;
     for (std::size_t i = 0; i < encoders.size(); ++i)
         vectors.push_back(read_vectors(tensors, layout.tensors[i], encoders[i]));
     if (vectors.front().size(0) != vectors.back().size(0))

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/networks/layers/group_norm.h"
+#include "item3d/networks/layers/load_parameters.h"
 #include "item3d/tensors/weights.h"
 
 namespace item3d {
@@ -48,18 +49,17 @@ void UNet2DConditionImpl::make_up_blocks() {
     register_module("up_blocks", blocks);
 }
 
-torch::Tensor UNet2DConditionImpl::forward(const torch::Tensor& sample,
-                                           const torch::Tensor& timesteps,
-                                           const torch::Tensor& encoder_hidden_states,
-                                           const AddedCondition& added,
-                                           const UNetResiduals& residuals) {
+at::Tensor UNet2DConditionImpl::forward(const at::Tensor& sample, const at::Tensor& timesteps,
+                                        const at::Tensor& encoder_hidden_states,
+                                        const AddedCondition& added,
+                                        const UNetResiduals& residuals) {
     ITEM3D_CHECK(sample.dim() == 4 && sample.size(1) == config_.in_channels,
                  "sample must be [N, " + std::to_string(config_.in_channels) + ", H, W]");
-    const torch::Tensor context = encoder_hidden_states.to(dtype());
-    const torch::Tensor time = embed(timesteps, sample.size(0), added);
-    torch::Tensor x = sample.to(dtype());
+    const at::Tensor context = encoder_hidden_states.to(dtype());
+    const at::Tensor time = embed(timesteps, sample.size(0), added);
+    at::Tensor x = sample.to(dtype());
     if (config_.center_input_sample) x = 2 * x - 1;
-    std::vector<torch::Tensor> skips = descend(enter(x), time, context);
+    std::vector<at::Tensor> skips = descend(enter(x), time, context);
     x = run_middle(skips.back(), time, context);
     if (residuals.mid.defined()) {
         ITEM3D_CHECK(residuals.down.size() == skips.size(), "one residual for each feature map");
@@ -69,7 +69,7 @@ torch::Tensor UNet2DConditionImpl::forward(const torch::Tensor& sample,
     }
     for (UNetLevel& level : up_) {
         for (std::size_t i = 0; i < level.resnets.size(); ++i) {
-            x = level.resnets[i](torch::cat({x, skips.back()}, 1), time);
+            x = level.resnets[i](at::cat({x, skips.back()}, 1), time);
             skips.pop_back();
             if (!level.attentions.empty()) x = level.attentions[i](x, context);
         }
@@ -79,8 +79,8 @@ torch::Tensor UNet2DConditionImpl::forward(const torch::Tensor& sample,
     return conv_out_(group_norm(conv_norm_out_, x, Activation::silu));
 }
 
-UNet2DCondition load_unet(const std::filesystem::path& folder, torch::Device device,
-                          torch::Dtype dtype, WeightUse use) {
+UNet2DCondition load_unet(const std::filesystem::path& folder, at::Device device,
+                          at::ScalarType dtype, WeightUse use) {
     const auto config = UNet2DConditionConfig::from_config(Config::read(folder / "config.json"));
     const Weights weights = Weights::open(folder, "diffusion_pytorch_model");
     check_plausible(weights, config.least_parameters());

@@ -5,9 +5,8 @@
 #include "item3d/networks/diffusion/unet_blocks.h"
 #include "item3d/networks/diffusion/unet_config.h"
 #include "item3d/networks/diffusion/unet_encoder.h"
-#include "item3d/tensors/weights.h"
-
-#include <torch/types.h>
+#include "item3d/networks/layers/load_parameters.h"
+#include "item3d/tensors/tensor.h"
 
 #include <filesystem>
 #include <vector>
@@ -16,8 +15,8 @@ namespace item3d {
 
 /// What a ControlNet adds to a U-Net of the same blocks.
 struct UNetResiduals {
-    std::vector<torch::Tensor> down;  ///< to each feature map of the way down, conv_in's first
-    torch::Tensor mid;                ///< to the output of the middle
+    std::vector<at::Tensor> down;  ///< to each feature map of the way down, conv_in's first
+    at::Tensor mid;                ///< to the output of the middle
 };
 
 class UNet2DConditionImpl : public UNetEncoderImpl {
@@ -27,9 +26,9 @@ class UNet2DConditionImpl : public UNetEncoderImpl {
     /// sample [N, in_channels, H, W] (any H and W); timesteps [N] or one, integers or not;
     /// encoder_hidden_states [N, S, cross_attention_dim] -> [N, out_channels, H, W] of the weights'
     /// type (under autocast: what that gives). Inputs are converted to the weights' type.
-    torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
-                          const torch::Tensor& encoder_hidden_states,
-                          const AddedCondition& added = {}, const UNetResiduals& residuals = {});
+    at::Tensor forward(const at::Tensor& sample, const at::Tensor& timesteps,
+                       const at::Tensor& encoder_hidden_states, const AddedCondition& added = {},
+                       const UNetResiduals& residuals = {});
 
     const UNet2DConditionConfig& config() const { return config_; }
 
@@ -44,7 +43,7 @@ class UNet2DConditionImpl : public UNetEncoderImpl {
 TORCH_MODULE(UNet2DCondition);
 
 /// Reads FOLDER/config.json and FOLDER/diffusion_pytorch_model.* . Throws InputError.
-UNet2DCondition load_unet(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
-                          torch::Dtype dtype = torch::kFloat32, WeightUse use = WeightUse::any);
+UNet2DCondition load_unet(const std::filesystem::path& folder, at::Device device = at::kCPU,
+                          at::ScalarType dtype = at::kFloat, WeightUse use = WeightUse::any);
 
 }  // namespace item3d

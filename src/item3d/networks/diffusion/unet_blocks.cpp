@@ -21,9 +21,9 @@ using torch::autograd::tensor_list;
 /// conv2d with frozen weights. The library's keeps its input for a gradient of the weights that
 /// nobody asks for; this is differentiable in x alone and keeps nothing of it.
 struct StridedStep : torch::autograd::Function<StridedStep> {
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& x,
-                                 const torch::Tensor& weight, const torch::Tensor& bias,
-                                 std::int64_t stride, std::int64_t padding) {
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& x,
+                              const at::Tensor& weight, const at::Tensor& bias, std::int64_t stride,
+                              std::int64_t padding) {
         context->save_for_backward({weight});
         context->saved_data["sizes"] = x.sizes().vec();
         context->saved_data["stride"] = stride;
@@ -31,13 +31,12 @@ struct StridedStep : torch::autograd::Function<StridedStep> {
         return at::conv2d(x, weight, bias, stride, padding);
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
-        const torch::Tensor weight = context->get_saved_variables()[0];
+        const at::Tensor weight = context->get_saved_variables()[0];
         const std::int64_t stride = context->saved_data["stride"].toInt();
         const std::int64_t padding = context->saved_data["padding"].toInt();
         // The input's numbers do not matter to its own gradient.
-        const torch::Tensor shape =
-            torch::empty(context->saved_data["sizes"].toIntVector(), gradients[0].options(),
-                         torch::MemoryFormat::ChannelsLast);
+        const at::Tensor shape = at::empty(context->saved_data["sizes"].toIntVector(),
+                                           gradients[0].options(), at::MemoryFormat::ChannelsLast);
         const auto result = at::convolution_backward(
             gradients[0], shape, weight, c10::nullopt, {stride, stride}, {padding, padding}, {1, 1},
             /*transposed=*/false, {0, 0}, /*groups=*/1, {true, false, false});
@@ -47,10 +46,10 @@ struct StridedStep : torch::autograd::Function<StridedStep> {
 
 /// A convolution with a kernel of one pixel. With frozen weights in float32 it is a product of
 /// matrices, which the library takes longer to see by itself.
-torch::Tensor pointwise(nn::Conv2d& convolution, const torch::Tensor& x) {
-    const torch::Tensor &weight = convolution->weight, &bias = convolution->bias;
-    const bool product = x.is_cpu() && x.scalar_type() == torch::kFloat32 &&
-                         weight.scalar_type() == torch::kFloat32 && !weight.requires_grad() &&
+at::Tensor pointwise(nn::Conv2d& convolution, const at::Tensor& x) {
+    const at::Tensor &weight = convolution->weight, &bias = convolution->bias;
+    const bool product = x.is_cpu() && x.scalar_type() == at::kFloat &&
+                         weight.scalar_type() == at::kFloat && !weight.requires_grad() &&
                          !bias.requires_grad() && !at::autocast::is_autocast_enabled(at::kCPU);
     if (!product) return convolution(x);
     return at::linear(x.permute({0, 2, 3, 1}), weight.view({weight.size(0), -1}), bias)
@@ -73,11 +72,11 @@ ResnetBlockImpl::ResnetBlockImpl(const Options& options) : options_(options) {
             register_module("conv_shortcut", nn::Conv2d(nn::Conv2dOptions(in, out, 1)));
 }
 
-torch::Tensor ResnetBlockImpl::forward(const torch::Tensor& x, const torch::Tensor& time) {
-    torch::Tensor hidden = conv1_(group_norm(norm1_, x, Activation::silu));
+at::Tensor ResnetBlockImpl::forward(const at::Tensor& x, const at::Tensor& time) {
+    at::Tensor hidden = conv1_(group_norm(norm1_, x, Activation::silu));
     if (time_emb_proj_) hidden = hidden + time_emb_proj_(time).unsqueeze(-1).unsqueeze(-1);
     hidden = conv2_(group_norm(norm2_, hidden, Activation::silu));
-    const torch::Tensor sum = (conv_shortcut_ ? pointwise(conv_shortcut_, x) : x) + hidden;
+    const at::Tensor sum = (conv_shortcut_ ? pointwise(conv_shortcut_, x) : x) + hidden;
     return options_.output_scale == 1.0 ? sum : sum / options_.output_scale;
 }
 
@@ -92,9 +91,9 @@ AttentionLayerImpl::AttentionLayerImpl(int channels, int context_channels, int h
     to_out_ = register_module("to_out", nn::ModuleList(PackableLinear(channels, channels)));
 }
 
-torch::Tensor AttentionLayerImpl::forward(const torch::Tensor& x, const torch::Tensor& context) {
-    const torch::Tensor& source = context.defined() ? context : x;
-    const torch::Tensor result = attention(to_q_(x), to_k_(source), to_v_(source), heads_);
+at::Tensor AttentionLayerImpl::forward(const at::Tensor& x, const at::Tensor& context) {
+    const at::Tensor& source = context.defined() ? context : x;
+    const at::Tensor result = attention(to_q_(x), to_k_(source), to_v_(source), heads_);
     return to_out_[0]->as<PackableLinear>()->forward(result);
 }
 
@@ -121,7 +120,7 @@ TransformerBlockImpl::TransformerBlockImpl(int channels, int context_channels, i
     register_module("ff", feed_forward);
 }
 
-torch::Tensor TransformerBlockImpl::forward(torch::Tensor x, const torch::Tensor& context) {
+at::Tensor TransformerBlockImpl::forward(at::Tensor x, const at::Tensor& context) {
     x = x + attn1_(norm1_(x));
     x = x + attn2_(norm2_(x), context);
     return x + feed_out_(gated_gelu(feed_in_(norm3_(x))));
@@ -144,10 +143,9 @@ SpatialTransformerImpl::SpatialTransformerImpl(const Options& options) : options
     register_module("transformer_blocks", list);
 }
 
-torch::Tensor SpatialTransformerImpl::forward(const torch::Tensor& x,
-                                              const torch::Tensor& context) {
+at::Tensor SpatialTransformerImpl::forward(const at::Tensor& x, const at::Tensor& context) {
     const auto rows = x.size(0), channels = x.size(1), height = x.size(2), width = x.size(3);
-    torch::Tensor hidden = group_norm(norm_, x);
+    at::Tensor hidden = group_norm(norm_, x);
     if (conv_in_) hidden = pointwise(conv_in_, hidden);
     hidden = hidden.permute({0, 2, 3, 1}).reshape({rows, height * width, channels});
     if (linear_in_) hidden = linear_in_(hidden);
@@ -164,9 +162,9 @@ DownsampleImpl::DownsampleImpl(int channels, int padding) : padding_(padding) {
         "conv", nn::Conv2d(nn::Conv2dOptions(channels, channels, 3).stride(2).padding(padding)));
 }
 
-torch::Tensor DownsampleImpl::forward(const torch::Tensor& x) {
-    const torch::Tensor padded = padding_ == 0 ? torch::constant_pad_nd(x, {0, 1, 0, 1}) : x;
-    const bool only_x = torch::GradMode::is_enabled() && x.requires_grad() && x.is_cpu() &&
+at::Tensor DownsampleImpl::forward(const at::Tensor& x) {
+    const at::Tensor padded = padding_ == 0 ? at::constant_pad_nd(x, {0, 1, 0, 1}) : x;
+    const bool only_x = at::GradMode::is_enabled() && x.requires_grad() && x.is_cpu() &&
                         !conv_->weight.requires_grad() && !conv_->bias.requires_grad() &&
                         !at::autocast::is_autocast_enabled(at::kCPU);
     if (only_x) return StridedStep::apply(padded, conv_->weight, conv_->bias, 2, padding_);
@@ -177,8 +175,7 @@ UpsampleImpl::UpsampleImpl(int channels) {
     conv_ = register_module("conv", Conv3x3(channels, channels));
 }
 
-torch::Tensor UpsampleImpl::forward(const torch::Tensor& x, std::int64_t height,
-                                    std::int64_t width) {
+at::Tensor UpsampleImpl::forward(const at::Tensor& x, std::int64_t height, std::int64_t width) {
     return conv_(at::upsample_nearest2d(x, {height, width}));
 }
 

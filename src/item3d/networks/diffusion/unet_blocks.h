@@ -4,12 +4,12 @@
 
 #include "item3d/networks/layers/conv3x3.h"
 #include "item3d/networks/layers/packable_linear.h"
+#include "item3d/tensors/tensor.h"
 
 #include <torch/nn/modules/container/modulelist.h>
 #include <torch/nn/modules/conv.h>
 #include <torch/nn/modules/linear.h>
 #include <torch/nn/modules/normalization.h>
-#include <torch/types.h>
 
 #include <vector>
 
@@ -33,7 +33,7 @@ class ResnetBlockImpl : public torch::nn::Module {
     };
     explicit ResnetBlockImpl(const Options& options);
     /// time: [N, time_channels], SiLU already applied; ignored where the block takes none.
-    torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& time = {});
+    at::Tensor forward(const at::Tensor& x, const at::Tensor& time = {});
 
   private:
     Options options_;
@@ -49,7 +49,7 @@ class AttentionLayerImpl : public torch::nn::Module {
   public:
     /// bias: of the query, key and value projections (the U-Net has none, the autoencoder does).
     AttentionLayerImpl(int channels, int context_channels, int heads, bool bias = false);
-    torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& context = {});
+    at::Tensor forward(const at::Tensor& x, const at::Tensor& context = {});
 
   private:
     int heads_;
@@ -62,7 +62,7 @@ TORCH_MODULE(AttentionLayer);
 class TransformerBlockImpl : public torch::nn::Module {
   public:
     TransformerBlockImpl(int channels, int context_channels, int heads);
-    torch::Tensor forward(torch::Tensor x, const torch::Tensor& context);
+    at::Tensor forward(at::Tensor x, const at::Tensor& context);
 
   private:
     torch::nn::LayerNorm norm1_{nullptr}, norm2_{nullptr}, norm3_{nullptr};
@@ -83,7 +83,7 @@ class SpatialTransformerImpl : public torch::nn::Module {
         bool linear_projection = false;  ///< proj_in and proj_out are linear, not 1x1 convolutions
     };
     explicit SpatialTransformerImpl(const Options& options);
-    torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& context);
+    at::Tensor forward(const at::Tensor& x, const at::Tensor& context);
 
   private:
     Options options_;
@@ -98,7 +98,7 @@ TORCH_MODULE(SpatialTransformer);
 class DownsampleImpl : public torch::nn::Module {
   public:
     DownsampleImpl(int channels, int padding);
-    torch::Tensor forward(const torch::Tensor& x);
+    at::Tensor forward(const at::Tensor& x);
 
   private:
     int padding_;
@@ -111,7 +111,7 @@ class UpsampleImpl : public torch::nn::Module {
   public:
     explicit UpsampleImpl(int channels);
     /// To height x width pixels.
-    torch::Tensor forward(const torch::Tensor& x, std::int64_t height, std::int64_t width);
+    at::Tensor forward(const at::Tensor& x, std::int64_t height, std::int64_t width);
 
   private:
     Conv3x3 conv_{nullptr};

@@ -27,16 +27,14 @@ void register_list(nn::Module& owner, const std::string& name, const std::vector
 
 }  // namespace
 
-torch::Tensor sinusoidal_embedding(const torch::Tensor& timesteps, int channels,
-                                   bool flip_sin_to_cos, double freq_shift) {
+at::Tensor sinusoidal_embedding(const at::Tensor& timesteps, int channels, bool flip_sin_to_cos,
+                                double freq_shift) {
     const int half = channels / 2;
-    const torch::Tensor exponent =
-        torch::arange(half, torch::dtype(torch::kFloat32).device(timesteps.device())) *
-        (-std::log(10000.0)) / (half - freq_shift);
-    const torch::Tensor angle =
-        timesteps.to(torch::kFloat32).unsqueeze(1) * exponent.exp().unsqueeze(0);
-    const torch::Tensor sine = angle.sin(), cosine = angle.cos();
-    return flip_sin_to_cos ? torch::cat({cosine, sine}, 1) : torch::cat({sine, cosine}, 1);
+    const at::Tensor exponent = at::arange(half, at::dtype(at::kFloat).device(timesteps.device())) *
+                                (-std::log(10000.0)) / (half - freq_shift);
+    const at::Tensor angle = timesteps.to(at::kFloat).unsqueeze(1) * exponent.exp().unsqueeze(0);
+    const at::Tensor sine = angle.sin(), cosine = angle.cos();
+    return flip_sin_to_cos ? at::cat({cosine, sine}, 1) : at::cat({sine, cosine}, 1);
 }
 
 std::shared_ptr<nn::Module> UNetLevel::as_module() const {
@@ -105,36 +103,35 @@ void UNetEncoderImpl::make_mid_block() {
     register_module("mid_block", mid_.as_module());
 }
 
-torch::Tensor UNetEncoderImpl::time_sinusoids(const torch::Tensor& timesteps) const {
+at::Tensor UNetEncoderImpl::time_sinusoids(const at::Tensor& timesteps) const {
     return sinusoidal_embedding(timesteps, encoder_config_.block_out_channels[0],
                                 encoder_config_.flip_sin_to_cos, encoder_config_.freq_shift);
 }
 
-torch::Tensor UNetEncoderImpl::time_embedding(const torch::Tensor& sinusoids) {
+at::Tensor UNetEncoderImpl::time_embedding(const at::Tensor& sinusoids) {
     return time_linear_2_(
-        torch::silu(time_linear_1_(sinusoids.to(time_linear_1_->weight.scalar_type()))));
+        at::silu(time_linear_1_(sinusoids.to(time_linear_1_->weight.scalar_type()))));
 }
 
-torch::Tensor UNetEncoderImpl::embed(const torch::Tensor& timesteps, std::int64_t rows,
-                                     const AddedCondition& added) {
-    torch::Tensor time = time_embedding(time_sinusoids(timesteps.reshape({-1}).expand({rows})));
+at::Tensor UNetEncoderImpl::embed(const at::Tensor& timesteps, std::int64_t rows,
+                                  const AddedCondition& added) {
+    at::Tensor time = time_embedding(time_sinusoids(timesteps.reshape({-1}).expand({rows})));
     if (add_linear_1_) {
         ITEM3D_CHECK(added.text_embeds.defined() && added.time_ids.defined(),
                      "this U-Net needs pooled text and picture sizes");
-        const torch::Tensor sizes =
+        const at::Tensor sizes =
             sinusoidal_embedding(added.time_ids.flatten(), encoder_config_.addition_time_embed_dim,
                                  encoder_config_.flip_sin_to_cos, encoder_config_.freq_shift)
                 .reshape({rows, -1});
-        const torch::Tensor joined =
-            torch::cat({added.text_embeds.to(dtype()), sizes.to(dtype())}, 1);
-        time = time + add_linear_2_(torch::silu(add_linear_1_(joined)));
+        const at::Tensor joined = at::cat({added.text_embeds.to(dtype()), sizes.to(dtype())}, 1);
+        time = time + add_linear_2_(at::silu(add_linear_1_(joined)));
     }
-    return torch::silu(time);  // every resnet starts with it
+    return at::silu(time);  // every resnet starts with it
 }
 
-std::vector<torch::Tensor> UNetEncoderImpl::descend(torch::Tensor x, const torch::Tensor& time,
-                                                    const torch::Tensor& context) {
-    std::vector<torch::Tensor> maps{x};
+std::vector<at::Tensor> UNetEncoderImpl::descend(at::Tensor x, const at::Tensor& time,
+                                                 const at::Tensor& context) {
+    std::vector<at::Tensor> maps{x};
     for (UNetLevel& level : down_) {
         for (std::size_t i = 0; i < level.resnets.size(); ++i) {
             x = level.resnets[i](x, time);
@@ -149,8 +146,8 @@ std::vector<torch::Tensor> UNetEncoderImpl::descend(torch::Tensor x, const torch
     return maps;
 }
 
-torch::Tensor UNetEncoderImpl::run_middle(torch::Tensor x, const torch::Tensor& time,
-                                          const torch::Tensor& context) {
+at::Tensor UNetEncoderImpl::run_middle(at::Tensor x, const at::Tensor& time,
+                                       const at::Tensor& context) {
     x = mid_.resnets[0](x, time);
     x = mid_.attentions[0](x, context);
     return mid_.resnets[1](x, time);

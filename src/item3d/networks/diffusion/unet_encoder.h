@@ -3,8 +3,7 @@
 
 #include "item3d/networks/diffusion/unet_blocks.h"
 #include "item3d/networks/diffusion/unet_config.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <memory>
 #include <vector>
@@ -13,13 +12,13 @@ namespace item3d {
 
 /// SDXL's second condition; left empty for other models.
 struct AddedCondition {
-    torch::Tensor text_embeds;  ///< [N, P] pooled text
-    torch::Tensor time_ids;     ///< [N, 6] original size, crop corner, target size
+    at::Tensor text_embeds;  ///< [N, P] pooled text
+    at::Tensor time_ids;     ///< [N, 6] original size, crop corner, target size
 };
 
 /// [N] timesteps of any type -> [N, channels] float32 sinusoids (Vaswani et al. 2017).
-torch::Tensor sinusoidal_embedding(const torch::Tensor& timesteps, int channels,
-                                   bool flip_sin_to_cos, double freq_shift);
+at::Tensor sinusoidal_embedding(const at::Tensor& timesteps, int channels, bool flip_sin_to_cos,
+                                double freq_shift);
 
 /// One level of the down, the middle or the up path.
 struct UNetLevel {
@@ -37,23 +36,21 @@ class UNetEncoderImpl : public torch::nn::Module {
     explicit UNetEncoderImpl(const UNetEncoderConfig& config);
 
     /// The two stages of the time embedding, [N, block_out_channels[0]] and [N, 4 x that].
-    torch::Tensor time_sinusoids(const torch::Tensor& timesteps) const;
-    torch::Tensor time_embedding(const torch::Tensor& sinusoids);
+    at::Tensor time_sinusoids(const at::Tensor& timesteps) const;
+    at::Tensor time_embedding(const at::Tensor& sinusoids);
 
   protected:
     /// What every resnet gets: SiLU of the embedded timesteps ([N] or one) and, where the model has
     /// it, of the added condition; [N, 4 x block_out_channels[0]].
-    torch::Tensor embed(const torch::Tensor& timesteps, std::int64_t rows,
-                        const AddedCondition& added);
+    at::Tensor embed(const at::Tensor& timesteps, std::int64_t rows, const AddedCondition& added);
     /// The first convolution: [N, in_channels, H, W] -> [N, block_out_channels[0], H, W].
-    torch::Tensor enter(const torch::Tensor& sample) { return conv_in_(sample); }
+    at::Tensor enter(const at::Tensor& sample) { return conv_in_(sample); }
     /// x after the first convolution -> the feature map after every layer of the way down, x
     /// itself first; the last one is what goes into the middle.
-    std::vector<torch::Tensor> descend(torch::Tensor x, const torch::Tensor& time,
-                                       const torch::Tensor& context);
-    torch::Tensor run_middle(torch::Tensor x, const torch::Tensor& time,
-                             const torch::Tensor& context);
-    torch::Dtype dtype() const { return conv_in_->weight.scalar_type(); }
+    std::vector<at::Tensor> descend(at::Tensor x, const at::Tensor& time,
+                                    const at::Tensor& context);
+    at::Tensor run_middle(at::Tensor x, const at::Tensor& time, const at::Tensor& context);
+    at::ScalarType dtype() const { return conv_in_->weight.scalar_type(); }
 
   private:
     void make_down_blocks();

@@ -1,7 +1,7 @@
 // Multi-head attention, in the form that is fastest for what it is used for.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
@@ -11,7 +11,7 @@ namespace item3d {
 /// a GPU and for many places, the library's fused one. On a CPU that will need gradients of few
 /// places it is plain matrix product, softmax, matrix product: the fused kernel's backward there
 /// takes a third of a training step, the plain one is 1.5 times faster.
-torch::Tensor attention(const torch::Tensor& query, const torch::Tensor& key,
-                        const torch::Tensor& value, int heads, const torch::Tensor& mask = {});
+at::Tensor attention(const at::Tensor& query, const at::Tensor& key, const at::Tensor& value,
+                     int heads, const at::Tensor& mask = {});
 
 }  // namespace item3d

@@ -26,15 +26,15 @@ BertAttentionImpl::BertAttentionImpl(const BertLayerOptions& options, int source
     register_module("output", output);
 }
 
-KeyValues BertAttentionImpl::read(const torch::Tensor& source) {
+KeyValues BertAttentionImpl::read(const at::Tensor& source) {
     return {key_(source), value_(source)};
 }
 
-torch::Tensor BertAttentionImpl::forward(const torch::Tensor& x, const KeyValues& source,
-                                         const torch::Tensor& mask) {
+at::Tensor BertAttentionImpl::forward(const at::Tensor& x, const KeyValues& source,
+                                      const at::Tensor& mask) {
     const auto rows = source.keys.size(0);
-    const torch::Tensor query = query_(x).reshape({rows, -1, x.size(2)});
-    const torch::Tensor read = attention(query, source.keys, source.values, heads_, mask);
+    const at::Tensor query = query_(x).reshape({rows, -1, x.size(2)});
+    const at::Tensor read = attention(query, source.keys, source.values, heads_, mask);
     return norm_(output_->forward(read.reshape(x.sizes()), {.added = x}));
 }
 
@@ -53,12 +53,12 @@ BertLayerImpl::BertLayerImpl(const BertLayerOptions& options) {
     register_module("output" + options.suffix, feed_out);
 }
 
-KeyValues BertLayerImpl::read_memory(const torch::Tensor& memory) {
+KeyValues BertLayerImpl::read_memory(const at::Tensor& memory) {
     return cross_ ? cross_->read(memory) : KeyValues{};
 }
 
-torch::Tensor BertLayerImpl::forward(torch::Tensor x, const torch::Tensor& mask, KeyValues* cache,
-                                     const KeyValues& memory) {
+at::Tensor BertLayerImpl::forward(at::Tensor x, const at::Tensor& mask, KeyValues* cache,
+                                  const KeyValues& memory) {
     KeyValues all = self_->read(x);
     if (cache) {
         cache->append(all.keys, all.values);
@@ -70,7 +70,7 @@ torch::Tensor BertLayerImpl::forward(torch::Tensor x, const torch::Tensor& mask,
                      "each picture must have as many texts as the others");
         x = cross_->forward(x, memory);
     }
-    const torch::Tensor hidden =
+    const at::Tensor hidden =
         feed_in_->forward(x, {.activation = LinearActivation::gelu, .rounded = true});
     return norm_(feed_out_->forward(hidden, {.added = x}));
 }

@@ -4,10 +4,10 @@
 
 #include "item3d/networks/layers/key_value_cache.h"
 #include "item3d/networks/layers/packable_linear.h"
+#include "item3d/tensors/tensor.h"
 
 #include <torch/nn/modules/embedding.h>
 #include <torch/nn/modules/normalization.h>
-#include <torch/types.h>
 
 #include <string>
 
@@ -29,10 +29,9 @@ class BertAttentionImpl : public torch::nn::Module {
   public:
     BertAttentionImpl(const BertLayerOptions& options, int source_width);
     /// Keys and values of source [N, T, source_width].
-    KeyValues read(const torch::Tensor& source);
+    KeyValues read(const at::Tensor& source);
     /// x [N, S, width]; mask: empty, or additive and broadcastable to [N, heads, S, T].
-    torch::Tensor forward(const torch::Tensor& x, const KeyValues& source,
-                          const torch::Tensor& mask = {});
+    at::Tensor forward(const at::Tensor& x, const KeyValues& source, const at::Tensor& mask = {});
 
   private:
     int heads_;
@@ -46,12 +45,12 @@ class BertLayerImpl : public torch::nn::Module {
     explicit BertLayerImpl(const BertLayerOptions& options);
 
     /// What cross-attention reads of a picture's tokens [M, T, memory_width]; empty without.
-    KeyValues read_memory(const torch::Tensor& memory);
+    KeyValues read_memory(const at::Tensor& memory);
     /// x [N, S, width]. cache: keys and values of the tokens before x, to which those of x are
     /// added; null: x is all there is. memory [M, T, width] with M a divisor of N: rows i*N/M to
     /// (i+1)*N/M of x look at picture i.
-    torch::Tensor forward(torch::Tensor x, const torch::Tensor& mask, KeyValues* cache,
-                          const KeyValues& memory);
+    at::Tensor forward(at::Tensor x, const at::Tensor& mask, KeyValues* cache,
+                       const KeyValues& memory);
 
   private:
     BertAttention self_{nullptr}, cross_{nullptr};

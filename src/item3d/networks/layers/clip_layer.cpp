@@ -25,22 +25,21 @@ ClipLayerImpl::ClipLayerImpl(const ClipLayerOptions& options)
     register_module("mlp", mlp);
 }
 
-torch::Tensor ClipLayerImpl::attend(const torch::Tensor& x, const torch::Tensor& normed,
-                                    const torch::Tensor& mask) {
-    const torch::Tensor asking = normed.narrow(1, 0, x.size(1));
-    const torch::Tensor heard =
-        attention(query_(asking), key_(normed), value_(normed), heads_, mask);
-    const torch::Tensor y = output_->forward(heard, {.added = x});
-    const torch::Tensor hidden =
+at::Tensor ClipLayerImpl::attend(const at::Tensor& x, const at::Tensor& normed,
+                                 const at::Tensor& mask) {
+    const at::Tensor asking = normed.narrow(1, 0, x.size(1));
+    const at::Tensor heard = attention(query_(asking), key_(normed), value_(normed), heads_, mask);
+    const at::Tensor y = output_->forward(heard, {.added = x});
+    const at::Tensor hidden =
         feed_in_->forward(norm2_(y), {.activation = activation_, .rounded = true});
     return feed_out_->forward(hidden, {.added = y});
 }
 
-torch::Tensor ClipLayerImpl::forward(const torch::Tensor& x, const torch::Tensor& mask) {
+at::Tensor ClipLayerImpl::forward(const at::Tensor& x, const at::Tensor& mask) {
     return attend(x, query_->as_read(norm1_(x)), mask);
 }
 
-torch::Tensor ClipLayerImpl::forward_first(const torch::Tensor& x) {
+at::Tensor ClipLayerImpl::forward_first(const at::Tensor& x) {
     return attend(x.narrow(1, 0, 1), query_->as_read(norm1_(x)), {});
 }
 

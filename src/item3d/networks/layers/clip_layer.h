@@ -2,9 +2,9 @@
 #pragma once
 
 #include "item3d/networks/layers/packable_linear.h"
+#include "item3d/tensors/tensor.h"
 
 #include <torch/nn/modules/normalization.h>
-#include <torch/types.h>
 
 #include <string>
 
@@ -24,15 +24,14 @@ class ClipLayerImpl : public torch::nn::Module {
   public:
     explicit ClipLayerImpl(const ClipLayerOptions& options);
     /// x [N, S, width]; mask: empty, or additive and broadcastable to [N, heads, S, S].
-    torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& mask = {});
+    at::Tensor forward(const at::Tensor& x, const at::Tensor& mask = {});
     /// What forward() gives for the first token, [N, 1, width], for the last layer of a network
     /// whose other tokens nobody looks at.
-    torch::Tensor forward_first(const torch::Tensor& x);
+    at::Tensor forward_first(const at::Tensor& x);
 
   private:
     /// `x`: those of the tokens `normed` that are wanted.
-    torch::Tensor attend(const torch::Tensor& x, const torch::Tensor& normed,
-                         const torch::Tensor& mask);
+    at::Tensor attend(const at::Tensor& x, const at::Tensor& normed, const at::Tensor& mask);
 
     int heads_;
     LinearActivation activation_;

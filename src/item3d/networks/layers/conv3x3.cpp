@@ -20,9 +20,9 @@ struct ConvolutionHolder : torch::CustomClassHolder {
 
 /// Differentiable in x alone.
 struct FrozenStep : torch::autograd::Function<FrozenStep> {
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& x,
-                                 const std::shared_ptr<FrozenConvolution>& convolution,
-                                 const torch::Tensor& bias) {
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& x,
+                              const std::shared_ptr<FrozenConvolution>& convolution,
+                              const at::Tensor& bias) {
         context->saved_data["convolution"] =
             c10::IValue::make_capsule(c10::intrusive_ptr<torch::CustomClassHolder>(
                 c10::make_intrusive<ConvolutionHolder>(convolution)));
@@ -31,7 +31,7 @@ struct FrozenStep : torch::autograd::Function<FrozenStep> {
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const auto holder = context->saved_data["convolution"].toCapsule();
         return {static_cast<ConvolutionHolder&>(*holder).convolution->backward(gradients[0]),
-                torch::Tensor(), torch::Tensor()};
+                at::Tensor(), at::Tensor()};
     }
 };
 
@@ -41,20 +41,20 @@ Conv3x3Impl::Conv3x3Impl(int in_channels, int out_channels, bool with_bias)
     : Conv2dImpl(
           torch::nn::Conv2dOptions(in_channels, out_channels, 3).padding(1).bias(with_bias)) {}
 
-void Conv3x3Impl::run_from(const torch::Tensor& stored, std::function<void()> forget) {
+void Conv3x3Impl::run_from(const at::Tensor& stored, std::function<void()> forget) {
     weight.set_data(stored);
     forget_ = std::move(forget);
 }
 
-void Conv3x3Impl::take_from_file(torch::Dtype dtype) {
+void Conv3x3Impl::take_from_file(at::ScalarType dtype) {
     if (!runs_from_file()) return;
-    weight.set_data(torch::empty(weight.sizes(), weight.options().dtype(dtype),
-                                 torch::MemoryFormat::ChannelsLast)
-                        .copy_(weight));
+    weight.set_data(
+        at::empty(weight.sizes(), weight.options().dtype(dtype), at::MemoryFormat::ChannelsLast)
+            .copy_(weight));
     std::exchange(forget_, nullptr)();
 }
 
-std::shared_ptr<FrozenConvolution> Conv3x3Impl::faster_way(const torch::Tensor& x) {
+std::shared_ptr<FrozenConvolution> Conv3x3Impl::faster_way(const at::Tensor& x) {
     const std::lock_guard lock(mutex_);
     if (weight_given_up_) return fast_;
     const bool frozen = !weight.requires_grad() && !(bias.defined() && bias.requires_grad()) &&
@@ -68,16 +68,16 @@ std::shared_ptr<FrozenConvolution> Conv3x3Impl::faster_way(const torch::Tensor& 
         return nullptr;
     }
     if (only_runs_ && !runs_from_file() && fast_->forget_weight()) {
-        weight.set_data(torch::empty({0}, weight.options()));
+        weight.set_data(at::empty({0}, weight.options()));
         weight_given_up_ = true;
     }
     return fast_;
 }
 
-torch::Tensor Conv3x3Impl::forward(const torch::Tensor& x) {
+at::Tensor Conv3x3Impl::forward(const at::Tensor& x) {
     const std::shared_ptr<FrozenConvolution> fast = faster_way(x);
     if (!fast) return Conv2dImpl::forward(x);
-    if (torch::GradMode::is_enabled() && x.requires_grad()) return FrozenStep::apply(x, fast, bias);
+    if (at::GradMode::is_enabled() && x.requires_grad()) return FrozenStep::apply(x, fast, bias);
     return fast->forward(x, bias);
 }
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "item3d/networks/layers/frozen_convolution.h"
+#include "item3d/tensors/tensor.h"
 
 #include <torch/nn/modules/conv.h>
-#include <torch/types.h>
 
 #include <functional>
 #include <memory>
@@ -19,7 +19,7 @@ namespace item3d {
 class Conv3x3Impl : public torch::nn::Conv2dImpl {
   public:
     Conv3x3Impl(int in_channels, int out_channels, bool with_bias = true);
-    torch::Tensor forward(const torch::Tensor& x);
+    at::Tensor forward(const at::Tensor& x);
 
     /// From now on the layer only runs: where the transformed weights are enough, it lets go of
     /// `weight` (which is then empty) as soon as it has them.
@@ -29,14 +29,14 @@ class Conv3x3Impl : public torch::nn::Conv2dImpl {
     /// of any floating type. They are packed when it runs first, in the type of its input, and
     /// `forget` is called, which lets go of the memory that they take until they are looked at
     /// again.
-    void run_from(const torch::Tensor& stored, std::function<void()> forget);
+    void run_from(const at::Tensor& stored, std::function<void()> forget);
     bool runs_from_file() const { return static_cast<bool>(forget_); }
 
   private:
     /// What convolves x, made when it is first asked for; null where that is the library.
-    std::shared_ptr<FrozenConvolution> faster_way(const torch::Tensor& x);
+    std::shared_ptr<FrozenConvolution> faster_way(const at::Tensor& x);
     /// Nothing is faster than the library for these weights: they are made ready for it.
-    void take_from_file(torch::Dtype dtype);
+    void take_from_file(at::ScalarType dtype);
 
     std::mutex mutex_;  ///< of all that faster_way() changes
     std::function<void()> forget_;

@@ -13,14 +13,14 @@ namespace {
 using std::int64_t;
 
 template <typename Weight>
-const auto& kernel() {
+const auto& best_direct_kernel() {
     return kernel_for_this_processor<Multiplied<Weight>>(
         []<Instructions instructions> { return direct_kernel<instructions, Weight>(); });
 }
 
 template <typename Weight>
-void convolve_any(const ConvolutionShape& shape, const torch::Tensor& x,
-                  const torch::Tensor& packed, const float* bias, const torch::Tensor& y) {
+void convolve_any(const ConvolutionShape& shape, const at::Tensor& x, const at::Tensor& packed,
+                  const float* bias, const at::Tensor& y) {
     using Number = Multiplied<Weight>;
     // As many as keep a column's sums and their inputs in a core's cache, beside its weights.
     constexpr int64_t most_pixels = 384;
@@ -29,48 +29,48 @@ void convolve_any(const ConvolutionShape& shape, const torch::Tensor& x,
     const int64_t each = (pixels + ranges - 1) / ranges;
     const int64_t columns = columns_of(shape.out_channels);
     at::parallel_for(0, ranges * columns, 1, [&](int64_t first, int64_t last) {
-        const torch::Tensor scratch =
-            torch::empty({kernel<Weight>()->scratch(each, shape.in_channels)}, torch::kUInt8);
+        const at::Tensor scratch =
+            at::empty({best_direct_kernel<Weight>()->scratch(each, shape.in_channels)}, at::kByte);
         for (int64_t task = first; task < last; ++task) {
             PixelPart part;
             part.first_pixel = task % ranges * each;
             part.last_pixel = std::min(pixels, part.first_pixel + each);
             part.first_channel = task / ranges * packed_columns;
             part.last_channel = std::min(shape.out_channels, part.first_channel + packed_columns);
-            kernel<Weight>()->convolve(shape, static_cast<const Number*>(x.data_ptr()),
-                                       static_cast<const Weight*>(packed.data_ptr()), bias,
-                                       static_cast<Number*>(y.data_ptr()), part,
-                                       scratch.data_ptr());
+            best_direct_kernel<Weight>()->convolve(shape, static_cast<const Number*>(x.data_ptr()),
+                                                   static_cast<const Weight*>(packed.data_ptr()),
+                                                   bias, static_cast<Number*>(y.data_ptr()), part,
+                                                   scratch.data_ptr());
         }
     });
 }
 
 /// x [N, H, W, C] three times, as convolve_taps_in_units() wants it.
-torch::Tensor shifted_maps(const torch::Tensor& x) {
+at::Tensor shifted_maps(const at::Tensor& x) {
     const int64_t pictures = x.size(0), height = x.size(1), width = x.size(2), channels = x.size(3);
     constexpr int64_t beyond = 16;
-    const torch::Tensor all =
-        torch::zeros({(3 * pictures * (height + 2) * width + beyond) * channels}, x.options());
-    const torch::Tensor maps = all.narrow(0, 0, 3 * pictures * (height + 2) * width * channels)
-                                   .view({3, pictures, height + 2, width, channels})
-                                   .narrow(2, 1, height);
+    const at::Tensor all =
+        at::zeros({(3 * pictures * (height + 2) * width + beyond) * channels}, x.options());
+    const at::Tensor maps = all.narrow(0, 0, 3 * pictures * (height + 2) * width * channels)
+                                .view({3, pictures, height + 2, width, channels})
+                                .narrow(2, 1, height);
     maps[0].narrow(2, 1, width - 1).copy_(x.narrow(2, 0, width - 1));
     maps[1].copy_(x);
     maps[2].narrow(2, 0, width - 1).copy_(x.narrow(2, 1, width - 1));
     return all;
 }
 
-void convolve_in_units(const ConvolutionShape& shape, const torch::Tensor& x,
-                       const torch::Tensor& packed, const float* bias, const torch::Tensor& y) {
+void convolve_in_units(const ConvolutionShape& shape, const at::Tensor& x, const at::Tensor& packed,
+                       const float* bias, const at::Tensor& y) {
     // As many as keep a column's sums in a core's cache, beside its weights.
     constexpr int64_t most_tiles = 32;
     const int64_t tiles = unit_tiles(shape);
     const int64_t ranges = (tiles + most_tiles - 1) / most_tiles;
     const int64_t each = (tiles + ranges - 1) / ranges;
-    const torch::Tensor shifted = shifted_maps(x.permute({0, 2, 3, 1}));
+    const at::Tensor shifted = shifted_maps(x.permute({0, 2, 3, 1}));
     at::parallel_for(
         0, ranges * (shape.out_channels / packed_columns), 1, [&](int64_t first, int64_t last) {
-            const torch::Tensor scratch = torch::empty({unit_taps_scratch(each)}, torch::kUInt8);
+            const at::Tensor scratch = at::empty({unit_taps_scratch(each)}, at::kByte);
             for (int64_t task = first; task < last; ++task) {
                 TilePart part;
                 part.first_tile = task % ranges * each;
@@ -86,25 +86,25 @@ void convolve_in_units(const ConvolutionShape& shape, const torch::Tensor& x,
 }
 
 /// Weights that were rounded to float16 stay so: half the memory, and not a bit less.
-torch::Dtype type_of_packed(const torch::Tensor& weight, torch::Dtype maps) {
-    const bool rounded = weight.scalar_type() == torch::kFloat16 && maps == torch::kFloat32;
-    return rounded ? torch::kFloat16 : maps;
+at::ScalarType type_of_packed(const at::Tensor& weight, at::ScalarType maps) {
+    const bool rounded = weight.scalar_type() == at::kHalf && maps == at::kFloat;
+    return rounded ? at::kHalf : maps;
 }
 
 template <typename Weight>
 void pack_any(const void* weights, int64_t out_channels, int64_t in_channels, int64_t column,
               void* packed) {
-    kernel<Weight>()->pack(static_cast<const Weight*>(weights), out_channels, in_channels, column,
-                           static_cast<Weight*>(packed));
+    best_direct_kernel<Weight>()->pack(static_cast<const Weight*>(weights), out_channels,
+                                       in_channels, column, static_cast<Weight*>(packed));
 }
 
 }  // namespace
 
-bool DirectConvolution::gains(const torch::Tensor& x, const torch::Tensor& weight) {
+bool DirectConvolution::gains(const at::Tensor& x, const at::Tensor& weight) {
     return fits(x, weight);
 }
 
-DirectConvolution::DirectConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget)
+DirectConvolution::DirectConvolution(const at::Tensor& weight, at::ScalarType dtype, Forget forget)
     : FrozenConvolution(weight, dtype, type_of_packed(weight, dtype), std::move(forget)) {
     pack_forward();
 }
@@ -115,24 +115,23 @@ std::vector<int64_t> DirectConvolution::turned_points() const {
 
 void DirectConvolution::pack_column(const void* weights, int64_t out_channels, int64_t in_channels,
                                     int64_t column, void* packed) const {
-    const auto pack = packed_dtype() == torch::kBFloat16  ? pack_any<BrainFloat>
-                      : packed_dtype() == torch::kFloat16 ? pack_any<HalfFloat>
-                                                          : pack_any<float>;
+    const auto pack = packed_dtype() == at::kBFloat16 ? pack_any<BrainFloat>
+                      : packed_dtype() == at::kHalf   ? pack_any<HalfFloat>
+                                                      : pack_any<float>;
     pack(weights, out_channels, in_channels, column, packed);
 }
 
-torch::Tensor DirectConvolution::convolve(const torch::Tensor& x, const torch::Tensor& packed,
-                                          int64_t out_channels, const torch::Tensor& bias) const {
+at::Tensor DirectConvolution::convolve(const at::Tensor& x, const at::Tensor& packed,
+                                       int64_t out_channels, const at::Tensor& bias) const {
     const ConvolutionShape shape{x.size(0), x.size(2), x.size(3), x.size(1), out_channels};
-    const torch::Tensor y =
-        torch::empty({shape.pictures, out_channels, shape.height, shape.width},
-                     x.options().memory_format(torch::MemoryFormat::ChannelsLast));
+    const at::Tensor y = at::empty({shape.pictures, out_channels, shape.height, shape.width},
+                                   x.options().memory_format(at::MemoryFormat::ChannelsLast));
     const float* added = bias.defined() ? bias.data_ptr<float>() : nullptr;
-    const bool in_units = packed_dtype() == torch::kBFloat16 && matrix_units_run();
-    const auto run = in_units                             ? convolve_in_units
-                     : packed_dtype() == torch::kBFloat16 ? convolve_any<BrainFloat>
-                     : packed_dtype() == torch::kFloat16  ? convolve_any<HalfFloat>
-                                                          : convolve_any<float>;
+    const bool in_units = packed_dtype() == at::kBFloat16 && matrix_units_run();
+    const auto run = in_units                          ? convolve_in_units
+                     : packed_dtype() == at::kBFloat16 ? convolve_any<BrainFloat>
+                     : packed_dtype() == at::kHalf     ? convolve_any<HalfFloat>
+                                                       : convolve_any<float>;
     run(shape, x, packed, added, y);
     return y;
 }

@@ -17,29 +17,29 @@ namespace {
 constexpr std::int64_t taps = 9;
 
 /// What channels must be a multiple of for maps of this type; 0 where no kernel runs.
-std::int64_t channel_step(torch::Dtype dtype) {
-    if (dtype == torch::kFloat32 && instructions_for<float>() != Instructions::none)
+std::int64_t channel_step(at::ScalarType dtype) {
+    if (dtype == at::kFloat && instructions_for<float>() != Instructions::none)
         return register_numbers;
-    if (dtype == torch::kBFloat16 && instructions_for<BrainFloat>() != Instructions::none)
+    if (dtype == at::kBFloat16 && instructions_for<BrainFloat>() != Instructions::none)
         return packed_columns;
     return 0;
 }
 
-bool can_be_packed(torch::Dtype stored) {
-    return stored == torch::kFloat32 || stored == torch::kBFloat16 || stored == torch::kFloat16;
+bool can_be_packed(at::ScalarType stored) {
+    return stored == at::kFloat || stored == at::kBFloat16 || stored == at::kHalf;
 }
 
 template <typename Number>
-void order_rows(const torch::Tensor& weight, std::int64_t first, std::int64_t rows,
-                const torch::Tensor& ordered) {
+void order_rows(const at::Tensor& weight, std::int64_t first, std::int64_t rows,
+                const at::Tensor& ordered) {
     const auto& kernel = kernel_for_this_processor<Multiplied<Number>>(
         []<Instructions instructions> { return weight_kernel<instructions, Number>(); });
     const std::int64_t in = weight.size(1), start = first * in * taps;
     auto* to = static_cast<Number*>(ordered.data_ptr());
     const void* from = weight.const_data_ptr();
-    if (weight.scalar_type() == torch::kFloat16)
+    if (weight.scalar_type() == at::kHalf)
         kernel->order_halves(static_cast<const HalfFloat*>(from) + start, rows, in, to);
-    else if (weight.scalar_type() == torch::kBFloat16)
+    else if (weight.scalar_type() == at::kBFloat16)
         kernel->order_brain_floats(static_cast<const BrainFloat*>(from) + start, rows, in, to);
     else
         kernel->order_floats(static_cast<const float*>(from) + start, rows, in, to);
@@ -68,8 +68,8 @@ void swap_channels(const std::uint64_t* from, std::uint64_t* to) {
 
 }  // namespace
 
-std::shared_ptr<FrozenConvolution> FrozenConvolution::make(const torch::Tensor& x,
-                                                           const torch::Tensor& weight,
+std::shared_ptr<FrozenConvolution> FrozenConvolution::make(const at::Tensor& x,
+                                                           const at::Tensor& weight,
                                                            const Forget& forget) {
     if (WinogradConvolution::gains(x, weight))
         return std::make_shared<WinogradConvolution>(weight, x.scalar_type(), forget);
@@ -78,14 +78,14 @@ std::shared_ptr<FrozenConvolution> FrozenConvolution::make(const torch::Tensor& 
     return nullptr;
 }
 
-bool FrozenConvolution::fits(const torch::Tensor& x, const torch::Tensor& weight) {
+bool FrozenConvolution::fits(const at::Tensor& x, const at::Tensor& weight) {
     const std::int64_t step = channel_step(x.scalar_type());
     return x.is_cpu() && step > 0 && can_be_packed(weight.scalar_type()) &&
            weight.size(0) % step == 0 && weight.size(1) % step == 0;
 }
 
-FrozenConvolution::FrozenConvolution(const torch::Tensor& weight, torch::Dtype dtype,
-                                     torch::Dtype packed, Forget forget)
+FrozenConvolution::FrozenConvolution(const at::Tensor& weight, at::ScalarType dtype,
+                                     at::ScalarType packed, Forget forget)
     : out_channels_(weight.size(0)),
       in_channels_(weight.size(1)),
       dtype_(dtype),
@@ -98,7 +98,7 @@ void FrozenConvolution::pack_forward() {
     packed_ = pack(weight_);
 }
 
-bool FrozenConvolution::is_of(const torch::Tensor& weight) const {
+bool FrozenConvolution::is_of(const at::Tensor& weight) const {
     return weight_.defined() && weight.data_ptr() == weight_.data_ptr() &&
            weight.strides() == weight_.strides() &&
            static_cast<std::uint32_t>(weight_._version()) == version_;
@@ -106,7 +106,7 @@ bool FrozenConvolution::is_of(const torch::Tensor& weight) const {
 
 bool FrozenConvolution::forget_weight() {
     if (turned_round().empty()) return false;
-    weight_ = torch::Tensor();
+    weight_ = at::Tensor();
     return true;
 }
 
@@ -115,18 +115,18 @@ std::vector<std::int64_t> FrozenConvolution::turned_round() const {
     return whole ? turned_points() : std::vector<std::int64_t>();
 }
 
-torch::Tensor FrozenConvolution::pack(const torch::Tensor& weight) const {
+at::Tensor FrozenConvolution::pack(const at::Tensor& weight) const {
     const std::int64_t out = weight.size(0), in = weight.size(1);
     const bool ordered = weight.scalar_type() == packed_dtype_ &&
-                         weight.is_contiguous(torch::MemoryFormat::ChannelsLast);
-    const torch::Tensor source = ordered ? weight : weight.contiguous();
-    const auto order = packed_dtype_ == torch::kFloat16    ? order_rows<HalfFloat>
-                       : packed_dtype_ == torch::kBFloat16 ? order_rows<BrainFloat>
-                                                           : order_rows<float>;
-    const torch::Tensor packed = empty_weight({points() * out * in}, packed_dtype_);
+                         weight.is_contiguous(at::MemoryFormat::ChannelsLast);
+    const at::Tensor source = ordered ? weight : weight.contiguous();
+    const auto order = packed_dtype_ == at::kHalf       ? order_rows<HalfFloat>
+                       : packed_dtype_ == at::kBFloat16 ? order_rows<BrainFloat>
+                                                        : order_rows<float>;
+    const at::Tensor packed = empty_weight({points() * out * in}, packed_dtype_);
     at::parallel_for(0, columns_of(out), 1, [&](std::int64_t first, std::int64_t last) {
-        torch::Tensor scratch;
-        if (!ordered) scratch = torch::empty({packed_columns * taps * in}, packed_dtype_);
+        at::Tensor scratch;
+        if (!ordered) scratch = at::empty({packed_columns * taps * in}, packed_dtype_);
         const std::int64_t end = std::min(out, last * packed_columns);
         for (std::int64_t column = first * packed_columns; column < end; column += packed_columns) {
             const char* rows = nullptr;
@@ -144,10 +144,10 @@ torch::Tensor FrozenConvolution::pack(const torch::Tensor& weight) const {
     return packed;
 }
 
-torch::Tensor FrozenConvolution::turn_round(const std::vector<std::int64_t>& points) const {
+at::Tensor FrozenConvolution::turn_round(const std::vector<std::int64_t>& points) const {
     const auto count = static_cast<std::int64_t>(points.size());
-    const torch::Tensor turned =
-        torch::empty({count * in_channels_ * out_channels_}, torch::dtype(packed_dtype_));
+    const at::Tensor turned =
+        at::empty({count * in_channels_ * out_channels_}, at::dtype(packed_dtype_));
     const std::int64_t outs = out_channels_ / packed_columns, ins = in_channels_ / packed_columns;
     constexpr std::int64_t square = packed_columns * packed_columns;
     // Places of a square of channels, in numbers that are moved together.
@@ -162,9 +162,9 @@ torch::Tensor FrozenConvolution::turn_round(const std::vector<std::int64_t>& poi
             for (std::int64_t out = 0; out < outs; ++out) {
                 const std::int64_t from = ((point * outs + out) * ins + in) * square;
                 const std::int64_t to = (i * outs + out) * square;
-                if (packed_dtype_ == torch::kBFloat16)
+                if (packed_dtype_ == at::kBFloat16)
                     swap.operator()<std::uint64_t>(4, from, to);
-                else if (packed_dtype_ == torch::kFloat16)
+                else if (packed_dtype_ == at::kHalf)
                     swap.operator()<std::uint16_t>(1, from, to);
                 else
                     swap.operator()<float>(1, from, to);
@@ -174,31 +174,30 @@ torch::Tensor FrozenConvolution::turn_round(const std::vector<std::int64_t>& poi
     return turned;
 }
 
-torch::Tensor FrozenConvolution::run(const torch::Tensor& x, const torch::Tensor& packed,
-                                     std::int64_t out_channels, const torch::Tensor& bias) const {
-    torch::Tensor float_bias;
-    if (bias.defined()) float_bias = bias.to(torch::kFloat32).contiguous();
-    return convolve(x.contiguous(torch::MemoryFormat::ChannelsLast), packed, out_channels,
-                    float_bias);
+at::Tensor FrozenConvolution::run(const at::Tensor& x, const at::Tensor& packed,
+                                  std::int64_t out_channels, const at::Tensor& bias) const {
+    at::Tensor float_bias;
+    if (bias.defined()) float_bias = bias.to(at::kFloat).contiguous();
+    return convolve(x.contiguous(at::MemoryFormat::ChannelsLast), packed, out_channels, float_bias);
 }
 
-torch::Tensor FrozenConvolution::forward(const torch::Tensor& x, const torch::Tensor& bias) const {
+at::Tensor FrozenConvolution::forward(const at::Tensor& x, const at::Tensor& bias) const {
     ITEM3D_CHECK(x.dim() == 4 && x.size(1) == in_channels_ && x.scalar_type() == dtype_,
                  "x must be [N, C, H, W] with the weights' channels and the packed type");
     return run(x, packed_, out_channels_, bias);
 }
 
-torch::Tensor FrozenConvolution::backward(const torch::Tensor& gradient) {
+at::Tensor FrozenConvolution::backward(const at::Tensor& gradient) {
     return run(gradient.to(dtype_), packed_for_backward(), in_channels_, {});
 }
 
-torch::Tensor FrozenConvolution::packed_for_backward() {
+at::Tensor FrozenConvolution::packed_for_backward() {
     const std::lock_guard lock(mutex_);
     if (packed_backward_.defined()) return packed_backward_;
     // The way back is the convolution with the weights turned round and their channels swapped.
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const std::vector<std::int64_t> points = turned_round();
-    const torch::Tensor packed =
+    const at::Tensor packed =
         points.empty() ? pack(weight_.flip({2, 3}).transpose(0, 1)) : turn_round(points);
     // To turn large ones takes little beside the convolution, and to keep them much memory.
     constexpr std::size_t most_kept = 5 << 20;

@@ -2,7 +2,7 @@
 // kernel of our own wants them: for networks that only run.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <cstdint>
 #include <functional>
@@ -24,13 +24,12 @@ class FrozenConvolution {
     /// device or a CPU without the instructions, for other types than float32 and bfloat16, and for
     /// channels that are no multiples of 16 (bfloat16: of 64). What it gives convolves maps of all
     /// sizes in x's type. x: [N, C, H, W], weight: [O, C, 3, 3] of float32, bfloat16 or float16.
-    static std::shared_ptr<FrozenConvolution> make(const torch::Tensor& x,
-                                                   const torch::Tensor& weight,
+    static std::shared_ptr<FrozenConvolution> make(const at::Tensor& x, const at::Tensor& weight,
                                                    const Forget& forget = {});
     virtual ~FrozenConvolution() = default;
 
     /// False once `weight` is another tensor than the one packed, or was written to.
-    bool is_of(const torch::Tensor& weight) const;
+    bool is_of(const at::Tensor& weight) const;
 
     /// Lets go of the weights as they were, where the packed ones are enough for the way back too.
     /// False where they are not.
@@ -38,22 +37,22 @@ class FrozenConvolution {
 
     /// x [N, C, H, W] of the type that make() saw, bias [O] or none -> [N, O, H, W] in
     /// channels-last order.
-    torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& bias) const;
+    at::Tensor forward(const at::Tensor& x, const at::Tensor& bias) const;
     /// Gradient of the output -> of the input.
-    torch::Tensor backward(const torch::Tensor& gradient);
+    at::Tensor backward(const at::Tensor& gradient);
 
   protected:
     /// Who derives from this calls pack_forward() in its constructor. dtype: of the maps, float32
     /// or bfloat16; packed: of the packed weights, the same, or float16 for maps of float32.
-    FrozenConvolution(const torch::Tensor& weight, torch::Dtype dtype, torch::Dtype packed,
+    FrozenConvolution(const at::Tensor& weight, at::ScalarType dtype, at::ScalarType packed,
                       Forget forget);
     void pack_forward();
 
     /// Whether a kernel of ours can convolve this and is told to: see make().
-    static bool fits(const torch::Tensor& x, const torch::Tensor& weight);
+    static bool fits(const at::Tensor& x, const at::Tensor& weight);
 
-    torch::Dtype dtype() const { return dtype_; }
-    torch::Dtype packed_dtype() const { return packed_dtype_; }
+    at::ScalarType dtype() const { return dtype_; }
+    at::ScalarType packed_dtype() const { return packed_dtype_; }
 
   private:
     /// Channels of a convolution: those of the way there, or swapped.
@@ -72,26 +71,26 @@ class FrozenConvolution {
     virtual void pack_column(const void* weights, std::int64_t out_channels,
                              std::int64_t in_channels, std::int64_t column, void* packed) const = 0;
     /// x and the result are channels-last; bias is float32 or undefined.
-    virtual torch::Tensor convolve(const torch::Tensor& x, const torch::Tensor& packed,
-                                   std::int64_t out_channels, const torch::Tensor& bias) const = 0;
+    virtual at::Tensor convolve(const at::Tensor& x, const at::Tensor& packed,
+                                std::int64_t out_channels, const at::Tensor& bias) const = 0;
 
     /// turned_points() where turn_round() can be used: columns that are all whole.
     std::vector<std::int64_t> turned_round() const;
-    torch::Tensor pack(const torch::Tensor& weight) const;
+    at::Tensor pack(const at::Tensor& weight) const;
     /// The packed weights of the way back from those of the way there.
-    torch::Tensor turn_round(const std::vector<std::int64_t>& points) const;
-    torch::Tensor packed_for_backward();
-    torch::Tensor run(const torch::Tensor& x, const torch::Tensor& packed,
-                      std::int64_t out_channels, const torch::Tensor& bias) const;
+    at::Tensor turn_round(const std::vector<std::int64_t>& points) const;
+    at::Tensor packed_for_backward();
+    at::Tensor run(const at::Tensor& x, const at::Tensor& packed, std::int64_t out_channels,
+                   const at::Tensor& bias) const;
 
     std::int64_t out_channels_, in_channels_;
-    torch::Dtype dtype_, packed_dtype_;
-    torch::Tensor weight_;  ///< empty once forgotten
+    at::ScalarType dtype_, packed_dtype_;
+    at::Tensor weight_;  ///< empty once forgotten
     std::uint32_t version_;
     Forget forget_;
-    torch::Tensor packed_;
-    std::mutex mutex_;               ///< of what follows
-    torch::Tensor packed_backward_;  ///< made by the first backward(), where it is kept
+    at::Tensor packed_;
+    std::mutex mutex_;            ///< of what follows
+    at::Tensor packed_backward_;  ///< made by the first backward(), where it is kept
 };
 
 }  // namespace item3d

@@ -22,7 +22,7 @@ const auto& gate() {
 
 /// f(first row, rows) on all threads, for x [..., 2 width].
 template <typename Function>
-void for_each_gated_row(const torch::Tensor& x, const Function& f) {
+void for_each_gated_row(const at::Tensor& x, const Function& f) {
     constexpr std::int64_t fewest_numbers = 1 << 14;  // for a thread
     const std::int64_t numbers = x.size(-1), rows = x.numel() / numbers;
     at::parallel_for(0, rows, std::max<std::int64_t>(1, fewest_numbers / numbers),
@@ -30,7 +30,7 @@ void for_each_gated_row(const torch::Tensor& x, const Function& f) {
 }
 
 template <typename Number>
-void run_gate(const torch::Tensor& x, const torch::Tensor& y) {
+void run_gate(const at::Tensor& x, const at::Tensor& y) {
     const auto* from = static_cast<const Number*>(x.data_ptr());
     auto* to = static_cast<Number*>(y.data_ptr());
     const std::int64_t width = y.size(-1);
@@ -40,7 +40,7 @@ void run_gate(const torch::Tensor& x, const torch::Tensor& y) {
 }
 
 template <typename Number>
-void run_gate_back(const torch::Tensor& x, const torch::Tensor& dy, const torch::Tensor& dx) {
+void run_gate_back(const at::Tensor& x, const at::Tensor& dy, const at::Tensor& dx) {
     const auto *from = static_cast<const Number*>(x.data_ptr()),
                *gradient = static_cast<const Number*>(dy.data_ptr());
     auto* to = static_cast<Number*>(dx.data_ptr());
@@ -53,20 +53,20 @@ void run_gate_back(const torch::Tensor& x, const torch::Tensor& dy, const torch:
 }
 
 struct GateStep : torch::autograd::Function<GateStep> {
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& input) {
-        const torch::Tensor x = input.contiguous();
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& input) {
+        const at::Tensor x = input.contiguous();
         std::vector<std::int64_t> sizes = x.sizes().vec();
         sizes.back() /= 2;
-        const torch::Tensor y = torch::empty(sizes, x.options());
-        (x.scalar_type() == torch::kBFloat16 ? run_gate<BrainFloat> : run_gate<float>)(x, y);
+        const at::Tensor y = at::empty(sizes, x.options());
+        (x.scalar_type() == at::kBFloat16 ? run_gate<BrainFloat> : run_gate<float>)(x, y);
         context->save_for_backward({x});
         return y;
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
-        const torch::Tensor x = context->get_saved_variables()[0];
-        const torch::Tensor dy = gradients[0].to(x.scalar_type()).contiguous();
-        const torch::Tensor dx = torch::empty_like(x);
-        const bool brain = x.scalar_type() == torch::kBFloat16;
+        const at::Tensor x = context->get_saved_variables()[0];
+        const at::Tensor dy = gradients[0].to(x.scalar_type()).contiguous();
+        const at::Tensor dx = at::empty_like(x);
+        const bool brain = x.scalar_type() == at::kBFloat16;
         (brain ? run_gate_back<BrainFloat> : run_gate_back<float>)(x, dy, dx);
         return {dx};
     }
@@ -74,12 +74,12 @@ struct GateStep : torch::autograd::Function<GateStep> {
 
 }  // namespace
 
-torch::Tensor gated_gelu(const torch::Tensor& x) {
-    const bool runs = (x.scalar_type() == torch::kFloat32 && gate<float>()) ||
-                      (x.scalar_type() == torch::kBFloat16 && gate<BrainFloat>());
+at::Tensor gated_gelu(const at::Tensor& x) {
+    const bool runs = (x.scalar_type() == at::kFloat && gate<float>()) ||
+                      (x.scalar_type() == at::kBFloat16 && gate<BrainFloat>());
     if (x.is_cpu() && runs && x.size(-1) % (2 * register_numbers) == 0) return GateStep::apply(x);
     const auto halves = x.chunk(2, -1);
-    return halves[0] * torch::gelu(halves[1]);
+    return halves[0] * at::gelu(halves[1]);
 }
 
 }  // namespace item3d

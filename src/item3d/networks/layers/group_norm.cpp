@@ -22,7 +22,7 @@ struct NormMap {
     std::int64_t pictures, pixels, channels, groups;
     static constexpr std::int64_t piece = 1024;
 
-    NormMap(const torch::Tensor& x, std::int64_t group_count)
+    NormMap(const at::Tensor& x, std::int64_t group_count)
         : pictures(x.size(0)),
           pixels(x.size(2) * x.size(3)),
           channels(x.size(1)),
@@ -62,13 +62,13 @@ struct NormMap {
 /// By picture and channel, [N, C] each.
 struct NormValues {
     explicit NormValues(const NormMap& map)
-        : all(torch::empty({4, map.pictures, map.channels}, torch::kFloat32)) {}
-    explicit NormValues(torch::Tensor kept) : all(std::move(kept)) {}
+        : all(at::empty({4, map.pictures, map.channels}, at::kFloat)) {}
+    explicit NormValues(at::Tensor kept) : all(std::move(kept)) {}
     float* scale() const { return all[0].data_ptr<float>(); }
     float* offset() const { return all[1].data_ptr<float>(); }
     float* mean() const { return all[2].data_ptr<float>(); }       ///< of the group
     float* deviation() const { return all[3].data_ptr<float>(); }  ///< 1 / of the group
-    torch::Tensor all;
+    at::Tensor all;
 };
 
 template <typename Number>
@@ -78,7 +78,7 @@ const auto& kernel_of() {
 }
 
 template <typename Number>
-const Number* numbers_of(const torch::Tensor& tensor) {
+const Number* numbers_of(const at::Tensor& tensor) {
     return static_cast<const Number*>(tensor.data_ptr());
 }
 
@@ -135,8 +135,8 @@ NormValues measure(const NormMap& map, const Number* x, const float* weight, con
 }
 
 template <typename Number>
-NormValues normalize(const NormMap& map, const torch::Tensor& x, const torch::Tensor& weight,
-                     const torch::Tensor& bias, double epsilon, bool silu, const torch::Tensor& y) {
+NormValues normalize(const NormMap& map, const at::Tensor& x, const at::Tensor& weight,
+                     const at::Tensor& bias, double epsilon, bool silu, const at::Tensor& y) {
     const auto* from = numbers_of<Number>(x);
     auto* to = static_cast<Number*>(y.data_ptr());
     const NormValues values =
@@ -150,8 +150,8 @@ NormValues normalize(const NormMap& map, const torch::Tensor& x, const torch::Te
 }
 
 template <typename Number>
-void back(const NormMap& map, const torch::Tensor& input, const torch::Tensor& gradient,
-          const NormValues& values, bool silu, const torch::Tensor& result) {
+void back(const NormMap& map, const at::Tensor& input, const at::Tensor& gradient,
+          const NormValues& values, bool silu, const at::Tensor& result) {
     const std::int64_t channels = map.channels, width = channels / map.groups;
     const auto *x = numbers_of<Number>(input), *dy = numbers_of<Number>(gradient);
     auto* dx = static_cast<Number*>(result.data_ptr());
@@ -197,16 +197,16 @@ void back(const NormMap& map, const torch::Tensor& input, const torch::Tensor& g
 }
 
 struct FusedNorm : torch::autograd::Function<FusedNorm> {
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& input,
-                                 const torch::Tensor& weight, const torch::Tensor& bias,
-                                 std::int64_t groups, double epsilon, bool silu) {
-        const torch::Tensor x = input.contiguous(torch::MemoryFormat::ChannelsLast);
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& input,
+                              const at::Tensor& weight, const at::Tensor& bias, std::int64_t groups,
+                              double epsilon, bool silu) {
+        const at::Tensor x = input.contiguous(at::MemoryFormat::ChannelsLast);
         const NormMap map(x, groups);
-        const torch::Tensor y = torch::empty_like(x);
+        const at::Tensor y = at::empty_like(x);
         const auto run =
-            x.scalar_type() == torch::kBFloat16 ? normalize<BrainFloat> : normalize<float>;
-        const NormValues values = run(map, x, weight.to(torch::kFloat32).contiguous(),
-                                      bias.to(torch::kFloat32).contiguous(), epsilon, silu, y);
+            x.scalar_type() == at::kBFloat16 ? normalize<BrainFloat> : normalize<float>;
+        const NormValues values = run(map, x, weight.to(at::kFloat).contiguous(),
+                                      bias.to(at::kFloat).contiguous(), epsilon, silu, y);
         context->save_for_backward({x, values.all});
         context->saved_data["groups"] = groups;
         context->saved_data["silu"] = silu;
@@ -214,28 +214,27 @@ struct FusedNorm : torch::autograd::Function<FusedNorm> {
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const auto saved = context->get_saved_variables();
-        const torch::Tensor& x = saved[0];
-        const torch::Tensor dy =
-            gradients[0].to(x.scalar_type()).contiguous(torch::MemoryFormat::ChannelsLast);
-        const torch::Tensor dx = torch::empty_like(x);
-        const auto run = x.scalar_type() == torch::kBFloat16 ? back<BrainFloat> : back<float>;
+        const at::Tensor& x = saved[0];
+        const at::Tensor dy =
+            gradients[0].to(x.scalar_type()).contiguous(at::MemoryFormat::ChannelsLast);
+        const at::Tensor dx = at::empty_like(x);
+        const auto run = x.scalar_type() == at::kBFloat16 ? back<BrainFloat> : back<float>;
         run(NormMap(x, context->saved_data["groups"].toInt()), x, dy, NormValues(saved[1]),
             context->saved_data["silu"].toBool(), dx);
         return {dx, {}, {}, {}, {}, {}};
     }
 };
 
-bool runs(torch::Dtype dtype) {
-    return (dtype == torch::kFloat32 && kernel_of<float>()) ||
-           (dtype == torch::kBFloat16 && kernel_of<BrainFloat>());
+bool runs(at::ScalarType dtype) {
+    return (dtype == at::kFloat && kernel_of<float>()) ||
+           (dtype == at::kBFloat16 && kernel_of<BrainFloat>());
 }
 
 }  // namespace
 
-torch::Tensor group_norm(torch::nn::GroupNorm& norm, const torch::Tensor& x,
-                         Activation activation) {
+at::Tensor group_norm(torch::nn::GroupNorm& norm, const at::Tensor& x, Activation activation) {
     const bool silu = activation == Activation::silu;
-    const torch::Tensor &weight = norm->weight, &bias = norm->bias;
+    const at::Tensor &weight = norm->weight, &bias = norm->bias;
     const bool ours = x.is_cpu() && x.dim() == 4 && x.size(1) % register_numbers == 0 &&
                       weight.defined() && !weight.requires_grad() && !bias.requires_grad() &&
                       x.scalar_type() == weight.scalar_type() && runs(x.scalar_type()) &&
@@ -243,8 +242,8 @@ torch::Tensor group_norm(torch::nn::GroupNorm& norm, const torch::Tensor& x,
     if (ours)
         return FusedNorm::apply(x, weight, bias, norm->options.num_groups(), norm->options.eps(),
                                 silu);
-    const torch::Tensor y = norm(x);
-    return silu ? torch::silu(y) : y;
+    const at::Tensor y = norm(x);
+    return silu ? at::silu(y) : y;
 }
 
 }  // namespace item3d

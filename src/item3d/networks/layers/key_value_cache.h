@@ -1,7 +1,7 @@
 // Keys and values of the tokens that a decoder has read, so that each is computed once.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <vector>
 
@@ -9,12 +9,12 @@ namespace item3d {
 
 /// Of one attention layer.
 struct KeyValues {
-    torch::Tensor keys, values;  ///< [N, T, C]; undefined before the first token
+    at::Tensor keys, values;  ///< [N, T, C]; undefined before the first token
 
     /// Appends those of new tokens [N, S, C].
-    void append(const torch::Tensor& more_keys, const torch::Tensor& more_values) {
-        keys = keys.defined() ? torch::cat({keys, more_keys}, 1) : more_keys;
-        values = values.defined() ? torch::cat({values, more_values}, 1) : more_values;
+    void append(const at::Tensor& more_keys, const at::Tensor& more_values) {
+        keys = keys.defined() ? at::cat({keys, more_keys}, 1) : more_keys;
+        values = values.defined() ? at::cat({values, more_values}, 1) : more_values;
     }
     std::int64_t length() const { return keys.defined() ? keys.size(1) : 0; }
 };
@@ -25,7 +25,7 @@ struct KeyValueCache {
 
     std::int64_t length() const { return layers.empty() ? 0 : layers.front().length(); }
     /// Row i becomes what row rows[i] was.
-    void select(const torch::Tensor& rows) {
+    void select(const at::Tensor& rows) {
         for (KeyValues& layer : layers) {
             layer.keys = layer.keys.index_select(0, rows);
             layer.values = layer.values.index_select(0, rows);
@@ -36,6 +36,6 @@ struct KeyValueCache {
 /// Additive [N, 1, S, T] float32: token s, the (T - S + s)th of its row, sees those up to itself
 /// whose `visible` [N, T] is not 0. What it does not see gets a large finite number, so that a
 /// padding token, which sees nothing, stays finite.
-torch::Tensor causal_mask(const torch::Tensor& visible, std::int64_t new_tokens);
+at::Tensor causal_mask(const at::Tensor& visible, std::int64_t new_tokens);
 
 }  // namespace item3d

@@ -2,9 +2,9 @@
 
 #include "item3d/core/error.h"
 #include "item3d/kernels/cpu/linear/linear_kernel.h"
+#include "item3d/tensors/tensor.h"
 #include "item3d/tensors/weight_memory.h"
 
-#include <ATen/Functions.h>
 #include <ATen/Parallel.h>
 
 #include <algorithm>
@@ -17,20 +17,20 @@ namespace {
 using std::int64_t;
 
 template <typename Weight>
-const auto& kernel() {
+const auto& best_linear_kernel() {
     return kernel_for_this_processor<Multiplied<Weight>>(
         []<Instructions instructions> { return linear_kernel<instructions, Weight>(); });
 }
 
 template <typename Number>
-void pack_all(const torch::Tensor& weight, const torch::Tensor& packed) {
+void pack_all(const at::Tensor& weight, const at::Tensor& packed) {
     const int64_t columns = weight.size(0), depth = weight.size(1);
     const auto* from = static_cast<const Number*>(weight.data_ptr());
     auto* to = static_cast<Number*>(packed.data_ptr());
     const int64_t blocks = columns_of(columns);
     at::parallel_for(0, blocks, 1, [&](int64_t first, int64_t last) {
-        kernel<Number>()->pack(from, depth, first * packed_columns,
-                               std::min(columns, last * packed_columns), to);
+        best_linear_kernel<Number>()->pack(from, depth, first * packed_columns,
+                                           std::min(columns, last * packed_columns), to);
     });
 }
 
@@ -51,8 +51,8 @@ void for_each_part(int64_t rows, int64_t columns, int64_t row_bytes, const Funct
 }
 
 template <typename Weight>
-void multiply_all(const torch::Tensor& x, const torch::Tensor& packed, const ProductEnd& end,
-                  const torch::Tensor& y) {
+void multiply_all(const at::Tensor& x, const at::Tensor& packed, const ProductEnd& end,
+                  const at::Tensor& y) {
     using Number = Multiplied<Weight>;
     const int64_t depth = x.size(1), columns = y.size(1);
     const auto* rows = static_cast<const Number*>(x.data_ptr());
@@ -63,67 +63,67 @@ void multiply_all(const torch::Tensor& x, const torch::Tensor& packed, const Pro
                           multiply(rows, depth, weights, end, columns, part, to);
                       });
     };
-    if (y.scalar_type() == torch::kFloat32)
-        run(kernel<Weight>()->multiply, static_cast<float*>(y.data_ptr()));
+    if (y.scalar_type() == at::kFloat)
+        run(best_linear_kernel<Weight>()->multiply, static_cast<float*>(y.data_ptr()));
     else
-        run(kernel<Weight>()->multiply_rounded, static_cast<Number*>(y.data_ptr()));
+        run(best_linear_kernel<Weight>()->multiply_rounded, static_cast<Number*>(y.data_ptr()));
 }
 
 }  // namespace
 
-bool PackedMatrix::runs(torch::Device device, torch::Dtype dtype) {
-    const bool as_float = dtype == torch::kFloat32 || dtype == torch::kFloat16;
+bool PackedMatrix::runs(at::Device device, at::ScalarType dtype) {
+    const bool as_float = dtype == at::kFloat || dtype == at::kHalf;
     // On matrix units the library multiplies bfloat16 faster.
     return device.is_cpu() &&
-           ((as_float && kernel<float>()) ||
-            (dtype == torch::kBFloat16 && kernel<BrainFloat>() && !matrix_units_run()));
+           ((as_float && best_linear_kernel<float>()) ||
+            (dtype == at::kBFloat16 && best_linear_kernel<BrainFloat>() && !matrix_units_run()));
 }
 
-bool PackedMatrix::fits(const torch::Tensor& weight) {
+bool PackedMatrix::fits(const at::Tensor& weight) {
     return weight.dim() == 2 && weight.size(1) % register_numbers == 0 && weight.numel() > 0;
 }
 
-PackedMatrix::PackedMatrix(const torch::Tensor& weight, torch::Dtype dtype)
+PackedMatrix::PackedMatrix(const at::Tensor& weight, at::ScalarType dtype)
     : columns_(weight.size(0)), depth_(weight.size(1)) {
     ITEM3D_CHECK(runs(weight.device(), dtype) && fits(weight), "these weights cannot be packed");
-    const torch::Tensor rounded = weight.detach().to(dtype).contiguous();
+    const at::Tensor rounded = weight.detach().to(dtype).contiguous();
     packed_ = empty_weight({packed_size(columns_, depth_)}, dtype);
-    const auto pack = dtype == torch::kBFloat16  ? pack_all<BrainFloat>
-                      : dtype == torch::kFloat16 ? pack_all<HalfFloat>
-                                                 : pack_all<float>;
+    const auto pack = dtype == at::kBFloat16 ? pack_all<BrainFloat>
+                      : dtype == at::kHalf   ? pack_all<HalfFloat>
+                                             : pack_all<float>;
     pack(rounded, packed_);
 }
 
-torch::Dtype PackedMatrix::multiplied_dtype() const {
-    return packed_.scalar_type() == torch::kBFloat16 ? torch::kBFloat16 : torch::kFloat32;
+at::ScalarType PackedMatrix::multiplied_dtype() const {
+    return packed_.scalar_type() == at::kBFloat16 ? at::kBFloat16 : at::kFloat;
 }
 
-torch::Tensor PackedMatrix::multiply(const torch::Tensor& x, const torch::Tensor& bias,
-                                     const LinearEnd& end) const {
+at::Tensor PackedMatrix::multiply(const at::Tensor& x, const at::Tensor& bias,
+                                  const LinearEnd& end) const {
     ITEM3D_CHECK(x.size(-1) == depth_, "x must be [..., I]");
-    const auto floats = [](const torch::Tensor& values) -> const float* {
-        ITEM3D_CHECK(!values.defined() ||
-                         (values.scalar_type() == torch::kFloat32 && values.is_contiguous()),
-                     "what is added must be float32");
+    const auto floats = [](const at::Tensor& values) -> const float* {
+        ITEM3D_CHECK(
+            !values.defined() || (values.scalar_type() == at::kFloat && values.is_contiguous()),
+            "what is added must be float32");
         return values.defined() ? values.const_data_ptr<float>() : nullptr;
     };
     std::vector<int64_t> sizes = x.sizes().vec();
     sizes.back() = columns_;
-    const torch::Tensor rows = x.detach().reshape({-1, depth_}).to(multiplied_dtype()).contiguous();
-    const torch::Tensor y =
-        torch::empty(sizes, x.options().dtype(end.rounded ? multiplied_dtype() : torch::kFloat32));
-    const torch::Tensor added = end.added.defined() ? end.added.contiguous() : end.added;
+    const at::Tensor rows = x.detach().reshape({-1, depth_}).to(multiplied_dtype()).contiguous();
+    const at::Tensor y =
+        at::empty(sizes, x.options().dtype(end.rounded ? multiplied_dtype() : at::kFloat));
+    const at::Tensor added = end.added.defined() ? end.added.contiguous() : end.added;
     ITEM3D_CHECK(!added.defined() || added.sizes() == y.sizes(), "added must be [..., O]");
     const ProductEnd finish{floats(bias), end.activation, floats(added)};
-    const auto run = packed_.scalar_type() == torch::kBFloat16  ? multiply_all<BrainFloat>
-                     : packed_.scalar_type() == torch::kFloat16 ? multiply_all<HalfFloat>
-                                                                : multiply_all<float>;
+    const auto run = packed_.scalar_type() == at::kBFloat16 ? multiply_all<BrainFloat>
+                     : packed_.scalar_type() == at::kHalf   ? multiply_all<HalfFloat>
+                                                            : multiply_all<float>;
     run(rows, packed_, finish, y.view({-1, columns_}));
     return y;
 }
 
-torch::Tensor PackedMatrix::unpacked() const {
-    const int64_t group = packed_.scalar_type() == torch::kBFloat16 ? 2 : 1;
+at::Tensor PackedMatrix::unpacked() const {
+    const int64_t group = packed_.scalar_type() == at::kBFloat16 ? 2 : 1;
     const int64_t whole = columns_ / packed_columns * packed_columns;
     const auto unpack = [&](int64_t first, int64_t last, int64_t width) {  // columns of that width
         return packed_.narrow(0, first * depth_, (last - first) * depth_)
@@ -132,49 +132,49 @@ torch::Tensor PackedMatrix::unpacked() const {
             .reshape({-1, depth_});
     };
     const int64_t all = whole_registers(columns_);
-    std::vector<torch::Tensor> parts;
+    std::vector<at::Tensor> parts;
     if (whole > 0) parts.push_back(unpack(0, whole, packed_columns));
     if (all > whole) parts.push_back(unpack(whole, all, all - whole));
-    return torch::cat(parts).narrow(0, 0, columns_);
+    return at::cat(parts).narrow(0, 0, columns_);
 }
 
-bool PackableLinearImpl::multiplies_packed(const torch::Tensor& x) const {
-    return packed_ && !(torch::GradMode::is_enabled() && x.requires_grad());
+bool PackableLinearImpl::multiplies_packed(const at::Tensor& x) const {
+    return packed_ && !(at::GradMode::is_enabled() && x.requires_grad());
 }
 
-torch::Tensor PackableLinearImpl::as_read(const torch::Tensor& x) const {
+at::Tensor PackableLinearImpl::as_read(const at::Tensor& x) const {
     return multiplies_packed(x) ? x.to(packed_->multiplied_dtype()) : x;
 }
 
-torch::Tensor PackableLinearImpl::forward(const torch::Tensor& x, const LinearEnd& end) {
+at::Tensor PackableLinearImpl::forward(const at::Tensor& x, const LinearEnd& end) {
     if (multiplies_packed(x)) return packed_->multiply(x, bias, end);
-    torch::Tensor y = packed_ ? at::linear(x, packed_->unpacked().to(x.scalar_type()), bias)
-                              : LinearImpl::forward(x);
-    if (end.activation == LinearActivation::gelu) y = torch::gelu(y);
-    if (end.activation == LinearActivation::quick_gelu) y = y * torch::sigmoid(1.702 * y);
+    at::Tensor y = packed_ ? at::linear(x, packed_->unpacked().to(x.scalar_type()), bias)
+                           : LinearImpl::forward(x);
+    if (end.activation == LinearActivation::gelu) y = at::gelu(y);
+    if (end.activation == LinearActivation::quick_gelu) y = y * at::sigmoid(1.702 * y);
     return end.added.defined() ? end.added + y : y;
 }
 
-void PackableLinearImpl::pack(torch::Dtype dtype) {
+void PackableLinearImpl::pack(at::ScalarType dtype) {
     if (packed_ || !PackedMatrix::runs(weight.device(), dtype) || !PackedMatrix::fits(weight))
         return;
-    ITEM3D_CHECK(weight.scalar_type() == torch::kFloat32 && !weight.requires_grad(),
+    ITEM3D_CHECK(weight.scalar_type() == at::kFloat && !weight.requires_grad(),
                  "weights that are packed must be in float32 and stay as they are");
     packed_.emplace(weight, dtype);
-    weight.set_data(torch::empty({0}, weight.options()));
+    weight.set_data(at::empty({0}, weight.options()));
 }
 
-bool PackableLinearImpl::pack_stored(const torch::Tensor& stored) {
+bool PackableLinearImpl::pack_stored(const at::Tensor& stored) {
     constexpr int64_t fewest = 1 << 19;  // those of small networks are in a cache anyway
-    if (stored.scalar_type() != torch::kFloat16 || stored.numel() < fewest ||
-        !PackedMatrix::runs(stored.device(), torch::kFloat16) || !PackedMatrix::fits(stored))
+    if (stored.scalar_type() != at::kHalf || stored.numel() < fewest ||
+        !PackedMatrix::runs(stored.device(), at::kHalf) || !PackedMatrix::fits(stored))
         return false;
-    packed_.emplace(stored, torch::kFloat16);
-    weight.set_data(torch::empty({0}, torch::kFloat32));
+    packed_.emplace(stored, at::kHalf);
+    weight.set_data(at::empty({0}, at::kFloat));
     return true;
 }
 
-void pack_linear_layers(const torch::nn::Module& module, torch::Dtype dtype) {
+void pack_linear_layers(const torch::nn::Module& module, at::ScalarType dtype) {
     for (const auto& part : module.modules())
         if (const auto layer = std::dynamic_pointer_cast<PackableLinearImpl>(part))
             layer->pack(dtype);

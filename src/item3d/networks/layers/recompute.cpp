@@ -9,7 +9,7 @@ namespace {
 
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
-using Step = std::function<torch::Tensor(const torch::Tensor&)>;
+using Step = std::function<at::Tensor(const at::Tensor&)>;
 
 struct StepHolder : torch::CustomClassHolder {
     explicit StepHolder(Step held) : step(std::move(held)) {}
@@ -17,8 +17,7 @@ struct StepHolder : torch::CustomClassHolder {
 };
 
 struct Recomputed : torch::autograd::Function<Recomputed> {
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& x,
-                                 const Step& step) {
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& x, const Step& step) {
         context->save_for_backward({x});
         context->saved_data["step"] = c10::IValue::make_capsule(
             c10::intrusive_ptr<torch::CustomClassHolder>(c10::make_intrusive<StepHolder>(step)));
@@ -26,17 +25,17 @@ struct Recomputed : torch::autograd::Function<Recomputed> {
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const auto holder = context->saved_data["step"].toCapsule();
-        const torch::AutoGradMode with_gradients(true);
-        const torch::Tensor x = context->get_saved_variables()[0].detach().requires_grad_(true);
-        const torch::Tensor y = static_cast<const StepHolder&>(*holder).step(x);
-        return {torch::autograd::grad({y}, {x}, {gradients[0]})[0], torch::Tensor()};
+        const at::AutoGradMode with_gradients(true);
+        const at::Tensor x = context->get_saved_variables()[0].detach().requires_grad_(true);
+        const at::Tensor y = static_cast<const StepHolder&>(*holder).step(x);
+        return {torch::autograd::grad({y}, {x}, {gradients[0]})[0], at::Tensor()};
     }
 };
 
 }  // namespace
 
-torch::Tensor recomputed(Step f, const torch::Tensor& x) {
-    if (!torch::GradMode::is_enabled() || !x.requires_grad()) return f(x);
+at::Tensor recomputed(Step f, const at::Tensor& x) {
+    if (!at::GradMode::is_enabled() || !x.requires_grad()) return f(x);
     return Recomputed::apply(x, f);
 }
 

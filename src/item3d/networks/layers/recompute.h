@@ -1,7 +1,7 @@
 // Less memory for gradients, more time.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <functional>
 
@@ -11,7 +11,6 @@ namespace item3d {
 /// "Training Deep Nets with Sublinear Memory Cost"). The gradient goes to x alone, so f's
 /// parameters must not ask for one. f must live as long as the result's graph, and give the same
 /// again.
-torch::Tensor recomputed(std::function<torch::Tensor(const torch::Tensor&)> f,
-                         const torch::Tensor& x);
+at::Tensor recomputed(std::function<at::Tensor(const at::Tensor&)> f, const at::Tensor& x);
 
 }  // namespace item3d

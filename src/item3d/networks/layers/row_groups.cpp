@@ -17,7 +17,7 @@ using torch::autograd::tensor_list;
 /// Rows of one group, with the graph of what became of them.
 struct RowGroup {
     std::int64_t first, count;
-    torch::Tensor text, result;
+    at::Tensor text, result;
 };
 
 /// At least two, for one row alone takes more than half the time of two; and not very many groups.
@@ -39,21 +39,21 @@ void for_each_group(std::vector<RowGroup>& groups, const Function& f) {
     });
 }
 
-void run_groups(std::vector<RowGroup>& groups, const torch::Tensor& text, const RowFunction& f,
+void run_groups(std::vector<RowGroup>& groups, const at::Tensor& text, const RowFunction& f,
                 bool differentiable) {
     for_each_group(groups, [&](RowGroup& group) {
-        const torch::AutoGradMode mode(differentiable);  // each thread has its own
+        const at::AutoGradMode mode(differentiable);  // each thread has its own
         group.text = text.detach().narrow(0, group.first, group.count);
         if (differentiable) group.text = group.text.detach().requires_grad_(true);
         group.result = f(group.first, group.count, group.text);
     });
 }
 
-torch::Tensor joined(const std::vector<RowGroup>& groups, torch::Tensor RowGroup::*part) {
-    std::vector<torch::Tensor> parts;
+at::Tensor joined(const std::vector<RowGroup>& groups, at::Tensor RowGroup::*part) {
+    std::vector<at::Tensor> parts;
     for (const RowGroup& group : groups)
         parts.push_back((group.*part).detach());
-    return torch::cat(parts);
+    return at::cat(parts);
 }
 
 struct GroupsHolder : torch::CustomClassHolder {
@@ -62,11 +62,11 @@ struct GroupsHolder : torch::CustomClassHolder {
 };
 
 struct GroupsStep : torch::autograd::Function<GroupsStep> {
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& text,
-                                 const RowFunction& f) {
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& text,
+                              const RowFunction& f) {
         std::vector<RowGroup> groups = make_groups(text.size(0));
         run_groups(groups, text, f, true);
-        const torch::Tensor result = joined(groups, &RowGroup::result);
+        const at::Tensor result = joined(groups, &RowGroup::result);
         context->saved_data["groups"] =
             c10::IValue::make_capsule(c10::intrusive_ptr<torch::CustomClassHolder>(
                 c10::make_intrusive<GroupsHolder>(std::move(groups))));
@@ -76,18 +76,18 @@ struct GroupsStep : torch::autograd::Function<GroupsStep> {
         const auto holder = context->saved_data["groups"].toCapsule();
         std::vector<RowGroup> groups = static_cast<const GroupsHolder&>(*holder).groups;
         for_each_group(groups, [&](RowGroup& group) {
-            const torch::Tensor gradient = gradients[0].narrow(0, group.first, group.count);
+            const at::Tensor gradient = gradients[0].narrow(0, group.first, group.count);
             group.text = torch::autograd::grad({group.result}, {group.text}, {gradient},
                                                /*retain_graph=*/true)[0];
         });
-        return {joined(groups, &RowGroup::text), torch::Tensor()};
+        return {joined(groups, &RowGroup::text), at::Tensor()};
     }
 };
 
 }  // namespace
 
-torch::Tensor in_row_groups(const torch::Tensor& text, const RowFunction& f) {
-    if (torch::GradMode::is_enabled() && text.requires_grad()) return GroupsStep::apply(text, f);
+at::Tensor in_row_groups(const at::Tensor& text, const RowFunction& f) {
+    if (at::GradMode::is_enabled() && text.requires_grad()) return GroupsStep::apply(text, f);
     std::vector<RowGroup> groups = make_groups(text.size(0));
     run_groups(groups, text, f, false);
     return joined(groups, &RowGroup::result);

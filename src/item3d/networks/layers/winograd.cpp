@@ -15,17 +15,17 @@ int64_t round_up(int64_t value, int64_t step) {
     return (value + step - 1) / step * step;
 }
 
-bool is_bfloat16(const torch::Tensor& tensor) {
-    return tensor.scalar_type() == torch::kBFloat16;
+bool is_bfloat16(const at::Tensor& tensor) {
+    return tensor.scalar_type() == at::kBFloat16;
 }
 
 template <typename Number>
-Number* numbers(const torch::Tensor& tensor) {
+Number* numbers(const at::Tensor& tensor) {
     return static_cast<Number*>(tensor.data_ptr());
 }
 
 template <typename Number>
-const auto& kernel() {
+const auto& best_winograd_kernel() {
     return kernel_for_this_processor<Number>(
         []<Instructions instructions> { return winograd_kernel<instructions, Number>(); });
 }
@@ -45,7 +45,8 @@ Division divide(const ConvolutionShape& shape) {
     // Fewer would read the weights from the memory too often.
     constexpr int64_t fewest = 96;
     const int64_t threads = at::get_num_threads(), tiles = shape.tiles(winograd_tile<Number>);
-    const int64_t bytes_a_tile = kernel<Number>()->scratch(fewest, shape.in_channels) / fewest;
+    const int64_t bytes_a_tile =
+        best_winograd_kernel<Number>()->scratch(fewest, shape.in_channels) / fewest;
     const int64_t fitting = std::max(fewest, cache / bytes_a_tile);
     int64_t ranges = (tiles + fitting - 1) / fitting, groups = 1;
     if (ranges < threads)
@@ -67,10 +68,11 @@ void convolve_tiles(const ConvolutionShape& shape, const Number* x, const Number
                     const float* bias, Number* y) {
     const Division division = divide<Number>(shape);
     const int64_t tiles = shape.tiles(winograd_tile<Number>);
-    const int64_t scratch_bytes = kernel<Number>()->scratch(division.tiles, shape.in_channels);
+    const int64_t scratch_bytes =
+        best_winograd_kernel<Number>()->scratch(division.tiles, shape.in_channels);
     at::parallel_for(
         0, division.tile_ranges * division.channel_ranges, 1, [&](int64_t first, int64_t last) {
-            const torch::Tensor scratch = torch::empty({scratch_bytes}, torch::kUInt8);
+            const at::Tensor scratch = at::empty({scratch_bytes}, at::kByte);
             for (int64_t task = first; task < last; ++task) {
                 WinogradPart part;
                 part.first_tile = task / division.channel_ranges * division.tiles;
@@ -78,14 +80,15 @@ void convolve_tiles(const ConvolutionShape& shape, const Number* x, const Number
                 part.first_channel = task % division.channel_ranges * division.channels;
                 part.last_channel =
                     std::min(shape.out_channels, part.first_channel + division.channels);
-                kernel<Number>()->convolve(shape, x, packed, bias, y, part, scratch.data_ptr());
+                best_winograd_kernel<Number>()->convolve(shape, x, packed, bias, y, part,
+                                                         scratch.data_ptr());
             }
         });
 }
 
 }  // namespace
 
-bool WinogradConvolution::gains(const torch::Tensor& x, const torch::Tensor& weight) {
+bool WinogradConvolution::gains(const at::Tensor& x, const at::Tensor& weight) {
     const int64_t pixels = x.size(0) * x.size(2) * x.size(3);
     // In float32 they take four times the memory, or eight times that of float16.
     constexpr int64_t few_weights = 1 << 20;
@@ -93,18 +96,18 @@ bool WinogradConvolution::gains(const torch::Tensor& x, const torch::Tensor& wei
     return fits(x, weight) && pixels >= (heavy ? 2048 : 512);
 }
 
-WinogradConvolution::WinogradConvolution(const torch::Tensor& weight, torch::Dtype dtype,
+WinogradConvolution::WinogradConvolution(const at::Tensor& weight, at::ScalarType dtype,
                                          Forget forget)
     : FrozenConvolution(weight, dtype, dtype, std::move(forget)) {
     pack_forward();
 }
 
 int64_t WinogradConvolution::points() const {
-    return dtype() == torch::kBFloat16 ? winograd_points<BrainFloat> : winograd_points<float>;
+    return dtype() == at::kBFloat16 ? winograd_points<BrainFloat> : winograd_points<float>;
 }
 
 std::vector<int64_t> WinogradConvolution::turned_points() const {
-    if (dtype() != torch::kBFloat16) return {};
+    if (dtype() != at::kBFloat16) return {};
     // The points of tiles of 2 x 2 are 0, 1, -1 and infinity; turning a kernel round swaps the
     // first and the last.
     constexpr int64_t swapped[] = {3, 1, 2, 0};
@@ -117,20 +120,20 @@ std::vector<int64_t> WinogradConvolution::turned_points() const {
 
 void WinogradConvolution::pack_column(const void* weights, int64_t out_channels,
                                       int64_t in_channels, int64_t column, void* packed) const {
-    if (dtype() == torch::kBFloat16)
-        kernel<BrainFloat>()->pack(static_cast<const BrainFloat*>(weights), out_channels,
-                                   in_channels, column, static_cast<BrainFloat*>(packed));
+    if (dtype() == at::kBFloat16)
+        best_winograd_kernel<BrainFloat>()->pack(static_cast<const BrainFloat*>(weights),
+                                                 out_channels, in_channels, column,
+                                                 static_cast<BrainFloat*>(packed));
     else
-        kernel<float>()->pack(static_cast<const float*>(weights), out_channels, in_channels, column,
-                              static_cast<float*>(packed));
+        best_winograd_kernel<float>()->pack(static_cast<const float*>(weights), out_channels,
+                                            in_channels, column, static_cast<float*>(packed));
 }
 
-torch::Tensor WinogradConvolution::convolve(const torch::Tensor& x, const torch::Tensor& packed,
-                                            int64_t out_channels, const torch::Tensor& bias) const {
+at::Tensor WinogradConvolution::convolve(const at::Tensor& x, const at::Tensor& packed,
+                                         int64_t out_channels, const at::Tensor& bias) const {
     const ConvolutionShape shape{x.size(0), x.size(2), x.size(3), x.size(1), out_channels};
-    const torch::Tensor y =
-        torch::empty({shape.pictures, out_channels, shape.height, shape.width},
-                     x.options().memory_format(torch::MemoryFormat::ChannelsLast));
+    const at::Tensor y = at::empty({shape.pictures, out_channels, shape.height, shape.width},
+                                   x.options().memory_format(at::MemoryFormat::ChannelsLast));
     const float* added = bias.defined() ? bias.data_ptr<float>() : nullptr;
     if (is_bfloat16(x))
         convolve_tiles(shape, numbers<const BrainFloat>(x), numbers<const BrainFloat>(packed),

@@ -13,18 +13,18 @@ namespace item3d {
 class WinogradConvolution : public FrozenConvolution {
   public:
     /// Whether these can be convolved so, and faster: enough pixels to be worth the memory.
-    static bool gains(const torch::Tensor& x, const torch::Tensor& weight);
+    static bool gains(const at::Tensor& x, const at::Tensor& weight);
 
     /// See FrozenConvolution::make().
-    WinogradConvolution(const torch::Tensor& weight, torch::Dtype dtype, Forget forget = {});
+    WinogradConvolution(const at::Tensor& weight, at::ScalarType dtype, Forget forget = {});
 
   private:
     std::int64_t points() const override;
     std::vector<std::int64_t> turned_points() const override;
     void pack_column(const void* weights, std::int64_t out_channels, std::int64_t in_channels,
                      std::int64_t column, void* packed) const override;
-    torch::Tensor convolve(const torch::Tensor& x, const torch::Tensor& packed,
-                           std::int64_t out_channels, const torch::Tensor& bias) const override;
+    at::Tensor convolve(const at::Tensor& x, const at::Tensor& packed, std::int64_t out_channels,
+                        const at::Tensor& bias) const override;
 };
 
 }  // namespace item3d

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/networks/layers/load_parameters.h"
 #include "item3d/tensors/weights.h"
 
 #include <torch/nn/modules/container/modulelist.h>
@@ -43,7 +44,7 @@ BlipModelImpl::BlipModelImpl(const BlipConfig& config) : config_(config) {
     head_ = transform->register_module("dense", PackableLinear(width, width));
     head_norm_ = transform->register_module("LayerNorm", nn::LayerNorm(norm));
     auto predictions = std::make_shared<nn::Module>("predictions");
-    head_bias_ = predictions->register_parameter("bias", torch::empty({config_.vocab_size}));
+    head_bias_ = predictions->register_parameter("bias", at::empty({config_.vocab_size}));
     predictions->register_module("transform", transform);
     auto head = std::make_shared<nn::Module>("head");
     head->register_module("predictions", predictions);
@@ -53,33 +54,33 @@ BlipModelImpl::BlipModelImpl(const BlipConfig& config) : config_(config) {
     register_module("text_decoder", decoder);
 }
 
-std::vector<KeyValues> BlipModelImpl::read_image(const torch::Tensor& image_embeds) {
+std::vector<KeyValues> BlipModelImpl::read_image(const at::Tensor& image_embeds) {
     std::vector<KeyValues> result;
     for (auto& layer : layers_)
         result.push_back(layer->read_memory(image_embeds));
     return result;
 }
 
-torch::Tensor BlipModelImpl::decode(const torch::Tensor& tokens, const torch::Tensor& visible,
-                                    const std::vector<KeyValues>& image, KeyValueCache* cache) {
+at::Tensor BlipModelImpl::decode(const at::Tensor& tokens, const at::Tensor& visible,
+                                 const std::vector<KeyValues>& image, KeyValueCache* cache) {
     const auto before = cache ? cache->length() : 0;
     const auto count = tokens.size(1);
     ITEM3D_CHECK(before + count <= config_.max_position_embeddings, "the text is too long");
     if (cache) cache->layers.resize(layers_.size());
-    const torch::Tensor mask = causal_mask(visible, count);
-    torch::Tensor x = embedding_norm_(words_(tokens) + positions_->weight.narrow(0, before, count));
+    const at::Tensor mask = causal_mask(visible, count);
+    at::Tensor x = embedding_norm_(words_(tokens) + positions_->weight.narrow(0, before, count));
     for (std::size_t i = 0; i < layers_.size(); ++i)
         x = layers_[i]->forward(x, mask, cache ? &cache->layers[i] : nullptr, image[i]);
     return x;
 }
 
-torch::Tensor BlipModelImpl::logits(const torch::Tensor& states) {
-    const torch::Tensor x = head_norm_(torch::gelu(head_(states)));
+at::Tensor BlipModelImpl::logits(const at::Tensor& states) {
+    const at::Tensor x = head_norm_(at::gelu(head_(states)));
     return packed_words_ ? packed_words_->multiply(x, head_bias_)
                          : at::linear(x, words_->weight, head_bias_);
 }
 
-void BlipModelImpl::pack(torch::Dtype dtype) {
+void BlipModelImpl::pack(at::ScalarType dtype) {
     pack_linear_layers(*this, dtype);
     if (PackedMatrix::runs(words_->weight.device(), dtype) && PackedMatrix::fits(words_->weight))
         packed_words_.emplace(words_->weight, dtype);
@@ -147,7 +148,7 @@ double BlipConfig::least_parameters() const {
            num_hidden_layers * (6 * width * width + 2 * width * intermediate_size);
 }
 
-BlipModel load_blip(const std::filesystem::path& folder, torch::Device device, torch::Dtype dtype) {
+BlipModel load_blip(const std::filesystem::path& folder, at::Device device, at::ScalarType dtype) {
     const auto config = BlipConfig::from_config(Config::read(folder / "config.json"));
     Weights weights = Weights::open(folder, "model");
     weights.rename([](const std::string& name) -> std::string {
@@ -163,7 +164,7 @@ BlipModel load_blip(const std::filesystem::path& folder, torch::Device device, t
     return model;
 }
 
-void save_blip(const std::filesystem::path& folder, const BlipModel& model, torch::Dtype dtype) {
+void save_blip(const std::filesystem::path& folder, const BlipModel& model, at::ScalarType dtype) {
     write_atomically(folder / "config.json", model->config().to_json().dump(2) + "\n");
     save_safetensors(folder / "model.safetensors", module_tensors(*model, dtype),
                      {{"format", "pt"}});
@@ -173,17 +174,17 @@ namespace {
 
 class BlipState : public LanguageModelState {
   public:
-    BlipState(const BlipModel& model, const torch::Tensor& pixel_values) : model_(model) {
+    BlipState(const BlipModel& model, const at::Tensor& pixel_values) : model_(model) {
         image_ = model_->read_image(model_->image_embeds(pixel_values));
     }
-    torch::Tensor read(const torch::Tensor& tokens) override {
-        const torch::Tensor ids = tokens.to(image_.front().keys.device());
-        const torch::Tensor visible =
-            torch::ones({ids.size(0), cache_.length() + ids.size(1)}, ids.options());
-        const torch::Tensor states = model_->decode(ids, visible, image_, &cache_);
+    at::Tensor read(const at::Tensor& tokens) override {
+        const at::Tensor ids = tokens.to(image_.front().keys.device());
+        const at::Tensor visible =
+            at::ones({ids.size(0), cache_.length() + ids.size(1)}, ids.options());
+        const at::Tensor states = model_->decode(ids, visible, image_, &cache_);
         return model_->logits(states.narrow(1, ids.size(1) - 1, 1)).squeeze(1);
     }
-    void select(const torch::Tensor& rows) override {
+    void select(const at::Tensor& rows) override {
         cache_.select(rows.to(image_.front().keys.device()));
     }
 
@@ -195,8 +196,8 @@ class BlipState : public LanguageModelState {
 
 }  // namespace
 
-Decoded write_captions(const BlipModel& model, const torch::Tensor& pixel_values,
-                       const torch::Tensor& prompt, DecodingOptions options) {
+Decoded write_captions(const BlipModel& model, const at::Tensor& pixel_values,
+                       const at::Tensor& prompt, DecodingOptions options) {
     const BlipConfig& config = model->config();
     if (prompt.size(1) + options.max_new_tokens > config.max_position_embeddings)
         throw InputError(
@@ -205,7 +206,7 @@ Decoded write_captions(const BlipModel& model, const torch::Tensor& pixel_values
                         "that the network can count",
                         prompt.size(1), options.max_new_tokens, config.max_position_embeddings),
             "shorten the prefix, or ask for fewer tokens");
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     options.end_token = config.sep_token_id;
     options.pad_token = config.pad_token_id;
     BlipState state(model, pixel_values);

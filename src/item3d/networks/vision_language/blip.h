@@ -5,8 +5,7 @@
 #include "item3d/networks/layers/bert_layer.h"
 #include "item3d/networks/vision_language/blip_vision.h"
 #include "item3d/networks/vision_language/decoding.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <filesystem>
 #include <memory>
@@ -38,21 +37,21 @@ class BlipModelImpl : public torch::nn::Module {
     explicit BlipModelImpl(const BlipConfig& config);
 
     /// pixel_values [N, 3, S, S] -> the picture's tokens [N, T, D].
-    torch::Tensor image_embeds(const torch::Tensor& pixel_values) { return vision_(pixel_values); }
+    at::Tensor image_embeds(const at::Tensor& pixel_values) { return vision_(pixel_values); }
     /// What each decoder layer's cross-attention reads of them.
-    std::vector<KeyValues> read_image(const torch::Tensor& image_embeds);
+    std::vector<KeyValues> read_image(const at::Tensor& image_embeds);
 
     /// The decoder's states [N, S, D] of tokens [N, S] that follow those in `cache` (may be null).
     /// visible [N, before + S]: 0 for padding. image: of read_image, for M pictures, M a divisor of
     /// N (see BertLayer).
-    torch::Tensor decode(const torch::Tensor& tokens, const torch::Tensor& visible,
-                         const std::vector<KeyValues>& image, KeyValueCache* cache = nullptr);
+    at::Tensor decode(const at::Tensor& tokens, const at::Tensor& visible,
+                      const std::vector<KeyValues>& image, KeyValueCache* cache = nullptr);
     /// States -> logits of the next token [N, S, vocab_size].
-    torch::Tensor logits(const torch::Tensor& states);
+    at::Tensor logits(const at::Tensor& states);
 
     /// From now on the network, in float32, only runs: linear layers multiply at this precision
     /// (packable_linear.h).
-    void pack(torch::Dtype dtype);
+    void pack(at::ScalarType dtype);
 
     const BlipConfig& config() const { return config_; }
 
@@ -63,24 +62,24 @@ class BlipModelImpl : public torch::nn::Module {
     torch::nn::LayerNorm embedding_norm_{nullptr}, head_norm_{nullptr};
     std::vector<BertLayer> layers_;
     PackableLinear head_{nullptr};
-    torch::Tensor head_bias_;
+    at::Tensor head_bias_;
     std::optional<PackedMatrix> packed_words_;  ///< for logits
 };
 TORCH_MODULE(BlipModel);
 
 /// Reads FOLDER/config.json and FOLDER/model.*, with or without the tied head's tensors. Throws
 /// InputError.
-BlipModel load_blip(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
-                    torch::Dtype dtype = torch::kFloat32);
+BlipModel load_blip(const std::filesystem::path& folder, at::Device device = at::kCPU,
+                    at::ScalarType dtype = at::kFloat);
 
 /// Writes FOLDER/config.json and FOLDER/model.safetensors, without the tied head's tensors.
 void save_blip(const std::filesystem::path& folder, const BlipModel& model,
-               torch::Dtype dtype = torch::kHalf);
+               at::ScalarType dtype = at::kHalf);
 
 /// A caption for each of N pictures. prompt [N or 1, S] int64: what captions begin with,
 /// bos_token_id first. options: beams, max_new_tokens and length_penalty; the tokens are the
 /// network's own. Throws InputError when prompt and caption are longer than the network can count.
-Decoded write_captions(const BlipModel& model, const torch::Tensor& pixel_values,
-                       const torch::Tensor& prompt, DecodingOptions options);
+Decoded write_captions(const BlipModel& model, const at::Tensor& pixel_values,
+                       const at::Tensor& prompt, DecodingOptions options);
 
 }  // namespace item3d

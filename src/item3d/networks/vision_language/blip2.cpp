@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/networks/layers/load_parameters.h"
 #include "item3d/tensors/weights.h"
 
 #include <torch/nn/modules/container/modulelist.h>
@@ -14,7 +15,7 @@ Blip2ModelImpl::Blip2ModelImpl(const Blip2Config& config) : config_(config) {
     const QFormerConfig& qformer = config_.qformer;
     const int width = qformer.hidden_size;
     query_tokens_ =
-        register_parameter("query_tokens", torch::empty({1, config_.num_query_tokens, width}));
+        register_parameter("query_tokens", at::empty({1, config_.num_query_tokens, width}));
 
     auto module = std::make_shared<nn::Module>("qformer");
     query_norm_ = module->register_module(
@@ -37,15 +38,15 @@ Blip2ModelImpl::Blip2ModelImpl(const Blip2Config& config) : config_(config) {
     language_model_ = register_module("language_model", OptModel(config_.text));
 }
 
-torch::Tensor Blip2ModelImpl::query_image(const torch::Tensor& image_embeds) {
-    torch::Tensor x = query_norm_(query_tokens_).expand({image_embeds.size(0), -1, -1});
+at::Tensor Blip2ModelImpl::query_image(const at::Tensor& image_embeds) {
+    at::Tensor x = query_norm_(query_tokens_).expand({image_embeds.size(0), -1, -1});
     for (auto& layer : query_layers_)
         x = layer->forward(x, {}, nullptr, layer->read_memory(image_embeds));
     return x;
 }
 
-torch::Tensor Blip2ModelImpl::embed(const torch::Tensor& ids, const torch::Tensor& picture) {
-    const torch::Tensor places = ids.eq(config_.image_token_index);
+at::Tensor Blip2ModelImpl::embed(const at::Tensor& ids, const at::Tensor& picture) {
+    const at::Tensor places = ids.eq(config_.image_token_index);
     ITEM3D_CHECK(places.sum(1).eq(config_.num_query_tokens).all().item<bool>(),
                  "each row must have a place for each of the picture's tokens");
     return language_model_->embed(ids).masked_scatter(places.unsqueeze(-1), picture);
@@ -97,8 +98,8 @@ double Blip2Config::least_parameters() const {
            num_query_tokens * width;
 }
 
-Blip2Model load_blip2(const std::filesystem::path& folder, torch::Device device,
-                      torch::Dtype dtype) {
+Blip2Model load_blip2(const std::filesystem::path& folder, at::Device device,
+                      at::ScalarType dtype) {
     const auto config = Blip2Config::from_config(Config::read(folder / "config.json"));
     Weights weights = Weights::open(folder, "model");
     weights.rename([](const std::string& name) -> std::string {
@@ -117,40 +118,38 @@ namespace {
 
 class Blip2State : public LanguageModelState {
   public:
-    Blip2State(const Blip2Model& model, const torch::Tensor& pixel_values,
-               const torch::Tensor& visible)
+    Blip2State(const Blip2Model& model, const at::Tensor& pixel_values, const at::Tensor& visible)
         : model_(model),
           picture_(model_->project(model_->query_image(model_->image_embeds(pixel_values)))),
           prompt_visible_(visible) {}
-    torch::Tensor read(const torch::Tensor& tokens) override {
+    at::Tensor read(const at::Tensor& tokens) override {
         OptModel language_model = model_->language_model();
-        const torch::Tensor ids = tokens.to(picture_.device());
+        const at::Tensor ids = tokens.to(picture_.device());
         const bool is_prompt = !visible_.defined();
-        const torch::Tensor embeddings =
+        const at::Tensor embeddings =
             is_prompt ? model_->embed(ids, picture_) : language_model->embed(ids);
-        visible_ =
-            is_prompt ? prompt_visible_.to(ids) : torch::cat({visible_, torch::ones_like(ids)}, 1);
-        const torch::Tensor states = language_model->forward(embeddings, visible_, &cache_);
+        visible_ = is_prompt ? prompt_visible_.to(ids) : at::cat({visible_, at::ones_like(ids)}, 1);
+        const at::Tensor states = language_model->forward(embeddings, visible_, &cache_);
         return language_model->logits(states.narrow(1, ids.size(1) - 1, 1)).squeeze(1);
     }
-    void select(const torch::Tensor& rows) override {
-        const torch::Tensor chosen = rows.to(picture_.device());
+    void select(const at::Tensor& rows) override {
+        const at::Tensor chosen = rows.to(picture_.device());
         cache_.select(chosen);
         visible_ = visible_.index_select(0, chosen);
     }
 
   private:
     Blip2Model model_;
-    torch::Tensor picture_;         ///< [N, Q, D] as the language model reads it
-    torch::Tensor prompt_visible_;  ///< [N, S]
-    torch::Tensor visible_;         ///< [rows, read so far]; undefined before the prompt
+    at::Tensor picture_;         ///< [N, Q, D] as the language model reads it
+    at::Tensor prompt_visible_;  ///< [N, S]
+    at::Tensor visible_;         ///< [rows, read so far]; undefined before the prompt
     KeyValueCache cache_;
 };
 
 }  // namespace
 
-Decoded write_captions(const Blip2Model& model, const torch::Tensor& pixel_values,
-                       const torch::Tensor& prompt, const torch::Tensor& visible,
+Decoded write_captions(const Blip2Model& model, const at::Tensor& pixel_values,
+                       const at::Tensor& prompt, const at::Tensor& visible,
                        DecodingOptions options) {
     const OptConfig& config = model->config().text;
     if (prompt.size(1) + options.max_new_tokens > config.max_position_embeddings)
@@ -159,11 +158,11 @@ Decoded write_captions(const Blip2Model& model, const torch::Tensor& pixel_value
             fmt::format("{} tokens of prompt and {} of caption are more than the {} "
                         "that the network can count",
                         prompt.size(1), options.max_new_tokens, config.max_position_embeddings));
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     options.pad_token = config.pad_token_id;
-    const torch::Tensor rows = prompt.expand({pixel_values.size(0), -1});
+    const at::Tensor rows = prompt.expand({pixel_values.size(0), -1});
     Blip2State state(model, pixel_values,
-                     visible.defined() ? visible.expand_as(rows) : torch::ones_like(rows));
+                     visible.defined() ? visible.expand_as(rows) : at::ones_like(rows));
     return decode(state, rows, options);
 }
 

@@ -7,8 +7,7 @@
 #include "item3d/networks/vision_language/blip_vision.h"
 #include "item3d/networks/vision_language/decoding.h"
 #include "item3d/networks/vision_language/opt.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <filesystem>
 #include <memory>
@@ -41,14 +40,14 @@ class Blip2ModelImpl : public torch::nn::Module {
     explicit Blip2ModelImpl(const Blip2Config& config);
 
     /// pixel_values [N, 3, S, S] -> the picture's tokens [N, T, D].
-    torch::Tensor image_embeds(const torch::Tensor& pixel_values) { return vision_(pixel_values); }
+    at::Tensor image_embeds(const at::Tensor& pixel_values) { return vision_(pixel_values); }
     /// Those -> the Q-Former's [N, Q, D'], Q = num_query_tokens.
-    torch::Tensor query_image(const torch::Tensor& image_embeds);
+    at::Tensor query_image(const at::Tensor& image_embeds);
     /// Those -> embeddings that the language model reads [N, Q, D''].
-    torch::Tensor project(const torch::Tensor& queried) { return projection_(queried); }
+    at::Tensor project(const at::Tensor& queried) { return projection_(queried); }
     /// ids [N, S] -> embeddings, with the picture's [N, Q, D''] in place of image_token_index, of
     /// which each row must have Q.
-    torch::Tensor embed(const torch::Tensor& ids, const torch::Tensor& picture);
+    at::Tensor embed(const at::Tensor& ids, const at::Tensor& picture);
 
     OptModel language_model() const { return language_model_; }
     const Blip2Config& config() const { return config_; }
@@ -56,7 +55,7 @@ class Blip2ModelImpl : public torch::nn::Module {
   private:
     Blip2Config config_;
     BlipVisionModel vision_{nullptr};
-    torch::Tensor query_tokens_;
+    at::Tensor query_tokens_;
     torch::nn::LayerNorm query_norm_{nullptr};
     std::vector<BertLayer> query_layers_;
     torch::nn::Linear projection_{nullptr};
@@ -65,14 +64,14 @@ class Blip2ModelImpl : public torch::nn::Module {
 TORCH_MODULE(Blip2Model);
 
 /// Reads FOLDER/config.json and FOLDER/model.*, with or without the tied head. Throws InputError.
-Blip2Model load_blip2(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
-                      torch::Dtype dtype = torch::kFloat32);
+Blip2Model load_blip2(const std::filesystem::path& folder, at::Device device = at::kCPU,
+                      at::ScalarType dtype = at::kFloat);
 
 /// As write_captions of blip.h. prompt [N or 1, S] int64: Q times image_token_index, bos_token_id,
 /// text; visible, of its shape: 0 for padding, which stands on the left; undefined: there is none.
 /// end_token of `options` counts, as published models differ there from their config.
-Decoded write_captions(const Blip2Model& model, const torch::Tensor& pixel_values,
-                       const torch::Tensor& prompt, const torch::Tensor& visible,
+Decoded write_captions(const Blip2Model& model, const at::Tensor& pixel_values,
+                       const at::Tensor& prompt, const at::Tensor& visible,
                        DecodingOptions options);
 
 }  // namespace item3d

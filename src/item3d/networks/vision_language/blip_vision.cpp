@@ -27,10 +27,10 @@ class BlipVisionModelImpl::Layer : public nn::Module {
         feed_out_ = mlp->register_module("fc2", PackableLinear(config.intermediate_size, width));
         register_module("mlp", mlp);
     }
-    torch::Tensor forward(torch::Tensor x) {
+    at::Tensor forward(at::Tensor x) {
         const auto qkv = qkv_(norm1_(x)).chunk(3, -1);
         x = output_->forward(attention(qkv[0], qkv[1], qkv[2], heads_), {.added = x});
-        const torch::Tensor hidden =
+        const at::Tensor hidden =
             feed_in_->forward(norm2_(x), {.activation = LinearActivation::gelu, .rounded = true});
         return feed_out_->forward(hidden, {.added = x});
     }
@@ -44,10 +44,9 @@ class BlipVisionModelImpl::Layer : public nn::Module {
 BlipVisionModelImpl::BlipVisionModelImpl(const BlipVisionConfig& config) : config_(config) {
     const int width = config_.hidden_size;
     auto embeddings = std::make_shared<nn::Module>("embeddings");
-    class_embedding_ =
-        embeddings->register_parameter("class_embedding", torch::empty({1, 1, width}));
-    position_embedding_ = embeddings->register_parameter(
-        "position_embedding", torch::empty({1, config_.tokens(), width}));
+    class_embedding_ = embeddings->register_parameter("class_embedding", at::empty({1, 1, width}));
+    position_embedding_ = embeddings->register_parameter("position_embedding",
+                                                         at::empty({1, config_.tokens(), width}));
     patch_embedding_ = embeddings->register_module(
         "patch_embedding",
         nn::Conv2d(nn::Conv2dOptions(3, width, config_.patch_size).stride(config_.patch_size)));
@@ -64,16 +63,16 @@ BlipVisionModelImpl::BlipVisionModelImpl(const BlipVisionConfig& config) : confi
         "post_layernorm", nn::LayerNorm(nn::LayerNormOptions({width}).eps(config_.layer_norm_eps)));
 }
 
-torch::Tensor BlipVisionModelImpl::forward(const torch::Tensor& pixel_values) {
+at::Tensor BlipVisionModelImpl::forward(const at::Tensor& pixel_values) {
     ITEM3D_CHECK(pixel_values.dim() == 4 && pixel_values.size(2) == config_.image_size &&
                      pixel_values.size(3) == config_.image_size,
                  "pixel_values must be [N, 3, image_size, image_size]");
-    const torch::Tensor patches =  // [N, S - 1, D]
+    const at::Tensor patches =  // [N, S - 1, D]
         patch_embedding_(pixel_values.to(class_embedding_.scalar_type()))
             .flatten(2)
             .transpose(1, 2);
-    torch::Tensor x = torch::cat({class_embedding_.expand({patches.size(0), -1, -1}), patches}, 1) +
-                      position_embedding_;
+    at::Tensor x = at::cat({class_embedding_.expand({patches.size(0), -1, -1}), patches}, 1) +
+                   position_embedding_;
     for (const auto& layer : layers_)
         x = layer->forward(x);
     return post_norm_(x);

@@ -3,11 +3,11 @@
 #pragma once
 
 #include "item3d/networks/vision_language/vision_shape.h"
+#include "item3d/tensors/tensor.h"
 
 #include <torch/nn/module.h>
 #include <torch/nn/modules/conv.h>
 #include <torch/nn/modules/normalization.h>
-#include <torch/types.h>
 
 #include <memory>
 #include <vector>
@@ -27,12 +27,12 @@ class BlipVisionModelImpl : public torch::nn::Module {
     explicit BlipVisionModelImpl(const BlipVisionConfig& config);
     /// pixel_values [N, 3, image_size, image_size] -> [N, tokens(), hidden_size], after the final
     /// layer norm.
-    torch::Tensor forward(const torch::Tensor& pixel_values);
+    at::Tensor forward(const at::Tensor& pixel_values);
 
   private:
     class Layer;
     BlipVisionConfig config_;
-    torch::Tensor class_embedding_, position_embedding_;
+    at::Tensor class_embedding_, position_embedding_;
     torch::nn::Conv2d patch_embedding_{nullptr};
     torch::nn::LayerNorm post_norm_{nullptr};
     std::vector<std::shared_ptr<Layer>> layers_;

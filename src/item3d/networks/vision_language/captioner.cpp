@@ -5,7 +5,8 @@
 #include "item3d/networks/vision_language/blip.h"
 #include "item3d/networks/vision_language/blip2.h"
 #include "item3d/networks/vision_language/image_processor.h"
-#include "item3d/text/caption_tokenizer.h"
+#include "item3d/text/bert_tokenizer.h"
+#include "item3d/text/gpt2_tokenizer.h"
 
 #include <algorithm>
 
@@ -30,16 +31,16 @@ DecodingOptions decoding_options(const CaptionOptions& options) {
     return result;
 }
 
-torch::Tensor row(const std::vector<int>& ids) {
-    return torch::tensor(std::vector<std::int64_t>(ids.begin(), ids.end())).unsqueeze(0);
+at::Tensor row(const std::vector<int>& ids) {
+    return at::tensor(std::vector<std::int64_t>(ids.begin(), ids.end())).unsqueeze(0);
 }
 
 /// What each row's tokens from `begin` on say. They end with `end_token` unless they were cut off.
 std::vector<Caption> texts_of(const CaptionTokenizer& tokenizer, const Decoded& decoded, int begin,
                               int prompt_length, int end_token) {
     std::vector<Caption> captions;
-    for (const torch::Tensor& row : decoded.tokens.unbind(0)) {
-        const torch::Tensor tokens = row.contiguous();
+    for (const at::Tensor& row : decoded.tokens.unbind(0)) {
+        const at::Tensor tokens = row.contiguous();
         const auto* first = tokens.const_data_ptr<std::int64_t>();
         const auto* last = first + tokens.numel();
         std::string text = tokenizer.decode(std::vector<int>(first + begin, last));
@@ -51,28 +52,27 @@ std::vector<Caption> texts_of(const CaptionTokenizer& tokenizer, const Decoded& 
     return captions;
 }
 
-torch::Tensor process_all(const ImageProcessor& processor,
-                          const std::vector<torch::Tensor>& pictures) {
-    std::vector<torch::Tensor> rows;
-    for (const torch::Tensor& picture : pictures)
+at::Tensor process_all(const ImageProcessor& processor, const std::vector<at::Tensor>& pictures) {
+    std::vector<at::Tensor> rows;
+    for (const at::Tensor& picture : pictures)
         rows.push_back(processor.process(picture));
-    return torch::cat(rows);
+    return at::cat(rows);
 }
 
 class BlipCaptioner : public Captioner {
   public:
-    BlipCaptioner(const fs::path& folder, const BlipConfig& config, torch::Device device,
-                  torch::Dtype dtype)
+    BlipCaptioner(const fs::path& folder, const BlipConfig& config, at::Device device,
+                  at::ScalarType dtype)
         : tokenizer_(BertTokenizer::load(folder)),
           processor_(ImageProcessor::load(folder, config.vision.image_size)),
           device_(device) {
         // Everything small is read and checked before gigabytes of weights are.
         check_tokenizer(folder / "vocab.txt", tokenizer_, config.vocab_size);
         const bool packs = PackedMatrix::runs(device, dtype);
-        model_ = load_blip(folder, device, packs ? torch::kFloat32 : dtype);
+        model_ = load_blip(folder, device, packs ? at::kFloat : dtype);
         if (packs) model_->pack(dtype);
     }
-    std::vector<Caption> captions(const std::vector<torch::Tensor>& pictures,
+    std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
                                   const CaptionOptions& options) const override {
         // The network's own first token for [CLS], and no [SEP] yet.
         std::vector<int> prompt = tokenizer_.encode(options.prefix);
@@ -88,14 +88,14 @@ class BlipCaptioner : public Captioner {
   private:
     BertTokenizer tokenizer_;
     ImageProcessor processor_;
-    torch::Device device_;
+    at::Device device_;
     BlipModel model_{nullptr};
 };
 
 class Blip2Captioner : public Captioner {
   public:
-    Blip2Captioner(const fs::path& folder, const Blip2Config& config, torch::Device device,
-                   torch::Dtype dtype)
+    Blip2Captioner(const fs::path& folder, const Blip2Config& config, at::Device device,
+                   at::ScalarType dtype)
         : tokenizer_(Gpt2Tokenizer::load(folder)),
           processor_(ImageProcessor::load(folder, config.vision.image_size)),
           end_token_(config.text.eos_token_id),
@@ -106,7 +106,7 @@ class Blip2Captioner : public Captioner {
             end_token_ = Config::read(generation).integers("eos_token_id", {end_token_}).front();
         model_ = load_blip2(folder, device, dtype);
     }
-    std::vector<Caption> captions(const std::vector<torch::Tensor>& pictures,
+    std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
                                   const CaptionOptions& options) const override {
         const Blip2Config& config = model_->config();
         std::vector<int> prompt(config.num_query_tokens, config.image_token_index);
@@ -124,14 +124,14 @@ class Blip2Captioner : public Captioner {
     Gpt2Tokenizer tokenizer_;
     ImageProcessor processor_;
     int end_token_;
-    torch::Device device_;
+    at::Device device_;
     Blip2Model model_{nullptr};
 };
 
 }  // namespace
 
-std::unique_ptr<Captioner> load_captioner(const fs::path& folder, torch::Device device,
-                                          torch::Dtype dtype) {
+std::unique_ptr<Captioner> load_captioner(const fs::path& folder, at::Device device,
+                                          at::ScalarType dtype) {
     const Config config = Config::read(folder / "config.json");
     const auto names = config.texts("architectures", {});
     const std::string name = names.empty() ? "" : names.front();

@@ -1,7 +1,7 @@
 // Sentences for pictures, by BLIP or BLIP-2.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <filesystem>
 #include <memory>
@@ -31,14 +31,14 @@ class Captioner {
     /// One for each picture (or one in all, if together), bytes [H, W, C] as ImageProcessor takes
     /// them, all in one pass. Throws InputError for a prefix that is too long, Interrupted after
     /// Ctrl-C.
-    virtual std::vector<Caption> captions(const std::vector<torch::Tensor>& pictures,
+    virtual std::vector<Caption> captions(const std::vector<at::Tensor>& pictures,
                                           const CaptionOptions& options) const = 0;
-    std::string caption(const torch::Tensor& picture, const CaptionOptions& options) const {
+    std::string caption(const at::Tensor& picture, const CaptionOptions& options) const {
         return captions({picture}, options).front().text;
     }
     /// What all the pictures, views of the same thing, are best described by: a word that one view
     /// leaves open is decided by the others.
-    std::string caption_together(const std::vector<torch::Tensor>& pictures,
+    std::string caption_together(const std::vector<at::Tensor>& pictures,
                                  CaptionOptions options) const {
         options.together = true;
         return captions(pictures, options).front().text;
@@ -49,7 +49,7 @@ class Captioner {
 /// (with OPT): config.json, model.*, preprocessor_config.json and the tokenizer's files. Throws
 /// InputError naming the file for anything missing or unsupported.
 std::unique_ptr<Captioner> load_captioner(const std::filesystem::path& folder,
-                                          torch::Device device = torch::kCPU,
-                                          torch::Dtype dtype = torch::kFloat32);
+                                          at::Device device = at::kCPU,
+                                          at::ScalarType dtype = at::kFloat);
 
 }  // namespace item3d

@@ -3,13 +3,14 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/networks/layers/load_parameters.h"
 #include "item3d/tensors/weights.h"
 
 namespace item3d {
 namespace nn = torch::nn;
 namespace {
 
-torch::Tensor unit_length(const torch::Tensor& features) {
+at::Tensor unit_length(const at::Tensor& features) {
     return features / features.norm(2, {-1}, /*keepdim=*/true).clamp_min(1e-12);
 }
 
@@ -45,20 +46,20 @@ ClipModelImpl::ClipModelImpl(const ClipConfig& config) : config_(config) {
     text_projection_ = register_module("text_projection", projection(config_.text.hidden_size));
     visual_projection_ =
         register_module("visual_projection", projection(config_.vision.hidden_size));
-    logit_scale_ = register_parameter("logit_scale", torch::zeros({}));
+    logit_scale_ = register_parameter("logit_scale", at::zeros({}));
 }
 
-torch::Tensor ClipModelImpl::image_features(const torch::Tensor& pixel_values) {
+at::Tensor ClipModelImpl::image_features(const at::Tensor& pixel_values) {
     return visual_projection_(vision_->pooled(pixel_values));
 }
 
-torch::Tensor ClipModelImpl::text_features(const torch::Tensor& input_ids,
-                                           const torch::Tensor& attention_mask) {
+at::Tensor ClipModelImpl::text_features(const at::Tensor& input_ids,
+                                        const at::Tensor& attention_mask) {
     return text_projection_(text_(input_ids, attention_mask).pooled);
 }
 
-ClipModel load_clip_model(const std::filesystem::path& folder, torch::Device device,
-                          torch::Dtype dtype) {
+ClipModel load_clip_model(const std::filesystem::path& folder, at::Device device,
+                          at::ScalarType dtype) {
     const auto config = ClipConfig::from_config(Config::read(folder / "config.json"));
     Weights weights = Weights::open(folder, "model");
     weights.rename([](const std::string& name) -> std::string {
@@ -72,13 +73,13 @@ ClipModel load_clip_model(const std::filesystem::path& folder, torch::Device dev
 }
 
 void save_clip_model(const std::filesystem::path& folder, const ClipModel& model,
-                     torch::Dtype dtype) {
+                     at::ScalarType dtype) {
     write_atomically(folder / "config.json", model->config().to_json().dump(2) + "\n");
     save_safetensors(folder / "model.safetensors", module_tensors(*model, dtype),
                      {{"format", "pt"}});
 }
 
-Clip Clip::load(const std::filesystem::path& folder, torch::Device device, torch::Dtype dtype) {
+Clip Clip::load(const std::filesystem::path& folder, at::Device device, at::ScalarType dtype) {
     // The small files first: what they lack is found before gigabytes are read.
     const auto config = ClipConfig::from_config(Config::read(folder / "config.json"));
     Clip clip;
@@ -95,10 +96,10 @@ Clip Clip::load(const std::filesystem::path& folder, torch::Device device, torch
     return clip;
 }
 
-Clip Clip::load_to_run(const std::filesystem::path& folder, torch::Device device,
-                       torch::Dtype dtype) {
+Clip Clip::load_to_run(const std::filesystem::path& folder, at::Device device,
+                       at::ScalarType dtype) {
     const bool packs = PackedMatrix::runs(device, dtype);
-    Clip clip = load(folder, device, packs ? torch::kFloat32 : dtype);
+    Clip clip = load(folder, device, packs ? at::kFloat : dtype);
     if (packs) pack_linear_layers(*clip.model, dtype);
     return clip;
 }
@@ -111,17 +112,17 @@ void Clip::warn_of_lost_words(const std::string& subject, const std::string& tex
     item3d::warn_of_lost_words(*tokenizer, subject, text, text_length());
 }
 
-torch::Tensor Clip::embed_texts(const std::vector<std::string>& texts) const {
-    const torch::NoGradGuard no_grad;
+at::Tensor Clip::embed_texts(const std::vector<std::string>& texts) const {
+    const at::NoGradGuard no_grad;
     ClipModel network = model;
-    const torch::Tensor ids = tokenizer->encode_batch(texts, text_length()).to(device_);
-    return unit_length(network->text_features(ids).to(torch::kFloat32));
+    const at::Tensor ids = tokenizer->encode_batch(texts, text_length()).to(device_);
+    return unit_length(network->text_features(ids).to(at::kFloat));
 }
 
-torch::Tensor Clip::embed_images(const torch::Tensor& images) const {
+at::Tensor Clip::embed_images(const at::Tensor& images) const {
     ClipModel network = model;
-    const torch::Tensor pixel_values = processor->process_differentiably(images.to(device_));
-    return unit_length(network->image_features(pixel_values).to(torch::kFloat32));
+    const at::Tensor pixel_values = processor->process_differentiably(images.to(device_));
+    return unit_length(network->image_features(pixel_values).to(at::kFloat));
 }
 
 }  // namespace item3d

@@ -5,9 +5,8 @@
 #include "item3d/networks/vision_language/clip_text.h"
 #include "item3d/networks/vision_language/clip_vision.h"
 #include "item3d/networks/vision_language/image_processor.h"
+#include "item3d/tensors/tensor.h"
 #include "item3d/text/clip_tokenizer.h"
-
-#include <torch/types.h>
 
 #include <filesystem>
 #include <memory>
@@ -30,12 +29,11 @@ class ClipModelImpl : public torch::nn::Module {
     explicit ClipModelImpl(const ClipConfig& config);
 
     /// pixel_values [N, 3, S, S] -> [N, projection_dim], not normalised; differentiable.
-    torch::Tensor image_features(const torch::Tensor& pixel_values);
+    at::Tensor image_features(const at::Tensor& pixel_values);
     /// As ClipTextModel takes them -> [N, projection_dim], not normalised.
-    torch::Tensor text_features(const torch::Tensor& input_ids,
-                                const torch::Tensor& attention_mask = {});
+    at::Tensor text_features(const at::Tensor& input_ids, const at::Tensor& attention_mask = {});
     /// What both are multiplied with in logits: logits = scale * cosine. A scalar.
-    torch::Tensor logit_scale() const { return logit_scale_.exp(); }
+    at::Tensor logit_scale() const { return logit_scale_.exp(); }
 
     ClipVisionModel vision() const { return vision_; }
     const ClipConfig& config() const { return config_; }
@@ -45,38 +43,38 @@ class ClipModelImpl : public torch::nn::Module {
     ClipTextModel text_{nullptr};
     ClipVisionModel vision_{nullptr};
     torch::nn::Linear text_projection_{nullptr}, visual_projection_{nullptr};
-    torch::Tensor logit_scale_;
+    at::Tensor logit_scale_;
 };
 TORCH_MODULE(ClipModel);
 
 /// Reads FOLDER/config.json and FOLDER/model.*. Throws InputError.
-ClipModel load_clip_model(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
-                          torch::Dtype dtype = torch::kFloat32);
+ClipModel load_clip_model(const std::filesystem::path& folder, at::Device device = at::kCPU,
+                          at::ScalarType dtype = at::kFloat);
 
 /// Writes FOLDER/config.json and FOLDER/model.safetensors.
 void save_clip_model(const std::filesystem::path& folder, const ClipModel& model,
-                     torch::Dtype dtype = torch::kHalf);
+                     at::ScalarType dtype = at::kHalf);
 
 /// The model with all that pictures and sentences need on their way to it.
 class Clip {
   public:
     /// Reads FOLDER (config.json, model.*, preprocessor_config.json, vocab.json, merges.txt, ...).
     /// Throws InputError naming the file for anything missing or unsupported.
-    static Clip load(const std::filesystem::path& folder, torch::Device device = torch::kCPU,
-                     torch::Dtype dtype = torch::kFloat32);
+    static Clip load(const std::filesystem::path& folder, at::Device device = at::kCPU,
+                     at::ScalarType dtype = at::kFloat);
 
     /// The same for many pictures: linear layers are packed (packable_linear.h) where the processor
     /// gains by it, and those alone compute in `dtype` then.
-    static Clip load_to_run(const std::filesystem::path& folder, torch::Device device,
-                            torch::Dtype dtype);
+    static Clip load_to_run(const std::filesystem::path& folder, at::Device device,
+                            at::ScalarType dtype);
 
     /// Warns where embed_texts() leaves out the end of a text because it is too long.
     void warn_of_lost_words(const std::string& subject, const std::string& text) const;
     /// [N, D] float32, each of length 1.
-    torch::Tensor embed_texts(const std::vector<std::string>& texts) const;
+    at::Tensor embed_texts(const std::vector<std::string>& texts) const;
     /// images [N, 3, H, W] sRGB in [0, 1] -> [N, D] float32, each of length 1. Differentiable in
     /// the images.
-    torch::Tensor embed_images(const torch::Tensor& images) const;
+    at::Tensor embed_images(const at::Tensor& images) const;
 
     ClipModel model{nullptr};
     std::shared_ptr<ClipTokenizer> tokenizer;
@@ -85,7 +83,7 @@ class Clip {
   private:
     int text_length() const;  ///< tokens that the network reads
 
-    torch::Device device_ = torch::kCPU;
+    at::Device device_ = at::kCPU;
 };
 
 }  // namespace item3d

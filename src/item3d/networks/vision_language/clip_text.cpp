@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/networks/layers/clip_layer.h"
+#include "item3d/networks/layers/load_parameters.h"
 #include "item3d/tensors/weights.h"
 
 #include <limits>
@@ -23,7 +24,7 @@ ClipTextModelImpl::ClipTextModelImpl(const ClipTextConfig& config) : config_(con
         "position_embedding", nn::Embedding(config_.max_position_embeddings, width));
     register_module("embeddings", embeddings);
     {  // CLIP's own initialisation: unit normals would drown the layers
-        const torch::NoGradGuard no_grad;
+        const at::NoGradGuard no_grad;
         token_embedding_->weight.normal_(0, 0.02);
         position_embedding_->weight.normal_(0, 0.02);
     }
@@ -46,19 +47,18 @@ ClipTextModelImpl::ClipTextModelImpl(const ClipTextConfig& config) : config_(con
             nn::Linear(nn::LinearOptions(width, config_.projection_dim).bias(false)));
 }
 
-ClipTextOutput ClipTextModelImpl::forward(const torch::Tensor& input_ids,
-                                          const torch::Tensor& attention_mask) {
+ClipTextOutput ClipTextModelImpl::forward(const at::Tensor& input_ids,
+                                          const at::Tensor& attention_mask) {
     ITEM3D_CHECK(input_ids.dim() == 2 && input_ids.size(1) <= config_.max_position_embeddings,
                  "input_ids must be [N, S] with S <= max_position_embeddings");
     const auto length = input_ids.size(1);
-    const torch::Tensor ids = input_ids.to(torch::kInt64);
-    torch::Tensor x = token_embedding_(ids) + position_embedding_->weight.slice(0, 0, length);
+    const at::Tensor ids = input_ids.to(at::kLong);
+    at::Tensor x = token_embedding_(ids) + position_embedding_->weight.slice(0, 0, length);
 
     const double hidden = -std::numeric_limits<double>::infinity();
-    torch::Tensor mask =
-        torch::full({length, length}, hidden, x.options().requires_grad(false)).triu(1);
+    at::Tensor mask = at::full({length, length}, hidden, x.options().requires_grad(false)).triu(1);
     if (attention_mask.defined()) {
-        const torch::Tensor unread = attention_mask.to(x.device()).eq(0).unsqueeze(1).unsqueeze(1);
+        const at::Tensor unread = attention_mask.to(x.device()).eq(0).unsqueeze(1).unsqueeze(1);
         mask = mask.unsqueeze(0).unsqueeze(0).masked_fill(unread, hidden);
     }
 
@@ -69,29 +69,29 @@ ClipTextOutput ClipTextModelImpl::forward(const torch::Tensor& input_ids,
         output.hidden_states.push_back(x);
     }
     output.last_hidden_state = final_layer_norm_(x);
-    const torch::Tensor end = config_.eos_token_id == 2
-                                  ? ids.argmax(1)
-                                  : ids.eq(config_.eos_token_id).to(torch::kInt32).argmax(1);
-    const torch::Tensor rows = torch::arange(ids.size(0), end.options());
+    const at::Tensor end = config_.eos_token_id == 2
+                               ? ids.argmax(1)
+                               : ids.eq(config_.eos_token_id).to(at::kInt).argmax(1);
+    const at::Tensor rows = at::arange(ids.size(0), end.options());
     output.pooled = output.last_hidden_state.index({rows, end});
     if (text_projection_) output.text_embeds = text_projection_(output.pooled);
     return output;
 }
 
-torch::Tensor ClipTextModelImpl::skip_layers(const ClipTextOutput& output, int skip) {
+at::Tensor ClipTextModelImpl::skip_layers(const ClipTextOutput& output, int skip) {
     ITEM3D_CHECK(skip >= 0 && skip < static_cast<int>(output.hidden_states.size()),
                  "cannot skip more layers than there are");
     return final_layer_norm_(output.hidden_states[output.hidden_states.size() - 1 - skip]);
 }
 
-void ClipTextModelImpl::set_token_embeddings(std::int64_t first_id, const torch::Tensor& rows) {
-    const torch::Tensor& table = token_embedding_->weight;
+void ClipTextModelImpl::set_token_embeddings(std::int64_t first_id, const at::Tensor& rows) {
+    const at::Tensor& table = token_embedding_->weight;
     ITEM3D_CHECK(rows.dim() == 2 && rows.size(1) == table.size(1) && first_id >= 0,
                  "rows must be [count, hidden_size]");
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const std::int64_t end = first_id + rows.size(0);
-    torch::Tensor larger = torch::zeros({std::max(end, table.size(0)), table.size(1)},
-                                        table.options().requires_grad(false));
+    at::Tensor larger = at::zeros({std::max(end, table.size(0)), table.size(1)},
+                                  table.options().requires_grad(false));
     larger.slice(0, 0, table.size(0)).copy_(table);
     larger.slice(0, first_id, end).copy_(rows);
     token_embedding_->weight.set_data(larger);
@@ -157,8 +157,8 @@ double ClipTextConfig::least_parameters() const {
            num_hidden_layers * (4.0 * width * width + 2.0 * width * intermediate_size);
 }
 
-ClipTextModel load_clip_text(const std::filesystem::path& folder, torch::Device device,
-                             torch::Dtype dtype) {
+ClipTextModel load_clip_text(const std::filesystem::path& folder, at::Device device,
+                             at::ScalarType dtype) {
     const auto config = ClipTextConfig::from_config(Config::read(folder / "config.json"));
     Weights weights = Weights::open(folder, "model");
     weights.rename([](const std::string& name) -> std::string {
@@ -172,8 +172,8 @@ ClipTextModel load_clip_text(const std::filesystem::path& folder, torch::Device 
     return model;
 }
 
-std::vector<std::pair<std::string, torch::Tensor>> published_tensors(const ClipTextModel& model,
-                                                                     torch::Dtype dtype) {
+std::vector<std::pair<std::string, at::Tensor>> published_tensors(const ClipTextModel& model,
+                                                                  at::ScalarType dtype) {
     auto tensors = module_tensors(*model, dtype);
     for (auto& [name, tensor] : tensors)
         if (!name.starts_with("text_projection")) name = prefix + name;

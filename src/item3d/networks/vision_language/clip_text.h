@@ -3,12 +3,12 @@
 
 #include "item3d/core/config.h"
 #include "item3d/networks/layers/clip_layer.h"
+#include "item3d/tensors/tensor.h"
 
 #include <torch/nn/modules/container/modulelist.h>
 #include <torch/nn/modules/embedding.h>
 #include <torch/nn/modules/linear.h>
 #include <torch/nn/modules/normalization.h>
-#include <torch/types.h>
 
 #include <filesystem>
 #include <string>
@@ -41,11 +41,11 @@ struct ClipTextConfig {
 
 /// [N, S, D] each.
 struct ClipTextOutput {
-    torch::Tensor last_hidden_state;  ///< after the final layer norm
+    at::Tensor last_hidden_state;  ///< after the final layer norm
     /// The embeddings, then what each layer gave, before the final layer norm.
-    std::vector<torch::Tensor> hidden_states;
-    torch::Tensor pooled;       ///< [N, D] last_hidden_state at the end of each text
-    torch::Tensor text_embeds;  ///< [N, projection_dim], with a projection only
+    std::vector<at::Tensor> hidden_states;
+    at::Tensor pooled;       ///< [N, D] last_hidden_state at the end of each text
+    at::Tensor text_embeds;  ///< [N, projection_dim], with a projection only
 };
 
 class ClipTextModelImpl : public torch::nn::Module {
@@ -54,15 +54,14 @@ class ClipTextModelImpl : public torch::nn::Module {
 
     /// input_ids [N, S] integers, S <= max_position_embeddings; attention_mask [N, S] of 1 (read)
     /// and 0, or empty to read all (which is what diffusers does, padding included).
-    ClipTextOutput forward(const torch::Tensor& input_ids,
-                           const torch::Tensor& attention_mask = {});
+    ClipTextOutput forward(const at::Tensor& input_ids, const at::Tensor& attention_mask = {});
 
     /// What diffusers gives for clip_skip = `skip` (0: the last hidden state).
-    torch::Tensor skip_layers(const ClipTextOutput& output, int skip);
+    at::Tensor skip_layers(const ClipTextOutput& output, int skip);
 
     /// Sets the embeddings of the tokens from `first_id` on, [count, hidden_size]; the table grows
     /// where it ends before.
-    void set_token_embeddings(std::int64_t first_id, const torch::Tensor& rows);
+    void set_token_embeddings(std::int64_t first_id, const at::Tensor& rows);
 
     const ClipTextConfig& config() const { return config_; }
 
@@ -77,12 +76,11 @@ TORCH_MODULE(ClipTextModel);
 
 /// Reads FOLDER/config.json and FOLDER/model.*, with or without the "text_model." before names.
 /// Throws InputError.
-ClipTextModel load_clip_text(const std::filesystem::path& folder,
-                             torch::Device device = torch::kCPU,
-                             torch::Dtype dtype = torch::kFloat32);
+ClipTextModel load_clip_text(const std::filesystem::path& folder, at::Device device = at::kCPU,
+                             at::ScalarType dtype = at::kFloat);
 
 /// Parameters under their published names ("text_model." before all but the projection).
-std::vector<std::pair<std::string, torch::Tensor>> published_tensors(
-    const ClipTextModel& model, torch::Dtype dtype = torch::kFloat32);
+std::vector<std::pair<std::string, at::Tensor>> published_tensors(
+    const ClipTextModel& model, at::ScalarType dtype = at::kFloat);
 
 }  // namespace item3d

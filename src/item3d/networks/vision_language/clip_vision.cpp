@@ -1,6 +1,7 @@
 #include "item3d/networks/vision_language/clip_vision.h"
 
 #include "item3d/core/error.h"
+#include "item3d/networks/layers/load_parameters.h"
 #include "item3d/tensors/weights.h"
 
 namespace item3d {
@@ -9,7 +10,7 @@ namespace nn = torch::nn;
 ClipVisionModelImpl::ClipVisionModelImpl(const ClipVisionConfig& config) : config_(config) {
     const int width = config_.hidden_size;
     auto embeddings = std::make_shared<nn::Module>("embeddings");
-    class_embedding_ = embeddings->register_parameter("class_embedding", torch::zeros({width}));
+    class_embedding_ = embeddings->register_parameter("class_embedding", at::zeros({width}));
     patch_embedding_ = embeddings->register_module(
         "patch_embedding",
         nn::Conv2d(nn::Conv2dOptions(config_.num_channels, width, config_.patch_size)
@@ -33,20 +34,20 @@ ClipVisionModelImpl::ClipVisionModelImpl(const ClipVisionConfig& config) : confi
     post_norm_ = register_module("post_layernorm", nn::LayerNorm(norm));
 }
 
-torch::Tensor ClipVisionModelImpl::embed(const torch::Tensor& pixel_values) {
+at::Tensor ClipVisionModelImpl::embed(const at::Tensor& pixel_values) {
     ITEM3D_CHECK(pixel_values.dim() == 4 && pixel_values.size(2) == config_.image_size &&
                      pixel_values.size(3) == config_.image_size,
                  "pixel_values must be [N, C, image_size, image_size]");
-    const torch::Tensor patches =  // [N, S - 1, D]
+    const at::Tensor patches =  // [N, S - 1, D]
         patch_embedding_(pixel_values.to(class_embedding_.scalar_type()))
             .flatten(2)
             .transpose(1, 2);
-    const torch::Tensor token = class_embedding_.expand({patches.size(0), 1, -1});
-    return pre_norm_(torch::cat({token, patches}, 1) + position_embedding_->weight);
+    const at::Tensor token = class_embedding_.expand({patches.size(0), 1, -1});
+    return pre_norm_(at::cat({token, patches}, 1) + position_embedding_->weight);
 }
 
-ClipVisionOutput ClipVisionModelImpl::forward(const torch::Tensor& pixel_values) {
-    torch::Tensor x = embed(pixel_values);
+ClipVisionOutput ClipVisionModelImpl::forward(const at::Tensor& pixel_values) {
+    at::Tensor x = embed(pixel_values);
     ClipVisionOutput output;
     output.hidden_states.push_back(x);
     for (auto& layer : layers_) {
@@ -58,8 +59,8 @@ ClipVisionOutput ClipVisionModelImpl::forward(const torch::Tensor& pixel_values)
     return output;
 }
 
-torch::Tensor ClipVisionModelImpl::pooled(const torch::Tensor& pixel_values) {
-    torch::Tensor x = embed(pixel_values);
+at::Tensor ClipVisionModelImpl::pooled(const at::Tensor& pixel_values) {
+    at::Tensor x = embed(pixel_values);
     for (std::size_t i = 0; i + 1 < layers_.size(); ++i)
         x = layers_[i](x);
     return post_norm_(layers_.back()->forward_first(x).select(1, 0));
@@ -92,8 +93,8 @@ nlohmann::json ClipVisionConfig::to_json() const {
     return json;
 }
 
-ClipVisionWithProjection load_clip_vision(const std::filesystem::path& folder, torch::Device device,
-                                          torch::Dtype dtype) {
+ClipVisionWithProjection load_clip_vision(const std::filesystem::path& folder, at::Device device,
+                                          at::ScalarType dtype) {
     const Config json = Config::read(folder / "config.json");
     for (const std::string& name : json.texts("architectures", {}))
         if (name != "CLIPVisionModelWithProjection")

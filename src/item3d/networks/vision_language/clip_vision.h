@@ -5,10 +5,10 @@
 
 #include "item3d/networks/layers/clip_layer.h"
 #include "item3d/networks/vision_language/vision_shape.h"
+#include "item3d/tensors/tensor.h"
 
 #include <torch/nn/modules/conv.h>
 #include <torch/nn/modules/embedding.h>
-#include <torch/types.h>
 
 #include <filesystem>
 #include <string>
@@ -27,27 +27,27 @@ struct ClipVisionConfig : VisionShape {
 
 /// S = tokens(), D = hidden_size.
 struct ClipVisionOutput {
-    torch::Tensor last_hidden_state;  ///< [N, S, D], before the final layer norm
+    at::Tensor last_hidden_state;  ///< [N, S, D], before the final layer norm
     /// [N, S, D] each: what the first layer reads, then what each layer gave.
-    std::vector<torch::Tensor> hidden_states;
-    torch::Tensor pooled;  ///< [N, D] the class token after the final layer norm
+    std::vector<at::Tensor> hidden_states;
+    at::Tensor pooled;  ///< [N, D] the class token after the final layer norm
 };
 
 class ClipVisionModelImpl : public torch::nn::Module {
   public:
     explicit ClipVisionModelImpl(const ClipVisionConfig& config);
     /// pixel_values [N, 3, image_size, image_size] as ImageProcessor makes them; differentiable.
-    ClipVisionOutput forward(const torch::Tensor& pixel_values);
+    ClipVisionOutput forward(const at::Tensor& pixel_values);
     /// The `pooled` of forward() alone, which needs one token of the last layer.
-    torch::Tensor pooled(const torch::Tensor& pixel_values);
+    at::Tensor pooled(const at::Tensor& pixel_values);
     const ClipVisionConfig& config() const { return config_; }
 
   private:
     /// What the layers read, [N, S, D].
-    torch::Tensor embed(const torch::Tensor& pixel_values);
+    at::Tensor embed(const at::Tensor& pixel_values);
 
     ClipVisionConfig config_;
-    torch::Tensor class_embedding_;
+    at::Tensor class_embedding_;
     torch::nn::Conv2d patch_embedding_{nullptr};
     torch::nn::Embedding position_embedding_{nullptr};
     torch::nn::LayerNorm pre_norm_{nullptr}, post_norm_{nullptr};
@@ -59,9 +59,9 @@ TORCH_MODULE(ClipVisionModel);
 class ClipVisionWithProjectionImpl : public torch::nn::Module {
   public:
     explicit ClipVisionWithProjectionImpl(const ClipVisionConfig& config);
-    ClipVisionOutput forward(const torch::Tensor& pixel_values) { return vision_(pixel_values); }
+    ClipVisionOutput forward(const at::Tensor& pixel_values) { return vision_(pixel_values); }
     /// [N, projection_dim], not normalised.
-    torch::Tensor project(const ClipVisionOutput& output) { return projection_(output.pooled); }
+    at::Tensor project(const ClipVisionOutput& output) { return projection_(output.pooled); }
 
   private:
     ClipVisionModel vision_{nullptr};
@@ -71,7 +71,7 @@ TORCH_MODULE(ClipVisionWithProjection);
 
 /// Reads FOLDER/config.json and FOLDER/model.*. Throws InputError.
 ClipVisionWithProjection load_clip_vision(const std::filesystem::path& folder,
-                                          torch::Device device = torch::kCPU,
-                                          torch::Dtype dtype = torch::kFloat32);
+                                          at::Device device = at::kCPU,
+                                          at::ScalarType dtype = at::kFloat);
 
 }  // namespace item3d

@@ -15,16 +15,16 @@ void stop_if_interrupted() {
     if (interrupted()) throw Interrupted("while a text was written");
 }
 
-Decoded greedy_search(LanguageModelState& state, const torch::Tensor& prompt,
+Decoded greedy_search(LanguageModelState& state, const at::Tensor& prompt,
                       const DecodingOptions& options) {
-    torch::Tensor tokens = prompt, next = prompt;
-    torch::Tensor ended = torch::zeros({prompt.size(0)}, torch::kBool);
+    at::Tensor tokens = prompt, next = prompt;
+    at::Tensor ended = at::zeros({prompt.size(0)}, at::kBool);
     for (int i = 0; i < options.max_new_tokens && !ended.all().item<bool>(); ++i) {
         stop_if_interrupted();
         next = state.read(next).cpu().argmax(-1);
         next = next.masked_fill(ended, options.pad_token).unsqueeze(1);
         ended = ended | next.squeeze(1).eq(options.end_token);
-        tokens = torch::cat({tokens, next}, 1);
+        tokens = at::cat({tokens, next}, 1);
     }
     return {tokens, {}};
 }
@@ -32,77 +32,75 @@ Decoded greedy_search(LanguageModelState& state, const torch::Tensor& prompt,
 /// The best texts of each row, running ones and ended ones, `beams` of each. N rows, B beams.
 class BeamSearch {
   public:
-    BeamSearch(const torch::Tensor& prompt, const DecodingOptions& options)
+    BeamSearch(const at::Tensor& prompt, const DecodingOptions& options)
         : options_(options),
           rows_(prompt.size(0)),
           prompt_length_(prompt.size(1)),
           length_(prompt_length_) {
         const int fill = options.pad_token != 0 ? options.pad_token : options.end_token;
-        running_ = torch::full({rows_, options.beams, length_ + options.max_new_tokens}, fill,
-                               torch::kInt64);
+        running_ =
+            at::full({rows_, options.beams, length_ + options.max_new_tokens}, fill, at::kLong);
         running_.narrow(2, 0, length_).copy_(prompt.unsqueeze(1));
         ended_ = running_.clone();
-        running_scores_ = torch::full({rows_, options.beams}, impossible, torch::kFloat32);
+        running_scores_ = at::full({rows_, options.beams}, impossible, at::kFloat);
         running_scores_.select(1, 0).fill_(0);  // all are copies of the prompt, so one goes on
-        ended_scores_ = torch::full({rows_, options.beams}, impossible, torch::kFloat32);
-        ended_lengths_ = torch::full({rows_, options.beams}, length_, torch::kInt64);
-        has_ended_ = torch::zeros({rows_, options.beams}, torch::kBool);
-        improves_ = torch::ones({rows_, 1}, torch::kBool);
+        ended_scores_ = at::full({rows_, options.beams}, impossible, at::kFloat);
+        ended_lengths_ = at::full({rows_, options.beams}, length_, at::kLong);
+        has_ended_ = at::zeros({rows_, options.beams}, at::kBool);
+        improves_ = at::ones({rows_, 1}, at::kBool);
     }
 
     /// Takes the logits [N * B, V] of what follows; returns which of N * B rows each goes on from.
-    torch::Tensor advance(const torch::Tensor& logits) {
+    at::Tensor advance(const at::Tensor& logits) {
         const std::int64_t beams = options_.beams, vocabulary = logits.size(1);
-        const torch::Tensor scores =
-            logits.cpu().to(torch::kFloat32).log_softmax(-1).view({rows_, beams, vocabulary}) +
+        const at::Tensor scores =
+            logits.cpu().to(at::kFloat).log_softmax(-1).view({rows_, beams, vocabulary}) +
             running_scores_.unsqueeze(2);
         // Twice as many as there are beams: even if each of them ends, as many go on.
         const auto [best, index] = scores.view({rows_, -1}).topk(2 * beams, 1);
-        const torch::Tensor beam = index.floor_divide(vocabulary);
-        torch::Tensor texts = gather(running_, beam);
+        const at::Tensor beam = index.floor_divide(vocabulary);
+        at::Tensor texts = gather(running_, beam);
         texts.select(2, length_).copy_(index.remainder(vocabulary));
         const bool full = length_ + 1 == running_.size(2);
-        const torch::Tensor ends = texts.select(2, length_).eq(options_.end_token) | full;
+        const at::Tensor ends = texts.select(2, length_).eq(options_.end_token) | full;
 
-        const auto [kept_scores, kept] =
-            (best + impossible * ends.to(torch::kFloat32)).topk(beams, 1);
+        const auto [kept_scores, kept] = (best + impossible * ends.to(at::kFloat)).topk(beams, 1);
         keep_ended(texts, best, ends);
         running_ = gather(texts, kept);
         running_scores_ = kept_scores;
         ++length_;
         goes_on_ = !full && !ends.all().item<bool>() && may_improve();
-        return (beam.gather(1, kept) + torch::arange(rows_).unsqueeze(1) * beams).view({-1});
+        return (beam.gather(1, kept) + at::arange(rows_).unsqueeze(1) * beams).view({-1});
     }
 
     bool goes_on() const { return goes_on_; }
     /// [N * B, 1]
-    torch::Tensor last_tokens() const { return running_.select(2, length_ - 1).reshape({-1, 1}); }
+    at::Tensor last_tokens() const { return running_.select(2, length_ - 1).reshape({-1, 1}); }
 
     Decoded result() const {
-        const torch::Tensor lengths = ended_lengths_.select(1, 0);
+        const at::Tensor lengths = ended_lengths_.select(1, 0);
         return {ended_.select(1, 0).narrow(1, 0, lengths.max().item<std::int64_t>()).contiguous(),
                 ended_scores_.select(1, 0)};
     }
 
   private:
-    static torch::Tensor gather(const torch::Tensor& texts, const torch::Tensor& beam) {
+    static at::Tensor gather(const at::Tensor& texts, const at::Tensor& beam) {
         return texts.gather(1, beam.unsqueeze(2).expand({-1, -1, texts.size(2)}));
     }
 
     /// Merges those of the best `beams` candidates that end into the ended texts.
-    void keep_ended(const torch::Tensor& texts, const torch::Tensor& best,
-                    const torch::Tensor& ends) {
-        const auto among_best = torch::arange(best.size(1)).lt(options_.beams).unsqueeze(0);
-        const torch::Tensor counts = ends & among_best;
+    void keep_ended(const at::Tensor& texts, const at::Tensor& best, const at::Tensor& ends) {
+        const auto among_best = at::arange(best.size(1)).lt(options_.beams).unsqueeze(0);
+        const at::Tensor counts = ends & among_best;
         const double scale =
             std::pow(static_cast<double>(length_ + 1 - prompt_length_), options_.length_penalty);
-        const torch::Tensor no = (~counts).to(torch::kFloat32) + (~improves_).to(torch::kFloat32);
-        const torch::Tensor scores = torch::cat({ended_scores_, best / scale + impossible * no}, 1);
+        const at::Tensor no = (~counts).to(at::kFloat) + (~improves_).to(at::kFloat);
+        const at::Tensor scores = at::cat({ended_scores_, best / scale + impossible * no}, 1);
         const auto [top, index] = scores.topk(options_.beams, 1);
-        ended_ = gather(torch::cat({ended_, texts}, 1), index);
-        has_ended_ = torch::cat({has_ended_, counts}, 1).gather(1, index);
+        ended_ = gather(at::cat({ended_, texts}, 1), index);
+        has_ended_ = at::cat({has_ended_, counts}, 1).gather(1, index);
         ended_lengths_ =
-            torch::cat({ended_lengths_, torch::full_like(texts.select(2, 0), length_ + 1)}, 1)
+            at::cat({ended_lengths_, at::full_like(texts.select(2, 0), length_ + 1)}, 1)
                 .gather(1, index);
         ended_scores_ = top;
     }
@@ -111,22 +109,21 @@ class BeamSearch {
     bool may_improve() {
         const double scale =
             std::pow(static_cast<double>(length_ - prompt_length_), options_.length_penalty);
-        const torch::Tensor worst =
-            torch::where(has_ended_, ended_scores_.amin(1, /*keepdim=*/true),
-                         torch::full_like(ended_scores_, impossible));
-        const torch::Tensor possible = running_scores_.narrow(1, 0, 1) / scale;
+        const at::Tensor worst = at::where(has_ended_, ended_scores_.amin(1, /*keepdim=*/true),
+                                           at::full_like(ended_scores_, impossible));
+        const at::Tensor possible = running_scores_.narrow(1, 0, 1) / scale;
         improves_ = improves_ & possible.gt(worst).any(1, /*keepdim=*/true);
         return improves_.any().item<bool>();
     }
 
     const DecodingOptions& options_;
     std::int64_t rows_, prompt_length_, length_;
-    torch::Tensor running_, ended_;  ///< [N, B, S + T] tokens
-    torch::Tensor running_scores_;   ///< [N, B] sums of log-probabilities
-    torch::Tensor ended_scores_;     ///< [N, B] divided by their length
-    torch::Tensor ended_lengths_;    ///< [N, B] tokens, the prompt's included
-    torch::Tensor has_ended_;        ///< [N, B] whether that place of ended_ is taken
-    torch::Tensor improves_;         ///< [N, 1] whether a running text of the row may still win
+    at::Tensor running_, ended_;  ///< [N, B, S + T] tokens
+    at::Tensor running_scores_;   ///< [N, B] sums of log-probabilities
+    at::Tensor ended_scores_;     ///< [N, B] divided by their length
+    at::Tensor ended_lengths_;    ///< [N, B] tokens, the prompt's included
+    at::Tensor has_ended_;        ///< [N, B] whether that place of ended_ is taken
+    at::Tensor improves_;         ///< [N, 1] whether a running text of the row may still win
     bool goes_on_ = true;
 };
 
@@ -136,15 +133,15 @@ class JointState : public LanguageModelState {
   public:
     JointState(LanguageModelState& state, std::int64_t readers)
         : state_(state), readers_(readers) {}
-    torch::Tensor read(const torch::Tensor& tokens) override {
+    at::Tensor read(const at::Tensor& tokens) override {
         texts_ = tokens.size(0);
         return state_.read(tokens.repeat({readers_, 1}))
             .log_softmax(-1)
             .view({readers_, texts_, -1})
             .mean(0);
     }
-    void select(const torch::Tensor& rows) override {
-        const torch::Tensor begins = torch::arange(readers_).unsqueeze(1) * texts_;
+    void select(const at::Tensor& rows) override {
+        const at::Tensor begins = at::arange(readers_).unsqueeze(1) * texts_;
         state_.select((begins + rows).flatten());
         texts_ = rows.size(0);
     }
@@ -155,12 +152,12 @@ class JointState : public LanguageModelState {
     std::int64_t texts_ = 0;
 };
 
-Decoded beam_search(LanguageModelState& state, const torch::Tensor& prompt,
+Decoded beam_search(LanguageModelState& state, const at::Tensor& prompt,
                     const DecodingOptions& options) {
     BeamSearch search(prompt, options);
     // The prompt is read once a row; the beams begin as copies.
-    torch::Tensor logits = state.read(prompt);
-    const torch::Tensor copies = torch::arange(prompt.size(0)).repeat_interleave(options.beams);
+    at::Tensor logits = state.read(prompt);
+    const at::Tensor copies = at::arange(prompt.size(0)).repeat_interleave(options.beams);
     logits = logits.cpu().index_select(0, copies);
     state.select(copies);
     while (true) {
@@ -173,12 +170,12 @@ Decoded beam_search(LanguageModelState& state, const torch::Tensor& prompt,
 
 }  // namespace
 
-Decoded decode(LanguageModelState& state, const torch::Tensor& prompt,
+Decoded decode(LanguageModelState& state, const at::Tensor& prompt,
                const DecodingOptions& options) {
-    ITEM3D_CHECK(prompt.dim() == 2 && prompt.scalar_type() == torch::kInt64 && prompt.size(1) > 0,
+    ITEM3D_CHECK(prompt.dim() == 2 && prompt.scalar_type() == at::kLong && prompt.size(1) > 0,
                  "a prompt must be int64 [N, S] with S > 0");
     ITEM3D_CHECK(options.max_new_tokens > 0 && options.beams > 0, "nothing is asked for");
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const auto search = options.beams == 1 ? greedy_search : beam_search;
     if (!options.together) return search(state, prompt, options);
     JointState joint(state, prompt.size(0));

@@ -2,7 +2,7 @@
 // without sampling.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
@@ -12,9 +12,9 @@ class LanguageModelState {
     virtual ~LanguageModelState() = default;
     /// Reads tokens [N, S] int64 behind what was read before; returns the logits [N, V] float32 of
     /// what follows the last of them.
-    virtual torch::Tensor read(const torch::Tensor& tokens) = 0;
+    virtual at::Tensor read(const at::Tensor& tokens) = 0;
     /// Row i goes on as a copy of row rows[i]; rows [M] int64.
-    virtual void select(const torch::Tensor& rows) = 0;
+    virtual void select(const at::Tensor& rows) = 0;
 };
 
 struct DecodingOptions {
@@ -32,12 +32,11 @@ struct Decoded {
     /// [N, S + T] int64 (of one row where they are written together): the prompt and what follows.
     /// Rows that ended sooner are filled with pad_token; by beam search with end_token where
     /// pad_token is 0 (transformers takes that for "none").
-    torch::Tensor tokens;
-    torch::Tensor scores;  ///< [N] of beams: mean log-probability a new token; else undefined
+    at::Tensor tokens;
+    at::Tensor scores;  ///< [N] of beams: mean log-probability a new token; else undefined
 };
 
 /// prompt [N, S] int64, which `state` has not read yet. Deterministic.
-Decoded decode(LanguageModelState& state, const torch::Tensor& prompt,
-               const DecodingOptions& options);
+Decoded decode(LanguageModelState& state, const at::Tensor& prompt, const DecodingOptions& options);
 
 }  // namespace item3d

@@ -3,8 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/parallel.h"
-
-#include <ATen/Functions.h>
+#include "item3d/tensors/tensor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,12 +58,12 @@ Filter make_filter(int input, int output) {
 }
 
 /// Resamples the middle dimension of [outer, input, inner] bytes.
-torch::Tensor resample(const torch::Tensor& bytes, int output) {
+at::Tensor resample(const at::Tensor& bytes, int output) {
     const auto outer = bytes.size(0), inner = bytes.size(2);
     const int input = static_cast<int>(bytes.size(1));
     if (input == output) return bytes;
     const Filter filter = make_filter(input, output);
-    torch::Tensor result = torch::empty({outer, output, inner}, torch::kUInt8);
+    at::Tensor result = at::empty({outer, output, inner}, at::kByte);
     const std::uint8_t* from = bytes.const_data_ptr<std::uint8_t>();
     std::uint8_t* to = result.mutable_data_ptr<std::uint8_t>();
     parallel_for("resample", outer * output, [&](std::int64_t index) {
@@ -83,15 +82,15 @@ torch::Tensor resample(const torch::Tensor& bytes, int output) {
 }
 
 /// Grey to three channels, alpha composed over white, in bytes as Pillow does.
-torch::Tensor to_rgb(const torch::Tensor& bytes) {
+at::Tensor to_rgb(const at::Tensor& bytes) {
     const auto channels = bytes.size(2);
-    const torch::Tensor color =
+    const at::Tensor color =
         channels < 3 ? bytes.narrow(2, 0, 1).expand({-1, -1, 3}) : bytes.narrow(2, 0, 3);
     if (channels != 2 && channels != 4) return color;
-    const torch::Tensor alpha = bytes.narrow(2, channels - 1, 1).to(torch::kInt64);
+    const at::Tensor alpha = bytes.narrow(2, channels - 1, 1).to(at::kLong);
     // Division by 255 as (x + (x >> 8)) >> 8, with seven bits more than bytes have.
-    const torch::Tensor sum = 128 * (color * alpha + 255 * (255 - alpha)) + (0x80 << 7);
-    return sum.bitwise_right_shift(8).add(sum).bitwise_right_shift(8 + 7).to(torch::kUInt8);
+    const at::Tensor sum = 128 * (color * alpha + 255 * (255 - alpha)) + (0x80 << 7);
+    return sum.bitwise_right_shift(8).add(sum).bitwise_right_shift(8 + 7).to(at::kByte);
 }
 
 std::array<double, 3> three_numbers(const Config& config, const std::string& key,
@@ -113,19 +112,16 @@ int edge(const Config& config, const std::string& key, int fallback) {
 
 }  // namespace
 
-torch::Tensor resize_bicubic(const torch::Tensor& bytes, int height, int width) {
-    ITEM3D_CHECK(bytes.dim() == 3 && bytes.scalar_type() == torch::kUInt8,
-                 "wanted bytes [H, W, C]");
+at::Tensor resize_bicubic(const at::Tensor& bytes, int height, int width) {
+    ITEM3D_CHECK(bytes.dim() == 3 && bytes.scalar_type() == at::kByte, "wanted bytes [H, W, C]");
     ITEM3D_CHECK(bytes.numel() > 0 && height > 0 && width > 0, "an empty picture has no size");
     const auto lost_rows = bytes.size(0) - height, lost_columns = bytes.size(1) - width;
-    const auto horizontally = [&](const torch::Tensor& picture) {
-        return resample(picture, width);
-    };
-    const auto vertically = [&](const torch::Tensor& picture) {
+    const auto horizontally = [&](const at::Tensor& picture) { return resample(picture, width); };
+    const auto vertically = [&](const at::Tensor& picture) {
         return resample(picture.view({1, picture.size(0), -1}), height)
             .view({height, picture.size(1), picture.size(2)});
     };
-    const torch::Tensor picture = bytes.cpu().contiguous();
+    const at::Tensor picture = bytes.cpu().contiguous();
     return lost_rows > 0 && lost_rows > 2 * lost_columns ? horizontally(vertically(picture))
                                                          : vertically(horizontally(picture));
 }
@@ -195,31 +191,31 @@ std::array<int, 2> ImageProcessor::output_size(int height, int width) const {
     return resized_size(height, width);
 }
 
-torch::Tensor ImageProcessor::resize(const torch::Tensor& bytes) const {
+at::Tensor ImageProcessor::resize(const at::Tensor& bytes) const {
     ITEM3D_CHECK(bytes.dim() == 3, "a picture must be [H, W, C]");
     const auto [height, width] =
         resized_size(static_cast<int>(bytes.size(0)), static_cast<int>(bytes.size(1)));
     return resize_bicubic(to_rgb(bytes), height, width);
 }
 
-torch::Tensor ImageProcessor::process(const torch::Tensor& bytes) const {
-    return crop_and_normalize(resize(bytes).permute({2, 0, 1}).unsqueeze(0).to(torch::kFloat32) *
+at::Tensor ImageProcessor::process(const at::Tensor& bytes) const {
+    return crop_and_normalize(resize(bytes).permute({2, 0, 1}).unsqueeze(0).to(at::kFloat) *
                               config_.rescale_factor);
 }
 
-torch::Tensor ImageProcessor::process_differentiably(const torch::Tensor& images) const {
+at::Tensor ImageProcessor::process_differentiably(const at::Tensor& images) const {
     ITEM3D_CHECK(images.dim() == 4 && images.size(1) == 3, "images must be [N, 3, H, W]");
     const auto [height, width] =
         resized_size(static_cast<int>(images.size(2)), static_cast<int>(images.size(3)));
     // The filter overshoots at edges; bytes cannot.
-    const torch::Tensor resized =
+    const at::Tensor resized =
         at::_upsample_bicubic2d_aa(images, {height, width}, /*align_corners=*/false).clamp(0, 1);
     return crop_and_normalize(resized * (255 * config_.rescale_factor));
 }
 
 /// planes [N, 3, H, W]. What the crop takes from beyond the picture is black.
-torch::Tensor ImageProcessor::crop_and_normalize(const torch::Tensor& planes) const {
-    torch::Tensor result = planes;
+at::Tensor ImageProcessor::crop_and_normalize(const at::Tensor& planes) const {
+    at::Tensor result = planes;
     if (config_.center_crop) {
         const auto before = [](std::int64_t size, std::int64_t crop) {
             // Half of what is cropped, rounded down; of what is added, rounded up.
@@ -227,13 +223,13 @@ torch::Tensor ImageProcessor::crop_and_normalize(const torch::Tensor& planes) co
         };
         const std::int64_t top = before(planes.size(2), config_.crop_height);
         const std::int64_t left = before(planes.size(3), config_.crop_width);
-        result = torch::constant_pad_nd(planes,
-                                        {left, config_.crop_width - planes.size(3) - left, top,
-                                         config_.crop_height - planes.size(2) - top},
-                                        0);
+        result = at::constant_pad_nd(planes,
+                                     {left, config_.crop_width - planes.size(3) - left, top,
+                                      config_.crop_height - planes.size(2) - top},
+                                     0);
     }
     const auto channel = [&](const std::array<double, 3>& values) {
-        return torch::tensor({values[0], values[1], values[2]}, torch::kFloat64)
+        return at::tensor({values[0], values[1], values[2]}, at::kDouble)
             .to(planes.options().requires_grad(false))
             .view({1, 3, 1, 1});
     };

@@ -3,8 +3,7 @@
 #pragma once
 
 #include "item3d/core/config.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <array>
 #include <filesystem>
@@ -39,20 +38,20 @@ class ImageProcessor {
 
     /// Bytes [H, W, C] (grey or RGB; with alpha, composed over white) -> [1, 3, h, w] float32,
     /// exactly as Pillow resizes them (resize_bicubic).
-    torch::Tensor process(const torch::Tensor& bytes) const;
+    at::Tensor process(const at::Tensor& bytes) const;
     /// The resized bytes [h, w, 3] before cropping and normalising.
-    torch::Tensor resize(const torch::Tensor& bytes) const;
+    at::Tensor resize(const at::Tensor& bytes) const;
 
     /// The same for pictures that need gradients: [N, 3, H, W] sRGB in [0, 1] -> [N, 3, h, w],
     /// without rounding to bytes (which moves values by less than 1 / 255). Differentiable.
-    torch::Tensor process_differentiably(const torch::Tensor& images) const;
+    at::Tensor process_differentiably(const at::Tensor& images) const;
 
     const ImageProcessorConfig& config() const { return config_; }
 
   private:
     std::array<int, 2> resized_size(int height, int width) const;
     std::array<int, 2> output_size(int height, int width) const;
-    torch::Tensor crop_and_normalize(const torch::Tensor& planes) const;
+    at::Tensor crop_and_normalize(const at::Tensor& planes) const;
 
     ImageProcessorConfig config_;
 };
@@ -60,6 +59,6 @@ class ImageProcessor {
 /// Pillow's bicubic resize (a = -0.5, widened when shrinking) of bytes [H, W, C] to [height, width,
 /// C]: two passes, weights in 22-bit fixed point, rounded to bytes after each. Horizontal first,
 /// but (since Pillow 13) where more than twice as many rows go as columns do.
-torch::Tensor resize_bicubic(const torch::Tensor& bytes, int height, int width);
+at::Tensor resize_bicubic(const at::Tensor& bytes, int height, int width);
 
 }  // namespace item3d

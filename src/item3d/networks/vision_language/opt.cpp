@@ -30,15 +30,15 @@ class OptModelImpl::Layer : public nn::Module {
         feed_out_ = register_module("fc2", torch::nn::Linear(config.ffn_dim, width));
         norm2_ = register_module("final_layer_norm", norm());
     }
-    torch::Tensor forward(torch::Tensor x, const torch::Tensor& mask, KeyValues* cache) {
-        const torch::Tensor normed = norm1_(x);
+    at::Tensor forward(at::Tensor x, const at::Tensor& mask, KeyValues* cache) {
+        const at::Tensor normed = norm1_(x);
         KeyValues all{key_(normed), value_(normed)};
         if (cache) {
             cache->append(all.keys, all.values);
             all = *cache;
         }
         x = x + output_(attention(query_(normed), all.keys, all.values, heads_, mask));
-        return x + feed_out_(torch::relu(feed_in_(norm2_(x))));
+        return x + feed_out_(at::relu(feed_in_(norm2_(x))));
     }
 
   private:
@@ -69,17 +69,17 @@ OptModelImpl::OptModelImpl(const OptConfig& config) : config_(config) {
     register_module("model", model);
 }
 
-torch::Tensor OptModelImpl::forward(const torch::Tensor& embeddings, const torch::Tensor& visible,
-                                    KeyValueCache* cache) {
+at::Tensor OptModelImpl::forward(const at::Tensor& embeddings, const at::Tensor& visible,
+                                 KeyValueCache* cache) {
     const auto before = cache ? cache->length() : 0;
     const auto count = embeddings.size(1);
     ITEM3D_CHECK(visible.size(1) == before + count, "visible must cover what was read and x");
     ITEM3D_CHECK(before + count <= config_.max_position_embeddings, "the text is too long");
     if (cache) cache->layers.resize(layers_.size());
-    const torch::Tensor positions =
+    const at::Tensor positions =
         (visible.cumsum(1) * visible - 1 + position_offset).narrow(1, before, count);
-    const torch::Tensor mask = causal_mask(visible, count);
-    torch::Tensor x = embeddings + positions_(positions);
+    const at::Tensor mask = causal_mask(visible, count);
+    at::Tensor x = embeddings + positions_(positions);
     for (std::size_t i = 0; i < layers_.size(); ++i)
         x = layers_[i]->forward(x, mask, cache ? &cache->layers[i] : nullptr);
     return final_norm_(x);

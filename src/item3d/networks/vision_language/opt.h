@@ -4,11 +4,11 @@
 
 #include "item3d/core/config.h"
 #include "item3d/networks/layers/key_value_cache.h"
+#include "item3d/tensors/tensor.h"
 
 #include <torch/nn/modules/embedding.h>
 #include <torch/nn/modules/linear.h>
 #include <torch/nn/modules/normalization.h>
-#include <torch/types.h>
 
 #include <memory>
 #include <vector>
@@ -35,16 +35,14 @@ class OptModelImpl : public torch::nn::Module {
     explicit OptModelImpl(const OptConfig& config);
 
     /// ids [N, S] -> [N, S, hidden_size].
-    torch::Tensor embed(const torch::Tensor& ids) { return words_(ids); }
+    at::Tensor embed(const at::Tensor& ids) { return words_(ids); }
     /// Embeddings [N, S, hidden_size] of tokens that follow those in `cache` (may be null) ->
     /// states of the same shape. visible [N, before + S] int64: 1, or 0 for padding, which no token
     /// sees and which counts no position.
-    torch::Tensor forward(const torch::Tensor& embeddings, const torch::Tensor& visible,
-                          KeyValueCache* cache = nullptr);
+    at::Tensor forward(const at::Tensor& embeddings, const at::Tensor& visible,
+                       KeyValueCache* cache = nullptr);
     /// States -> logits of the next token [N, S, vocab_size].
-    torch::Tensor logits(const torch::Tensor& states) const {
-        return at::linear(states, words_->weight);
-    }
+    at::Tensor logits(const at::Tensor& states) const { return at::linear(states, words_->weight); }
 
     const OptConfig& config() const { return config_; }
 

@@ -27,6 +27,8 @@ struct PictureWords {
 
 /// No caption has more words than that, as the tokenizer counts them.
 inline constexpr std::size_t longest_caption = 22;
+/// What prompts are cut to: the longest caption and the tokens at its ends.
+inline constexpr int text_length = longest_caption + 2;
 
 /// "a photo of a wooden mug with a red handle at sunset", in many orders and words. One caption in
 /// eight says "object" for the noun.

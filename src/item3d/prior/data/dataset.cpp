@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/prior/data/captions.h"
 #include "item3d/prior/data/shapes/shapes.h"
+#include "item3d/render/pictures.h"
 #include "item3d/render/shade.h"
 
 #include <algorithm>
@@ -35,12 +36,12 @@ Background random_background(Random& random, const std::string& light) {
     return {glm::clamp(color, 0.0f, 1.0f), glm::clamp(other, 0.0f, 1.0f)};
 }
 
-torch::Tensor to_image(const ShapeView& view, const torch::Tensor& encoded,
-                       const Background& background, bool mirrored, torch::Tensor& covered) {
+at::Tensor to_image(const ShapeView& view, const at::Tensor& encoded, const Background& background,
+                    bool mirrored, at::Tensor& covered) {
     const int size = view.size / view_samples;
     constexpr float share = 1.0f / (view_samples * view_samples);
-    torch::Tensor image = torch::empty({size, size, 3});
-    covered = torch::zeros({size, size});
+    at::Tensor image = at::empty({size, size, 3});
+    covered = at::zeros({size, size});
     auto* out = image.data_ptr<float>();
     auto* cover = covered.data_ptr<float>();
     std::vector<Vec3> sum(static_cast<std::size_t>(size) * size, Vec3(0.0f));
@@ -97,13 +98,13 @@ void fill_points(const ShapeView& view, const ProceduralMaterial& rest, const Pa
                  std::size_t part_index, const SkyLight& sky, float shadow, Surface& surface,
                  MaterialSample& sample) {
     const auto count = static_cast<std::int64_t>(view.count());
-    surface.pixel = torch::empty({count}, torch::kInt64);  // says how many points there are
-    surface.position = torch::empty({count, 3});
-    surface.normal = torch::empty({count, 3});
-    surface.view = torch::empty({count, 3});
-    surface.tangent = torch::zeros({count, 4});
-    sample.base_color = torch::empty({count, 3});
-    sample.orm = torch::empty({count, 3});
+    surface.pixel = at::empty({count}, at::kLong);  // says how many points there are
+    surface.position = at::empty({count, 3});
+    surface.normal = at::empty({count, 3});
+    surface.view = at::empty({count, 3});
+    surface.tangent = at::zeros({count, 4});
+    sample.base_color = at::empty({count, 3});
+    sample.orm = at::empty({count, 3});
     auto* position = surface.position.data_ptr<float>();
     auto* normal = surface.normal.data_ptr<float>();
     auto* direction = surface.view.data_ptr<float>();
@@ -159,7 +160,7 @@ Example ExampleSource::draw(std::int64_t index) const {
 Example draw_example(Random& random, const ShapeView& view,
                      const std::vector<TrainingLight>& lights, const ExampleWish& wish) {
     ITEM3D_CHECK(wish.light || !lights.empty(), "an example needs a light");
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const ProceduralMaterial material = make_material(random, wish.material);
     const TrainingLight& light = wish.light ? *wish.light
                                             : lights[static_cast<std::size_t>(random.index(
@@ -176,8 +177,8 @@ Example draw_example(Random& random, const ShapeView& view,
     Surface surface;
     MaterialSample sample;
     fill_points(view, material, own, part_index, light.sky, shadow, surface, sample);
-    const torch::Tensor radiance = shade(surface, sample, light.light) * exposure;
-    const torch::Tensor encoded = linear_to_srgb(radiance.clamp(0, 1)).contiguous();
+    const at::Tensor radiance = shade(surface, sample, light.light) * exposure;
+    const at::Tensor encoded = linear_to_srgb(radiance.clamp(0, 1)).contiguous();
 
     Background background = random_background(random, light.kind);
     if (wish.plain_background) background = {Vec3(.8f), Vec3(.8f)};

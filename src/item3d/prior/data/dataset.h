@@ -5,8 +5,7 @@
 #include "item3d/prior/data/lights.h"
 #include "item3d/prior/data/materials/materials.h"
 #include "item3d/prior/data/views.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <cstdint>
 #include <string>
@@ -19,9 +18,9 @@ inline constexpr double two_part_share = .4;
 
 /// A picture with its caption and what is on it.
 struct Example {
-    torch::Tensor image;    ///< [S, S, 3] float32, sRGB in [0, 1]
-    torch::Tensor cells;    ///< as ShapeView::cells
-    torch::Tensor covered;  ///< [S, S] float32, part of the pixel that is object
+    at::Tensor image;    ///< [S, S, 3] float32, sRGB in [0, 1]
+    at::Tensor cells;    ///< as ShapeView::cells
+    at::Tensor covered;  ///< [S, S] float32, part of the pixel that is object
     std::string caption;
     PictureFacts facts;
     std::string material;  ///< ProceduralMaterial::kind

@@ -24,17 +24,17 @@ fs::path facts_file(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-torch::Tensor LabeledPictures::pixel_values(const std::vector<std::int64_t>& rows) const {
-    return images.index_select(0, torch::tensor(rows))
+at::Tensor LabeledPictures::pixel_values(const std::vector<std::int64_t>& rows) const {
+    return images.index_select(0, at::tensor(rows))
         .permute({0, 3, 1, 2})
-        .to(torch::kFloat32)
+        .to(at::kFloat)
         .div(127.5)
         .sub(1);
 }
 
 LabeledPictures draw_labeled(const ExampleSource& source, std::int64_t count, int threads) {
     LabeledPictures result;
-    result.images = torch::empty({count, picture_size, picture_size, 3}, torch::kUInt8);
+    result.images = at::empty({count, picture_size, picture_size, 3}, at::kByte);
     result.facts.resize(static_cast<std::size_t>(count));
     Progress progress("pictures", count);
     std::atomic<std::int64_t> done = 0;

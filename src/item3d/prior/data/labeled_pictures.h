@@ -3,8 +3,7 @@
 
 #include "item3d/prior/data/dataset.h"
 #include "item3d/prior/data/labels.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <filesystem>
 #include <vector>
@@ -12,12 +11,12 @@
 namespace item3d {
 
 struct LabeledPictures {
-    torch::Tensor images;             ///< [N, picture_size, picture_size, 3] uint8 sRGB
+    at::Tensor images;                ///< [N, picture_size, picture_size, 3] uint8 sRGB
     std::vector<PictureFacts> facts;  ///< N
 
     std::int64_t count() const { return images.size(0); }
     /// Rows [R] as networks want them: [R, 3, picture_size, picture_size] float32 in [-1, 1].
-    torch::Tensor pixel_values(const std::vector<std::int64_t>& rows) const;
+    at::Tensor pixel_values(const std::vector<std::int64_t>& rows) const;
 };
 
 /// The source's first `count` examples, on `threads` threads. Incomplete after an interrupt.

@@ -1,6 +1,7 @@
 #include "item3d/prior/data/labels.h"
 
 #include "item3d/prior/data/captions.h"
+#include "item3d/prior/data/materials/colors.h"
 
 #include <algorithm>
 #include <set>

@@ -174,7 +174,7 @@ void normalise(EnvironmentLight& light, float brightest) {
     const auto luminance = light.diffuse.mean(-1).max().item<float>();
     const float factor = brightest / std::max(luminance, 1e-6f);
     light.diffuse = light.diffuse * factor;
-    for (torch::Tensor& level : light.specular)
+    for (at::Tensor& level : light.specular)
         level = level * factor;
 }
 
@@ -278,7 +278,7 @@ TrainingLight make_training_light(Random& random, const std::string& kind, int s
     const LightKind& known = light_named(kind);
     const Image map = known.draw(random);
     const float brightest = draw(random, known.low, known.high);
-    torch::NoGradGuard no_grad;
+    at::NoGradGuard no_grad;
     TrainingLight result{kind, known.phrases, prefilter(map, size), sky_light(map)};
     normalise(result.light, brightest);
     return result;

@@ -7,8 +7,9 @@
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/prior/data/sky_visibility.h"
 #include "item3d/prior/data/workers.h"
+#include "item3d/render/interpolate.h"
 #include "item3d/render/rasterize.h"
-#include "item3d/render/shade.h"
+#include "item3d/render/scatter.h"
 #include "item3d/scene/camera.h"
 
 #include <algorithm>
@@ -77,7 +78,7 @@ std::int16_t pack(float value) {
 
 std::vector<ShapeView> make_views(const std::string& shape_class, int variant, int count,
                                   std::uint64_t seed, int resolution, int picture) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const Shape shape = make_shape(shape_class, variant);
     const Polygonized mesh =
         polygonize([&](const Vec3& p) { return shape.distance(p); }, resolution);
@@ -97,11 +98,11 @@ std::vector<ShapeView> make_views(const std::string& shape_class, int variant, i
     }
     const Raster raster = rasterize(geometry, cameras, size, size);
     const Surface surface = interpolate_surface(geometry, raster, cameras);
-    const auto image_of = [&](const torch::Tensor& values) {
-        return scatter(values, surface, raster, torch::zeros({3}));
+    const auto image_of = [&](const at::Tensor& values) {
+        return scatter(values, surface, raster, at::zeros({3}));
     };
     const SeenShape seen{raster.depth, image_of(surface.position), image_of(surface.normal)};
-    const torch::Tensor cells = shape_cells(seen, size / latent_size);  // [N, 7, h, w]
+    const at::Tensor cells = shape_cells(seen, size / latent_size);  // [N, 7, h, w]
 
     for (std::size_t i = 0; i < views.size(); ++i) {
         views[i].shape_class = index;
@@ -110,12 +111,12 @@ std::vector<ShapeView> make_views(const std::string& shape_class, int variant, i
         views[i].camera = cameras[i].position();
         for (const ShapePart& part : shape.parts)
             views[i].parts.push_back(part.noun);
-        views[i].cells = cells[static_cast<std::int64_t>(i)].to(torch::kHalf).contiguous();
+        views[i].cells = cells[static_cast<std::int64_t>(i)].to(at::kHalf).contiguous();
     }
     SkyVisibility sky(geometry);
-    const torch::Tensor pixels = surface.pixel.contiguous();
-    const torch::Tensor positions = surface.position.contiguous();
-    const torch::Tensor normals = surface.normal.contiguous();
+    const at::Tensor pixels = surface.pixel.contiguous();
+    const at::Tensor positions = surface.position.contiguous();
+    const at::Tensor normals = surface.normal.contiguous();
     const auto* pixel = pixels.data_ptr<std::int64_t>();
     const auto* position = positions.data_ptr<float>();
     const auto* normal = normals.data_ptr<float>();

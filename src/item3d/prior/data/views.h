@@ -3,8 +3,7 @@
 
 #include "item3d/core/math.h"
 #include "item3d/core/random.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <array>
 #include <cstdint>
@@ -36,8 +35,8 @@ struct ShapeView {
     std::vector<std::uint8_t> part;      ///< [P] index into parts
     std::vector<std::uint32_t> sky;      ///< [P] what it sees of the sky (sky_visibility.h)
     /// [shape_cell_channels, latent_size, latent_size] fp16, shape_cells() of
-    /// models/shape_condition.h
-    torch::Tensor cells;
+    /// networks/diffusion/shape_condition.h
+    at::Tensor cells;
 
     std::size_t count() const { return pixel.size(); }
     Vec3 position_at(std::size_t i) const {

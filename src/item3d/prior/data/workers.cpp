@@ -1,11 +1,11 @@
 #include "item3d/prior/data/workers.h"
 
 #include "item3d/core/progress.h"
+#include "item3d/tensors/tensor.h"
 
 #include <ATen/Parallel.h>
 #include <malloc.h>
 #include <omp.h>
-#include <torch/types.h>
 
 #include <atomic>
 #include <exception>
@@ -41,7 +41,7 @@ void run_ranks(int threads, const std::function<void(int)>& body) {
 void run_workers(std::int64_t count, int threads, const std::function<void(std::int64_t)>& work) {
     std::atomic<std::int64_t> next = 0;
     run_ranks(threads, [&](int) {
-        torch::NoGradGuard no_grad;
+        at::NoGradGuard no_grad;
         try {
             for (std::int64_t i = next++; i < count && !interrupted(); i = next++)
                 work(i);

@@ -6,6 +6,7 @@
 #include "item3d/core/words.h"
 #include "item3d/networks/diffusion/shape_condition.h"
 #include "item3d/prior/data/captions.h"
+#include "item3d/prior/data/materials/colors.h"
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/prior/data/workers.h"
 
@@ -123,7 +124,7 @@ std::vector<std::size_t> draw_candidates(Random& random,
 
 class Measurement {
   public:
-    Measurement(const Pipeline& pipeline, const std::vector<ShapeView>& views,
+    Measurement(const DiffusionModel& pipeline, const std::vector<ShapeView>& views,
                 const MeasureOptions& options)
         : pipeline_(pipeline), options_(options), views_(views) {
         for (const std::string& kind : light_kinds()) {
@@ -222,32 +223,32 @@ class Measurement {
         }
         const Example example = draw_example(random, view, {}, wish);
         const auto rows = static_cast<std::int64_t>(captions.size());
-        const torch::Tensor image = example.image.permute({2, 0, 1}).unsqueeze(0) * 2 - 1;
-        const torch::Tensor latents = pipeline_.encode_image(image).expand({rows, -1, -1, -1});
+        const at::Tensor image = example.image.permute({2, 0, 1}).unsqueeze(0) * 2 - 1;
+        const at::Tensor latents = pipeline_.encode_image(image).expand({rows, -1, -1, -1});
         const TextEmbedding text = pipeline_.encode_text(captions);
-        torch::Tensor condition;
+        at::Tensor condition;
         // With the depth the noun hardly matters: objects are told by the picture alone.
         if (takes_shape(pipeline_)) {
-            condition = shape_condition(example.cells.to(torch::kFloat32).unsqueeze(0),
+            condition = shape_condition(example.cells.to(at::kFloat).unsqueeze(0),
                                         pipeline_.condition_channels());
-            if (!entry.shape_class.empty()) condition = torch::zeros_like(condition);
+            if (!entry.shape_class.empty()) condition = at::zeros_like(condition);
         }
-        torch::Tensor loss = torch::zeros({rows});
+        at::Tensor loss = at::zeros({rows});
         auto generator = at::detail::createCPUGenerator(random.bits());
         for (std::int64_t t = 50; t < 1000; t += 100) {
             const auto noise =
-                torch::randn({1, latents.size(1), latents.size(2), latents.size(3)}, generator)
+                at::randn({1, latents.size(1), latents.size(2), latents.size(3)}, generator)
                     .expand_as(latents);
-            const torch::Tensor times = torch::full({rows}, t, torch::kInt64);
-            const torch::Tensor noisy = pipeline_.scheduler.add_noise(latents, noise, times);
-            const torch::Tensor guess = pipeline_.predict_noise(noisy, times, text, condition);
+            const at::Tensor times = at::full({rows}, t, at::kLong);
+            const at::Tensor noisy = pipeline_.schedule().add_noise(latents, noise, times);
+            const at::Tensor guess = pipeline_.predict_noise(noisy, times, text, condition);
             loss += (guess - noise).square().mean({1, 2, 3});
         }
         return {candidates[static_cast<std::size_t>(loss.argmin().item<std::int64_t>())],
                 shape.held_out};
     }
 
-    const Pipeline& pipeline_;
+    const DiffusionModel& pipeline_;
     MeasureOptions options_;
     const std::vector<ShapeView>& views_;
     std::map<std::string, TrainingLight> lights_;
@@ -261,8 +262,9 @@ const std::vector<VocabularyEntry>& prior_vocabulary() {
     return entries;
 }
 
-std::vector<ShapeView> held_out_views(const Pipeline& pipeline, std::uint64_t seed, int threads) {
-    const int edge = pipeline.unet->config().sample_size * pipeline.downscale();
+std::vector<ShapeView> held_out_views(const DiffusionModel& pipeline, std::uint64_t seed,
+                                      int threads) {
+    const int edge = pipeline.native_size();
     if (edge != 64 && edge != 128)
         throw InputError(
             "the prior",
@@ -272,7 +274,7 @@ std::vector<ShapeView> held_out_views(const Pipeline& pipeline, std::uint64_t se
     return make_view_pool(true, shape_variants, 6, mix_bits(seed), threads, edge);
 }
 
-nlohmann::json measure_prior(const Pipeline& pipeline, const std::vector<ShapeView>& views,
+nlohmann::json measure_prior(const DiffusionModel& pipeline, const std::vector<ShapeView>& views,
                              const MeasureOptions& options) {
     std::vector<VocabularyEntry> all;
     for (const VocabularyEntry& entry : prior_vocabulary())

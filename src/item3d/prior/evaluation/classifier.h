@@ -2,7 +2,7 @@
 // Model is Secretly a Zero-Shot Classifier") on renders of shapes that were held out.
 #pragma once
 
-#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/diffusion_model.h"
 #include "item3d/prior/data/dataset.h"
 
 #include <nlohmann/json.hpp>
@@ -42,7 +42,8 @@ struct MeasureOptions {
 /// Views of shapes that were never trained on, of the size of the prior's pictures: six of each
 /// held-out variant, and of each variant of the held-out classes. Throws InputError for a prior
 /// whose pictures are not of 64 or 128 pixels.
-std::vector<ShapeView> held_out_views(const Pipeline& pipeline, std::uint64_t seed, int threads);
+std::vector<ShapeView> held_out_views(const DiffusionModel& pipeline, std::uint64_t seed,
+                                      int threads);
 
 /// Which caption of a kind gives the lowest denoising loss on a picture of each of its words, the
 /// right one or that of a rival? A word for many things has none of them as a rival: oak is wood.
@@ -50,7 +51,7 @@ std::vector<ShapeView> held_out_views(const Pipeline& pipeline, std::uint64_t se
 /// "kinds": {kind: {"words", "accuracy", "on_new_classes"?}}, "accuracy": mean over all}.
 /// "on_new_classes" is of those pictures alone whose whole class was never trained on. The pictures
 /// are of `views`, with their depth as the condition for all kinds but objects.
-nlohmann::json measure_prior(const Pipeline& pipeline, const std::vector<ShapeView>& views,
+nlohmann::json measure_prior(const DiffusionModel& pipeline, const std::vector<ShapeView>& views,
                              const MeasureOptions& options = {});
 
 }  // namespace item3d

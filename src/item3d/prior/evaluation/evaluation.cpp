@@ -5,12 +5,12 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/save.h"
+#include "item3d/networks/diffusion/pipeline.h"
 #include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/evaluation/classifier.h"
+#include "item3d/prior/evaluation/evaluation_pictures.h"
 #include "item3d/prior/evaluation/vision_language_accuracy.h"
-#include "item3d/prior/training/export.h"
-#include "item3d/prior/training/train.h"
-#include "item3d/prior/training/vision_language.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
 #include "item3d/report/html.h"
@@ -194,7 +194,7 @@ nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,
     const Pipeline pipeline = Pipeline::load(folder);
     MeasureOptions measure;
     measure.pictures = options.word_pictures;
-    measure.words = trained_words(folder, *pipeline.tokenizer);
+    measure.words = trained_words(folder, pipeline.tokenizer());
     measure.seed = options.seed;
     measure.threads = options.threads;
     const std::vector<ShapeView> views = held_out_views(pipeline, options.seed, options.threads);

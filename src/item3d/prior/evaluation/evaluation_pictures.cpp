@@ -1,12 +1,14 @@
+#include "item3d/prior/evaluation/evaluation_pictures.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/networks/diffusion/generate.h"
 #include "item3d/networks/diffusion/generate_defaults.h"
 #include "item3d/networks/diffusion/shape_condition.h"
 #include "item3d/prior/data/captions.h"
 #include "item3d/prior/data/dataset.h"
 #include "item3d/prior/data/shapes/shapes.h"
-#include "item3d/prior/evaluation/evaluation.h"
-#include "item3d/render/shade.h"
+#include "item3d/render/pictures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,11 +55,11 @@ std::vector<std::string> sample_materials(const std::set<std::string>& words, in
 }
 
 /// [N, 3, H, W] in [0, 1].
-torch::Tensor stack_images(const std::vector<Image>& images) {
-    std::vector<torch::Tensor> all;
+at::Tensor stack_images(const std::vector<Image>& images) {
+    std::vector<at::Tensor> all;
     for (const Image& image : images)
         all.push_back(to_tensor(image).permute({2, 0, 1}));
-    return torch::stack(all);
+    return at::stack(all);
 }
 
 /// A held-out shape of that class, all of it.
@@ -70,17 +72,17 @@ ShapeView whole_view(const std::string& object, std::uint64_t seed) {
 
 }  // namespace
 
-SampleGrid draw_samples(const std::filesystem::path& prior, const Pipeline& pipeline,
+SampleGrid draw_samples(const std::filesystem::path& prior, const DiffusionModel& pipeline,
                         const std::set<std::string>& words, int side, bool with_shape,
                         std::uint64_t seed) {
     SampleGrid grid;
     grid.objects = sample_objects(words, side);
     grid.materials = sample_materials(words, side);
-    std::vector<torch::Tensor> conditions;
+    std::vector<at::Tensor> conditions;
     if (with_shape)
         for (const std::string& object : grid.objects)
             conditions.push_back(
-                shape_condition(whole_view(object, seed).cells.to(torch::kFloat32).unsqueeze(0),
+                shape_condition(whole_view(object, seed).cells.to(at::kFloat).unsqueeze(0),
                                 pipeline.condition_channels()));
     GenerateOptions options = generate_defaults(prior, pipeline);
     options.show_progress = false;
@@ -92,8 +94,8 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const Pipeline& pipe
             fill_in(prompt, "{o}", grid.objects[column]);
             options.prompt = mend_articles(prompt);
             options.seed = seed + grid.prompts.size();
-            const torch::Tensor picture =
-                generate(pipeline, options, with_shape ? conditions[column] : torch::Tensor());
+            const at::Tensor picture =
+                generate(pipeline, options, with_shape ? conditions[column] : at::Tensor());
             grid.prompts.push_back(options.prompt);
             grid.pictures.push_back(to_image(picture[0]));
             progress.update(static_cast<std::int64_t>(grid.prompts.size()));
@@ -103,16 +105,16 @@ SampleGrid draw_samples(const std::filesystem::path& prior, const Pipeline& pipe
 }
 
 nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid) {
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor pictures = clip.embed_images(stack_images(grid.pictures));
-    const torch::Tensor cosines = pictures.mm(clip.embed_texts(grid.prompts).t());
+    const at::NoGradGuard no_grad;
+    const at::Tensor pictures = clip.embed_images(stack_images(grid.pictures));
+    const at::Tensor cosines = pictures.mm(clip.embed_texts(grid.prompts).t());
     const auto count = static_cast<std::int64_t>(grid.prompts.size());
     const auto columns = static_cast<std::int64_t>(grid.objects.size());
-    const torch::Tensor truth = torch::arange(count), found = cosines.argmax(1);
-    const auto part = [](const torch::Tensor& right) {
-        return std::round(1000 * right.to(torch::kFloat64).mean().item<double>()) / 1000;
+    const at::Tensor truth = at::arange(count), found = cosines.argmax(1);
+    const auto part = [](const at::Tensor& right) {
+        return std::round(1000 * right.to(at::kDouble).mean().item<double>()) / 1000;
     };
-    const auto row = [&](const torch::Tensor& index) { return index.div(columns, "floor"); };
+    const auto row = [&](const at::Tensor& index) { return index.div(columns, "floor"); };
     return {{"pictures", count},
             {"right", part(found == truth)},
             {"object_right", part(found.remainder(columns) == truth.remainder(columns))},
@@ -120,11 +122,11 @@ nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid) {
             {"similarity", cosines.diagonal().mean().item<double>()}};
 }
 
-ReconstructionMeasure measure_autoencoder(const Pipeline& pipeline,
+ReconstructionMeasure measure_autoencoder(const DiffusionModel& pipeline,
                                           const std::vector<ShapeView>& views, int pictures,
                                           std::uint64_t seed) {
     constexpr int shown = 12;
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const std::vector<TrainingLight> lights =
         make_training_lights(mix_bits(seed + 2), std::min(pictures, 32), 1);
     ReconstructionMeasure measure;
@@ -134,10 +136,9 @@ ReconstructionMeasure measure_autoencoder(const Pipeline& pipeline,
         const auto view =
             static_cast<std::size_t>(random.index(static_cast<std::int64_t>(views.size())));
         const Example example = draw_example(random, views[view], lights);
-        const torch::Tensor image = example.image.permute({2, 0, 1}).unsqueeze(0) * 2 - 1;
-        const torch::Tensor decoded =
-            pipeline.decode_image(pipeline.encode_image(image)).clamp(-1, 1);
-        const torch::Tensor error = ((decoded - image) / 2).square().mean(1)[0];
+        const at::Tensor image = example.image.permute({2, 0, 1}).unsqueeze(0) * 2 - 1;
+        const at::Tensor decoded = pipeline.decode_image(pipeline.encode_image(image)).clamp(-1, 1);
+        const at::Tensor error = ((decoded - image) / 2).square().mean(1)[0];
         squares += error.mean().item<double>();
         object_squares += (error * example.covered).sum().item<double>();
         object_weight += example.covered.sum().item<double>();

@@ -79,10 +79,10 @@ LabeledPictures draw_held_out(std::uint64_t seed, std::int64_t count, int views_
 
 RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledPictures& pictures,
                                     int candidates) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     RetrievalAccuracy result;
     result.candidates = candidates;
-    const torch::Tensor own = torch::arange(candidates);
+    const at::Tensor own = at::arange(candidates);
     std::int64_t next = 0;
     for (;;) {
         const std::vector<std::int64_t> rows = distinct_pictures(pictures, next, candidates);
@@ -90,11 +90,11 @@ RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledPictures& pic
         std::vector<std::string> captions;
         for (const std::int64_t row : rows)
             captions.push_back(plain_claim(pictures.facts[static_cast<std::size_t>(row)]).text());
-        const torch::Tensor images = pictures.pixel_values(rows) * .5 + .5;
-        const torch::Tensor cosines =
+        const at::Tensor images = pictures.pixel_values(rows) * .5 + .5;
+        const at::Tensor cosines =
             clip.embed_images(images).mm(clip.embed_texts(captions).t()).cpu();
         const auto right = [&](std::int64_t dimension) {
-            return cosines.argmax(dimension).eq(own).to(torch::kFloat64).mean().item<double>();
+            return cosines.argmax(dimension).eq(own).to(at::kDouble).mean().item<double>();
         };
         result.picture_to_caption += right(1);
         result.caption_to_picture += right(0);
@@ -155,7 +155,7 @@ LabeledModels draw_held_out_models(std::uint64_t seed, std::int64_t count, int v
         for (const ShapeView& side : sides) {
             Random same = random;  // the same materials from all sides
             Example example = draw_example(same, side, {}, wish);
-            models.views[model].push_back((example.image * 255).round().to(torch::kUInt8));
+            models.views[model].push_back((example.image * 255).round().to(at::kByte));
             models.facts[model] = std::move(example.facts);
         }
         const std::lock_guard lock(mutex);

@@ -5,6 +5,7 @@
 #include "item3d/networks/vision_language/captioner.h"
 #include "item3d/networks/vision_language/clip_model.h"
 #include "item3d/prior/data/labeled_pictures.h"
+#include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>
 
@@ -32,7 +33,7 @@ void to_json(nlohmann::json& json, const RetrievalAccuracy& accuracy);
 RetrievalAccuracy measure_retrieval(const Clip& clip, const LabeledPictures& pictures,
                                     int candidates = 100);
 
-/// Parts of the pictures, or models, whose caption names the right ... (facts.h, judge_caption).
+/// Parts of the pictures, or models, whose caption names the right ... (labels.h, judge_caption).
 struct CaptionAccuracy {
     std::int64_t count = 0;  ///< of captions
     double object = 0;
@@ -49,8 +50,8 @@ CaptionAccuracy measure_captions(const Captioner& captioner, const LabeledPictur
 
 /// Models as `item3d caption` looks at one: views of the same thing, and what is true of it.
 struct LabeledModels {
-    std::vector<std::vector<torch::Tensor>> views;  ///< [N][V] of [S, S, 3] uint8 sRGB
-    std::vector<PictureFacts> facts;                ///< [N]
+    std::vector<std::vector<at::Tensor>> views;  ///< [N][V] of [S, S, 3] uint8 sRGB
+    std::vector<PictureFacts> facts;             ///< [N]
 };
 
 /// `count` shapes that are never trained on, in random materials by the proportions of the

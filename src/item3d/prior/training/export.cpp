@@ -3,7 +3,9 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/pipeline_folder.h"
 #include "item3d/prior/data/materials/materials.h"
+#include "item3d/prior/data/prior_folder.h"
 
 #include <set>
 
@@ -98,20 +100,6 @@ void export_diffusion(const fs::path& folder, const UNet2DCondition& unet,
                                {"defaults", edit_defaults(resolution)},
                                // Stronger guidance burns the small prior's colours out.
                                {"generate", {{"steps", 30}, {"guidance_scale", 3.5}}}});
-}
-
-nlohmann::json read_prior_json(const fs::path& folder) {
-    const fs::path file = folder / "prior.json";
-    if (!fs::exists(file)) return nlohmann::json::object();
-    nlohmann::json prior = nlohmann::json::parse(read_text(file), nullptr, false);
-    return prior.is_object() ? prior : nlohmann::json::object();
-}
-
-nlohmann::json update_prior_json(const fs::path& folder, const nlohmann::json& members) {
-    nlohmann::json prior = read_prior_json(folder);
-    prior.update(members);
-    write_json(folder / "prior.json", prior);
-    return prior;
 }
 
 }  // namespace item3d

@@ -1,7 +1,7 @@
 // The prior as a folder in the diffusers layout, weights in fp16.
 #pragma once
 
-#include "item3d/networks/diffusion/autoencoder.h"
+#include "item3d/networks/diffusion/autoencoder_tiny.h"
 #include "item3d/networks/diffusion/scheduler_config.h"
 #include "item3d/networks/diffusion/unet.h"
 #include "item3d/networks/vision_language/clip_text.h"
@@ -23,13 +23,5 @@ void export_autoencoder(const std::filesystem::path& folder, const AutoencoderTi
 void export_diffusion(const std::filesystem::path& folder, const UNet2DCondition& unet,
                       const ClipTextModel& text, const SchedulerConfig& scheduler, int resolution,
                       const nlohmann::json& train);
-
-/// The folder's prior.json; an empty object where there is none or no object in it.
-nlohmann::json read_prior_json(const std::filesystem::path& folder);
-
-/// Puts these members into the folder's prior.json, which is made if there is none; others are
-/// kept. Returns what it then holds.
-nlohmann::json update_prior_json(const std::filesystem::path& folder,
-                                 const nlohmann::json& members);
 
 }  // namespace item3d

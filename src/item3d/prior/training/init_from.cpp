@@ -2,10 +2,13 @@
 
 #include "item3d/core/config.h"
 #include "item3d/core/error.h"
-#include "item3d/prior/training/export.h"
-#include "item3d/prior/training/train.h"
-#include "item3d/prior/training/vision_language.h"
-#include "item3d/text/caption_tokenizer.h"
+#include "item3d/prior/data/prior_folder.h"
+#include "item3d/prior/training/settings.h"
+#include "item3d/prior/training/train_autoencoder.h"
+#include "item3d/prior/training/train_captioner.h"
+#include "item3d/prior/training/train_clip.h"
+#include "item3d/prior/training/train_diffusion.h"
+#include "item3d/text/bert_tokenizer.h"
 #include "item3d/text/clip_tokenizer.h"
 
 namespace item3d {
@@ -19,21 +22,21 @@ constexpr const char* size_hint =
 constexpr const char* reader_hint = "train this part without --begin-with";
 
 /// A U-Net that was told less than `to` gets weights of 0 for the rest: it begins as it was.
-torch::Tensor with_more_inputs(const torch::Tensor& weight, const torch::Tensor& to) {
+at::Tensor with_more_inputs(const at::Tensor& weight, const at::Tensor& to) {
     const std::int64_t more = to.size(1) - weight.size(1);
-    return more > 0 ? torch::constant_pad_nd(weight, {0, 0, 0, 0, 0, more}) : weight;
+    return more > 0 ? at::constant_pad_nd(weight, {0, 0, 0, 0, 0, more}) : weight;
 }
 
 void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::nn::Module& to,
                   const char* hint = size_hint) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     auto given = from.named_parameters();
     auto wanted = to.named_parameters();
-    if (torch::Tensor* input = given.find("conv_in.weight"))
+    if (at::Tensor* input = given.find("conv_in.weight"))
         *input = with_more_inputs(*input, wanted["conv_in.weight"]);
     bool fits = given.size() == wanted.size();
     for (const auto& item : wanted) {
-        const torch::Tensor* value = given.find(item.key());
+        const at::Tensor* value = given.find(item.key());
         fits = fits && value && value->sizes() == item.value().sizes();
     }
     if (!fits) throw InputError(folder.string(), another_size, hint);

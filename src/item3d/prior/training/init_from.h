@@ -1,7 +1,7 @@
 // What a training takes over from a prior that is there already.
 #pragma once
 
-#include "item3d/networks/diffusion/autoencoder.h"
+#include "item3d/networks/diffusion/autoencoder_tiny.h"
 #include "item3d/networks/diffusion/unet.h"
 #include "item3d/networks/vision_language/blip.h"
 #include "item3d/networks/vision_language/clip_model.h"

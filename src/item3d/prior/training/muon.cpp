@@ -8,19 +8,19 @@
 
 namespace item3d {
 
-torch::Tensor orthogonalized(const torch::Tensor& matrix) {
+at::Tensor orthogonalized(const at::Tensor& matrix) {
     ITEM3D_CHECK(matrix.dim() == 2, "a matrix is needed");
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     const bool tall = matrix.size(0) > matrix.size(1);
-    const torch::Tensor wide = tall ? matrix.t() : matrix;
-    torch::Tensor x =
-        (wide / (wide.norm() + 1e-7)).to(choose_precision("auto", torch::kCPU)).contiguous();
+    const at::Tensor wide = tall ? matrix.t() : matrix;
+    at::Tensor x =
+        (wide / (wide.norm() + 1e-7)).to(choose_precision("auto", at::kCPU)).contiguous();
     for (int i = 0; i < 5; ++i) {
-        const torch::Tensor square = x.mm(x.t());
-        const torch::Tensor mixed = square * -4.7750 + square.mm(square) * 2.0315;
+        const at::Tensor square = x.mm(x.t());
+        const at::Tensor mixed = square * -4.7750 + square.mm(square) * 2.0315;
         x = x * 3.4445 + mixed.mm(x);
     }
-    x = x.to(torch::kFloat32);
+    x = x.to(at::kFloat);
     return tall ? x.t() : x;
 }
 

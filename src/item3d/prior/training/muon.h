@@ -2,14 +2,14 @@
 // neural networks").
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
 /// The nearest matrix with orthonormal rows or columns, roughly: singular values between 0.7 and
 /// 1.2, by five Newton-Schulz iterations of fifth order, in bfloat16 where the CPU computes in it.
 /// matrix: [rows, columns] float32; a matrix of zeros stays one.
-torch::Tensor orthogonalized(const torch::Tensor& matrix);
+at::Tensor orthogonalized(const at::Tensor& matrix);
 
 /// By how much such a step is multiplied to be as large as one of Adam's, so that one learning rate
 /// fits both (Liu et al. 2025, "Muon is Scalable for LLM Training", section 2.2).

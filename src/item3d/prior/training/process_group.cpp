@@ -112,9 +112,9 @@ void exchange(Function&& function) {
 }
 
 /// The bytes of a contiguous tensor.
-torch::Tensor bytes_of(const torch::Tensor& tensor) {
-    return torch::from_blob(tensor.data_ptr(), {static_cast<std::int64_t>(tensor.nbytes())},
-                            torch::kUInt8);
+at::Tensor bytes_of(const at::Tensor& tensor) {
+    return at::from_blob(tensor.data_ptr(), {static_cast<std::int64_t>(tensor.nbytes())},
+                         at::kByte);
 }
 
 }  // namespace
@@ -129,8 +129,8 @@ struct ProcessGroup::Connection {
     c10::intrusive_ptr<c10d::ProcessGroupGloo> gloo;
     std::int64_t waits = 0;  ///< wait_for_first() so far
 
-    void broadcast(const torch::Tensor& tensor) const {
-        std::vector<torch::Tensor> message{tensor};
+    void broadcast(const at::Tensor& tensor) const {
+        std::vector<at::Tensor> message{tensor};
         gloo->broadcast(message)->wait();
     }
 };
@@ -184,12 +184,12 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds patience) {
     return group;
 }
 
-void ProcessGroup::sum(torch::Tensor tensor) const {
+void ProcessGroup::sum(at::Tensor tensor) const {
     if (!connection_) return;
-    ITEM3D_CHECK(tensor.scalar_type() == torch::kFloat32 && tensor.is_contiguous(),
+    ITEM3D_CHECK(tensor.scalar_type() == at::kFloat && tensor.is_contiguous(),
                  "processes add up contiguous float32 tensors");
     exchange([&] {
-        std::vector<torch::Tensor> message{tensor};
+        std::vector<at::Tensor> message{tensor};
         connection_->gloo->allreduce(message)->wait();
     });
 }
@@ -198,12 +198,12 @@ std::string ProcessGroup::broadcast(const std::string& text) const {
     if (!connection_) return text;
     std::string result = text;
     exchange([&] {
-        torch::Tensor length = torch::tensor({static_cast<std::int64_t>(text.size())});
+        at::Tensor length = at::tensor({static_cast<std::int64_t>(text.size())});
         connection_->broadcast(length);
         result.resize(static_cast<std::size_t>(length.item<std::int64_t>()));
         if (!result.empty())
-            connection_->broadcast(torch::from_blob(
-                result.data(), {static_cast<std::int64_t>(result.size())}, torch::kUInt8));
+            connection_->broadcast(at::from_blob(
+                result.data(), {static_cast<std::int64_t>(result.size())}, at::kByte));
     });
     return result;
 }
@@ -219,9 +219,9 @@ NamedTensors ProcessGroup::broadcast(const NamedTensors& tensors) const {
     NamedTensors result;
     for (std::size_t i = 0; i < header.size(); ++i) {
         const auto shape = header[i][2].get<std::vector<std::int64_t>>();
-        const auto dtype = static_cast<torch::Dtype>(header[i][1].get<int>());
+        const auto dtype = static_cast<at::ScalarType>(header[i][1].get<int>());
         result.emplace_back(header[i][0].get<std::string>(),
-                            first() ? tensors[i].second.contiguous() : torch::empty(shape, dtype));
+                            first() ? tensors[i].second.contiguous() : at::empty(shape, dtype));
         if (result[i].second.numel() == 0) continue;
         exchange([&] { connection_->broadcast(bytes_of(result[i].second)); });
     }

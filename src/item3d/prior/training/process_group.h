@@ -4,8 +4,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/tensors/safetensors.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <chrono>
 #include <memory>
@@ -38,7 +37,7 @@ class ProcessGroup {
 
     /// Adds up float32 tensors of one size in place. All processes get the same bytes; two of them
     /// the same as a + b. The tensor is contiguous and on the CPU.
-    void sum(torch::Tensor tensor) const;
+    void sum(at::Tensor tensor) const;
     /// Process 0's; what others give is not looked at.
     std::string broadcast(const std::string& text) const;
     NamedTensors broadcast(const NamedTensors& tensors) const;

@@ -13,7 +13,7 @@ namespace item3d {
 namespace {
 
 /// A view of `flat` from `offset` on with the shape of `like`; four-dimensional ones channels-last.
-torch::Tensor view_of(const torch::Tensor& flat, std::int64_t offset, const torch::Tensor& like) {
+at::Tensor view_of(const at::Tensor& flat, std::int64_t offset, const at::Tensor& like) {
     const auto part = flat.narrow(0, offset, like.numel());
     if (like.dim() != 4) return part.view(like.sizes());
     const auto s = like.sizes();
@@ -29,7 +29,7 @@ std::int64_t block_count(std::int64_t total) {
 
 constexpr std::int64_t smallest_matrix = 16;
 
-bool is_hidden_matrix(const std::string& name, const torch::Tensor& parameter) {
+bool is_hidden_matrix(const std::string& name, const at::Tensor& parameter) {
     return parameter.dim() >= 2 && parameter.size(0) >= smallest_matrix &&
            parameter.numel() / parameter.size(0) >= smallest_matrix &&
            name.find("embedding") == std::string::npos && name.find("conv_in") == std::string::npos;
@@ -41,7 +41,7 @@ FlatModel::FlatModel(const std::vector<std::shared_ptr<torch::nn::Module>>& modu
     std::int64_t total = 0;
     for (const auto& module : modules) {
         for (const auto& item : module->named_parameters()) {
-            const torch::Tensor& parameter = item.value();
+            const at::Tensor& parameter = item.value();
             parameters_.push_back(parameter);
             if (is_hidden_matrix(item.key(), parameter))
                 matrices_.push_back(
@@ -49,11 +49,11 @@ FlatModel::FlatModel(const std::vector<std::shared_ptr<torch::nn::Module>>& modu
             total += parameter.numel();
         }
     }
-    values = torch::zeros({total});
-    gradients = torch::zeros({total});
-    const torch::NoGradGuard no_grad;
+    values = at::zeros({total});
+    gradients = at::zeros({total});
+    const at::NoGradGuard no_grad;
     std::int64_t offset = 0;
-    for (torch::Tensor& parameter : parameters_) {
+    for (at::Tensor& parameter : parameters_) {
         view_of(values, offset, parameter).copy_(parameter);
         parameter.mutable_grad() = view_of(gradients, offset, parameter);
         offset += parameter.numel();
@@ -61,10 +61,10 @@ FlatModel::FlatModel(const std::vector<std::shared_ptr<torch::nn::Module>>& modu
     use_values(values);
 }
 
-void FlatModel::use_values(const torch::Tensor& other) {
+void FlatModel::use_values(const at::Tensor& other) {
     ITEM3D_CHECK(other.numel() == gradients.numel(), "another model's parameters");
     std::int64_t offset = 0;
-    for (torch::Tensor& parameter : parameters_) {
+    for (at::Tensor& parameter : parameters_) {
         parameter.set_data(view_of(other, offset, parameter));
         offset += parameter.numel();
     }
@@ -77,14 +77,14 @@ ReplicaGroup::ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas,
       processes_(std::move(processes)),
       barrier_(static_cast<std::ptrdiff_t>(replicas_.size())) {
     ITEM3D_CHECK(!replicas_.empty(), "a group needs a replica");
-    const torch::Tensor& values = replicas_[0]->values;
+    const at::Tensor& values = replicas_[0]->values;
     for (auto& replica : replicas_)
         replica->values.copy_(values);
-    first_moment_ = torch::zeros_like(values);
-    second_moment_ = torch::zeros_like(values);
+    first_moment_ = at::zeros_like(values);
+    second_moment_ = at::zeros_like(values);
     average_ = values.clone();
-    changes_ = torch::zeros_like(values);
-    sum_ = torch::zeros({values.numel() + 1});
+    changes_ = at::zeros_like(values);
+    sum_ = at::zeros({values.numel() + 1});
     square_sums_.resize(static_cast<std::size_t>(block_count(values.numel())));
 }
 
@@ -184,28 +184,28 @@ void ReplicaGroup::orthogonalize(int rank, float clip) {
     for (auto i = static_cast<std::size_t>(rank); i < matrices.size();
          i += static_cast<std::size_t>(size())) {
         const FlatModel::Matrix& matrix = matrices[i];
-        const auto part = [&](const torch::Tensor& all) {
+        const auto part = [&](const at::Tensor& all) {
             return all.narrow(0, matrix.offset, matrix.rows * matrix.columns)
                 .view({matrix.rows, matrix.columns});
         };
         // Nesterov's momentum: the newest gradient once more.
-        const torch::Tensor momentum =
+        const at::Tensor momentum =
             part(first_moment_) * options_.beta1 + part(sum_) * (clip * (1 - options_.beta1));
         part(changes_).copy_(orthogonalized(momentum) *
                              orthogonal_step_scale(matrix.rows, matrix.columns));
     }
 }
 
-std::vector<std::pair<std::string, torch::Tensor>> ReplicaGroup::state() const {
+std::vector<std::pair<std::string, at::Tensor>> ReplicaGroup::state() const {
     return {{"values", replicas_[0]->values},
             {"average", average_},
             {"first_moment", first_moment_},
             {"second_moment", second_moment_},
-            {"steps", torch::tensor({steps_}, torch::kInt64)}};
+            {"steps", at::tensor({steps_}, at::kLong)}};
 }
 
-void ReplicaGroup::load_state(const std::vector<std::pair<std::string, torch::Tensor>>& state) {
-    const torch::NoGradGuard no_grad;
+void ReplicaGroup::load_state(const std::vector<std::pair<std::string, at::Tensor>>& state) {
+    const at::NoGradGuard no_grad;
     for (const auto& [name, tensor] : state) {
         if (name == "steps") {
             steps_ = tensor.item<std::int64_t>();
@@ -227,8 +227,8 @@ void ReplicaGroup::load_state(const std::vector<std::pair<std::string, torch::Te
 Autocast::Autocast()
     : enabled_before_(at::autocast::is_autocast_enabled(at::kCPU)),
       cache_before_(at::autocast::is_autocast_cache_enabled()) {
-    const torch::Dtype precision = choose_precision("auto", torch::kCPU);
-    at::autocast::set_autocast_enabled(at::kCPU, precision != torch::kFloat32);
+    const at::ScalarType precision = choose_precision("auto", at::kCPU);
+    at::autocast::set_autocast_enabled(at::kCPU, precision != at::kFloat);
     at::autocast::set_autocast_dtype(at::kCPU, at::kBFloat16);
     // The cache of converted weights is shared by all threads; each weight is used once anyway.
     at::autocast::set_autocast_cache_enabled(false);

@@ -4,9 +4,9 @@
 #pragma once
 
 #include "item3d/prior/training/process_group.h"
+#include "item3d/tensors/tensor.h"
 
 #include <torch/nn/module.h>
-#include <torch/types.h>
 
 #include <atomic>
 #include <barrier>
@@ -24,10 +24,10 @@ namespace item3d {
 class FlatModel {
   public:
     explicit FlatModel(const std::vector<std::shared_ptr<torch::nn::Module>>& modules);
-    torch::Tensor values;     ///< [P] float32
-    torch::Tensor gradients;  ///< [P] float32; backward() adds to it
+    at::Tensor values;     ///< [P] float32
+    at::Tensor gradients;  ///< [P] float32; backward() adds to it
     /// Makes the modules use another vector of values from now on (for the moving average).
-    void use_values(const torch::Tensor& other);
+    void use_values(const at::Tensor& other);
     /// A weight between hidden layers, seen as a matrix: from `offset` on, row after row.
     struct Matrix {
         std::int64_t offset, rows, columns;
@@ -37,7 +37,7 @@ class FlatModel {
     std::int64_t size() const { return values.numel(); }
 
   private:
-    std::vector<torch::Tensor> parameters_;
+    std::vector<at::Tensor> parameters_;
     std::vector<Matrix> matrices_;
 };
 
@@ -47,7 +47,7 @@ struct OptimizerOptions {
     float epsilon = 1e-8f;
     float weight_decay = 0.01f;
     float clip_norm = 1.0f;  ///< largest norm of the averaged gradient
-    /// Steps of FlatModel::matrices() are made orthogonal (orthogonalize.h), of the same moments.
+    /// Steps of FlatModel::matrices() are made orthogonal (muon.h), of the same moments.
     bool orthogonal = false;
 };
 
@@ -83,11 +83,11 @@ class ReplicaGroup {
     void fail();
 
     std::int64_t steps() const { return steps_; }
-    const torch::Tensor& average() const { return average_; }  ///< [P] moving average
+    const at::Tensor& average() const { return average_; }  ///< [P] moving average
 
     /// Everything but gradients, by name; load_state takes what state gave.
-    std::vector<std::pair<std::string, torch::Tensor>> state() const;
-    void load_state(const std::vector<std::pair<std::string, torch::Tensor>>& state);
+    std::vector<std::pair<std::string, at::Tensor>> state() const;
+    void load_state(const std::vector<std::pair<std::string, at::Tensor>>& state);
 
   private:
     void wait();
@@ -98,9 +98,9 @@ class ReplicaGroup {
     std::vector<std::unique_ptr<FlatModel>> replicas_;
     OptimizerOptions options_;
     ProcessGroup processes_;
-    torch::Tensor first_moment_, second_moment_, average_;
-    torch::Tensor changes_;            ///< [P] of this step, before the learning rate
-    torch::Tensor sum_;                ///< [P + 1] of all gradients, and of the wishes to stop
+    at::Tensor first_moment_, second_moment_, average_;
+    at::Tensor changes_;               ///< [P] of this step, before the learning rate
+    at::Tensor sum_;                   ///< [P + 1] of all gradients, and of the wishes to stop
     std::vector<double> square_sums_;  ///< of the averaged gradient's blocks
     std::int64_t steps_ = 0;
     std::mutex failure_mutex_;

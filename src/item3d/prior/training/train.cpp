@@ -4,16 +4,18 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/networks/diffusion/pipeline.h"
 #include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/prior/data/dataset.h"
+#include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/data/workers.h"
 #include "item3d/prior/evaluation/classifier.h"
 #include "item3d/prior/training/export.h"
 #include "item3d/prior/training/init_from.h"
 #include "item3d/prior/training/replicas.h"
-#include "item3d/prior/training/settings_check.h"
 #include "item3d/prior/training/tokenizer_training.h"
-#include "item3d/prior/training/training_loop.h"
-#include "item3d/tensors/precision.h"
+#include "item3d/prior/training/train_autoencoder.h"
+#include "item3d/prior/training/train_diffusion.h"
 #include "item3d/tensors/safetensors.h"
 
 #include <algorithm>
@@ -60,8 +62,8 @@ PictureData draw_pictures(const ExampleSource& source, std::int64_t count,
                           const TrainSettings& settings) {
     PictureData data;
     const int size = settings.resolution;
-    data.images = torch::empty({count, size, size, 3}, torch::kUInt8);
-    data.covered = torch::empty({count, size, size}, torch::kUInt8);
+    data.images = at::empty({count, size, size, 3}, at::kByte);
+    data.covered = at::empty({count, size, size}, at::kByte);
     Progress progress("pictures", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
@@ -81,15 +83,15 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
     constexpr std::int64_t at_once = 32;
     const std::int64_t count = settings.data_samples / at_once * at_once;
     LatentData data;
-    data.latents = torch::empty({count, latent_channels, latent_size, latent_size}, torch::kHalf);
-    data.cells = torch::empty({count, shape_cell_channels, latent_size, latent_size}, torch::kHalf);
-    data.tokens = torch::empty({count, text_length}, torch::kInt16);
-    data.empty_tokens = tokenizer.encode_batch({""}, text_length)[0].to(torch::kInt16);
+    data.latents = at::empty({count, latent_channels, latent_size, latent_size}, at::kHalf);
+    data.cells = at::empty({count, shape_cell_channels, latent_size, latent_size}, at::kHalf);
+    data.tokens = at::empty({count, text_length}, at::kShort);
+    data.empty_tokens = tokenizer.encode_batch({""}, text_length)[0].to(at::kShort);
     Progress progress("examples", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
     run_workers(count / at_once, settings.replicas, [&](std::int64_t job) {
-        std::vector<torch::Tensor> images, cells;
+        std::vector<at::Tensor> images, cells;
         std::vector<std::string> captions;
         for (std::int64_t i = job * at_once; i < (job + 1) * at_once; ++i) {
             Example example = source.draw(i);
@@ -98,18 +100,18 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
             captions.push_back(std::move(example.caption));
         }
         // [N, H, W, 3] seen as [N, 3, H, W] is channels-last already.
-        const torch::Tensor pictures = torch::stack(images).permute({0, 3, 1, 2}) * 2 - 1;
-        torch::Tensor latents;
+        const at::Tensor pictures = at::stack(images).permute({0, 3, 1, 2}) * 2 - 1;
+        at::Tensor latents;
         {
             const Autocast autocast;
             latents = autoencoder.encode(pictures);
         }
-        latents = latents.to(torch::kFloat32) * autoencoder.scaling_factor();
-        const auto rows = [&](torch::Tensor& all) {
+        latents = latents.to(at::kFloat) * autoencoder.scaling_factor();
+        const auto rows = [&](at::Tensor& all) {
             return all.slice(0, job * at_once, (job + 1) * at_once);
         };
         rows(data.latents).copy_(latents);
-        rows(data.cells).copy_(torch::stack(cells));
+        rows(data.cells).copy_(at::stack(cells));
         rows(data.tokens).copy_(tokenizer.encode_batch(captions, text_length));
         const std::lock_guard lock(mutex);
         progress.update(done += at_once);
@@ -118,36 +120,17 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
     return data;
 }
 
-/// What the data depends on: a work folder made with other settings is not gone on with. Replicas
-/// are those of all processes, so that a training may go on with them spread otherwise.
-nlohmann::json fingerprint(const TrainSettings& s) {
-    return {{"version", 9},
-            {"seed", s.seed},
-            {"begin_with", s.begin_with.string()},
-            {"autoencoder", s.autoencoder.string()},
-            {"resolution", s.resolution},
-            {"data_samples", s.data_samples},
-            {"autoencoder_samples", s.autoencoder_samples},
-            {"autoencoder_pictures", s.autoencoder_pictures},
-            {"shape_variants", s.shape_variants},
-            {"views_each", s.views_each},
-            {"lights", s.lights},
-            {"pattern_weight", as_written(s.pattern_weight)},
-            {"replicas", s.replicas * s.processes.size()},
-            {"batch", s.batch}};
-}
-
 void open_work_folder(const TrainSettings& settings) {
     make_output_folder(settings.work);
     const fs::path file = settings.work / "settings.json";
     if (settings.resume && fs::exists(file)) {
-        check_settings(file, read_work_json(file), fingerprint(settings));
+        check_settings(file, read_work_json(file), data_settings_json(settings));
         return;
     }
     for (const char* stale : {"autoencoder.safetensors", "pictures.safetensors", "data.safetensors",
                               "checkpoint.safetensors", "autoencoder.json"})
         fs::remove(settings.work / stale);
-    write_atomically(file, fingerprint(settings).dump(2) + "\n");
+    write_atomically(file, data_settings_json(settings).dump(2) + "\n");
 }
 
 struct Prepared {
@@ -267,81 +250,21 @@ Prepared hand_on(const ProcessGroup& processes, Prepared prepared) {
     return prepared;
 }
 
+/// Measures the prior in `folder` (classifier.h) by the words that it was trained on and puts the
+/// result, with these words, into its prior.json. Returns what that then holds.
+nlohmann::json write_measurement(const fs::path& folder, int word_pictures, int threads) {
+    const Pipeline pipeline = Pipeline::load(folder);
+    MeasureOptions options;
+    options.pictures = word_pictures;
+    options.threads = threads;
+    options.words = trained_words(folder, pipeline.tokenizer());
+    const auto views = held_out_views(pipeline, options.seed, threads);
+    nlohmann::json measured = measure_prior(pipeline, views, options);
+    measured["words"] = options.words;
+    return update_prior_json(folder, measured);
+}
+
 }  // namespace
-
-NamedTensors LatentData::tensors() const {
-    return {
-        {"latents", latents}, {"cells", cells}, {"tokens", tokens}, {"empty_tokens", empty_tokens}};
-}
-
-LatentData LatentData::from_tensors(const NamedTensors& tensors, std::size_t vocabulary,
-                                    const fs::path& file) {
-    const std::string hint = "train without --resume, or in another --work folder";
-    const auto take = [&](const char* wanted, torch::Dtype dtype) {
-        for (const auto& [name, tensor] : tensors)
-            if (name == wanted && tensor.scalar_type() == dtype) return tensor;
-        throw InputError(file.string(), fmt::format("has no '{}' of the right type", wanted), hint);
-    };
-    const LatentData data{take("latents", torch::kHalf), take("cells", torch::kHalf),
-                          take("tokens", torch::kInt16), take("empty_tokens", torch::kInt16)};
-    const std::int64_t rows = data.latents.dim() > 0 ? data.latents.size(0) : 0;
-    const auto has = [](const torch::Tensor& tensor, const std::vector<std::int64_t>& shape) {
-        return tensor.sizes().vec() == shape;
-    };
-    if (rows == 0 || !has(data.latents, {rows, latent_channels, latent_size, latent_size}) ||
-        !has(data.cells, {rows, shape_cell_channels, latent_size, latent_size}) ||
-        !has(data.tokens, {rows, text_length}) || !has(data.empty_tokens, {text_length}))
-        throw InputError(file.string(), "its tensors do not have the shapes of this program's data",
-                         hint);
-    const auto lowest = std::min(data.tokens.min().item<std::int16_t>(),
-                                 data.empty_tokens.min().item<std::int16_t>());
-    const auto highest = std::max(data.tokens.max().item<std::int16_t>(),
-                                  data.empty_tokens.max().item<std::int16_t>());
-    if (lowest < 0 || static_cast<std::size_t>(highest) >= vocabulary)
-        throw InputError(file.string(),
-                         fmt::format("has tokens from {} to {}, but the tokenizer has {}", lowest,
-                                     highest, vocabulary),
-                         hint);
-    return data;
-}
-
-int global_rank(const TrainSettings& settings, int rank) {
-    return settings.processes.rank() * settings.replicas + rank;
-}
-
-nlohmann::json settings_json(const TrainSettings& settings) {
-    nlohmann::json all = fingerprint(settings);
-    all.update({{"samples", settings.samples},
-                {"clip_samples", settings.clip_samples},
-                {"captioner_samples", settings.captioner_samples},
-                {"labeled_samples", settings.labeled_samples},
-                {"labeled_variants", settings.labeled_variants},
-                {"widths", settings.widths},
-                {"condition", settings.condition},
-                {"prediction_type", settings.prediction_type},
-                {"optimizer", settings.optimizer},
-                {"learning_rate", as_written(settings.learning_rate)},
-                // Each process steps its own copy of the weights: rounded otherwise, they part.
-                {"precision", precision_name(choose_precision("auto", torch::kCPU))},
-                {"resume", settings.resume},
-                {"stop_after", settings.stop_after}});
-    return all;
-}
-
-LoopOptions loop_options(const TrainSettings& settings, const std::string& label,
-                         const std::string& checkpoint) {
-    LoopOptions options;
-    options.label = label;
-    options.checkpoint = settings.work / checkpoint;
-    options.learning_rate = settings.learning_rate;
-    options.seed = settings.seed;
-    options.resume = settings.resume;
-    options.stop_after = settings.stop_after;
-    options.checkpoint_seconds = settings.checkpoint_seconds;
-    options.export_seconds = settings.export_seconds;
-    options.processes = settings.processes;
-    return options;
-}
 
 std::vector<WordCount> prior_words(const TrainSettings& settings) {
     return caption_vocabulary(seed_of(settings, vocabulary_stream));
@@ -358,26 +281,6 @@ void train_prior(const TrainSettings& settings) {
     if (processes.first())
         write_measurement(settings.output, settings.word_pictures, settings.replicas);
     processes.wait_for_first();
-}
-
-std::set<std::string> trained_words(const fs::path& folder, const ClipTokenizer& tokenizer) {
-    auto words = read_prior_json(folder).value("words", std::set<std::string>{});
-    if (!words.empty()) return words;
-    for (const WordCount& word : caption_vocabulary(1))
-        if (tokenizer.encode(word.word).size() == 3) words.insert(word.word);
-    return words;
-}
-
-nlohmann::json write_measurement(const fs::path& folder, int word_pictures, int threads) {
-    const Pipeline pipeline = Pipeline::load(folder);
-    MeasureOptions options;
-    options.pictures = word_pictures;
-    options.threads = threads;
-    options.words = trained_words(folder, *pipeline.tokenizer);
-    const auto views = held_out_views(pipeline, options.seed, threads);
-    nlohmann::json measured = measure_prior(pipeline, views, options);
-    measured["words"] = options.words;
-    return update_prior_json(folder, measured);
 }
 
 }  // namespace item3d

@@ -1,11 +1,14 @@
+#include "item3d/prior/training/train_autoencoder.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
+#include "item3d/networks/layers/load_parameters.h"
 #include "item3d/prior/data/workers.h"
 #include "item3d/prior/training/replicas.h"
-#include "item3d/prior/training/train.h"
+#include "item3d/tensors/safetensors.h"
 #include "item3d/tensors/weights.h"
 
 #include <cmath>
@@ -17,24 +20,21 @@ constexpr int batch = 8;
 constexpr float highest_rate = 1.5e-3f;
 
 struct Batch {
-    torch::Tensor images;   ///< [N, 3, S, S] in [-1, 1], channels-last
-    torch::Tensor weights;  ///< [N, 1, S, S], about 1 on average
+    at::Tensor images;   ///< [N, 3, S, S] in [-1, 1], channels-last
+    at::Tensor weights;  ///< [N, 1, S, S], about 1 on average
 };
 
-Batch gather(const PictureData& data, const torch::Tensor& rows) {
+Batch gather(const PictureData& data, const at::Tensor& rows) {
     Batch result;
-    result.images = data.images.index_select(0, rows)
-                        .permute({0, 3, 1, 2})
-                        .to(torch::kFloat32)
-                        .div(127.5)
-                        .sub(1);
+    result.images =
+        data.images.index_select(0, rows).permute({0, 3, 1, 2}).to(at::kFloat).div(127.5).sub(1);
     // The object is what edits look at; a plain background is easy anyway.
     result.weights =
-        data.covered.index_select(0, rows).unsqueeze(1).to(torch::kFloat32).mul(1.3 / 255).add(.45);
+        data.covered.index_select(0, rows).unsqueeze(1).to(at::kFloat).mul(1.3 / 255).add(.45);
     return result;
 }
 
-torch::Tensor differences(const torch::Tensor& error, const torch::Tensor& weights) {
+at::Tensor differences(const at::Tensor& error, const at::Tensor& weights) {
     const auto across = error.slice(3, 1) - error.slice(3, 0, -1);
     const auto down = error.slice(2, 1) - error.slice(2, 0, -1);
     return (across.abs() * weights.slice(3, 1)).mean() + (down.abs() * weights.slice(2, 1)).mean();
@@ -44,25 +44,25 @@ constexpr int anchored = 3;
 
 /// How far the channels that hold details are from a variance of a half. What has much less drowns
 /// in the noise of most timesteps.
-torch::Tensor spread_loss(const torch::Tensor& latents) {
+at::Tensor spread_loss(const at::Tensor& latents) {
     return (latents.slice(1, anchored).var({0, 2, 3}, false) - .5).square().mean();
 }
 
 /// progress: 0 .. 1. The anchor ties the first three latents to the downscaled picture: without it
 /// training takes several times longer.
-torch::Tensor reconstruction_loss(AutoencoderTiny& model, const Batch& data, double progress,
-                                  const torch::Tensor& noise) {
-    torch::Tensor latents, images;
+at::Tensor reconstruction_loss(AutoencoderTiny& model, const Batch& data, double progress,
+                               const at::Tensor& noise) {
+    at::Tensor latents, images;
     {
         const Autocast autocast;
         latents = model.encode(data.images);
         images = model.decode(latents + noise * .05);
     }
-    const torch::Tensor error = images.to(torch::kFloat32) - data.images;
-    latents = latents.to(torch::kFloat32);
-    const torch::Tensor anchor =
+    const at::Tensor error = images.to(at::kFloat) - data.images;
+    latents = latents.to(at::kFloat);
+    const at::Tensor anchor =
         (latents.slice(1, 0, anchored) -
-         1.5 * torch::avg_pool2d(data.images, data.images.size(2) / latents.size(2)))
+         1.5 * at::avg_pool2d(data.images, data.images.size(2) / latents.size(2)))
             .square()
             .mean();
     const double anchor_weight = .02 + .98 * std::max(0.0, 1 - 4 * progress);
@@ -72,29 +72,29 @@ torch::Tensor reconstruction_loss(AutoencoderTiny& model, const Batch& data, dou
 }
 
 std::shared_ptr<AutoencoderTiny> make_model(const TrainSettings& settings) {
-    torch::manual_seed(static_cast<std::int64_t>(settings.seed));
+    at::manual_seed(static_cast<std::int64_t>(settings.seed));
     auto model = std::make_shared<AutoencoderTiny>(prior_autoencoder_config(settings.resolution));
     return model;
 }
 
 /// Measures the held-out error and sets the scaling factor.
 TrainedAutoencoder finish(std::shared_ptr<AutoencoderTiny> model, const PictureData& held_out) {
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     double squares = 0, object_squares = 0, object_weight = 0;
-    std::vector<torch::Tensor> latents;
+    std::vector<at::Tensor> latents;
     for (std::int64_t i = 0; i < held_out.images.size(0); i += 32) {
         const auto end = std::min(i + 32, held_out.images.size(0));
-        const Batch data = gather(held_out, torch::arange(i, end));
-        const torch::Tensor z = model->encode(data.images);
-        const torch::Tensor error = (model->decode(z).clamp(-1, 1) - data.images).square();
-        const torch::Tensor object =
-            held_out.covered.slice(0, i, end).unsqueeze(1).to(torch::kFloat32) / 255;
+        const Batch data = gather(held_out, at::arange(i, end));
+        const at::Tensor z = model->encode(data.images);
+        const at::Tensor error = (model->decode(z).clamp(-1, 1) - data.images).square();
+        const at::Tensor object =
+            held_out.covered.slice(0, i, end).unsqueeze(1).to(at::kFloat) / 255;
         squares += error.mean({1, 2, 3}).sum().item<double>();
         object_squares += (error * object).sum().item<double>() / 3;
         object_weight += object.sum().item<double>();
         latents.push_back(z);
     }
-    model->set_scaling_factor(1 / torch::cat(latents).std().item<double>());
+    model->set_scaling_factor(1 / at::cat(latents).std().item<double>());
     const double mean = squares / static_cast<double>(held_out.images.size(0));
     return {model, 10 * std::log10(4 / mean), 10 * std::log10(4 * object_weight / object_squares)};
 }
@@ -150,10 +150,10 @@ TrainedAutoencoder train_autoencoder(const PictureData& pictures, const PictureD
                 for (int i = 0; i < batch; ++i)
                     rows.push_back(random.index(pictures.images.size(0)));
                 auto generator = at::detail::createCPUGenerator(random.bits());
-                const torch::Tensor noise =
-                    torch::randn({batch, latent_channels, latent_size, latent_size}, generator);
-                const Batch data = gather(pictures, torch::tensor(rows));
-                const torch::Tensor loss = reconstruction_loss(model, data, part, noise);
+                const at::Tensor noise =
+                    at::randn({batch, latent_channels, latent_size, latent_size}, generator);
+                const Batch data = gather(pictures, at::tensor(rows));
+                const at::Tensor loss = reconstruction_loss(model, data, part, noise);
                 loss.backward();
                 const double decay = static_cast<double>(step) / (static_cast<double>(step) + 10);
                 const auto rate = static_cast<float>(

@@ -1,12 +1,14 @@
+#include "item3d/prior/training/train_captioner.h"
+
 #include "item3d/core/files.h"
 #include "item3d/core/random.h"
 #include "item3d/prior/data/captions.h"
-#include "item3d/prior/training/export.h"
+#include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/training/init_from.h"
 #include "item3d/prior/training/replicas.h"
 #include "item3d/prior/training/training_loop.h"
 #include "item3d/prior/training/vision_language.h"
-#include "item3d/text/caption_tokenizer.h"
+#include "item3d/text/bert_tokenizer.h"
 
 #include <unistd.h>
 
@@ -59,9 +61,9 @@ BertTokenizer tokenizer_without_folder(const std::string& vocabulary) {
 }
 
 BlipModel make_captioner(const TrainSettings& settings, const BlipConfig& config) {
-    torch::manual_seed(static_cast<std::int64_t>(settings.seed) + 3);
+    at::manual_seed(static_cast<std::int64_t>(settings.seed) + 3);
     BlipModel model(config);
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     for (auto& item : model->named_parameters()) {
         const auto is = [&](const char* part) {
             return item.key().find(part) != std::string::npos;
@@ -74,9 +76,9 @@ BlipModel make_captioner(const TrainSettings& settings, const BlipConfig& config
 
 /// Cross-entropy of each next word of the plain caption, of the whole: a part with a material of
 /// its own has few pixels here, and one wrong word makes a sentence wrong.
-torch::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
-                           const BertTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
-                           Random random) {
+at::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
+                        const BertTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
+                        Random random) {
     std::vector<std::vector<int>> texts;
     std::size_t longest = 0;
     for (const std::int64_t row : rows) {
@@ -87,8 +89,8 @@ torch::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
     constexpr std::int64_t ignored = -100;
     const auto count = static_cast<std::int64_t>(rows.size());
     const auto length = static_cast<std::int64_t>(longest) - 1;
-    torch::Tensor tokens = torch::full({count, length}, pad_id, torch::kInt64);
-    torch::Tensor next = torch::full({count, length}, ignored, torch::kInt64);
+    at::Tensor tokens = at::full({count, length}, pad_id, at::kLong);
+    at::Tensor next = at::full({count, length}, ignored, at::kLong);
     for (std::size_t i = 0; i < texts.size(); ++i) {
         auto* token = tokens[static_cast<std::int64_t>(i)].data_ptr<std::int64_t>();
         auto* target = next[static_cast<std::int64_t>(i)].data_ptr<std::int64_t>();
@@ -97,17 +99,17 @@ torch::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
             target[k] = texts[i][k + 1];
         }
     }
-    torch::Tensor logits;
+    at::Tensor logits;
     {
         const Autocast autocast;
-        const torch::Tensor image = model->image_embeds(augment(data.pixel_values(rows), random));
+        const at::Tensor image = model->image_embeds(augment(data.pixel_values(rows), random));
         // A token sees those before it alone, so padding behind a text needs no mask.
-        const torch::Tensor states =
-            model->decode(tokens, torch::ones_like(tokens), model->read_image(image));
+        const at::Tensor states =
+            model->decode(tokens, at::ones_like(tokens), model->read_image(image));
         logits = model->logits(states);
     }
-    return torch::cross_entropy_loss(logits.to(torch::kFloat32).flatten(0, 1), next.flatten(), {},
-                                     at::Reduction::Mean, ignored);
+    return at::cross_entropy_loss(logits.to(at::kFloat).flatten(0, 1), next.flatten(), {},
+                                  at::Reduction::Mean, ignored);
 }
 
 }  // namespace
@@ -165,7 +167,7 @@ nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings&
     const BlipModel exported = make_captioner(settings, config);
     FlatModel flat({exported.ptr()});
     nlohmann::json train;
-    loop.run([&](const torch::Tensor& average, const LoopRecord& record) {
+    loop.run([&](const at::Tensor& average, const LoopRecord& record) {
         flat.values.copy_(average);
         save_blip(folder, exported);
         train = loop_summary(record, loop.parameters(), settings);

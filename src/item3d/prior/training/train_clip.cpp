@@ -1,16 +1,20 @@
+#include "item3d/prior/training/train_clip.h"
+
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
-#include "item3d/prior/training/export.h"
+#include "item3d/prior/data/captions.h"
+#include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/training/init_from.h"
 #include "item3d/prior/training/replicas.h"
-#include "item3d/prior/training/shared_vision.h"
+#include "item3d/prior/training/train_diffusion.h"
 #include "item3d/prior/training/training_loop.h"
 #include "item3d/prior/training/vision_language.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <numeric>
+#include <string>
 
 namespace item3d {
 namespace {
@@ -22,9 +26,9 @@ constexpr int clip_batch = 48;
 constexpr int more_sentences = 80;
 
 ClipModel make_clip(const TrainSettings& settings, const ClipConfig& config) {
-    torch::manual_seed(static_cast<std::int64_t>(settings.seed) + 2);
+    at::manual_seed(static_cast<std::int64_t>(settings.seed) + 2);
     ClipModel model(config);
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     for (auto& item : model->named_parameters()) {
         const auto is = [&](const char* part) {
             return item.key().find(part) != std::string::npos;
@@ -37,8 +41,7 @@ ClipModel make_clip(const TrainSettings& settings, const ClipConfig& config) {
 }
 
 /// [N, S] int64, S as long as the longest needs.
-torch::Tensor read_sentences(const ClipTokenizer& tokenizer,
-                             const std::vector<std::string>& texts) {
+at::Tensor read_sentences(const ClipTokenizer& tokenizer, const std::vector<std::string>& texts) {
     std::vector<std::vector<int>> rows;
     std::size_t longest = 0;
     for (const std::string& text : texts) {
@@ -49,21 +52,20 @@ torch::Tensor read_sentences(const ClipTokenizer& tokenizer,
     return tokenizer.encode_batch(texts, static_cast<int>(length));
 }
 
-torch::Tensor unit(const torch::Tensor& features) {
-    const torch::Tensor x = features.to(torch::kFloat32);
+at::Tensor unit(const at::Tensor& features) {
+    const at::Tensor x = features.to(at::kFloat);
     return x / x.norm(2, {-1}, true).clamp_min(1e-6);
 }
 
 /// Cross-entropy of each row's softmax with all that is true of it, in equal parts.
-torch::Tensor true_share_loss(const torch::Tensor& logits, const torch::Tensor& truth) {
-    const torch::Tensor wanted = truth / truth.sum(1, true);
+at::Tensor true_share_loss(const at::Tensor& logits, const at::Tensor& truth) {
+    const at::Tensor wanted = truth / truth.sum(1, true);
     return -(wanted * logits.log_softmax(1)).sum(1).mean();
 }
 
 /// CLIP's symmetric loss, but what is true of several pictures is right for all of them.
-torch::Tensor clip_loss(ClipModel model, const LabeledPictures& data,
-                        const ClipTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
-                        Random random) {
+at::Tensor clip_loss(ClipModel model, const LabeledPictures& data, const ClipTokenizer& tokenizer,
+                     const std::vector<std::int64_t>& rows, Random random) {
     std::vector<Claim> claims;
     std::vector<std::string> texts;
     const auto say = [&](std::int64_t row) {
@@ -76,29 +78,27 @@ torch::Tensor clip_loss(ClipModel model, const LabeledPictures& data,
         say(random.index(data.count()));
 
     const auto pictures = static_cast<std::int64_t>(rows.size());
-    torch::Tensor truth = torch::zeros({pictures, static_cast<std::int64_t>(claims.size())});
+    at::Tensor truth = at::zeros({pictures, static_cast<std::int64_t>(claims.size())});
     auto* value = truth.data_ptr<float>();
     for (const std::int64_t row : rows)
         for (const Claim& claim : claims)
             *value++ = holds(claim, data.facts[static_cast<std::size_t>(row)]) ? 1.0f : 0.0f;
 
-    torch::Tensor images, sentences;
+    at::Tensor images, sentences;
     {
         const Autocast autocast;
         images = model->image_features(augment(data.pixel_values(rows), random));
         sentences = model->text_features(read_sentences(tokenizer, texts));
     }
-    const torch::Tensor logits =
+    const at::Tensor logits =
         model->logit_scale().clamp_max(100) * unit(images).mm(unit(sentences).t());
-    const auto of_pictures = [&](const torch::Tensor& all) {
-        return all.narrow(1, 0, pictures).t();
-    };
+    const auto of_pictures = [&](const at::Tensor& all) { return all.narrow(1, 0, pictures).t(); };
     return .5 * (true_share_loss(logits, truth) +
                  true_share_loss(of_pictures(logits), of_pictures(truth)));
 }
 
 /// A few pictures as the network reads them.
-torch::Tensor first_pictures(const LabeledPictures& data, std::uint64_t seed) {
+at::Tensor first_pictures(const LabeledPictures& data, std::uint64_t seed) {
     std::vector<std::int64_t> rows(
         static_cast<std::size_t>(std::min<std::int64_t>(64, data.count())));
     std::iota(rows.begin(), rows.end(), 0);
@@ -123,6 +123,48 @@ ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text)
     return config;
 }
 
+bool copy_vision(const BlipModel& from, const ClipModel& to, const at::Tensor& pixel_values) {
+    const ClipVisionConfig config = to->config().vision;
+    const VisionShape& shape = config;
+    if (shape != from->config().vision || config.hidden_act != "gelu") return false;
+
+    const at::NoGradGuard no_grad;
+    const std::string vision = "vision_model.";
+    const auto theirs = from->named_parameters();
+    auto ours = to->named_parameters();
+    const auto their = [&](const std::string& name) { return theirs[vision + name]; };
+    const auto set = [&](const std::string& name, const at::Tensor& value) {
+        at::Tensor& target = ours[vision + name];
+        target.copy_(value.reshape(target.sizes()));
+    };
+    const at::Tensor patch = their("embeddings.patch_embedding.weight");
+    at::Tensor positions = their("embeddings.position_embedding")[0].clone();
+    positions.slice(0, 1) += their("embeddings.patch_embedding.bias");
+    set("embeddings.class_embedding", their("embeddings.class_embedding"));
+    set("embeddings.patch_embedding.weight", patch);
+    set("embeddings.position_embedding.weight", positions);
+    const at::Tensor states =
+        at::conv2d(pixel_values, patch, {}, config.patch_size).flatten(2).transpose(1, 2) +
+        positions.slice(0, 1);
+    ours[vision + "pre_layrnorm.weight"].fill_(states.std(-1).mean());
+
+    for (const char* suffix : {".weight", ".bias"}) {
+        set(std::string("post_layernorm") + suffix, their(std::string("post_layernorm") + suffix));
+        for (int i = 0; i < config.num_hidden_layers; ++i) {
+            const std::string layer = "encoder.layers." + std::to_string(i) + ".";
+            const std::string attention = layer + "self_attn.";
+            const auto qkv = their(attention + "qkv" + suffix).chunk(3, 0);
+            set(attention + "q_proj" + suffix, qkv[0]);
+            set(attention + "k_proj" + suffix, qkv[1]);
+            set(attention + "v_proj" + suffix, qkv[2]);
+            set(attention + "out_proj" + suffix, their(attention + "projection" + suffix));
+            for (const char* same : {"layer_norm1", "layer_norm2", "mlp.fc1", "mlp.fc2"})
+                set(layer + same + suffix, their(layer + same + suffix));
+        }
+    }
+    return true;
+}
+
 nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& settings,
                           const ClipTokenizer& tokenizer, const ClipConfig& config) {
     const auto begin = begin_with_part(settings, clip_folder);
@@ -131,7 +173,7 @@ nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& sett
     if (begin.empty() && settings.processes.first() &&
         fs::exists(settings.output / captioner_folder / "config.json"))
         captioner = load_blip(settings.output / captioner_folder);
-    const torch::Tensor sample = first_pictures(data, settings.seed);
+    const at::Tensor sample = first_pictures(data, settings.seed);
     bool warm = false;
     std::vector<LoopReplica> replicas;
     for (int rank = 0; rank < settings.replicas; ++rank) {
@@ -159,7 +201,7 @@ nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& sett
     const ClipModel exported = make_clip(settings, config);
     FlatModel flat({exported.ptr()});
     nlohmann::json train;
-    loop.run([&](const torch::Tensor& average, const LoopRecord& record) {
+    loop.run([&](const at::Tensor& average, const LoopRecord& record) {
         flat.values.copy_(average);
         save_clip_model(folder, exported);
         train = loop_summary(record, loop.parameters(), settings);

@@ -1,11 +1,14 @@
+#include "item3d/prior/training/train_diffusion.h"
+
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/core/random.h"
 #include "item3d/networks/diffusion/noise_schedule.h"
 #include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/prior/data/captions.h"
 #include "item3d/prior/training/export.h"
 #include "item3d/prior/training/init_from.h"
 #include "item3d/prior/training/replicas.h"
-#include "item3d/prior/training/train.h"
 #include "item3d/prior/training/training_loop.h"
 
 #include <algorithm>
@@ -30,10 +33,10 @@ struct Networks {
 };
 
 Networks make_networks(const TrainSettings& settings, const DiffusionConfig& config) {
-    torch::manual_seed(static_cast<std::int64_t>(settings.seed) + 1);
+    at::manual_seed(static_cast<std::int64_t>(settings.seed) + 1);
     Networks networks{UNet2DCondition(config.unet), ClipTextModel(config.text)};
     // A small vocabulary learns sooner when its words start far apart.
-    const torch::NoGradGuard no_grad;
+    const at::NoGradGuard no_grad;
     for (auto& item : networks.text->named_parameters()) {
         if (item.key().find("token_embedding") != std::string::npos) item.value().normal_(0, .3);
         if (item.key().find("position_embedding") != std::string::npos)
@@ -44,27 +47,27 @@ Networks make_networks(const TrainSettings& settings, const DiffusionConfig& con
 
 /// [N, 1, h, w]: what the object covers counts four times as much as the background, which captions
 /// say nothing about. depth: depth_condition(), -1 where there is nothing.
-torch::Tensor object_weights(const torch::Tensor& depth) {
-    const torch::Tensor covered = ((depth + 1) / 1.2).clamp(0, 1);
-    const torch::Tensor weights = covered * 3 + 1;
+at::Tensor object_weights(const at::Tensor& depth) {
+    const at::Tensor covered = ((depth + 1) / 1.2).clamp(0, 1);
+    const at::Tensor weights = covered * 3 + 1;
     return weights / weights.mean();
 }
 
 /// The denoising loss on the pictures of one replica's batch. Everything random depends on
 /// (seed, step, rank) alone.
-torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
-                             const NoiseSchedule& schedule, const std::vector<std::int64_t>& rows,
-                             std::uint64_t seed, std::int64_t step, int rank) {
+at::Tensor diffusion_loss(Networks networks, const LatentData& data, const NoiseSchedule& schedule,
+                          const std::vector<std::int64_t>& rows, std::uint64_t seed,
+                          std::int64_t step, int rank) {
     const auto count = static_cast<std::int64_t>(rows.size());
     Random random(seed, 0xd1ff00 + static_cast<std::uint64_t>(rank),
                   static_cast<std::uint64_t>(step) * 4096);
-    const torch::Tensor index = torch::tensor(rows);
-    const torch::Tensor latents = data.latents.index_select(0, index).to(torch::kFloat32);
-    const torch::Tensor cells = data.cells.index_select(0, index).to(torch::kFloat32);
-    const torch::Tensor weights = object_weights(cells.slice(1, 0, 1));
+    const at::Tensor index = at::tensor(rows);
+    const at::Tensor latents = data.latents.index_select(0, index).to(at::kFloat);
+    const at::Tensor cells = data.cells.index_select(0, index).to(at::kFloat);
+    const at::Tensor weights = object_weights(cells.slice(1, 0, 1));
     const auto more = static_cast<int>(networks.unet->config().in_channels - latents.size(1));
-    torch::Tensor condition = shape_condition(cells, more);
-    torch::Tensor tokens = data.tokens.index_select(0, index).to(torch::kInt64);
+    at::Tensor condition = shape_condition(cells, more);
+    at::Tensor tokens = data.tokens.index_select(0, index).to(at::kLong);
     std::vector<std::int64_t> times;
     for (std::int64_t i = 0; i < count; ++i) {
         // Stratified: each batch covers the whole range of timesteps evenly.
@@ -73,21 +76,21 @@ torch::Tensor diffusion_loss(Networks networks, const LatentData& data,
         if (random.chance(without_shape) && more > 0) condition[i].zero_();
         if (random.chance(without_sentence)) tokens[i].copy_(data.empty_tokens);
     }
-    const torch::Tensor timesteps = torch::tensor(times);
+    const at::Tensor timesteps = at::tensor(times);
     auto generator = at::detail::createCPUGenerator(random.bits());
-    const torch::Tensor noise = torch::randn(latents.sizes(), generator);
-    torch::Tensor input = schedule.add_noise(latents, noise, timesteps);
-    if (more > 0) input = torch::cat({input, condition}, 1);
-    input = input.contiguous(torch::MemoryFormat::ChannelsLast);
-    torch::Tensor prediction;
+    const at::Tensor noise = at::randn(latents.sizes(), generator);
+    at::Tensor input = schedule.add_noise(latents, noise, timesteps);
+    if (more > 0) input = at::cat({input, condition}, 1);
+    input = input.contiguous(at::MemoryFormat::ChannelsLast);
+    at::Tensor prediction;
     {
         const Autocast autocast;
-        const torch::Tensor text = networks.text->forward(tokens).last_hidden_state;
+        const at::Tensor text = networks.text->forward(tokens).last_hidden_state;
         prediction = networks.unet->forward(input, timesteps, text);
     }
-    const torch::Tensor wanted =
+    const at::Tensor wanted =
         schedule.predicts_velocity() ? schedule.get_velocity(latents, noise, timesteps) : noise;
-    return ((prediction.to(torch::kFloat32) - wanted).square() * weights).mean();
+    return ((prediction.to(at::kFloat) - wanted).square() * weights).mean();
 }
 
 }  // namespace
@@ -110,6 +113,42 @@ int condition_channels_of(const std::string& condition) {
 }
 
 }  // namespace
+
+NamedTensors LatentData::tensors() const {
+    return {
+        {"latents", latents}, {"cells", cells}, {"tokens", tokens}, {"empty_tokens", empty_tokens}};
+}
+
+LatentData LatentData::from_tensors(const NamedTensors& tensors, std::size_t vocabulary,
+                                    const std::filesystem::path& file) {
+    const std::string hint = "train without --resume, or in another --work folder";
+    const auto take = [&](const char* wanted, at::ScalarType dtype) {
+        for (const auto& [name, tensor] : tensors)
+            if (name == wanted && tensor.scalar_type() == dtype) return tensor;
+        throw InputError(file.string(), fmt::format("has no '{}' of the right type", wanted), hint);
+    };
+    const LatentData data{take("latents", at::kHalf), take("cells", at::kHalf),
+                          take("tokens", at::kShort), take("empty_tokens", at::kShort)};
+    const std::int64_t rows = data.latents.dim() > 0 ? data.latents.size(0) : 0;
+    const auto has = [](const at::Tensor& tensor, const std::vector<std::int64_t>& shape) {
+        return tensor.sizes().vec() == shape;
+    };
+    if (rows == 0 || !has(data.latents, {rows, latent_channels, latent_size, latent_size}) ||
+        !has(data.cells, {rows, shape_cell_channels, latent_size, latent_size}) ||
+        !has(data.tokens, {rows, text_length}) || !has(data.empty_tokens, {text_length}))
+        throw InputError(file.string(), "its tensors do not have the shapes of this program's data",
+                         hint);
+    const auto lowest = std::min(data.tokens.min().item<std::int16_t>(),
+                                 data.empty_tokens.min().item<std::int16_t>());
+    const auto highest = std::max(data.tokens.max().item<std::int16_t>(),
+                                  data.empty_tokens.max().item<std::int16_t>());
+    if (lowest < 0 || static_cast<std::size_t>(highest) >= vocabulary)
+        throw InputError(file.string(),
+                         fmt::format("has tokens from {} to {}, but the tokenizer has {}", lowest,
+                                     highest, vocabulary),
+                         hint);
+    return data;
+}
 
 UNet2DConditionConfig prior_unet_config(const TrainSettings& settings) {
     const std::vector<int>& widths = settings.widths;
@@ -173,7 +212,7 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
     const Networks exported = make_networks(settings, config);
     FlatModel flat(exported.modules());
     nlohmann::json train = so_far;
-    loop.run([&](const torch::Tensor& average, const LoopRecord& record) {
+    loop.run([&](const at::Tensor& average, const LoopRecord& record) {
         flat.values.copy_(average);
         train["samples"] = record.seen;
         train["seconds"] = std::round(record.seconds);

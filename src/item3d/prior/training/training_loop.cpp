@@ -5,7 +5,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/prior/data/workers.h"
-#include "item3d/prior/training/settings_check.h"
+#include "item3d/prior/training/settings.h"
 #include "item3d/tensors/safetensors.h"
 
 #include <algorithm>
@@ -47,6 +47,21 @@ class Shuffle {
 };
 
 }  // namespace
+
+LoopOptions loop_options(const TrainSettings& settings, const std::string& label,
+                         const std::string& checkpoint) {
+    LoopOptions options;
+    options.label = label;
+    options.checkpoint = settings.work / checkpoint;
+    options.learning_rate = settings.learning_rate;
+    options.seed = settings.seed;
+    options.resume = settings.resume;
+    options.stop_after = settings.stop_after;
+    options.checkpoint_seconds = settings.checkpoint_seconds;
+    options.export_seconds = settings.export_seconds;
+    options.processes = settings.processes;
+    return options;
+}
 
 TrainingLoop::TrainingLoop(const LoopOptions& options, std::vector<LoopReplica> replicas)
     : options_(options), replicas_(std::move(replicas)) {
@@ -112,7 +127,7 @@ void TrainingLoop::train(int rank, const Export& write_export) {
         std::vector<std::int64_t> rows;
         for (int i = 0; i < options_.batch; ++i)
             rows.push_back(shuffle.row(seen + std::int64_t{global_rank} * options_.batch + i));
-        const torch::Tensor loss = replicas_[static_cast<std::size_t>(rank)].loss(rows, step);
+        const at::Tensor loss = replicas_[static_cast<std::size_t>(rank)].loss(rows, step);
         loss.backward();
         const auto rate = static_cast<float>(
             options_.learning_rate * learning_rate_part(seen, options_.samples, options_.rise));
@@ -151,8 +166,8 @@ bool TrainingLoop::should_stop(std::int64_t seen) const {
 NamedTensors TrainingLoop::state() const {
     NamedTensors tensors = group_->state();
     tensors.emplace_back(
-        "record", torch::tensor({static_cast<double>(record_.seen), record_.seconds, record_.loss},
-                                torch::kFloat64));
+        "record", at::tensor({static_cast<double>(record_.seen), record_.seconds, record_.loss},
+                             at::kDouble));
     return tensors;
 }
 

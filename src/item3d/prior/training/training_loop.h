@@ -4,9 +4,9 @@
 
 #include "item3d/prior/training/process_group.h"
 #include "item3d/prior/training/replicas.h"
+#include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>
-#include <torch/types.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -16,6 +16,8 @@
 #include <vector>
 
 namespace item3d {
+
+struct TrainSettings;
 
 struct LoopOptions {
     std::string label;                 ///< for progress and messages
@@ -35,11 +37,16 @@ struct LoopOptions {
     ProcessGroup processes;  ///< each with as many replicas
 };
 
+/// What all training loops take from the settings; samples and rows are the caller's to say.
+/// checkpoint: the file's name.
+LoopOptions loop_options(const TrainSettings& settings, const std::string& label,
+                         const std::string& checkpoint);
+
 /// One replica: what it trains, and the loss of rows of the data, random by (step, rank) alone,
 /// where ranks count the replicas of all processes: those of process 0 first.
 struct LoopReplica {
     std::vector<std::shared_ptr<torch::nn::Module>> modules;
-    std::function<torch::Tensor(const std::vector<std::int64_t>& rows, std::int64_t step)> loss;
+    std::function<at::Tensor(const std::vector<std::int64_t>& rows, std::int64_t step)> loss;
 };
 
 /// Loss and clock of the run, kept in checkpoints.
@@ -60,7 +67,7 @@ class TrainingLoop {
     /// Trains to the end. write_export gets the moving average of the parameters, in the order of
     /// FlatModel, now and then and at the end, in process 0 alone. Throws Interrupted after a
     /// checkpoint and an export, and LostProcess after a checkpoint.
-    using Export = std::function<void(const torch::Tensor& average, const LoopRecord& record)>;
+    using Export = std::function<void(const at::Tensor& average, const LoopRecord& record)>;
     void run(const Export& write_export);
 
   private:

@@ -4,12 +4,14 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/data/workers.h"
 #include "item3d/prior/evaluation/vision_language_accuracy.h"
-#include "item3d/prior/training/export.h"
 #include "item3d/prior/training/init_from.h"
-#include "item3d/prior/training/settings_check.h"
 #include "item3d/prior/training/tokenizer_training.h"
+#include "item3d/prior/training/train.h"
+#include "item3d/prior/training/train_captioner.h"
+#include "item3d/prior/training/train_clip.h"
 
 #include <algorithm>
 #include <array>
@@ -89,12 +91,12 @@ void note_begin(const TrainSettings& settings, const char* folder, const char* m
 
 }  // namespace
 
-torch::Tensor augment(const torch::Tensor& pixel_values, Random& random) {
+at::Tensor augment(const at::Tensor& pixel_values, Random& random) {
     std::vector<std::uint8_t> mirrored;
     for (std::int64_t i = 0; i < pixel_values.size(0); ++i)
         mirrored.push_back(random.chance(.5));
-    const torch::Tensor chosen = torch::tensor(mirrored).to(torch::kBool).view({-1, 1, 1, 1});
-    const torch::Tensor turned = torch::where(chosen, pixel_values.flip(3), pixel_values);
+    const at::Tensor chosen = at::tensor(mirrored).to(at::kBool).view({-1, 1, 1, 1});
+    const at::Tensor turned = at::where(chosen, pixel_values.flip(3), pixel_values);
     if (random.chance(.5)) {
         constexpr std::array<std::int64_t, 2> size{read_size, read_size};
         return at::_upsample_bicubic2d_aa(turned, size, false).clamp(-1, 1);

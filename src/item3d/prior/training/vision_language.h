@@ -1,20 +1,20 @@
 // The small CLIP and captioner beside the prior: trained on the same pictures, with plain sentences
-// about them (facts.h).
+// about them (labels.h).
 #pragma once
 
-#include "item3d/networks/vision_language/blip.h"
-#include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vision_language/vision_shape.h"
 #include "item3d/prior/data/labeled_pictures.h"
-#include "item3d/prior/training/train.h"
+#include "item3d/prior/training/settings.h"
 #include "item3d/prior/training/training_loop.h"
+#include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>
 
-namespace item3d {
+#include <cstdint>
+#include <filesystem>
+#include <string>
 
-/// Sub-folders of the prior's.
-inline constexpr const char* clip_folder = "clip";
-inline constexpr const char* captioner_folder = "captioner";
+namespace item3d {
 
 /// Pixels a side that both networks read. Coarse patches are fewer: 25 instead of the 64 of 8
 /// pixels.
@@ -27,20 +27,6 @@ inline constexpr VisionShape prior_vision_shape{.hidden_size = 192,
                                                 .image_size = read_size,
                                                 .patch_size = 12};
 
-ClipConfig prior_clip_config(int vocabulary, int start_of_text, int end_of_text);
-BlipConfig prior_captioner_config(int vocabulary);
-
-/// Trains a network on the pictures and writes it now and then, with all its other files, into its
-/// sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
-/// writing a checkpoint. Where settings.begin_with has such a network, its weights are begun with:
-/// `tokenizer` must then be its, and the captioner takes its vocabulary. Else `words` become the
-/// captioner's vocabulary, and CLIP's vision transformer starts as that of the captioner in
-/// settings.output, where there is one of the same shape (shared_vision.h).
-nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& settings,
-                          const ClipTokenizer& tokenizer, const ClipConfig& config);
-nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings& settings,
-                               const std::vector<WordCount>& words, BlipConfig config);
-
 /// The whole training of both, or of one of them: pictures, networks, measurement. Fills the
 /// sub-folders, and "clip" and "captioner" of the folder's prior.json.
 void train_vision_language(const TrainSettings& settings, bool clip, bool captioner);
@@ -49,7 +35,7 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
 
 /// Pictures [N, 3, picture_size, picture_size] as the networks see them in training: [N, 3,
 /// read_size, read_size], each mirrored or not, all of them either shrunken or a random part.
-torch::Tensor augment(const torch::Tensor& pixel_values, Random& random);
+at::Tensor augment(const at::Tensor& pixel_values, Random& random);
 /// As loop_options(), with the rise that these networks want.
 LoopOptions vision_language_loop(const std::string& name, const TrainSettings& settings,
                                  std::int64_t samples, const LabeledPictures& data);

@@ -1,12 +1,13 @@
-// COLMAP's sparse models (https://colmap.github.io/format.html), text and binary.
+#include "item3d/reconstruct/dataset/colmap.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
-#include "item3d/reconstruct/dataset/source.h"
 #include "item3d/scene/pose.h"
 
 #include <glm/gtc/quaternion.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>

@@ -3,8 +3,11 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/reconstruct/dataset/colmap.h"
+#include "item3d/reconstruct/dataset/llff.h"
 #include "item3d/reconstruct/dataset/orient_world.h"
 #include "item3d/reconstruct/dataset/photograph.h"
+#include "item3d/reconstruct/dataset/transforms.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-// LLFF (Mildenhall et al. 2019): poses_bounds.npy beside a folder of pictures.
+#include "item3d/reconstruct/dataset/llff.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
-#include "item3d/reconstruct/dataset/source.h"
 #include "item3d/scene/pose.h"
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// What the files of a dataset say, before any picture is read: one reader for each layout.
+// What the files of a dataset say, before any picture is read, and what the readers of the layouts
+// (transforms.h, colmap.h, llff.h) share.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -32,22 +33,6 @@ struct SourceDataset {
     /// The dataset's up direction where its layout fixes it; else it is told from the cameras.
     std::optional<Vec3> up;
 };
-
-/// NeRF-synthetic: transforms_train.json and, where they are, transforms_val.json (left out, unless
-/// there is no test file) and transforms_test.json. `folder` holds them.
-SourceDataset read_nerf_synthetic(const std::filesystem::path& folder);
-
-/// nerfstudio, instant-ngp: one transforms.json with intrinsics and distortion for all or each
-/// frame, mask_path, and lists of file names for the splits.
-SourceDataset read_nerfstudio(const std::filesystem::path& file);
-
-/// COLMAP's cameras and images, text or binary, in `model`; picture names are relative to `images`.
-/// Models SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE,
-/// SIMPLE_RADIAL_FISHEYE and RADIAL_FISHEYE.
-SourceDataset read_colmap(const std::filesystem::path& model, const std::filesystem::path& images);
-
-/// LLFF: poses_bounds.npy [N, 17] of float64 and `images`, in the order of their names.
-SourceDataset read_llff(const std::filesystem::path& file, const std::filesystem::path& images);
 
 /// folder / name. Throws InputError that begins with `subject` where that is outside the folder.
 std::filesystem::path inside(const std::filesystem::path& folder, const std::string& name,

@@ -1,8 +1,8 @@
-// The two layouts of transforms.json: NeRF-synthetic (Mildenhall et al. 2020) and nerfstudio's.
+#include "item3d/reconstruct/dataset/transforms.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
-#include "item3d/reconstruct/dataset/source.h"
 #include "item3d/scene/pose.h"
 
 #include <nlohmann/json.hpp>

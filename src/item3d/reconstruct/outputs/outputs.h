@@ -39,7 +39,4 @@ struct Reconstruction {
 /// The content of reconstruct.json.
 nlohmann::json summary_json(const Reconstruction& result);
 
-/// report.html, self-contained.
-std::string report_html(const Reconstruction& result);
-
 }  // namespace item3d

@@ -1,11 +1,13 @@
-// report.html of a reconstruction.
+#include "item3d/reconstruct/outputs/report.h"
+
 #include "item3d/core/format.h"
 #include "item3d/core/version.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/reconstruct/outputs/camera_plot.h"
-#include "item3d/reconstruct/outputs/outputs.h"
+#include "item3d/render/pictures.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/html.h"
+#include "item3d/report/html_chart.h"
 #include "item3d/report/model_pictures.h"
 #include "item3d/report/picture.h"
 
@@ -59,9 +61,9 @@ Image light_display(const Image& light) {
 std::string model_figures(const Reconstruction& result) {
     std::vector<std::string> figures;
     const EnvironmentLight studio = prefilter(make_light_preset("studio"), 128);
-    const torch::Tensor pictures =
+    const at::Tensor pictures =
         draw_pictures(result.model, studio, picture_cameras(result.model, 4), model_picture_size);
-    for (const torch::Tensor& picture : pictures.unbind(0))
+    for (const at::Tensor& picture : pictures.unbind(0))
         figures.push_back(
             html_figure({"", encode_webp(to_display(to_image(picture), Vec3(0.78f)))}));
     for (const Texture& texture : result.model.textures)

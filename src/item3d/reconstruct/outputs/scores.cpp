@@ -3,7 +3,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/metrics/image_quality.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/render.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,18 +17,18 @@ namespace {
 constexpr int light_cube = 128;
 
 /// [1, H, W, 4] premultiplied linear -> [1, 3, H, W] sRGB over white.
-torch::Tensor displayed_over_white(const torch::Tensor& image) {
-    const torch::Tensor color = image.narrow(3, 0, 3) + (1 - image.narrow(3, 3, 1));
+at::Tensor displayed_over_white(const at::Tensor& image) {
+    const at::Tensor color = image.narrow(3, 0, 3) + (1 - image.narrow(3, 3, 1));
     return linear_to_srgb(color.clamp(0, 1)).permute({0, 3, 1, 2}).contiguous();
 }
 
-Image as_picture(const torch::Tensor& planes) {
+Image as_picture(const at::Tensor& planes) {
     return to_image(planes[0].permute({1, 2, 0}).contiguous());
 }
 
 std::vector<Vec3> points_on(const TriangleMesh& mesh, int count, Random& random) {
-    const torch::Tensor positions = mesh.positions.detach().contiguous();
-    const torch::Tensor triangles = mesh.triangles.contiguous();
+    const at::Tensor positions = mesh.positions.detach().contiguous();
+    const at::Tensor triangles = mesh.triangles.contiguous();
     const float* p = positions.const_data_ptr<float>();
     const std::int64_t* t = triangles.const_data_ptr<std::int64_t>();
     const auto corner = [&](std::int64_t i, int c) {
@@ -95,8 +96,8 @@ ModelRenderer::ModelRenderer(const Model& model, const Image& light, bool shadow
     occlusion_ = std::make_shared<Occlusion>(geometry_, &model, options);
 }
 
-torch::Tensor ModelRenderer::draw(const TargetView& view) const {
-    const torch::NoGradGuard no_gradient;
+at::Tensor ModelRenderer::draw(const TargetView& view) const {
+    const at::NoGradGuard no_gradient;
     RenderOptions options;
     options.width = view.width();
     options.height = view.height();
@@ -106,18 +107,18 @@ torch::Tensor ModelRenderer::draw(const TargetView& view) const {
 
 std::vector<ScoredView> ModelRenderer::score(const std::vector<TargetView>& views,
                                              Vec3 gain) const {
-    const torch::NoGradGuard no_gradient;
-    const torch::Tensor factors = torch::tensor({gain.x, gain.y, gain.z, 1.0f});
+    const at::NoGradGuard no_gradient;
+    const at::Tensor factors = at::tensor({gain.x, gain.y, gain.z, 1.0f});
     std::vector<ScoredView> scored;
     for (const TargetView& view : views) {
-        const torch::Tensor drawn = draw(view) * factors;
-        const torch::Tensor picture = displayed_over_white(drawn);
-        const torch::Tensor truth = displayed_over_white(view.image);
-        const torch::Tensor a = drawn.select(3, 3), b = view.image.select(3, 3);
+        const at::Tensor drawn = draw(view) * factors;
+        const at::Tensor picture = displayed_over_white(drawn);
+        const at::Tensor truth = displayed_over_white(view.image);
+        const at::Tensor a = drawn.select(3, 3), b = view.image.select(3, 3);
         ScoredView result;
         result.score = {view.name, psnr(picture, truth), ssim(picture, truth),
-                        torch::minimum(a, b).sum().item<double>() /
-                            std::max(1e-9, torch::maximum(a, b).sum().item<double>())};
+                        at::minimum(a, b).sum().item<double>() /
+                            std::max(1e-9, at::maximum(a, b).sum().item<double>())};
         result.truth = as_picture(truth);
         result.picture = as_picture(picture);
         scored.push_back(std::move(result));
@@ -126,26 +127,26 @@ std::vector<ScoredView> ModelRenderer::score(const std::vector<TargetView>& view
 }
 
 Vec3 ModelRenderer::best_gain(const std::vector<TargetView>& views) const {
-    const torch::NoGradGuard no_gradient;
-    torch::Tensor product = torch::zeros({3}, torch::kFloat64);
-    torch::Tensor square = torch::zeros({3}, torch::kFloat64);
+    const at::NoGradGuard no_gradient;
+    at::Tensor product = at::zeros({3}, at::kDouble);
+    at::Tensor square = at::zeros({3}, at::kDouble);
     for (const TargetView& view : views) {
-        const torch::Tensor drawn = draw(view).narrow(3, 0, 3).to(torch::kFloat64);
-        const torch::Tensor truth = view.image.narrow(3, 0, 3).to(torch::kFloat64);
-        const torch::Tensor both =
+        const at::Tensor drawn = draw(view).narrow(3, 0, 3).to(at::kDouble);
+        const at::Tensor truth = view.image.narrow(3, 0, 3).to(at::kDouble);
+        const at::Tensor both =
             (view.image.narrow(3, 3, 1) > 0.99f).logical_and(truth.amax(3, true) < 0.99);
         product += (drawn * truth * both).sum({0, 1, 2});
         square += (drawn * drawn * both).sum({0, 1, 2});
     }
-    const torch::Tensor gain = product / square.clamp_min(1e-12);
+    const at::Tensor gain = product / square.clamp_min(1e-12);
     return {gain[0].item<float>(), gain[1].item<float>(), gain[2].item<float>()};
 }
 
 double chamfer_distance(const TriangleMesh& mesh, const TriangleMesh& reference, int points,
                         std::uint64_t seed) {
-    Random random(seed, 0x6368616d);
+    Random random(seed, RandomStream::chamfer);
     const auto a = points_on(mesh, points, random), b = points_on(reference, points, random);
-    const torch::Tensor size =
+    const at::Tensor size =
         std::get<0>(reference.positions.max(0)) - std::get<0>(reference.positions.min(0));
     return 0.5 * (mean_nearest(a, b) + mean_nearest(b, a)) / size.norm().item<double>();
 }
@@ -160,8 +161,8 @@ TriangleMesh mesh_of(const Model& model) {
         for (const std::uint32_t index : primitive.indices)
             triangles.push_back(first + index);
     }
-    return {torch::tensor(positions).reshape({-1, 3}),
-            torch::tensor(triangles, torch::kInt64).reshape({-1, 3})};
+    return {at::tensor(positions).reshape({-1, 3}),
+            at::tensor(triangles, at::kLong).reshape({-1, 3})};
 }
 
 }  // namespace item3d

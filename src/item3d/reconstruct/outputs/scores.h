@@ -3,10 +3,9 @@
 
 #include "item3d/reconstruct/shape/clean_mesh.h"
 #include "item3d/reconstruct/surface/view_render.h"
-#include "item3d/render/textured.h"
+#include "item3d/render/textured_materials.h"
 #include "item3d/scene/model.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <memory>
 #include <string>
@@ -36,7 +35,7 @@ class ModelRenderer {
     ModelRenderer(const Model& model, const Image& light, bool shadows);
 
     /// [1, H, W, 4] premultiplied linear radiance.
-    torch::Tensor draw(const TargetView& view) const;
+    at::Tensor draw(const TargetView& view) const;
     /// gain: multiplies each channel's radiance.
     std::vector<ScoredView> score(const std::vector<TargetView>& views, Vec3 gain = Vec3(1)) const;
     /// The gain that brings renders nearest to the photographs, least squares of linear radiance:

@@ -3,6 +3,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/save.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/scatter.h"
 
 #include <algorithm>
 
@@ -15,15 +17,15 @@ constexpr int longest_picture_side = 256;
 constexpr double page = 0.78;  ///< linear, behind the object
 
 /// [1, H, W, 4] premultiplied linear -> [H, W, 3] sRGB over the page.
-torch::Tensor over_page(const torch::Tensor& image) {
-    const torch::Tensor color = image.narrow(3, 0, 3) + page * (1 - image.narrow(3, 3, 1));
+at::Tensor over_page(const at::Tensor& image) {
+    const at::Tensor color = image.narrow(3, 0, 3) + page * (1 - image.narrow(3, 3, 1));
     return linear_to_srgb(color.clamp(0, 1)).squeeze(0);
 }
 
-torch::Tensor base_color_picture(const RenderedView& view) {
-    const torch::Tensor& color = view.material.base_color;
-    const torch::Tensor opaque = torch::cat({color, torch::ones_like(color.narrow(1, 0, 1))}, 1);
-    return scatter(opaque, view.surface, view.raster, torch::zeros({4}));
+at::Tensor base_color_picture(const RenderedView& view) {
+    const at::Tensor& color = view.material.base_color;
+    const at::Tensor opaque = at::cat({color, at::ones_like(color.narrow(1, 0, 1))}, 1);
+    return scatter(opaque, view.surface, view.raster, at::zeros({4}));
 }
 
 }  // namespace
@@ -39,19 +41,19 @@ StagePreview::StagePreview(std::filesystem::path path, const Dataset& dataset)
 
 void StagePreview::update(Stage& stage) {
     if (!enabled_) return;
-    const torch::NoGradGuard no_gradient;
+    const at::NoGradGuard no_gradient;
     try {
-        std::vector<torch::Tensor> columns;
+        std::vector<at::Tensor> columns;
         for (const TargetView& view : views_) {
             const RenderedView drawn = stage.draw(view);
-            std::vector<torch::Tensor> rows{over_page(view.image), over_page(drawn.image)};
+            std::vector<at::Tensor> rows{over_page(view.image), over_page(drawn.image)};
             if (drawn.surface.count() > 0)
                 rows.push_back(over_page(base_color_picture(drawn)));
             else
-                rows.push_back(torch::full_like(rows.front(), 1));
-            columns.push_back(torch::cat(rows, 0));
+                rows.push_back(at::full_like(rows.front(), 1));
+            columns.push_back(at::cat(rows, 0));
         }
-        save_image(path_, to_image(torch::cat(columns, 1).contiguous()));
+        save_image(path_, to_image(at::cat(columns, 1).contiguous()));
     } catch (const Error& error) {
         warn(std::string("no more previews: ") + error.what());
         enabled_ = false;

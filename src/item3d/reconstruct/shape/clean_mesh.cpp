@@ -13,7 +13,7 @@ namespace item3d {
 namespace {
 
 std::vector<unsigned int> indices_of(const TriangleMesh& mesh) {
-    const torch::Tensor triangles = mesh.triangles.contiguous();
+    const at::Tensor triangles = mesh.triangles.contiguous();
     const std::int64_t* from = triangles.const_data_ptr<std::int64_t>();
     std::vector<unsigned int> indices(static_cast<std::size_t>(triangles.numel()));
     std::transform(from, from + triangles.numel(), indices.begin(),
@@ -22,7 +22,7 @@ std::vector<unsigned int> indices_of(const TriangleMesh& mesh) {
 }
 
 /// Vertices that are not used are left out.
-TriangleMesh compacted(const torch::Tensor& positions, const std::vector<unsigned int>& indices) {
+TriangleMesh compacted(const at::Tensor& positions, const std::vector<unsigned int>& indices) {
     std::vector<std::int64_t> new_index(static_cast<std::size_t>(positions.size(0)), -1);
     std::vector<std::int64_t> kept, triangles;
     for (const unsigned int index : indices) {
@@ -33,8 +33,8 @@ TriangleMesh compacted(const torch::Tensor& positions, const std::vector<unsigne
         }
         triangles.push_back(place);
     }
-    return {positions.index_select(0, torch::tensor(kept, torch::kInt64)),
-            torch::tensor(triangles, torch::kInt64).reshape({-1, 3})};
+    return {positions.index_select(0, at::tensor(kept, at::kLong)),
+            at::tensor(triangles, at::kLong).reshape({-1, 3})};
 }
 
 Vec3 point(const float* positions, unsigned int index) {
@@ -51,7 +51,7 @@ std::size_t root_of(std::vector<std::size_t>& parent, std::size_t vertex) {
 }  // namespace
 
 TriangleMesh without_specks(const TriangleMesh& mesh, double share) {
-    const torch::Tensor positions = mesh.positions.detach().contiguous();
+    const at::Tensor positions = mesh.positions.detach().contiguous();
     const float* p = positions.const_data_ptr<float>();
     const auto indices = indices_of(mesh);
     std::vector<std::size_t> parent(static_cast<std::size_t>(positions.size(0)));
@@ -76,7 +76,7 @@ TriangleMesh without_specks(const TriangleMesh& mesh, double share) {
 }
 
 TriangleMesh simplified(const TriangleMesh& mesh, std::int64_t triangles) {
-    const torch::Tensor positions = mesh.positions.detach().contiguous();
+    const at::Tensor positions = mesh.positions.detach().contiguous();
     auto indices = indices_of(mesh);
     std::vector<unsigned int> fewer(indices.size());
     constexpr float largest_error = 1.0f;  // the number of triangles decides
@@ -90,9 +90,9 @@ TriangleMesh simplified(const TriangleMesh& mesh, std::int64_t triangles) {
 }
 
 double enclosed_volume(const TriangleMesh& mesh) {
-    const torch::Tensor p = mesh.positions.detach().to(torch::kFloat64);
+    const at::Tensor p = mesh.positions.detach().to(at::kDouble);
     const auto corner = [&](int c) { return p.index_select(0, mesh.triangles.select(1, c)); };
-    return (corner(0) * torch::linalg_cross(corner(1), corner(2))).sum().item<double>() / 6;
+    return (corner(0) * at::linalg_cross(corner(1), corner(2))).sum().item<double>() / 6;
 }
 
 }  // namespace item3d

@@ -1,15 +1,15 @@
 // A mesh as it comes from a lattice, made fit for textures.
 #pragma once
 
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <cstdint>
 
 namespace item3d {
 
 struct TriangleMesh {
-    torch::Tensor positions;  ///< [V, 3] float32
-    torch::Tensor triangles;  ///< [T, 3] int64
+    at::Tensor positions;  ///< [V, 3] float32
+    at::Tensor triangles;  ///< [T, 3] int64
 };
 
 /// Only connected parts with at least `share` of the largest one's area: specks in corners that few

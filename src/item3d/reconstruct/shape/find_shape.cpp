@@ -18,9 +18,6 @@ constexpr float largest_value = 3.0f;
 /// Fine enough that the hull's own outlines show, whatever lattice the shape is looked for on.
 constexpr int hull_check_cells = 64;
 constexpr std::int64_t smoothness_points_of_shape = 2048;
-constexpr std::uint64_t shape_stream = 0x7368617065;
-/// Of the optimiser, in the order in which begin_level() adds them.
-constexpr std::size_t values_group = 3, offsets_group = 4, weights_group = 5;
 
 [[noreturn]] void refuse_vanished_shape() {
     throw InputError("reconstruct", "the shape vanished while it was optimised",
@@ -33,44 +30,44 @@ double blend(double first, double last, int iteration, int iterations) {
 
 }  // namespace
 
-ShapeField::ShapeField(const Lattice& lattice, const std::string& name, const torch::Tensor& start)
+ShapeField::ShapeField(const Lattice& lattice, const std::string& name, const at::Tensor& start)
     : cell(lattice.cell), extraction(make_extraction(name, lattice)), places(lattice.vertices()) {
     values = start.clamp(-largest_value, largest_value).clone().set_requires_grad(true);
-    offsets = torch::zeros_like(places).set_requires_grad(true);
+    offsets = at::zeros_like(places).set_requires_grad(true);
 }
 
-torch::Tensor ShapeField::vertices() const {
-    return places + cell * largest_offset * torch::tanh(offsets);
+at::Tensor ShapeField::vertices() const {
+    return places + cell * largest_offset * at::tanh(offsets);
 }
 
 TriangleMesh ShapeField::mesh() {
-    const torch::NoGradGuard no_gradient;
+    const at::NoGradGuard no_gradient;
     return extraction->mesh(values, vertices());
 }
 
-Geometry untextured_geometry(const torch::Tensor& positions, const torch::Tensor& triangles) {
+Geometry untextured_geometry(const at::Tensor& positions, const at::Tensor& triangles) {
     const std::int64_t vertices = positions.size(0), count = triangles.size(0);
     Geometry geometry;
     geometry.positions = positions;
     geometry.normals = vertex_normals(positions, triangles);
-    geometry.tangents = torch::zeros({vertices, 4});
-    geometry.uvs = torch::zeros({vertices, 2});
-    geometry.colors = torch::ones({vertices, 4});
-    geometry.triangles = triangles.to(torch::kInt32);
-    geometry.triangle_material = torch::zeros({count}, torch::kInt32);
-    geometry.triangle_primitive = torch::zeros({count}, torch::kInt32);
+    geometry.tangents = at::zeros({vertices, 4});
+    geometry.uvs = at::zeros({vertices, 2});
+    geometry.colors = at::ones({vertices, 4});
+    geometry.triangles = triangles.to(at::kInt);
+    geometry.triangle_material = at::zeros({count}, at::kInt);
+    geometry.triangle_primitive = at::zeros({count}, at::kInt);
     geometry.neighbours = mesh_neighbours(triangles, vertices);
     return geometry;
 }
 
 double mask_overlap(const TriangleMesh& mesh, const std::vector<TargetView>& views) {
-    const torch::NoGradGuard no_gradient;
+    const at::NoGradGuard no_gradient;
     const Geometry geometry = untextured_geometry(mesh.positions, mesh.triangles);
     double both = 0, either = 0;
     for (const TargetView& view : views) {
         const Raster raster = rasterize(geometry, {view.camera}, view.width(), view.height());
-        const torch::Tensor drawn = raster.triangle >= 0;
-        const torch::Tensor truth = view.image.select(3, 3) >= 0.5f;
+        const at::Tensor drawn = raster.triangle >= 0;
+        const at::Tensor truth = view.image.select(3, 3) >= 0.5f;
         both += drawn.logical_and(truth).sum().item<double>();
         either += drawn.logical_or(truth).sum().item<double>();
     }
@@ -96,43 +93,43 @@ int ShapeSearch::end_of_level(int level) const {
     return level + 1 < levels ? (level + 1) * coarse : options_.iterations;
 }
 
-void ShapeSearch::begin_level(int level, const torch::Tensor& start) {
+void ShapeSearch::begin_level(int level, const at::Tensor& start) {
     level_ = level;
     field_ = std::make_unique<ShapeField>(lattice_, options_.extraction, start);
     const int first = level > 0 ? end_of_level(level - 1) : 0;
-    learning_.random = Random(options_.seed, shape_stream, static_cast<std::uint64_t>(first) << 32);
+    learning_.random = Random(options_.seed, RandomStream::shape, static_cast<std::uint64_t>(first) << 32);
     learning_.optimizer = {};
     Adam& adam = learning_.optimizer;
-    adam.add_group({appearance_.field->table()}, {.learning_rate = 0.01});
-    adam.add_group(appearance_.field->network_parameters(), {.learning_rate = 0.005});
-    adam.add_group(appearance_.light.parameters(), {.learning_rate = 0.05, .beta2 = 0.999});
-    adam.add_group({field_->values},
+    adam.add_group("table", {appearance_.field->table()}, {.learning_rate = 0.01});
+    adam.add_group("network", appearance_.field->network_parameters(), {.learning_rate = 0.005});
+    adam.add_group("light", appearance_.light.parameters(), {.learning_rate = 0.05, .beta2 = 0.999});
+    adam.add_group("values", {field_->values},
                    {.learning_rate = options_.value_learning_rate, .beta2 = 0.999});
-    adam.add_group({field_->offsets},
+    adam.add_group("offsets", {field_->offsets},
                    {.learning_rate = options_.offset_learning_rate, .beta2 = 0.999});
-    adam.add_group(field_->extraction->weights(),
+    adam.add_group("weights", field_->extraction->weights(),
                    {.learning_rate = options_.weight_learning_rate, .beta2 = 0.999});
 }
 
 void ShapeSearch::start_next_level() {
-    const torch::NoGradGuard no_gradient;
-    const torch::Tensor start = 2 * refined_values(field_->values, lattice_);
+    const at::NoGradGuard no_gradient;
+    const at::Tensor start = 2 * refined_values(field_->values, lattice_);
     lattice_ = lattice_.refined();
     begin_level(level_ + 1, start);
 }
 
-torch::Tensor ShapeSearch::loss_besides_picture(const RenderedView& rendered,
-                                                const ExtractedSurface& surface, bool light_alone) {
+at::Tensor ShapeSearch::loss_besides_picture(const RenderedView& rendered,
+                                             const ExtractedSurface& surface, bool light_alone) {
     const double sign_change_weight =
         light_alone ? 0.0
                     : blend(options_.sign_change_weight_first, options_.sign_change_weight_last,
                             iteration(), options_.iterations);
     const float nearest = 0.25f * lattice_.cell;
-    torch::Tensor loss = sign_change_weight * sign_change_loss(surface.edges, field_->values) +
-                         options_.smoothness_weight *
-                             smoothness_loss(appearance_.field, rendered, nearest, 40 * nearest,
-                                             smoothness_points_of_shape, learning_.random) +
-                         options_.brightness_weight * brightness_loss(rendered);
+    at::Tensor loss = sign_change_weight * sign_change_loss(surface.edges, field_->values) +
+                      options_.smoothness_weight *
+                          smoothness_loss(appearance_.field, rendered, nearest, 40 * nearest,
+                                          smoothness_points_of_shape, learning_.random) +
+                      options_.brightness_weight * brightness_loss(rendered);
     if (surface.regularizer.defined() && !light_alone)
         loss = loss + options_.regularizer_weight * surface.regularizer;
     return loss;
@@ -154,12 +151,11 @@ void ShapeSearch::step() {
     const TargetView& view = views_[order_.at(iteration())];
     const RenderedView rendered = render_view(geometry, appearance_.field, learning_.light, view,
                                               {.one_material = light_alone});
-    const torch::Tensor background =
-        torch::full({3}, static_cast<float>(learning_.random.uniform()));
-    const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
-    const torch::Tensor mask = mask_loss(rendered.image, view.image);
-    torch::Tensor loss = picture + options_.mask_weight * mask +
-                         loss_besides_picture(rendered, surface, light_alone);
+    const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
+    const at::Tensor picture = picture_loss(rendered.image, view.image, background);
+    const at::Tensor mask = mask_loss(rendered.image, view.image);
+    at::Tensor loss = picture + options_.mask_weight * mask +
+                      loss_besides_picture(rendered, surface, light_alone);
     if (options_.demodulation_weight > 0)
         loss = loss + options_.demodulation_weight *
                           demodulated_light_loss(rendered, learning_.light, view.image);
@@ -167,13 +163,13 @@ void ShapeSearch::step() {
     loss.backward();
     const double rate = blend(1.0, 0.2, i, count);
     Adam& adam = learning_.optimizer;
-    adam.options(values_group).learning_rate = rate * options_.value_learning_rate;
-    adam.options(offsets_group).learning_rate = rate * options_.offset_learning_rate;
-    adam.options(weights_group).learning_rate = rate * options_.weight_learning_rate;
+    adam.options("values").learning_rate = rate * options_.value_learning_rate;
+    adam.options("offsets").learning_rate = rate * options_.offset_learning_rate;
+    adam.options("weights").learning_rate = rate * options_.weight_learning_rate;
     adam.step();
     adam.zero_grad();
     {
-        const torch::NoGradGuard no_gradient;
+        const at::NoGradGuard no_gradient;
         field_->values.clamp_(-largest_value, largest_value);
     }
     learning_.note_losses(picture, mask);
@@ -187,7 +183,7 @@ std::string ShapeSearch::detail() const {
 }
 
 RenderedView ShapeSearch::draw(const TargetView& view) {
-    const torch::NoGradGuard no_gradient;
+    const at::NoGradGuard no_gradient;
     const TriangleMesh mesh = field_->mesh();
     if (mesh.triangles.size(0) == 0) refuse_vanished_shape();
     return render_view(untextured_geometry(mesh.positions, mesh.triangles), appearance_.field,
@@ -196,7 +192,7 @@ RenderedView ShapeSearch::draw(const TargetView& view) {
 
 NamedTensors ShapeSearch::state() const {
     NamedTensors tensors = Stage::state();
-    tensors.emplace_back("level", torch::tensor({std::int64_t{level_}}));
+    tensors.emplace_back("level", at::tensor({std::int64_t{level_}}));
     tensors.emplace_back("values", field_->values.detach());
     tensors.emplace_back("offsets", field_->offsets.detach());
     const auto weights = field_->extraction->weights();
@@ -212,7 +208,7 @@ void ShapeSearch::load_state(const CheckpointReader& reader) {
         start_next_level();
     Stage::load_state(reader);
     learning_.random =
-        Random(options_.seed, shape_stream,
+        Random(options_.seed, RandomStream::shape,
                static_cast<std::uint64_t>(reader.get("random").item<std::int64_t>()));
     reader.copy("values", field_->values);
     reader.copy("offsets", field_->offsets);

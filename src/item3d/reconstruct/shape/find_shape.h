@@ -6,7 +6,6 @@
 #include "item3d/reconstruct/shape/surface_extraction.h"
 #include "item3d/reconstruct/shape/visual_hull.h"
 #include "item3d/reconstruct/stage.h"
-#include "item3d/reconstruct/view_order.h"
 
 #include <cstdint>
 #include <memory>
@@ -45,17 +44,17 @@ struct FoundShape {
 /// The signed field on one lattice: what is optimised.
 struct ShapeField {
     /// start [V] in cells.
-    ShapeField(const Lattice& lattice, const std::string& extraction, const torch::Tensor& start);
+    ShapeField(const Lattice& lattice, const std::string& extraction, const at::Tensor& start);
     /// [V, 3], moved.
-    torch::Tensor vertices() const;
+    at::Tensor vertices() const;
     /// The surface of now, without gradients; may be empty.
     TriangleMesh mesh();
 
     float cell;
     std::unique_ptr<SurfaceExtraction> extraction;
-    torch::Tensor places;   ///< [V, 3]
-    torch::Tensor values;   ///< [V] in cells
-    torch::Tensor offsets;  ///< [V, 3], before the hyperbolic tangent
+    at::Tensor places;   ///< [V, 3]
+    at::Tensor values;   ///< [V] in cells
+    at::Tensor offsets;  ///< [V, 3], before the hyperbolic tangent
 };
 
 class ShapeSearch : public Stage {
@@ -77,10 +76,10 @@ class ShapeSearch : public Stage {
 
   private:
     int end_of_level(int level) const;
-    void begin_level(int level, const torch::Tensor& start);
+    void begin_level(int level, const at::Tensor& start);
     void start_next_level();
-    torch::Tensor loss_besides_picture(const RenderedView& rendered,
-                                       const ExtractedSurface& surface, bool light_alone);
+    at::Tensor loss_besides_picture(const RenderedView& rendered, const ExtractedSurface& surface,
+                                    bool light_alone);
 
     ShapeOptions options_;
     Lattice lattice_;
@@ -96,6 +95,6 @@ class ShapeSearch : public Stage {
 double mask_overlap(const TriangleMesh& mesh, const std::vector<TargetView>& views);
 
 /// A mesh as the renderer takes it, with smooth normals that carry gradients to the positions.
-Geometry untextured_geometry(const torch::Tensor& positions, const torch::Tensor& triangles);
+Geometry untextured_geometry(const at::Tensor& positions, const at::Tensor& triangles);
 
 }  // namespace item3d

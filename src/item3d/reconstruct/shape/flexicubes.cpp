@@ -120,7 +120,7 @@ struct DualLists {
         for (const CrossedCube& cube : crossed)
             cubes.push_back(lattice.index(cube.place));
         const auto list = [](const std::vector<std::int64_t>& values) {
-            return torch::tensor(values, torch::kInt64);
+            return at::tensor(values, at::kLong);
         };
         return {list(cubes),
                 list(cube_of),
@@ -133,13 +133,13 @@ struct DualLists {
     }
 };
 
-torch::Tensor pick(const torch::Tensor& rows, const torch::Tensor& index) {
+at::Tensor pick(const at::Tensor& rows, const at::Tensor& index) {
     return rows.index_select(0, index);
 }
 
 /// Sums of rows [K, C] of the same loop, [D, C].
-torch::Tensor sum_loops(const torch::Tensor& values, const DualTopology& topology) {
-    return torch::zeros({topology.cube_of.size(0), values.size(1)})
+at::Tensor sum_loops(const at::Tensor& values, const DualTopology& topology) {
+    return at::zeros({topology.cube_of.size(0), values.size(1)})
         .index_add(0, topology.loop, values);
 }
 
@@ -147,21 +147,21 @@ torch::Tensor sum_loops(const torch::Tensor& values, const DualTopology& topolog
 
 /// On the surface, with what they were made of.
 struct FlexiCubes::Vertices {
-    torch::Tensor positions;  ///< [D, 3]
-    torch::Tensor crossings;  ///< [K, 3]
-    torch::Tensor gamma;      ///< [D, 1]
+    at::Tensor positions;  ///< [D, 3]
+    at::Tensor crossings;  ///< [K, 3]
+    at::Tensor gamma;      ///< [D, 1]
 };
 
 FlexiCubes::FlexiCubes(const Lattice& lattice) : lattice_(lattice) {
     const auto& n = lattice.cells;
     const std::int64_t cubes = static_cast<std::int64_t>(n[0]) * n[1] * n[2];
-    weights_ = torch::zeros({cubes, all_weights}).set_requires_grad(true);
+    weights_ = at::zeros({cubes, all_weights}).set_requires_grad(true);
     row_of_cube_.assign(static_cast<std::size_t>(cubes), -1);
 }
 
-DualTopology FlexiCubes::topology(const torch::Tensor& values_) {
-    const torch::Tensor values = values_.detach().contiguous();
-    ITEM3D_CHECK(values.scalar_type() == torch::kFloat32 && values.dim() == 1 &&
+DualTopology FlexiCubes::topology(const at::Tensor& values_) {
+    const at::Tensor values = values_.detach().contiguous();
+    ITEM3D_CHECK(values.scalar_type() == at::kFloat && values.dim() == 1 &&
                      values.size(0) == lattice_.vertex_count(),
                  "one float for each vertex of the lattice");
     const SignedLattice lattice(lattice_, values.const_data_ptr<float>());
@@ -180,73 +180,70 @@ DualTopology FlexiCubes::topology(const torch::Tensor& values_) {
 }
 
 FlexiCubes::Vertices FlexiCubes::dual_vertices(const DualTopology& topology,
-                                               const torch::Tensor& values,
-                                               const torch::Tensor& vertices) const {
+                                               const at::Tensor& values,
+                                               const at::Tensor& vertices) const {
     // Every cube is there once, in rising order, as Adam wants sparse gradients.
-    const torch::Tensor rows =
-        torch::embedding(weights_, topology.cubes, -1, false, /*sparse=*/true);
-    const torch::Tensor bounded = 1 + weight_range * torch::tanh(rows.narrow(1, 0, alphas + betas));
-    const torch::Tensor flat = bounded.reshape({-1, 1});
-    const torch::Tensor first = pick(topology.cube_of, topology.loop) * (alphas + betas);
-    const torch::Tensor in = topology.corners.select(1, 0), out = topology.corners.select(1, 1);
-    const torch::Tensor in_vertex = topology.ends.select(1, 0);
-    const torch::Tensor out_vertex = topology.ends.select(1, 1);
+    const at::Tensor rows = at::embedding(weights_, topology.cubes, -1, false, /*sparse=*/true);
+    const at::Tensor bounded = 1 + weight_range * at::tanh(rows.narrow(1, 0, alphas + betas));
+    const at::Tensor flat = bounded.reshape({-1, 1});
+    const at::Tensor first = pick(topology.cube_of, topology.loop) * (alphas + betas);
+    const at::Tensor in = topology.corners.select(1, 0), out = topology.corners.select(1, 1);
+    const at::Tensor in_vertex = topology.ends.select(1, 0);
+    const at::Tensor out_vertex = topology.ends.select(1, 1);
 
     // Where alpha times the value is 0 along the edge (equation 4); the sum is above 0.
-    const torch::Tensor inner = -pick(values, in_vertex).unsqueeze(1) * pick(flat, first + in);
-    const torch::Tensor outer = pick(values, out_vertex).unsqueeze(1) * pick(flat, first + out);
+    const at::Tensor inner = -pick(values, in_vertex).unsqueeze(1) * pick(flat, first + in);
+    const at::Tensor outer = pick(values, out_vertex).unsqueeze(1) * pick(flat, first + out);
     Vertices result;
     result.crossings =
         (pick(vertices, out_vertex) * inner + pick(vertices, in_vertex) * outer) / (inner + outer);
     // The mean of a loop's crossings, weighted by beta (equation 5).
-    const torch::Tensor beta = pick(flat, first + alphas + topology.edge);
+    const at::Tensor beta = pick(flat, first + alphas + topology.edge);
     result.positions = sum_loops(beta * result.crossings, topology) / sum_loops(beta, topology);
-    const torch::Tensor gamma = torch::sigmoid(rows.narrow(1, alphas + betas, 1));
+    const at::Tensor gamma = at::sigmoid(rows.narrow(1, alphas + betas, 1));
     result.gamma = pick(0.5 * (1 - weight_range) + weight_range * gamma, topology.cube_of);
     return result;
 }
 
-ExtractedSurface FlexiCubes::extract(const torch::Tensor& values, const torch::Tensor& vertices) {
+ExtractedSurface FlexiCubes::extract(const at::Tensor& values, const at::Tensor& vertices) {
     const DualTopology found = topology(values);
     const Vertices dual = dual_vertices(found, values, vertices);
     const auto corner = [&](int k) { return found.quads.select(1, k); };
     const auto position = [&](int k) { return pick(dual.positions, corner(k)); };
-    const torch::Tensor first = pick(dual.gamma, corner(0)) * pick(dual.gamma, corner(2));
-    const torch::Tensor second = pick(dual.gamma, corner(1)) * pick(dual.gamma, corner(3));
-    const torch::Tensor middle =
+    const at::Tensor first = pick(dual.gamma, corner(0)) * pick(dual.gamma, corner(2));
+    const at::Tensor second = pick(dual.gamma, corner(1)) * pick(dual.gamma, corner(3));
+    const at::Tensor middle =
         0.5 * (first * (position(0) + position(2)) + second * (position(1) + position(3))) /
         (first + second);
-    const torch::Tensor middles =
-        torch::arange(found.quads.size(0), torch::kInt64) + dual.positions.size(0);
-    std::vector<torch::Tensor> triangles;
+    const at::Tensor middles = at::arange(found.quads.size(0), at::kLong) + dual.positions.size(0);
+    std::vector<at::Tensor> triangles;
     for (int k = 0; k < 4; ++k)
-        triangles.push_back(torch::stack({corner(k), corner((k + 1) % 4), middles}, 1));
+        triangles.push_back(at::stack({corner(k), corner((k + 1) % 4), middles}, 1));
 
-    const torch::Tensor count = sum_loops(torch::ones({found.loop.size(0), 1}), found);
-    const torch::Tensor apart =
+    const at::Tensor count = sum_loops(at::ones({found.loop.size(0), 1}), found);
+    const at::Tensor apart =
         (pick(dual.positions, found.loop) - dual.crossings).norm(2, 1, true) / lattice_.cell;
-    const torch::Tensor mean = sum_loops(apart, found) / count;
-    const torch::Tensor deviation =
-        sum_loops((apart - pick(mean, found.loop)).abs(), found) / count;
-    return {torch::cat({dual.positions, middle}), torch::cat(triangles), found.quad_ends,
+    const at::Tensor mean = sum_loops(apart, found) / count;
+    const at::Tensor deviation = sum_loops((apart - pick(mean, found.loop)).abs(), found) / count;
+    return {at::cat({dual.positions, middle}), at::cat(triangles), found.quad_ends,
             deviation.mean()};
 }
 
-TriangleMesh FlexiCubes::mesh(const torch::Tensor& values, const torch::Tensor& vertices) {
-    const torch::NoGradGuard no_gradient;
+TriangleMesh FlexiCubes::mesh(const at::Tensor& values, const at::Tensor& vertices) {
+    const at::NoGradGuard no_gradient;
     const DualTopology found = topology(values);
     const Vertices dual = dual_vertices(found, values, vertices);
     const auto gamma = [&](int k) {
         return pick(dual.gamma, found.quads.select(1, k)).select(1, 0);
     };
-    const torch::Tensor first = gamma(0) * gamma(2) > gamma(1) * gamma(3);  // diagonal from 0 to 2
+    const at::Tensor first = gamma(0) * gamma(2) > gamma(1) * gamma(3);  // diagonal from 0 to 2
     // The others begin one corner later.
-    const torch::Tensor turned = torch::where(first.unsqueeze(1), found.quads,
-                                              torch::roll(found.quads, /*shifts=*/-1, /*dims=*/1));
+    const at::Tensor turned = at::where(first.unsqueeze(1), found.quads,
+                                        at::roll(found.quads, /*shifts=*/-1, /*dims=*/1));
     const auto half = [&](int b, int c) {
-        return torch::stack({turned.select(1, 0), turned.select(1, b), turned.select(1, c)}, 1);
+        return at::stack({turned.select(1, 0), turned.select(1, b), turned.select(1, c)}, 1);
     };
-    return {dual.positions, torch::cat({half(1, 2), half(2, 3)})};
+    return {dual.positions, at::cat({half(1, 2), half(2, 3)})};
 }
 
 }  // namespace item3d

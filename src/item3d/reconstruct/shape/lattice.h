@@ -2,8 +2,7 @@
 #pragma once
 
 #include "item3d/core/math.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <array>
 #include <cstdint>
@@ -20,12 +19,12 @@ struct Lattice {
         return static_cast<std::int64_t>(cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1);
     }
     /// [V, 3].
-    torch::Tensor vertices() const;
+    at::Tensor vertices() const;
     /// Twice as many cells of half the edge over the same box.
     Lattice refined() const;
 };
 
 /// Values [V] of a lattice at the vertices of lattice.refined(), trilinear. Differentiable.
-torch::Tensor refined_values(const torch::Tensor& values, const Lattice& lattice);
+at::Tensor refined_values(const at::Tensor& values, const Lattice& lattice);
 
 }  // namespace item3d

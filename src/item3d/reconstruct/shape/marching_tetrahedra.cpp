@@ -87,9 +87,9 @@ MarchingTetrahedra::MarchingTetrahedra(const Lattice& lattice)
     : lattice_(lattice),
       edge_rows_(static_cast<std::size_t>(lattice.vertex_count()) * directions, -1) {}
 
-MarchedTopology MarchingTetrahedra::topology(const torch::Tensor& values_) {
-    const torch::Tensor values = values_.detach().contiguous();
-    ITEM3D_CHECK(values.scalar_type() == torch::kFloat32 && values.dim() == 1 &&
+MarchedTopology MarchingTetrahedra::topology(const at::Tensor& values_) {
+    const at::Tensor values = values_.detach().contiguous();
+    ITEM3D_CHECK(values.scalar_type() == at::kFloat && values.dim() == 1 &&
                      values.size(0) == lattice_.vertex_count(),
                  "one float for each vertex of the lattice");
     const float* value = values.const_data_ptr<float>();
@@ -137,28 +137,27 @@ MarchedTopology MarchingTetrahedra::topology(const torch::Tensor& values_) {
     }
     for (const std::size_t key : touched)
         edge_rows_[key] = -1;
-    return {torch::tensor(edges, torch::kInt64).reshape({-1, 2}),
-            torch::tensor(triangles, torch::kInt64).reshape({-1, 3})};
+    return {at::tensor(edges, at::kLong).reshape({-1, 2}),
+            at::tensor(triangles, at::kLong).reshape({-1, 3})};
 }
 
-torch::Tensor surface_points(const MarchedTopology& topology, const torch::Tensor& values,
-                             const torch::Tensor& vertices) {
-    const torch::Tensor in = topology.edges.select(1, 0), out = topology.edges.select(1, 1);
-    const torch::Tensor inner = values.index_select(0, in).unsqueeze(1);
-    const torch::Tensor outer = values.index_select(0, out).unsqueeze(1);
+at::Tensor surface_points(const MarchedTopology& topology, const at::Tensor& values,
+                          const at::Tensor& vertices) {
+    const at::Tensor in = topology.edges.select(1, 0), out = topology.edges.select(1, 1);
+    const at::Tensor inner = values.index_select(0, in).unsqueeze(1);
+    const at::Tensor outer = values.index_select(0, out).unsqueeze(1);
     // inner < 0 <= outer, so the difference is above 0.
-    const torch::Tensor weight = outer / (outer - inner);
+    const at::Tensor weight = outer / (outer - inner);
     return vertices.index_select(0, in) * weight + vertices.index_select(0, out) * (1 - weight);
 }
 
-ExtractedSurface MarchingTetrahedra::extract(const torch::Tensor& values,
-                                             const torch::Tensor& vertices) {
+ExtractedSurface MarchingTetrahedra::extract(const at::Tensor& values, const at::Tensor& vertices) {
     const MarchedTopology found = topology(values);
     return {surface_points(found, values, vertices), found.triangles, found.edges, {}};
 }
 
-TriangleMesh MarchingTetrahedra::mesh(const torch::Tensor& values, const torch::Tensor& vertices) {
-    const torch::NoGradGuard no_gradient;
+TriangleMesh MarchingTetrahedra::mesh(const at::Tensor& values, const at::Tensor& vertices) {
+    const at::NoGradGuard no_gradient;
     const MarchedTopology found = topology(values);
     return {surface_points(found, values, vertices), found.triangles};
 }

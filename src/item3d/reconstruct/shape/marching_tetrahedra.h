@@ -14,9 +14,9 @@ namespace item3d {
 struct MarchedTopology {
     /// [E, 2] int64: lattice vertices of edges that the surface crosses; the first is inside.
     /// Each crossed edge is there once: it is a vertex of the surface.
-    torch::Tensor edges;
+    at::Tensor edges;
     /// [T, 3] int64 rows of `edges`, counter-clockwise from outside.
-    torch::Tensor triangles;
+    at::Tensor triangles;
 };
 
 /// Each cube is cut into six tetrahedra around its diagonal (Kuhn 1960), so that neighbours agree
@@ -25,12 +25,12 @@ class MarchingTetrahedra : public SurfaceExtraction {
   public:
     explicit MarchingTetrahedra(const Lattice& lattice);
 
-    ExtractedSurface extract(const torch::Tensor& values, const torch::Tensor& vertices) override;
-    TriangleMesh mesh(const torch::Tensor& values, const torch::Tensor& vertices) override;
+    ExtractedSurface extract(const at::Tensor& values, const at::Tensor& vertices) override;
+    TriangleMesh mesh(const at::Tensor& values, const at::Tensor& vertices) override;
 
     /// values [V] float32: below 0 is inside. The surface is closed unless it meets the box's
     /// border.
-    MarchedTopology topology(const torch::Tensor& values);
+    MarchedTopology topology(const at::Tensor& values);
 
   private:
     Lattice lattice_;
@@ -39,7 +39,7 @@ class MarchingTetrahedra : public SurfaceExtraction {
 
 /// [E, 3]: where linear interpolation is 0 along each edge, of `vertices` [V, 3] (moved or not).
 /// Differentiable in values and vertices.
-torch::Tensor surface_points(const MarchedTopology& topology, const torch::Tensor& values,
-                             const torch::Tensor& vertices);
+at::Tensor surface_points(const MarchedTopology& topology, const at::Tensor& values,
+                          const at::Tensor& vertices);
 
 }  // namespace item3d

@@ -17,10 +17,10 @@ std::vector<std::string> extraction_names() {
     return {"flexicubes", "tetrahedra"};
 }
 
-torch::Tensor sign_change_loss(const torch::Tensor& edges, const torch::Tensor& values) {
-    const torch::Tensor inner = values.index_select(0, edges.select(1, 0));
-    const torch::Tensor outer = values.index_select(0, edges.select(1, 1));
-    return torch::softplus(outer).mean() + torch::softplus(-inner).mean();
+at::Tensor sign_change_loss(const at::Tensor& edges, const at::Tensor& values) {
+    const at::Tensor inner = values.index_select(0, edges.select(1, 0));
+    const at::Tensor outer = values.index_select(0, edges.select(1, 1));
+    return at::softplus(outer).mean() + at::softplus(-inner).mean();
 }
 
 }  // namespace item3d

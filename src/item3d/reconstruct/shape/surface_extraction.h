@@ -3,8 +3,7 @@
 
 #include "item3d/reconstruct/shape/clean_mesh.h"
 #include "item3d/reconstruct/shape/lattice.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <memory>
 #include <string>
@@ -14,13 +13,13 @@ namespace item3d {
 
 /// As the optimisation wants it.
 struct ExtractedSurface {
-    torch::Tensor positions;  ///< [V, 3]
-    torch::Tensor triangles;  ///< [T, 3] int64, counter-clockwise from outside
+    at::Tensor positions;  ///< [V, 3]
+    at::Tensor triangles;  ///< [T, 3] int64, counter-clockwise from outside
     /// [E, 2] int64: lattice vertices of edges that the surface crosses, each once; the first is
     /// inside.
-    torch::Tensor edges;
+    at::Tensor edges;
     /// Scalar, what the way itself asks for (see FlexiCubes); undefined: nothing.
-    torch::Tensor regularizer;
+    at::Tensor regularizer;
 };
 
 /// One lattice's surfaces, again and again. values [V] float32: below 0 is inside. vertices [V, 3]:
@@ -30,12 +29,11 @@ class SurfaceExtraction {
     virtual ~SurfaceExtraction() = default;
 
     /// Differentiable in values, vertices and weights(). Closed unless it meets the box's border.
-    virtual ExtractedSurface extract(const torch::Tensor& values,
-                                     const torch::Tensor& vertices) = 0;
+    virtual ExtractedSurface extract(const at::Tensor& values, const at::Tensor& vertices) = 0;
     /// The same surface with as many triangles as it takes, without gradients; may be empty.
-    virtual TriangleMesh mesh(const torch::Tensor& values, const torch::Tensor& vertices) = 0;
+    virtual TriangleMesh mesh(const at::Tensor& values, const at::Tensor& vertices) = 0;
     /// What it learns beside values and vertices; gradients may be sparse.
-    virtual std::vector<torch::Tensor> weights() const { return {}; }
+    virtual std::vector<at::Tensor> weights() const { return {}; }
 };
 
 /// "flexicubes" or "tetrahedra".
@@ -45,6 +43,6 @@ std::vector<std::string> extraction_names();
 /// nvdiffrec's regulariser (Munkberg et al. 2022, equation 2): cross entropy between the values at
 /// both ends of each crossed edge [E, 2] and the other end's sign. It takes away sign changes that
 /// no picture asks for. values in lattice cells.
-torch::Tensor sign_change_loss(const torch::Tensor& edges, const torch::Tensor& values);
+at::Tensor sign_change_loss(const at::Tensor& edges, const at::Tensor& values);
 
 }  // namespace item3d

@@ -104,9 +104,9 @@ VisualHull::VisualHull(const std::vector<Photograph>& views) : silhouettes_(view
         1);
 }
 
-torch::Tensor VisualHull::distance(const torch::Tensor& points_) const {
-    const torch::Tensor points = points_.detach().contiguous();
-    torch::Tensor result = torch::empty({points.size(0)});
+at::Tensor VisualHull::distance(const at::Tensor& points_) const {
+    const at::Tensor points = points_.detach().contiguous();
+    at::Tensor result = at::empty({points.size(0)});
     const float* p = points.const_data_ptr<float>();
     float* out = result.data_ptr<float>();
     struct Projection {
@@ -147,17 +147,17 @@ std::array<Vec3, 2> VisualHull::bounds(Vec3 centre, float radius,
     const float reach = 1.2f * radius;
     const Lattice lattice{
         centre - reach, 2 * reach / search_cells, {search_cells, search_cells, search_cells}};
-    const torch::Tensor points = lattice.vertices();
+    const at::Tensor points = lattice.vertices();
     // Thin parts may lie between the lattice's points.
-    const torch::Tensor inside = (distance(points) < lattice.cell).nonzero().select(1, 0);
+    const at::Tensor inside = (distance(points) < lattice.cell).nonzero().select(1, 0);
     if (inside.size(0) == 0) {
         throw InputError(
             subject, "no place is inside the masks of all views",
             "the object is out of the frame, or poses and masks do not belong together");
     }
-    const torch::Tensor found = points.index_select(0, inside);
-    const torch::Tensor low = std::get<0>(found.min(0)), high = std::get<0>(found.max(0));
-    const auto corner = [](const torch::Tensor& t) {
+    const at::Tensor found = points.index_select(0, inside);
+    const at::Tensor low = std::get<0>(found.min(0)), high = std::get<0>(found.max(0));
+    const auto corner = [](const at::Tensor& t) {
         return Vec3(t[0].item<float>(), t[1].item<float>(), t[2].item<float>());
     };
     return {corner(low) - lattice.cell, corner(high) + lattice.cell};

@@ -3,8 +3,7 @@
 
 #include "item3d/reconstruct/dataset/dataset.h"
 #include "item3d/reconstruct/shape/lattice.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <array>
 #include <vector>
@@ -25,7 +24,7 @@ class VisualHull {
     /// [P, 3] world -> [P] world units: about the signed distance to the hull, below 0 inside.
     /// In each picture a point has the distance to the outline, at the point's depth; the largest
     /// counts. Pictures that do not show a point say nothing about it; what none shows is outside.
-    torch::Tensor distance(const torch::Tensor& points) const;
+    at::Tensor distance(const at::Tensor& points) const;
 
     /// A box around the hull, looked for within `radius` of `centre`. Throws InputError that begins
     /// with `subject` where no point is inside all masks.

@@ -12,26 +12,26 @@ namespace item3d {
 namespace {
 
 /// Sums rows of `values` [R, C] into [size, C] at `index` [R]. Differentiable.
-torch::Tensor sum_at(const torch::Tensor& values, const torch::Tensor& index, std::int64_t size) {
-    return torch::zeros({size, values.size(1)}, values.options()).index_add(0, index, values);
+at::Tensor sum_at(const at::Tensor& values, const at::Tensor& index, std::int64_t size) {
+    return at::zeros({size, values.size(1)}, values.options()).index_add(0, index, values);
 }
 
 }  // namespace
 
-torch::Tensor vertex_normals(const torch::Tensor& positions, const torch::Tensor& triangles) {
+at::Tensor vertex_normals(const at::Tensor& positions, const at::Tensor& triangles) {
     const auto corner = [&](int c) { return positions.index_select(0, triangles.select(1, c)); };
-    const torch::Tensor a = corner(0);
-    const torch::Tensor faces = torch::linalg_cross(corner(1) - a, corner(2) - a);
-    torch::Tensor sums = torch::zeros_like(positions);
+    const at::Tensor a = corner(0);
+    const at::Tensor faces = at::linalg_cross(corner(1) - a, corner(2) - a);
+    at::Tensor sums = at::zeros_like(positions);
     for (int c = 0; c < 3; ++c)
         sums = sums.index_add(0, triangles.select(1, c), faces);
-    const torch::Tensor length = sums.norm(2, 1, true);
-    const torch::Tensor up = torch::tensor({0.0f, 0.0f, 1.0f}).expand_as(sums);
-    return torch::where(length > 1e-20f, sums / length.clamp_min(1e-20f), up);
+    const at::Tensor length = sums.norm(2, 1, true);
+    const at::Tensor up = at::tensor({0.0f, 0.0f, 1.0f}).expand_as(sums);
+    return at::where(length > 1e-20f, sums / length.clamp_min(1e-20f), up);
 }
 
-torch::Tensor mesh_neighbours(const torch::Tensor& triangles_, std::int64_t vertices) {
-    const torch::Tensor triangles = triangles_.contiguous();
+at::Tensor mesh_neighbours(const at::Tensor& triangles_, std::int64_t vertices) {
+    const at::Tensor triangles = triangles_.contiguous();
     const std::int64_t* t = triangles.const_data_ptr<std::int64_t>();
     const std::int64_t corners = triangles.numel();
     const auto ends = [&](std::int64_t corner) {
@@ -49,7 +49,7 @@ torch::Tensor mesh_neighbours(const torch::Tensor& triangles_, std::int64_t vert
         by_vertex[static_cast<std::size_t>(begin[static_cast<std::size_t>(ends(c).first) + 1]++)] =
             c;
 
-    torch::Tensor neighbours = torch::full({triangles.size(0), 3}, -1, torch::kInt32);
+    at::Tensor neighbours = at::full({triangles.size(0), 3}, -1, at::kInt);
     std::int32_t* out = neighbours.data_ptr<std::int32_t>();
     for (std::size_t v = 0; v < static_cast<std::size_t>(vertices); ++v) {
         for (std::int64_t i = begin[v]; i < begin[v + 1]; ++i) {
@@ -68,14 +68,13 @@ torch::Tensor mesh_neighbours(const torch::Tensor& triangles_, std::int64_t vert
     return neighbours;
 }
 
-torch::Tensor crumpling_loss(const torch::Tensor& offsets, const torch::Tensor& edges,
-                             float mean_edge) {
-    const torch::Tensor first = edges.select(1, 0), second = edges.select(1, 1);
+at::Tensor crumpling_loss(const at::Tensor& offsets, const at::Tensor& edges, float mean_edge) {
+    const at::Tensor first = edges.select(1, 0), second = edges.select(1, 1);
     const std::int64_t count = offsets.size(0);
-    const torch::Tensor sums = sum_at(offsets.index_select(0, second), first, count) +
-                               sum_at(offsets.index_select(0, first), second, count);
-    const torch::Tensor ones = torch::ones({edges.size(0), 1});
-    const torch::Tensor degree =
+    const at::Tensor sums = sum_at(offsets.index_select(0, second), first, count) +
+                            sum_at(offsets.index_select(0, first), second, count);
+    const at::Tensor ones = at::ones({edges.size(0), 1});
+    const at::Tensor degree =
         (sum_at(ones, first, count) + sum_at(ones, second, count)).clamp_min(1.0f);
     return ((offsets - sums / degree) / mean_edge).square().sum(1).mean();
 }
@@ -93,10 +92,10 @@ MovableMesh::MovableMesh(const Model& model, bool moves) : base_(Geometry::from_
         if (is_new) places.insert(places.end(), p, p + 3);
         place_of.push_back(entry->second);
     }
-    place_of_ = torch::tensor(place_of, torch::kInt64);
-    places_ = torch::tensor(places).reshape({-1, 3});
+    place_of_ = at::tensor(place_of, at::kLong);
+    places_ = at::tensor(places).reshape({-1, 3});
     triangles_ =
-        place_of_.index_select(0, base_.triangles.reshape({-1}).to(torch::kInt64)).reshape({-1, 3});
+        place_of_.index_select(0, base_.triangles.reshape({-1}).to(at::kLong)).reshape({-1, 3});
     std::set<std::pair<std::int64_t, std::int64_t>> edges;
     const std::int64_t* t = triangles_.const_data_ptr<std::int64_t>();
     for (std::int64_t i = 0; i < triangles_.size(0); ++i, t += 3)
@@ -107,26 +106,26 @@ MovableMesh::MovableMesh(const Model& model, bool moves) : base_(Geometry::from_
         flat.push_back(a);
         flat.push_back(b);
     }
-    edges_ = torch::tensor(flat, torch::kInt64).reshape({-1, 2});
+    edges_ = at::tensor(flat, at::kLong).reshape({-1, 2});
     mean_edge_ = (places_.index_select(0, edges_.select(1, 0)) -
                   places_.index_select(0, edges_.select(1, 1)))
                      .norm(2, 1)
                      .mean()
                      .item<float>();
-    if (moves) offsets_ = torch::zeros_like(places_).set_requires_grad(true);
+    if (moves) offsets_ = at::zeros_like(places_).set_requires_grad(true);
 }
 
 Geometry MovableMesh::geometry() const {
     Geometry geometry = base_;
     if (!moves()) return geometry;
-    const torch::Tensor moved = places_ + offsets_;
+    const at::Tensor moved = places_ + offsets_;
     geometry.positions = moved.index_select(0, place_of_);
     geometry.normals = vertex_normals(moved, triangles_).index_select(0, place_of_);
     return geometry;
 }
 
 Model MovableMesh::apply(const Model& model) const {
-    const torch::NoGradGuard no_gradient;
+    const at::NoGradGuard no_gradient;
     Model result = model;
     if (!moves()) return result;
     const Geometry now = geometry();

@@ -3,24 +3,22 @@
 
 #include "item3d/render/geometry.h"
 #include "item3d/scene/model.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
 /// Unit normals [V, 3] at vertices: the sum of the face normals around, by area. positions [V, 3],
 /// triangles [T, 3] int64. Differentiable; (0, 0, 1) where nothing but degenerate triangles meets.
-torch::Tensor vertex_normals(const torch::Tensor& positions, const torch::Tensor& triangles);
+at::Tensor vertex_normals(const at::Tensor& positions, const at::Tensor& triangles);
 
 /// Geometry::neighbours [T, 3] int32 of a mesh whose vertices are where they meet (no seams), in
 /// time that grows as the mesh does. triangles [T, 3] int64 below `vertices`.
-torch::Tensor mesh_neighbours(const torch::Tensor& triangles, std::int64_t vertices);
+at::Tensor mesh_neighbours(const at::Tensor& triangles, std::int64_t vertices);
 
 /// Mean over vertices of the squared distance, in units of the mean edge, of `offsets` [V, 3] from
 /// the mean of the neighbours' offsets (umbrella operator): large where a mesh crumples, 0 where
 /// parts of it move as one. edges [E, 2] int64, each once.
-torch::Tensor crumpling_loss(const torch::Tensor& offsets, const torch::Tensor& edges,
-                             float mean_edge);
+at::Tensor crumpling_loss(const at::Tensor& offsets, const at::Tensor& edges, float mean_edge);
 
 /// Places where several vertices lie (UV seams) move as one.
 class MovableMesh {
@@ -33,20 +31,20 @@ class MovableMesh {
     Geometry geometry() const;
     bool moves() const { return offsets_.defined(); }
     /// [U, 3] by place; undefined where nothing moves.
-    torch::Tensor& offsets() { return offsets_; }
+    at::Tensor& offsets() { return offsets_; }
     float mean_edge() const { return mean_edge_; }
-    torch::Tensor crumpling() const { return crumpling_loss(offsets_, edges_, mean_edge_); }
+    at::Tensor crumpling() const { return crumpling_loss(offsets_, edges_, mean_edge_); }
 
     /// The model that this was made of, with positions and normals of now.
     Model apply(const Model& model) const;
 
   private:
     Geometry base_;
-    torch::Tensor offsets_;
-    torch::Tensor places_;     ///< [U, 3]
-    torch::Tensor place_of_;   ///< [V] int64
-    torch::Tensor triangles_;  ///< [T, 3] int64 of places
-    torch::Tensor edges_;      ///< [E, 2] int64 of places
+    at::Tensor offsets_;
+    at::Tensor places_;     ///< [U, 3]
+    at::Tensor place_of_;   ///< [V] int64
+    at::Tensor triangles_;  ///< [T, 3] int64 of places
+    at::Tensor edges_;      ///< [E, 2] int64 of places
     float mean_edge_ = 0;
 };
 

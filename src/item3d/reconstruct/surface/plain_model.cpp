@@ -5,9 +5,9 @@
 
 namespace item3d {
 
-Model plain_model(const torch::Tensor& positions_, const torch::Tensor& triangles_) {
-    const torch::Tensor positions = positions_.detach().contiguous();
-    const torch::Tensor triangles = triangles_.contiguous();
+Model plain_model(const at::Tensor& positions_, const at::Tensor& triangles_) {
+    const at::Tensor positions = positions_.detach().contiguous();
+    const at::Tensor triangles = triangles_.contiguous();
     Model model;
     model.name = "model";
     Primitive primitive;
@@ -57,9 +57,9 @@ Model unwrapped(Model model, int texture_size) {
 }
 
 NeuralTexture constant_field(const NeuralTextureOptions& options) {
-    const torch::NoGradGuard no_gradient;
+    const at::NoGradGuard no_gradient;
     NeuralTexture field(options);
-    for (const torch::Tensor& parameter : field->network_parameters())
+    for (const at::Tensor& parameter : field->network_parameters())
         parameter.zero_();
     return field;
 }

@@ -3,15 +3,14 @@
 
 #include "item3d/field/neural_texture.h"
 #include "item3d/scene/model.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <filesystem>
 
 namespace item3d {
 
 /// Triangles [T, 3] int64 over positions [V, 3], with smooth normals and no UVs.
-Model plain_model(const torch::Tensor& positions, const torch::Tensor& triangles);
+Model plain_model(const at::Tensor& positions, const at::Tensor& triangles);
 
 /// All triangles of a model file as one primitive: UVs stay where all of it has them.
 Model load_plain_model(const std::filesystem::path& path);

@@ -1,6 +1,7 @@
 #include "item3d/reconstruct/surface/refine.h"
 
 #include "item3d/core/format.h"
+#include "item3d/render/pictures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +14,6 @@ constexpr double final_rate = 0.1;
 constexpr std::int64_t smoothness_points = 4096;
 constexpr float farthest_smoothness = 0.15f;  ///< of the object's diagonal
 constexpr int traces = 4;                     ///< of shadows, in all
-constexpr std::uint64_t refine_stream = 0x726566696e65;
 
 double falling(double rate, int iteration, int iterations) {
     const double progress = static_cast<double>(iteration) / iterations;
@@ -21,8 +21,8 @@ double falling(double rate, int iteration, int iterations) {
 }
 
 /// radiance: undefined: from everywhere.
-Occlusion trace_occlusion(const MovableMesh& mesh, const torch::Tensor& radiance) {
-    const torch::NoGradGuard no_gradient;
+Occlusion trace_occlusion(const MovableMesh& mesh, const at::Tensor& radiance) {
+    const at::NoGradGuard no_gradient;
     OcclusionOptions options;
     options.rays = 128;
     if (radiance.defined()) options.light = to_image(radiance);
@@ -40,25 +40,25 @@ Refinement::Refinement(Appearance& appearance, MovableMesh& mesh, const Model& m
       pixel_(pixel_size(model.bounds(), views_.front())),
       farthest_(farthest_smoothness * glm::length(model.bounds()[1] - model.bounds()[0])),
       order_(views_.size(), options.seed) {
-    learning_.random = Random(options.seed, refine_stream);
-    Adam& adam = learning_.optimizer;
-    adam.add_group({appearance.field->table()}, {.learning_rate = options.field_learning_rate});
-    adam.add_group(appearance.field->network_parameters(),
-                   {.learning_rate = 0.5 * options.field_learning_rate});
-    adam.add_group(appearance.light.parameters(),
-                   {.learning_rate = options.light_learning_rate, .beta2 = 0.999});
-    if (mesh.moves()) {
-        adam.add_group(
-            {mesh.offsets()},
+    learning_.random = Random(options.seed, RandomStream::refinement);
+    const auto add = [&](const char* group, const std::vector<at::Tensor>& parameters,
+                         const AdamOptions& adam_options) {
+        learning_.optimizer.add_group(group, parameters, adam_options);
+        rates_[group] = adam_options.learning_rate;
+    };
+    add("table", {appearance.field->table()}, {.learning_rate = options.field_learning_rate});
+    add("network", appearance.field->network_parameters(),
+        {.learning_rate = 0.5 * options.field_learning_rate});
+    add("light", appearance.light.parameters(),
+        {.learning_rate = options.light_learning_rate, .beta2 = 0.999});
+    if (mesh.moves())
+        add("offsets", {mesh.offsets()},
             {.learning_rate = options.vertex_learning_rate * mesh.mean_edge(), .beta2 = 0.999});
-    }
-    for (std::size_t group = 0; group < adam.group_count(); ++group)
-        rates_.push_back(adam.options(group).learning_rate);
 }
 
 void Refinement::trace() {
     traced_ = {};
-    const torch::NoGradGuard no_gradient;
+    const at::NoGradGuard no_gradient;
     if (mesh_.moves()) traced_.offsets = mesh_.offsets().detach().clone();
     if (iteration() > 0) traced_.radiance = appearance_.light.radiance();
     occlusion_ = trace_occlusion(mesh_, traced_.radiance);
@@ -77,10 +77,10 @@ RenderedView Refinement::render(const TargetView& view, bool light_alone) {
                         .one_material = light_alone});
 }
 
-torch::Tensor Refinement::regularization(const RenderedView& rendered, const TargetView& view,
-                                         const torch::Tensor& mask) {
+at::Tensor Refinement::regularization(const RenderedView& rendered, const TargetView& view,
+                                      const at::Tensor& mask) {
     const RegularizerWeights& weights = options_.weights;
-    torch::Tensor loss = torch::zeros({});
+    at::Tensor loss = at::zeros({});
     if (rendered.surface.count() > 0) {
         loss = loss +
                weights.smoothness * smoothness_loss(appearance_.field, rendered, pixel_, farthest_,
@@ -103,16 +103,15 @@ void Refinement::step() {
     const bool light_learns = learning_.update_light(appearance_, i, options_.light_every);
     const TargetView& view = views_[order_.at(i)];
     const RenderedView rendered = render(view, i < options_.light_alone * options_.iterations);
-    const torch::Tensor background =
-        torch::full({3}, static_cast<float>(learning_.random.uniform()));
-    const torch::Tensor picture = picture_loss(rendered.image, view.image, background);
-    const torch::Tensor mask = mask_loss(rendered.image, view.image);
-    torch::Tensor loss = picture + regularization(rendered, view, mask);
+    const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
+    const at::Tensor picture = picture_loss(rendered.image, view.image, background);
+    const at::Tensor mask = mask_loss(rendered.image, view.image);
+    at::Tensor loss = picture + regularization(rendered, view, mask);
     if (light_learns) loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss();
     loss.backward();
     Adam& adam = learning_.optimizer;
-    for (std::size_t group = 0; group < rates_.size(); ++group)
-        adam.options(group).learning_rate = falling(rates_[group], i, options_.iterations);
+    for (const auto& [group, rate] : rates_)
+        adam.options(group).learning_rate = falling(rate, i, options_.iterations);
     adam.step();
     adam.zero_grad();
     learning_.note_losses(picture, mask);
@@ -124,7 +123,7 @@ std::string Refinement::detail() const {
 }
 
 RenderedView Refinement::draw(const TargetView& view) {
-    const torch::NoGradGuard no_gradient;
+    const at::NoGradGuard no_gradient;
     return render(view, false);
 }
 
@@ -139,7 +138,7 @@ NamedTensors Refinement::state() const {
 void Refinement::load_state(const CheckpointReader& reader) {
     Stage::load_state(reader);
     learning_.random =
-        Random(options_.seed, refine_stream,
+        Random(options_.seed, RandomStream::refinement,
                static_cast<std::uint64_t>(reader.get("random").item<std::int64_t>()));
     if (reader.has("traced.radiance")) traced_.radiance = reader.get("traced.radiance");
     if (options_.shadows && iteration() > 0 && !is_done()) {

@@ -3,9 +3,9 @@
 
 #include "item3d/reconstruct/stage.h"
 #include "item3d/reconstruct/surface/movable_mesh.h"
-#include "item3d/reconstruct/view_order.h"
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -61,18 +61,18 @@ class Refinement : public Stage {
   private:
     /// What shadows were traced of: a resumed run traces them again.
     struct Traced {
-        torch::Tensor offsets;   ///< of the mesh; undefined: it does not move
-        torch::Tensor radiance;  ///< [H, 2H, 3]; undefined: light from everywhere
+        at::Tensor offsets;   ///< of the mesh; undefined: it does not move
+        at::Tensor radiance;  ///< [H, 2H, 3]; undefined: light from everywhere
     };
     void trace();
     RenderedView render(const TargetView& view, bool light_alone);
-    torch::Tensor regularization(const RenderedView& rendered, const TargetView& view,
-                                 const torch::Tensor& mask);
+    at::Tensor regularization(const RenderedView& rendered, const TargetView& view,
+                              const at::Tensor& mask);
 
     MovableMesh& mesh_;
     std::vector<TargetView> views_;
     RefineOptions options_;
-    std::vector<double> rates_;  ///< by group of the optimiser
+    std::map<std::string, double> rates_;  ///< by group of the optimiser
     float pixel_;                ///< world units
     float farthest_;             ///< of smoothness, world units
     ViewOrder order_;

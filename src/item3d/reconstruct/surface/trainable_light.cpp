@@ -2,7 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/render/shade.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/prefilter/equirectangular.h"
 
 #include <cmath>
 
@@ -13,14 +14,14 @@ namespace {
 constexpr int coarsest_height = 8;
 
 /// [h, 2h, 3] bilinear to [height, 2 height, 3]; the left and right edges meet.
-torch::Tensor enlarged(const torch::Tensor& level, int height) {
+at::Tensor enlarged(const at::Tensor& level, int height) {
     const std::int64_t rows = level.size(0), scale = height / rows;
     if (scale == 1) return level;
-    const torch::Tensor planes = level.permute({2, 0, 1}).unsqueeze(0);
-    const torch::Tensor around =
-        torch::cat({planes.narrow(3, 2 * rows - 1, 1), planes, planes.narrow(3, 0, 1)}, 3);
-    return torch::upsample_bilinear2d(around, {height, (2 * rows + 2) * scale},
-                                      /*align_corners=*/false)
+    const at::Tensor planes = level.permute({2, 0, 1}).unsqueeze(0);
+    const at::Tensor around =
+        at::cat({planes.narrow(3, 2 * rows - 1, 1), planes, planes.narrow(3, 0, 1)}, 3);
+    return at::upsample_bilinear2d(around, {height, (2 * rows + 2) * scale},
+                                   /*align_corners=*/false)
         .narrow(3, scale, 2 * height)
         .squeeze(0)
         .permute({1, 2, 0});
@@ -31,17 +32,16 @@ torch::Tensor enlarged(const torch::Tensor& level, int height) {
 TrainableLight::TrainableLight(int height, float radiance) : height_(height) {
     for (int rows = coarsest_height; rows <= height; rows *= 2) {
         const float start = rows == coarsest_height ? std::log(radiance) : 0.0f;
-        levels_.push_back(
-            torch::full({rows, 2 * rows, 3}, start, torch::kFloat32).set_requires_grad(true));
+        levels_.push_back(at::full({rows, 2 * rows, 3}, start, at::kFloat).set_requires_grad(true));
     }
     ITEM3D_CHECK(levels_.back().size(0) == height, "a power of two");
-    solid_angle_ = torch::empty({height, 1, 1});
+    solid_angle_ = at::empty({height, 1, 1});
     for (int y = 0; y < height; ++y)
         solid_angle_[y][0][0] = texel_solid_angle(y, height) / (4 * static_cast<double>(pi));
 }
 
-torch::Tensor TrainableLight::radiance() const {
-    torch::Tensor logarithm = enlarged(levels_.front(), height_);
+at::Tensor TrainableLight::radiance() const {
+    at::Tensor logarithm = enlarged(levels_.front(), height_);
     for (std::size_t i = 1; i < levels_.size(); ++i)
         logarithm = logarithm + enlarged(levels_[i], height_);
     return logarithm.exp().contiguous();
@@ -55,8 +55,8 @@ Image TrainableLight::to_image() const {
     return item3d::to_image(radiance().detach());
 }
 
-torch::Tensor TrainableLight::whiteness_loss() const {
-    const torch::Tensor values = radiance();
+at::Tensor TrainableLight::whiteness_loss() const {
+    const at::Tensor values = radiance();
     return ((values - values.mean(2, true)).abs() * solid_angle_).sum() / 3;
 }
 

@@ -3,8 +3,7 @@
 
 #include "item3d/render/prefilter/environment_light.h"
 #include "item3d/scene/image.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <vector>
 
@@ -20,21 +19,21 @@ class TrainableLight {
     explicit TrainableLight(int height = 64, float radiance = 0.7f);
 
     /// [h, 2h, 3] each; they require gradients.
-    const std::vector<torch::Tensor>& parameters() const { return levels_; }
+    const std::vector<at::Tensor>& parameters() const { return levels_; }
     /// [H, 2H, 3].
-    torch::Tensor radiance() const;
+    at::Tensor radiance() const;
     /// Differentiable, with a cube of `height` texels a side.
     EnvironmentLight prefiltered() const;
     Image to_image() const;
 
     /// Mean distance of the texels' channels from their mean, by solid angle (nvdiffrec's
     /// regulariser: of all lights that explain the pictures, the whitest).
-    torch::Tensor whiteness_loss() const;
+    at::Tensor whiteness_loss() const;
 
   private:
     int height_;
-    std::vector<torch::Tensor> levels_;
-    torch::Tensor solid_angle_;  ///< [H, 1, 1], sums to 1 over all texels
+    std::vector<at::Tensor> levels_;
+    at::Tensor solid_angle_;  ///< [H, 1, 1], sums to 1 over all texels
 };
 
 }  // namespace item3d

@@ -1,5 +1,8 @@
 #include "item3d/reconstruct/surface/view_render.h"
 
+#include "item3d/render/antialias.h"
+#include "item3d/render/pictures.h"
+#include "item3d/render/scatter.h"
 #include "item3d/report/picture.h"
 
 #include <algorithm>
@@ -14,8 +17,8 @@ constexpr float metallic_weight = 1.0f;
 constexpr double paper = 0.8;  ///< base colour of what looks white
 
 /// Steps in all directions, of lengths from `nearest` to `farthest`.
-torch::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random& random) {
-    torch::Tensor values = torch::empty({rows, 3});
+at::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random& random) {
+    at::Tensor values = at::empty({rows, 3});
     float* out = values.data_ptr<float>();
     for (std::int64_t i = 0; i < rows; ++i) {
         Vec3 direction(random.normal(), random.normal(), random.normal());
@@ -28,10 +31,10 @@ torch::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Ran
 }
 
 /// Picks up to `count` rows at even distances, beginning anywhere.
-torch::Tensor some_rows(std::int64_t rows, std::int64_t count, Random& random) {
+at::Tensor some_rows(std::int64_t rows, std::int64_t count, Random& random) {
     const std::int64_t step = std::max<std::int64_t>(1, rows / std::max<std::int64_t>(1, count));
     const std::int64_t first = random.index(std::min(step, rows));
-    return torch::arange(first, rows, step, torch::kInt64);
+    return at::arange(first, rows, step, at::kLong);
 }
 
 }  // namespace
@@ -59,7 +62,7 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
     result.raster = rasterize(geometry, cameras, view.width(), view.height());
     result.surface = interpolate_surface(geometry, result.raster, cameras);
     if (result.surface.count() == 0) {
-        result.image = torch::zeros({1, view.height(), view.width(), 4});
+        result.image = at::zeros({1, view.height(), view.width(), 4});
         return result;
     }
     result.material = field->forward(result.surface.position);
@@ -69,76 +72,74 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
         shaded.base_color = shaded.base_color.mean(0, true).expand_as(shaded.base_color);
         shaded.orm = shaded.orm.mean(0, true).expand_as(shaded.orm);
     }
-    if (!options.normal_map) shaded.normal = torch::Tensor();
-    torch::Tensor occlusion = torch::ones_like(shaded.orm.narrow(1, 0, 1));
+    if (!options.normal_map) shaded.normal = at::Tensor();
+    at::Tensor occlusion = at::ones_like(shaded.orm.narrow(1, 0, 1));
     if (options.occlusion != nullptr)
         occlusion = options.occlusion->at(result.raster, result.surface).unsqueeze(1);
-    shaded.orm = torch::cat({occlusion, shaded.orm.narrow(1, 1, 2)}, 1);
-    const torch::Tensor radiance = shade(result.surface, shaded, light);
-    const torch::Tensor values =
-        torch::cat({radiance, torch::ones_like(radiance.narrow(1, 0, 1))}, 1);
-    result.image = antialias(scatter(values, result.surface, result.raster, torch::zeros({4})),
+    shaded.orm = at::cat({occlusion, shaded.orm.narrow(1, 1, 2)}, 1);
+    const at::Tensor radiance = shade(result.surface, shaded, light);
+    const at::Tensor values = at::cat({radiance, at::ones_like(radiance.narrow(1, 0, 1))}, 1);
+    result.image = antialias(scatter(values, result.surface, result.raster, at::zeros({4})),
                              result.raster, geometry);
     return result;
 }
 
-torch::Tensor log_srgb(const torch::Tensor& linear) {
-    return linear_to_srgb(torch::log1p(linear.clamp_min(0.0f)));
+at::Tensor log_srgb(const at::Tensor& linear) {
+    return linear_to_srgb(at::log1p(linear.clamp_min(0.0f)));
 }
 
-torch::Tensor picture_loss(const torch::Tensor& rendered, const torch::Tensor& target,
-                           const torch::Tensor& background) {
-    const auto over = [&](const torch::Tensor& image) {
+at::Tensor picture_loss(const at::Tensor& rendered, const at::Tensor& target,
+                        const at::Tensor& background) {
+    const auto over = [&](const at::Tensor& image) {
         return image.narrow(3, 0, 3) + (1 - image.narrow(3, 3, 1)) * background;
     };
-    const torch::Tensor truth = over(target);
-    torch::Tensor picture = over(rendered);
+    const at::Tensor truth = over(target);
+    at::Tensor picture = over(rendered);
     // Photographs end at 1: what is brighter may be as bright as it likes.
-    picture = torch::where((truth >= 0.999f).logical_and(picture > truth), truth, picture);
+    picture = at::where((truth >= 0.999f).logical_and(picture > truth), truth, picture);
     return (log_srgb(picture) - log_srgb(truth)).abs().mean();
 }
 
-torch::Tensor mask_loss(const torch::Tensor& rendered, const torch::Tensor& target) {
+at::Tensor mask_loss(const at::Tensor& rendered, const at::Tensor& target) {
     return (rendered.select(3, 3) - target.select(3, 3)).square().mean();
 }
 
-torch::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
-                              float farthest, std::int64_t count, Random& random) {
+at::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
+                           float farthest, std::int64_t count, Random& random) {
     const std::int64_t rows = view.surface.count();
-    if (rows == 0) return torch::zeros({});
-    const torch::Tensor chosen = some_rows(rows, count, random);
-    const torch::Tensor positions = view.surface.position.detach().index_select(0, chosen);
+    if (rows == 0) return at::zeros({});
+    const at::Tensor chosen = some_rows(rows, count, random);
+    const at::Tensor positions = view.surface.position.detach().index_select(0, chosen);
     const MaterialSample beside =
         field->forward(positions + random_steps(positions.size(0), nearest, farthest, random));
-    const torch::Tensor base_color = view.material.base_color.index_select(0, chosen);
-    const torch::Tensor orm = view.material.orm.index_select(0, chosen);
-    const torch::Tensor change = (orm - beside.orm).abs().mean(0);
+    const at::Tensor base_color = view.material.base_color.index_select(0, chosen);
+    const at::Tensor orm = view.material.orm.index_select(0, chosen);
+    const at::Tensor change = (orm - beside.orm).abs().mean(0);
     return (linear_to_srgb(base_color) - linear_to_srgb(beside.base_color)).abs().mean() +
            roughness_weight * change[1] + metallic_weight * change[2];
 }
 
-torch::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLight& light,
-                                     const torch::Tensor& target) {
-    if (view.surface.count() == 0) return torch::zeros({});
+at::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLight& light,
+                                  const at::Tensor& target) {
+    if (view.surface.count() == 0) return at::zeros({});
     MaterialSample white = view.shaded;
-    white.base_color = torch::ones_like(white.base_color);
-    white.orm =
-        torch::cat({white.orm.narrow(1, 0, 2), torch::zeros_like(white.orm.narrow(1, 2, 1))}, 1);
-    const torch::Tensor lit = shade(view.surface, white, light).mean(1);
-    const torch::Tensor photograph = target.reshape({-1, 4}).index_select(0, view.surface.pixel);
+    white.base_color = at::ones_like(white.base_color);
+    white.orm = at::cat({white.orm.narrow(1, 0, 2), at::zeros_like(white.orm.narrow(1, 2, 1))}, 1);
+    const at::Tensor lit = shade(view.surface, white, light).mean(1);
+    const at::Tensor photograph = target.reshape({-1, 4}).index_select(0, view.surface.pixel);
     // White is like paper, as brightness_loss() has it, and photographs end at 1.
-    const torch::Tensor truth = photograph.narrow(1, 0, 3).amax(1);
-    const torch::Tensor open = (truth >= 0.999f).logical_and(lit > truth / paper);
-    const torch::Tensor used = (photograph.select(1, 3) > 0.99f).logical_and(open.logical_not());
-    const torch::Tensor apart = (log_srgb(lit) - log_srgb(truth / paper)).abs();
+    const at::Tensor truth = photograph.narrow(1, 0, 3).amax(1);
+    const at::Tensor open = (truth >= 0.999f).logical_and(lit > truth / paper);
+    const at::Tensor used = (photograph.select(1, 3) > 0.99f).logical_and(open.logical_not());
+    const at::Tensor apart = (log_srgb(lit) - log_srgb(truth / paper)).abs();
     return (apart * used).mean();
 }
 
-torch::Tensor brightness_loss(const RenderedView& view) {
-    if (view.surface.count() == 0) return torch::zeros({});
+at::Tensor brightness_loss(const RenderedView& view) {
+    if (view.surface.count() == 0) return at::zeros({});
     constexpr double decile = 0.9;
-    const torch::Tensor luminance =
-        (view.material.base_color * torch::tensor({0.2126f, 0.7152f, 0.0722f})).sum(1);
+    const at::Tensor luminance =
+        (view.material.base_color * at::tensor({0.2126f, 0.7152f, 0.0722f})).sum(1);
     const auto rank =
         static_cast<std::int64_t>(decile * static_cast<double>(luminance.size(0) - 1));
     return (std::get<0>(luminance.kthvalue(rank + 1)) - paper).square();

@@ -7,8 +7,7 @@
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/shade.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <vector>
 
@@ -17,8 +16,8 @@ namespace item3d {
 /// A photograph as the losses want it.
 struct TargetView {
     std::string name;
-    Camera camera;        ///< with a depth range around the object
-    torch::Tensor image;  ///< [1, H, W, 4] premultiplied linear RGB and coverage
+    Camera camera;     ///< with a depth range around the object
+    at::Tensor image;  ///< [1, H, W, 4] premultiplied linear RGB and coverage
     int width() const { return static_cast<int>(image.size(2)); }
     int height() const { return static_cast<int>(image.size(1)); }
 };
@@ -28,7 +27,7 @@ std::vector<TargetView> make_targets(const std::vector<Photograph>& views,
                                      std::array<Vec3, 2> bounds, int shrink = 1);
 
 struct RenderedView {
-    torch::Tensor image;  ///< [1, H, W, 4] as TargetView's, antialiased
+    at::Tensor image;  ///< [1, H, W, 4] as TargetView's, antialiased
     Raster raster;
     Surface surface;
     MaterialSample material;
@@ -48,31 +47,31 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
 
 /// What a display would show of radiance, as a function that goes on beyond 1 (nvdiffrec, Munkberg
 /// et al. 2022): sRGB of log(1 + x).
-torch::Tensor log_srgb(const torch::Tensor& linear);
+at::Tensor log_srgb(const at::Tensor& linear);
 
 /// Mean absolute difference, log-sRGB, both over the same plain background [3].
-torch::Tensor picture_loss(const torch::Tensor& rendered, const torch::Tensor& target,
-                           const torch::Tensor& background);
+at::Tensor picture_loss(const at::Tensor& rendered, const at::Tensor& target,
+                        const at::Tensor& background);
 
 /// Mean squared difference of coverage.
-torch::Tensor mask_loss(const torch::Tensor& rendered, const torch::Tensor& target);
+at::Tensor mask_loss(const at::Tensor& rendered, const at::Tensor& target);
 
 /// How far apart base colour (sRGB), roughness and metallic are at up to `count` of the view's
 /// points and at places beside them, at distances from `nearest` to `farthest` (world units, even
 /// in the logarithm). Absolute values: few large steps, a print's edges, cost less than the same as
 /// many small ones, which is what shading in a base colour looks like.
-torch::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
-                              float farthest, std::int64_t count, Random& random);
+at::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
+                           float farthest, std::int64_t count, Random& random);
 
 /// Hasselgren et al. 2022 ("Shape, Light, and Material Decomposition from Images using Monte Carlo
 /// Rendering and Denoising", section 4): mean absolute difference, log-sRGB, between what the light
 /// would leave of a white object, diffuse and specular, and the photograph's largest channel, which
 /// is about its brightness without the base colour's tint. Where `target` is covered whole.
-torch::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLight& light,
-                                     const torch::Tensor& target);
+at::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLight& light,
+                                  const at::Tensor& target);
 
 /// Squared distance of the ninth decile of the view's base colour (luminance) from 0.8. Light and
 /// base colour are known up to a factor: of all pairs, the one whose white is like paper.
-torch::Tensor brightness_loss(const RenderedView& view);
+at::Tensor brightness_loss(const RenderedView& view);
 
 }  // namespace item3d

@@ -1,4 +1,5 @@
-// How a .cu file launches a kernel function over indices. For nvcc alone.
+// How a .cu file launches a kernel function over indices, and what it makes of a list of kernels
+// (table.h). For nvcc alone.
 #pragma once
 
 #include "item3d/render/cuda/table.h"
@@ -39,5 +40,25 @@ int launch(const char* name, std::int64_t count, const F& f, Stream stream) {
     nvtxRangePop();
     return cudaGetLastError();
 }
+
+// What a line of a list becomes. For the one that table.h shows:
+
+/// int shade(const kernels::ShadeParameters& p, std::int64_t count, Stream stream);
+#define ITEM3D_KERNEL_PROTOTYPE(entry, Parameters, ...) \
+    int entry(const Parameters& p, std::int64_t count, Stream stream);
+
+/// int shade(const kernels::ShadeParameters& p, std::int64_t count, Stream stream) {
+///     return launch(
+///         "shade", count, [=] __device__(std::int64_t i) { kernels::shade_forward(p, i); },
+///         stream);
+/// }
+#define ITEM3D_KERNEL_DEFINITION(entry, Parameters, body, name)             \
+    int entry(const Parameters& p, std::int64_t count, Stream stream) {     \
+        return launch(                                                      \
+            name, count, [=] __device__(std::int64_t i) { body; }, stream); \
+    }
+
+/// .shade = shade,
+#define ITEM3D_KERNEL_INITIALIZER(entry, ...) .entry = entry,
 
 }  // namespace item3d::cuda

@@ -45,7 +45,7 @@ Stream native_handle(const S& stream) {
     }
 }
 
-Stream current_stream(torch::Device device) {
+Stream current_stream(at::Device device) {
     return native_handle(c10::impl::VirtualGuardImpl(device.type()).getStream(device));
 }
 
@@ -83,7 +83,7 @@ const RenderTable& render_table() {
     return *table;
 }
 
-Launch::Launch(torch::Device device) : guard_(device), stream_(current_stream(device)) {}
+Launch::Launch(at::Device device) : guard_(device), stream_(current_stream(device)) {}
 
 void Launch::check(int error) const {
     if (error != 0) cannot_use(render_table().error_text(error));

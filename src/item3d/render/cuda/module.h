@@ -3,9 +3,9 @@
 #pragma once
 
 #include "item3d/render/cuda/table.h"
+#include "item3d/tensors/tensor.h"
 
 #include <c10/core/DeviceGuard.h>
-#include <torch/types.h>
 
 #include <string>
 
@@ -33,12 +33,12 @@ const RenderTable& render_table();
 /// launch fails; what fails later, LibTorch reports when it next waits for the device.
 template <typename Parameters>
 void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t count,
-         torch::Device device);
+         at::Device device);
 
 /// What run() is made of: makes a device the current one while it lives.
 class Launch {
   public:
-    explicit Launch(torch::Device device);
+    explicit Launch(at::Device device);
     Stream stream() const { return stream_; }
     void check(int error) const;
 
@@ -49,7 +49,7 @@ class Launch {
 
 template <typename Parameters>
 void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t count,
-         torch::Device device) {
+         at::Device device) {
     const Launch launch(device);
     launch.check(kernel(parameters, count, launch.stream()));
 }
@@ -58,18 +58,18 @@ void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t c
 /// It is called once, or twice for sums that do not depend on the order of threads. most_terms: of
 /// one sum.
 template <typename Add>
-torch::Tensor sum_on_device(std::int64_t elements, std::int64_t most_terms, torch::Device device,
-                            const Add& add) {
-    const auto options = torch::TensorOptions().device(device);
-    torch::Tensor sums = torch::zeros({elements}, options.dtype(torch::kFloat32));
+at::Tensor sum_on_device(std::int64_t elements, std::int64_t most_terms, at::Device device,
+                         const Add& add) {
+    const auto options = at::TensorOptions().device(device);
+    at::Tensor sums = at::zeros({elements}, options.dtype(at::kFloat));
     Accumulator accumulator;
     if (!deterministic_sums()) {
         accumulator.values = sums.data_ptr<float>();
         add(accumulator);
         return sums;
     }
-    const torch::Tensor largest = torch::zeros({elements}, options.dtype(torch::kInt32));
-    const torch::Tensor fixed = torch::zeros({elements}, options.dtype(torch::kInt64));
+    const at::Tensor largest = at::zeros({elements}, options.dtype(at::kInt));
+    const at::Tensor fixed = at::zeros({elements}, options.dtype(at::kLong));
     accumulator.bits = accumulator_bits(most_terms);
     accumulator.largest = static_cast<std::uint32_t*>(largest.data_ptr());
     add(accumulator);

@@ -33,7 +33,7 @@ struct TableHeader {
 };
 
 /// To be raised by whoever changes a table or the parameters of one of its kernels.
-inline constexpr std::uint32_t table_version = 3;
+inline constexpr std::uint32_t table_version = 4;
 
 /// A texture lookup and its gradients, with what each of them reads and writes.
 struct TextureLaunchParameters {
@@ -44,50 +44,110 @@ struct TextureLaunchParameters {
     Accumulator texel_gradient;   ///< of all levels
 };
 
+// The renderer's kernels, each on one line of a list for each .cu file. All else comes from the
+// lists: the table's members, the functions that launch (launch.h) and the table itself. To add a
+// kernel, write its function and its line here; raise table_version. A line,
+//     X(shade, kernels::ShadeParameters, kernels::shade_forward(p, i), "shade"),
+// has the entry's name in the table, the type of p, what is done for an index i in [0, count), and
+// the name that a profiler shows. As ITEM3D_KERNEL_MEMBER it is
+//     Kernel<kernels::ShadeParameters> shade;
+// and as ITEM3D_KERNEL_DEFINITION, in launch.h, all that launches it.
+
+/// exact.cu: kernels that decide (inside or outside, nearer or farther, crossed or not). That file
+/// is compiled with -fmad=false (cmake/Cuda.cmake): without fused products they decide as the CPU
+/// does, to the bit.
+#define ITEM3D_EXACT_KERNELS(X)                                                                   \
+    X(project_vertices, kernels::ProjectParameters, kernels::project_vertex(p, i),                \
+      "project_vertices")                                                                         \
+    X(bound_triangles, kernels::RasterParameters,                                                 \
+      kernels::bound_triangle(p, i / p.triangle_count, i % p.triangle_count), "bound_triangles")  \
+    X(rasterize_keys, kernels::KeyedRasterParameters, kernels::rasterize_keys(p, i), "rasterize") \
+    X(resolve_keys, kernels::KeyedRasterParameters, kernels::resolve_key(p, i), "resolve_raster") \
+    X(antialias, kernels::BlendParameters, kernels::blend_pixel(p, i), "antialias")               \
+    X(antialias_backward, kernels::BlendParameters, kernels::blend_pixel_backward(p, i),          \
+      "antialias backward")
+
+/// surface.cu: kernels over surface points and texels. scatter_background takes a count of pixels,
+/// scatter_values one of values.
+#define ITEM3D_SURFACE_KERNELS(X)                                                                  \
+    X(interpolate_surface, kernels::SurfaceParameters, kernels::interpolate_surface_point(p, i),   \
+      "interpolate_surface")                                                                       \
+    X(interpolate, kernels::InterpolateParameters, kernels::interpolate_forward(p, i),             \
+      "interpolate")                                                                               \
+    X(interpolate_backward, kernels::InterpolateParameters, kernels::interpolate_backward(p, i),   \
+      "interpolate backward")                                                                      \
+    X(shade, kernels::ShadeParameters, kernels::shade_forward(p, i), "shade")                      \
+    X(shade_backward, kernels::ShadeBackwardParameters,                                            \
+      kernels::shade_backward(p.shade, i, p.light), "shade backward")                              \
+    X(equirectangular, kernels::EquirectangularParameters, kernels::equirectangular_forward(p, i), \
+      "equirectangular_to_cube")                                                                   \
+    X(equirectangular_backward, kernels::EquirectangularParameters,                                \
+      kernels::equirectangular_backward(p, i), "equirectangular_to_cube backward")                 \
+    X(uv_footprints, kernels::FootprintParameters, kernels::uv_footprint(p, i), "uv_footprints")   \
+    X(scatter_background, kernels::ScatterParameters, kernels::scatter_background(p, i),           \
+      "scatter background")                                                                        \
+    X(scatter_values, kernels::ScatterParameters, kernels::scatter_value(p, i), "scatter")         \
+    X(occlusion, kernels::OcclusionParameters, kernels::occlusion_at(p, i), "occlusion")           \
+    X(finish_sums, FinishSumsParameters, finish_sum(p, i), "finish_sums")
+
+/// texture.cu: texture lookups and mip levels. halve_texture and its gradient take a count of
+/// coarse texels.
+#define ITEM3D_TEXTURE_KERNELS(X)                                                              \
+    X(texture, TextureLaunchParameters, kernels::texture_forward(p.texture, i, p.values),      \
+      "sample_texture")                                                                        \
+    X(texture_backward, TextureLaunchParameters,                                               \
+      kernels::texture_backward(p.texture, i, p.value_gradient, p.texel_gradient),             \
+      "sample_texture backward")                                                               \
+    X(texture_uv_backward, TextureLaunchParameters,                                            \
+      kernels::texture_uv_backward(p.texture, i, p.value_gradient, p.uv_gradient),             \
+      "sample_texture by uv")                                                                  \
+    X(halve_texture, kernels::HalveParameters, kernels::halve_texture(p, i), "halve_texture")  \
+    X(halve_texture_backward, kernels::HalveParameters, kernels::halve_texture_backward(p, i), \
+      "halve_texture backward")
+
+/// light.cu: prefiltering of environments.
+#define ITEM3D_LIGHT_KERNELS(X)                                                                 \
+    X(fill_halo_side, kernels::HaloParameters, kernels::fill_halo_side(p, i), "fill_halo")      \
+    X(fill_halo_corner, kernels::HaloParameters, kernels::fill_halo_corner(p, i),               \
+      "fill_halo corners")                                                                      \
+    X(upsample_cube, kernels::ResizeParameters,                                                 \
+      kernels::upsample<kernels::device_resized_run>(p, i), "upsample_cube")                    \
+    X(restrict_cube, kernels::ResizeParameters,                                                 \
+      kernels::restrict_run<kernels::device_resized_run>(p, i), "restrict_cube")                \
+    X(map_to_planes, kernels::MapToPlanesParameters, kernels::map_to_planes(p, i),              \
+      "map_to_planes")                                                                          \
+    X(planes_to_map, kernels::PlanesToMapParameters, kernels::planes_to_map(p, i),              \
+      "planes_to_map")                                                                          \
+    X(planes_to_means, kernels::MeansParameters, kernels::planes_to_means(p, i),                \
+      "planes_to_means")                                                                        \
+    X(cube_directions, kernels::DirectionParameters, kernels::halo_texel_direction(p, i),       \
+      "cube_directions")                                                                        \
+    X(add_near_sums, kernels::NearParameters, kernels::add_near_sums(p, i), "near_sums")        \
+    X(turn_planes, kernels::TurnParameters, kernels::turn_planes(p, i), "turn_planes")          \
+    X(far_sums, kernels::FarParameters, kernels::far_sums_of_texel<false>(p, i), "far_sums")    \
+    X(far_absolute_cosine, kernels::FarParameters, kernels::far_sums_of_texel<true>(p, i),      \
+      "far_sums of cosines")                                                                    \
+    X(fold, kernels::FoldParameters, kernels::fold(p, i), "fold")                               \
+    X(row_moments, kernels::MomentParameters, kernels::row_moments(p, i), "row_moments")        \
+    X(join_cosine, kernels::CosineParameters, kernels::join_cosine(p, i), "join_cosine")        \
+    X(add_bright, kernels::BrightParameters, kernels::add_bright<1>(p, i), "bright_irradiance") \
+    X(sum_bright, kernels::BrightParameters,                                                    \
+      kernels::sum_bright<kernels::device_bright_run>(p, i), "bright_irradiance backward")      \
+    X(set_bright, kernels::BrightParameters, kernels::set_bright(p, i), "set_bright")
+
+/// All of them, in the order of RenderTable.
+#define ITEM3D_RENDER_KERNELS(X) \
+    ITEM3D_EXACT_KERNELS(X)      \
+    ITEM3D_SURFACE_KERNELS(X)    \
+    ITEM3D_TEXTURE_KERNELS(X)    \
+    ITEM3D_LIGHT_KERNELS(X)
+
+#define ITEM3D_KERNEL_MEMBER(entry, Parameters, ...) Kernel<Parameters> entry;
+
 struct RenderTable {
     TableHeader header;
     const char* (*error_text)(int error);
-    Kernel<kernels::ProjectParameters> project_vertices;
-    Kernel<kernels::RasterParameters> bound_triangles;
-    Kernel<kernels::KeyedRasterParameters> rasterize_keys;
-    Kernel<kernels::KeyedRasterParameters> resolve_keys;
-    Kernel<kernels::SurfaceParameters> interpolate_surface;
-    Kernel<kernels::InterpolateParameters> interpolate;
-    Kernel<kernels::InterpolateParameters> interpolate_backward;
-    Kernel<kernels::ShadeParameters> shade;
-    Kernel<kernels::ShadeBackwardParameters> shade_backward;
-    Kernel<kernels::BlendParameters> antialias;
-    Kernel<kernels::BlendParameters> antialias_backward;
-    Kernel<kernels::EquirectangularParameters> equirectangular;
-    Kernel<kernels::EquirectangularParameters> equirectangular_backward;
-    Kernel<kernels::FootprintParameters> uv_footprints;
-    Kernel<TextureLaunchParameters> texture;
-    Kernel<TextureLaunchParameters> texture_backward;
-    Kernel<TextureLaunchParameters> texture_uv_backward;
-    Kernel<kernels::HalveParameters> halve_texture;           ///< count: coarse texels
-    Kernel<kernels::HalveParameters> halve_texture_backward;  ///< count: coarse texels
-    Kernel<kernels::ScatterParameters> scatter_background;    ///< count: pixels
-    Kernel<kernels::ScatterParameters> scatter_values;        ///< count: values
-    Kernel<FinishSumsParameters> finish_sums;
-    Kernel<kernels::OcclusionParameters> occlusion;
-    Kernel<kernels::HaloParameters> fill_halo_side;
-    Kernel<kernels::HaloParameters> fill_halo_corner;
-    Kernel<kernels::ResizeParameters> upsample_cube;
-    Kernel<kernels::ResizeParameters> restrict_cube;
-    Kernel<kernels::MapToPlanesParameters> map_to_planes;
-    Kernel<kernels::PlanesToMapParameters> planes_to_map;
-    Kernel<kernels::MeansParameters> planes_to_means;
-    Kernel<kernels::DirectionParameters> cube_directions;
-    Kernel<kernels::NearParameters> add_near_sums;
-    Kernel<kernels::TurnParameters> turn_planes;
-    Kernel<kernels::FarParameters> far_sums;
-    Kernel<kernels::FarParameters> far_absolute_cosine;
-    Kernel<kernels::FoldParameters> fold;
-    Kernel<kernels::MomentParameters> row_moments;
-    Kernel<kernels::CosineParameters> join_cosine;
-    Kernel<kernels::BrightParameters> add_bright;
-    Kernel<kernels::BrightParameters> sum_bright;
-    Kernel<kernels::BrightParameters> set_bright;
+    ITEM3D_RENDER_KERNELS(ITEM3D_KERNEL_MEMBER)
 };
 
 /// Exported as item3d_cuda_render.

@@ -8,6 +8,10 @@
 
 namespace item3d::kernels {
 
+/// Steps of n.v, and of roughness, of the table that the build computes
+/// (tools/write_bsdf_table.cpp).
+inline constexpr int bsdf_table_size = 256;
+
 /// The rule of quadrature: `azimuths` equal steps over half a turn, where the integrand is periodic
 /// and even, and `size` abscissae and weights on [0, 1] along the cap.
 struct BsdfRule {

@@ -161,19 +161,19 @@ class Tracer {
 };
 
 template <typename T>
-torch::Tensor to_tensor(const std::vector<T>& values, torch::ScalarType type) {
-    return torch::from_blob(const_cast<T*>(values.data()),
-                            {static_cast<std::int64_t>(values.size())}, type)
+at::Tensor to_tensor(const std::vector<T>& values, at::ScalarType type) {
+    return at::from_blob(const_cast<T*>(values.data()), {static_cast<std::int64_t>(values.size())},
+                         type)
         .clone();
 }
 
 }  // namespace
 
 struct Occlusion::State {
-    torch::Tensor positions, normals, triangles;
-    torch::Tensor first;       ///< [T + 1] int64
-    torch::Tensor resolution;  ///< [T] int32
-    torch::Tensor values;      ///< [points, 2] uint8
+    at::Tensor positions, normals, triangles;
+    at::Tensor first;       ///< [T + 1] int64
+    at::Tensor resolution;  ///< [T] int32
+    at::Tensor values;      ///< [points, 2] uint8
 };
 
 Occlusion::Occlusion(const Geometry& geometry, const Model* model,
@@ -183,7 +183,7 @@ Occlusion::Occlusion(const Geometry& geometry, const Model* model,
     const RayScene scene(geometry, model);
     const Tracer tracer(grid, scene, options);
 
-    const torch::Tensor openness = torch::full({grid.points(), 2}, 255, torch::kUInt8);
+    const at::Tensor openness = at::full({grid.points(), 2}, 255, at::kByte);
     std::uint8_t* values = openness.data_ptr<std::uint8_t>();
     const auto groups = static_cast<std::int64_t>(grid.begin.size()) - 1;
     constexpr std::int64_t groups_a_step = 4096;
@@ -206,34 +206,34 @@ Occlusion::Occlusion(const Geometry& geometry, const Model* model,
     progress.finish();
     join_grids(grid, values);
 
-    const torch::Device device = geometry.positions.device();
+    const at::Device device = geometry.positions.device();
     state_ = std::make_shared<State>(
         State{grid.positions.to(device), grid.normals.to(device), grid.triangles.to(device),
-              to_tensor(grid.first, torch::kInt64).to(device),
-              to_tensor(grid.resolution, torch::kInt32).to(device), openness.to(device)});
+              to_tensor(grid.first, at::kLong).to(device),
+              to_tensor(grid.resolution, at::kInt).to(device), openness.to(device)});
 }
 
 std::int64_t Occlusion::points() const {
     return state_->values.size(0);
 }
 
-torch::Tensor Occlusion::at(const Raster& raster, const Surface& surface) const {
+at::Tensor Occlusion::at(const Raster& raster, const Surface& surface) const {
     constexpr const char* op = "Occlusion::at";
-    const torch::Device device = operation_device(op, surface.pixel);
+    const at::Device device = operation_device(op, surface.pixel);
     const State& state = *state_;
     ITEM3D_CHECK(state.values.device() == device,
                  "Occlusion::at: a surface on the device of the geometry it was made for");
     const std::int64_t count = surface.count();
-    const torch::Tensor triangle =
-        checked(op, "raster.triangle", raster.triangle, torch::kInt32, {-1, -1, -1}, device);
-    const torch::Tensor barycentrics =
-        checked(op, "raster.barycentrics", raster.barycentrics.detach(), torch::kFloat32,
+    const at::Tensor triangle =
+        checked(op, "raster.triangle", raster.triangle, at::kInt, {-1, -1, -1}, device);
+    const at::Tensor barycentrics =
+        checked(op, "raster.barycentrics", raster.barycentrics.detach(), at::kFloat,
                 {raster.views(), raster.height(), raster.width(), 2}, device);
-    const torch::Tensor pixel =
-        checked(op, "surface.pixel", surface.pixel, torch::kInt64, {count}, device);
-    const torch::Tensor normal =
-        checked(op, "surface.normal", surface.normal.detach(), torch::kFloat32, {count, 3}, device);
-    torch::Tensor openness = torch::empty({count}, normal.options());
+    const at::Tensor pixel =
+        checked(op, "surface.pixel", surface.pixel, at::kLong, {count}, device);
+    const at::Tensor normal =
+        checked(op, "surface.normal", surface.normal.detach(), at::kFloat, {count, 3}, device);
+    at::Tensor openness = at::empty({count}, normal.options());
     const kernels::OcclusionParameters p{state.normals.const_data_ptr<float>(),
                                          state.positions.const_data_ptr<float>(),
                                          state.triangles.const_data_ptr<std::int32_t>(),
@@ -253,8 +253,8 @@ torch::Tensor Occlusion::at(const Raster& raster, const Surface& surface) const 
 MaterialSample Occlusion::shadowed(const MaterialSample& material, const Raster& raster,
                                    const Surface& surface) const {
     MaterialSample darker = material;
-    const torch::Tensor open = at(raster, surface).unsqueeze(1);
-    darker.orm = torch::cat({material.orm.narrow(1, 0, 1) * open, material.orm.narrow(1, 1, 2)}, 1);
+    const at::Tensor open = at(raster, surface).unsqueeze(1);
+    darker.orm = at::cat({material.orm.narrow(1, 0, 1) * open, material.orm.narrow(1, 1, 2)}, 1);
     return darker;
 }
 

@@ -40,7 +40,7 @@ class Occlusion {
 
     /// [P] in [0, 1], 1 where nothing is in the way (as glTF's occlusion textures have it). raster
     /// and surface are of the geometry that this was made for.
-    torch::Tensor at(const Raster& raster, const Surface& surface) const;
+    at::Tensor at(const Raster& raster, const Surface& surface) const;
 
     /// The material with its occlusion channel multiplied by at().
     MaterialSample shadowed(const MaterialSample& material, const Raster& raster,

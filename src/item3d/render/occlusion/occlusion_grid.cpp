@@ -23,7 +23,7 @@ std::int64_t grid_points(int resolution) {
     return static_cast<std::int64_t>(resolution + 1) * (resolution + 2) / 2;
 }
 
-Vec3 load(const torch::Tensor& rows, std::int64_t row) {
+Vec3 load(const at::Tensor& rows, std::int64_t row) {
     const float* at = rows.const_data_ptr<float>() + 3 * row;
     return Vec3(at[0], at[1], at[2]);
 }
@@ -145,20 +145,20 @@ OcclusionGrid::Point OcclusionGrid::point(std::int64_t index) const {
 OcclusionGrid make_occlusion_grid(const Geometry& geometry, float spacing,
                                   std::int64_t most_points) {
     constexpr const char* op = "Occlusion";
-    const auto on_cpu = [](const torch::Tensor& tensor) { return tensor.detach().cpu(); };
+    const auto on_cpu = [](const at::Tensor& tensor) { return tensor.detach().cpu(); };
     OcclusionGrid grid;
-    grid.positions = checked(op, "positions", on_cpu(geometry.positions), torch::kFloat32, {-1, 3});
-    grid.normals = checked(op, "normals", on_cpu(geometry.normals), torch::kFloat32,
-                           {grid.positions.size(0), 3});
-    grid.triangles = checked(op, "triangles", on_cpu(geometry.triangles), torch::kInt32, {-1, 3});
+    grid.positions = checked(op, "positions", on_cpu(geometry.positions), at::kFloat, {-1, 3});
+    grid.normals =
+        checked(op, "normals", on_cpu(geometry.normals), at::kFloat, {grid.positions.size(0), 3});
+    grid.triangles = checked(op, "triangles", on_cpu(geometry.triangles), at::kInt, {-1, 3});
     const std::int64_t count = grid.triangles.size(0);
     grid.neighbours = geometry.neighbours.defined()
                           ? on_cpu(geometry.neighbours).contiguous()
                           : triangle_neighbours(grid.positions, grid.triangles);
     ITEM3D_CHECK(spacing > 0 && most_points > 0, "Occlusion: spacing and most_points above 0");
     if (grid.positions.size(0) > 0) {
-        const torch::Tensor low = std::get<0>(grid.positions.min(0));
-        const torch::Tensor high = std::get<0>(grid.positions.max(0));
+        const at::Tensor low = std::get<0>(grid.positions.min(0));
+        const at::Tensor high = std::get<0>(grid.positions.max(0));
         grid.diagonal = (high - low).norm().item<float>();
         grid.farthest = grid.positions.abs().max().item<float>();
     }

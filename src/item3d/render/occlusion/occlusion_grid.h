@@ -10,10 +10,10 @@
 namespace item3d {
 
 struct OcclusionGrid {
-    torch::Tensor positions;               ///< [V, 3] float32 on the CPU, as are all of these
-    torch::Tensor normals;                 ///< [V, 3]
-    torch::Tensor triangles;               ///< [T, 3] int32
-    torch::Tensor neighbours;              ///< [T, 3] int32, as Geometry::neighbours
+    at::Tensor positions;                  ///< [V, 3] float32 on the CPU, as are all of these
+    at::Tensor normals;                    ///< [V, 3]
+    at::Tensor triangles;                  ///< [T, 3] int32
+    at::Tensor neighbours;                 ///< [T, 3] int32, as Geometry::neighbours
     std::vector<std::int32_t> resolution;  ///< [T] steps along an edge, a power of two
     std::vector<std::int64_t> first;       ///< [T + 1] each triangle's first point
     /// Points that are one: same position, same normal. Group g has the points

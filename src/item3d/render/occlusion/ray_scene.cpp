@@ -89,7 +89,7 @@ struct Context {
 struct TransparentTriangles {
     std::vector<std::int32_t> triangle;  ///< of each primitive of Embree's geometry
     std::vector<Transparency> materials;
-    torch::Tensor uvs, colors, corners, material;
+    at::Tensor uvs, colors, corners, material;
 
     /// Whether a ray goes through triangle `primitive` at the barycentrics u, v of its last two
     /// corners.
@@ -153,7 +153,7 @@ struct RayScene::State {
     }
 
     /// Adds the triangles `chosen`, with the vertices copied as they are.
-    void add(const torch::Tensor& positions, const torch::Tensor& corners,
+    void add(const at::Tensor& positions, const at::Tensor& corners,
              const std::vector<std::int32_t>& chosen, TransparentTriangles* filtered) {
         if (chosen.empty()) return;
         const auto vertices = static_cast<std::size_t>(positions.size(0));
@@ -182,20 +182,18 @@ struct RayScene::State {
 
 RayScene::RayScene(const Geometry& geometry, const Model* model) {
     constexpr const char* op = "RayScene";
-    const auto on_cpu = [](const torch::Tensor& tensor) { return tensor.detach().cpu(); };
-    const torch::Tensor positions =
-        checked(op, "positions", on_cpu(geometry.positions), torch::kFloat32, {-1, 3});
+    const auto on_cpu = [](const at::Tensor& tensor) { return tensor.detach().cpu(); };
+    const at::Tensor positions =
+        checked(op, "positions", on_cpu(geometry.positions), at::kFloat, {-1, 3});
     const std::int64_t vertices = positions.size(0);
     auto state = std::make_shared<State>();
     TransparentTriangles& transparent = state->transparent;
-    transparent.corners =
-        checked(op, "triangles", on_cpu(geometry.triangles), torch::kInt32, {-1, 3});
+    transparent.corners = checked(op, "triangles", on_cpu(geometry.triangles), at::kInt, {-1, 3});
     const std::int64_t triangles = transparent.corners.size(0);
-    transparent.material = checked(op, "triangle_material", on_cpu(geometry.triangle_material),
-                                   torch::kInt32, {triangles});
-    transparent.uvs = checked(op, "uvs", on_cpu(geometry.uvs), torch::kFloat32, {vertices, 2});
-    transparent.colors =
-        checked(op, "colors", on_cpu(geometry.colors), torch::kFloat32, {vertices, 4});
+    transparent.material =
+        checked(op, "triangle_material", on_cpu(geometry.triangle_material), at::kInt, {triangles});
+    transparent.uvs = checked(op, "uvs", on_cpu(geometry.uvs), at::kFloat, {vertices, 2});
+    transparent.colors = checked(op, "colors", on_cpu(geometry.colors), at::kFloat, {vertices, 4});
     if (model != nullptr) transparent.materials = read_transparency(*model);
 
     std::vector<std::int32_t> opaque;

@@ -1,5 +1,6 @@
-#include "item3d/render/kernels/bsdf_table_size.h"
-#include "item3d/render/prefilter/environment_light.h"
+#include "item3d/render/prefilter/bsdf_table.h"
+
+#include "item3d/render/kernels/bsdf.h"
 
 namespace item3d {
 namespace {
@@ -7,14 +8,14 @@ namespace {
 constexpr float table_values[] = {
 #include "bsdf_table_values.inc"
 };
-static_assert(std::size(table_values) == 2 * bsdf_table_size * bsdf_table_size);
+static_assert(std::size(table_values) == 2 * kernels::bsdf_table_size * kernels::bsdf_table_size);
 
 }  // namespace
 
-const torch::Tensor& bsdf_table() {
-    static const torch::Tensor table =
-        torch::from_blob(const_cast<float*>(table_values), {bsdf_table_size, bsdf_table_size, 2},
-                         torch::kFloat32)
+const at::Tensor& bsdf_table() {
+    static const at::Tensor table =
+        at::from_blob(const_cast<float*>(table_values),
+                      {kernels::bsdf_table_size, kernels::bsdf_table_size, 2}, at::kFloat)
             .clone();
     return table;
 }

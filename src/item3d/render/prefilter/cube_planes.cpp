@@ -26,11 +26,11 @@ void upsample_into(CubePlanes& to, const CubePlanes& coarse, bool add) {
 
 }  // namespace
 
-CubePlanes::CubePlanes(int size, bool shared_plane, torch::Device device)
+CubePlanes::CubePlanes(int size, bool shared_plane, at::Device device)
     : size_(size), count_(shared_plane ? 19 : 18) {
     const kernels::Planes layout{nullptr, size, count_};
-    values_ = torch::empty({count_ * layout.plane_step()},
-                           torch::TensorOptions().dtype(torch::kFloat32).device(device));
+    values_ = at::empty({count_ * layout.plane_step()},
+                        at::TensorOptions().dtype(at::kFloat).device(device));
     origin_ = values_.data_ptr<float>() + halo * (layout.row_step() + 1);
 }
 
@@ -71,7 +71,7 @@ void add_upsampled(CubePlanes& to, const CubePlanes& coarse) {
     upsample_into(to, coarse, true);
 }
 
-CubePlanes to_planes(const torch::Tensor& map, const torch::Tensor& weight, bool shared_plane) {
+CubePlanes to_planes(const at::Tensor& map, const at::Tensor& weight, bool shared_plane) {
     const auto size = static_cast<int>(map.size(1));
     CubePlanes planes(size, shared_plane, map.device());
     kernels::MapToPlanesParameters p{};
@@ -87,9 +87,9 @@ CubePlanes to_planes(const torch::Tensor& map, const torch::Tensor& weight, bool
     return planes;
 }
 
-torch::Tensor from_planes(const CubePlanes& planes, const torch::Tensor& weight) {
+at::Tensor from_planes(const CubePlanes& planes, const at::Tensor& weight) {
     const int size = planes.size();
-    torch::Tensor map = torch::empty({6, size, size, 3}, weight.options());
+    at::Tensor map = at::empty({6, size, size, 3}, weight.options());
     const kernels::PlanesToMapParameters p{planes.view(), weight.const_data_ptr<float>(),
                                            map.data_ptr<float>(),
                                            run_length(planes.device(), size)};

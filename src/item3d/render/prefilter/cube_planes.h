@@ -2,8 +2,7 @@
 #pragma once
 
 #include "item3d/render/kernels/cube_planes.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
@@ -12,14 +11,14 @@ class CubePlanes {
   public:
     static constexpr int halo = kernels::Planes::halo;
 
-    CubePlanes(int size, bool shared_plane, torch::Device device);
+    CubePlanes(int size, bool shared_plane, at::Device device);
 
     int size() const { return size_; }
     int count() const { return count_; }
     bool shared_plane() const { return count_ == 19; }
-    torch::Device device() const { return values_.device(); }
+    at::Device device() const { return values_.device(); }
     /// float32 on the device.
-    torch::TensorOptions options() const { return values_.options(); }
+    at::TensorOptions options() const { return values_.options(); }
     kernels::ConstPlanes view() const { return {origin_, size_, count_}; }
     kernels::Planes writable() { return {origin_, size_, count_}; }
     void clear() { values_.zero_(); }
@@ -29,12 +28,12 @@ class CubePlanes {
 
   private:
     int size_, count_;
-    torch::Tensor values_;
+    at::Tensor values_;
     float* origin_;  ///< of plane 0, texel (0, 0)
 };
 
 /// Texels that one index of a kernel stands for: whole rows for a processor, few for a device.
-inline int run_length(torch::Device device, int size) {
+inline int run_length(at::Device device, int size) {
     return device.is_cuda() ? 1 : size;
 }
 
@@ -52,9 +51,9 @@ void add_upsampled(CubePlanes& to, const CubePlanes& coarse);
 
 /// map [6, S, S, 3], any strides, times weight [S, S] -> planes with a full halo; shared_plane: the
 /// weights are there too.
-CubePlanes to_planes(const torch::Tensor& map, const torch::Tensor& weight, bool shared_plane);
+CubePlanes to_planes(const at::Tensor& map, const at::Tensor& weight, bool shared_plane);
 
 /// Planes times weight [S, S] -> [6, S, S, 3].
-torch::Tensor from_planes(const CubePlanes& planes, const torch::Tensor& weight);
+at::Tensor from_planes(const CubePlanes& planes, const at::Tensor& weight);
 
 }  // namespace item3d

@@ -1,9 +1,9 @@
-#include "item3d/render/kernels/equirectangular.h"
+#include "item3d/render/prefilter/equirectangular.h"
 
 #include "item3d/core/error.h"
 #include "item3d/render/checks.h"
 #include "item3d/render/dispatch.h"
-#include "item3d/render/prefilter/environment_light.h"
+#include "item3d/render/kernels/equirectangular.h"
 #include "item3d/render/scatter_sum.h"
 
 #include <torch/csrc/autograd/custom_function.h>
@@ -29,11 +29,10 @@ struct EquirectangularToCube : torch::autograd::Function<EquirectangularToCube> 
         p.samples = std::max(2, (p.height + size - 1) / size);
         return p;
     }
-    static torch::Tensor forward(AutogradContext* context, const torch::Tensor& map,
-                                 std::int64_t size) {
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& map, std::int64_t size) {
         EquirectangularParameters p = parameters(map.size(0), map.size(1), static_cast<int>(size));
         p.map = map.const_data_ptr<float>();
-        torch::Tensor cube = torch::empty({6, size, size, 3}, map.options());
+        at::Tensor cube = at::empty({6, size, size, 3}, map.options());
         p.cube = cube.data_ptr<float>();
         dispatch<kernels::equirectangular_forward>(cube.device(), "equirectangular_to_cube",
                                                    &cuda::RenderTable::equirectangular, p,
@@ -45,12 +44,12 @@ struct EquirectangularToCube : torch::autograd::Function<EquirectangularToCube> 
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const std::int64_t height = context->saved_data["height"].toInt();
         const std::int64_t width = context->saved_data["width"].toInt();
-        const torch::Tensor gradient = gradients[0].contiguous();
+        const at::Tensor gradient = gradients[0].contiguous();
         const std::int64_t size = gradient.size(1);
         EquirectangularParameters p = parameters(height, width, static_cast<int>(size));
         p.cube_gradient = gradient.const_data_ptr<float>();
         const std::int64_t texels = 6 * size * size, elements = 3 * height * width;
-        torch::Tensor map_gradient;
+        at::Tensor map_gradient;
         if (gradient.is_cuda())
             map_gradient =
                 cuda::sum_on_device(elements, 4 * p.samples * p.samples * texels, gradient.device(),
@@ -66,15 +65,15 @@ struct EquirectangularToCube : torch::autograd::Function<EquirectangularToCube> 
                                            own.map_gradient.values = buffer;
                                            kernels::equirectangular_backward(own, i);
                                        });
-        return {map_gradient.reshape({height, width, 3}), torch::Tensor()};
+        return {map_gradient.reshape({height, width, 3}), at::Tensor()};
     }
 };
 
 }  // namespace
 
-torch::Tensor equirectangular_to_cube(const torch::Tensor& equirectangular, int size) {
-    torch::Tensor map =
-        checked("equirectangular_to_cube", "equirectangular", equirectangular, torch::kFloat32,
+at::Tensor equirectangular_to_cube(const at::Tensor& equirectangular, int size) {
+    at::Tensor map =
+        checked("equirectangular_to_cube", "equirectangular", equirectangular, at::kFloat,
                 {-1, -1, 3}, operation_device("equirectangular_to_cube", equirectangular));
     ITEM3D_CHECK(size >= 1 && size <= 4096 && map.size(0) >= 1 && map.size(1) >= 1,
                  "equirectangular_to_cube: size in [1, 4096], found " + std::to_string(size));
@@ -84,22 +83,22 @@ torch::Tensor equirectangular_to_cube(const torch::Tensor& equirectangular, int 
     return EquirectangularToCube::apply(map, static_cast<std::int64_t>(size));
 }
 
-torch::Tensor adjust_light(const torch::Tensor& equirectangular, const torch::Tensor& degrees,
-                           const torch::Tensor& exposure) {
+at::Tensor adjust_light(const at::Tensor& equirectangular, const at::Tensor& degrees,
+                        const at::Tensor& exposure) {
     ITEM3D_CHECK(equirectangular.dim() == 3 && equirectangular.size(1) >= 1,
                  "adjust_light: equirectangular must be [H, W, C]");
     ITEM3D_CHECK(degrees.numel() == 1 && exposure.numel() == 1,
                  "adjust_light: degrees and exposure are scalars");
     const std::int64_t width = equirectangular.size(1);
-    const torch::Tensor source =
-        torch::arange(width, equirectangular.options()) - degrees * (width / 360.0);
-    const torch::Tensor floor = source.detach().floor();
-    const torch::Tensor left = torch::remainder(floor, width).to(torch::kInt64);
-    const torch::Tensor right = torch::remainder(floor + 1, width).to(torch::kInt64);
-    const torch::Tensor weight = (source - floor).view({1, width, 1});
-    const torch::Tensor turned = (1 - weight) * equirectangular.index_select(1, left) +
-                                 weight * equirectangular.index_select(1, right);
-    return turned * torch::exp2(exposure);
+    const at::Tensor source =
+        at::arange(width, equirectangular.options()) - degrees * (width / 360.0);
+    const at::Tensor floor = source.detach().floor();
+    const at::Tensor left = at::remainder(floor, width).to(at::kLong);
+    const at::Tensor right = at::remainder(floor + 1, width).to(at::kLong);
+    const at::Tensor weight = (source - floor).view({1, width, 1});
+    const at::Tensor turned = (1 - weight) * equirectangular.index_select(1, left) +
+                              weight * equirectangular.index_select(1, right);
+    return turned * at::exp2(exposure);
 }
 
 }  // namespace item3d

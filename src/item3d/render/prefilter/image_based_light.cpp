@@ -2,9 +2,10 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
+#include "item3d/render/pictures.h"
 #include "item3d/render/prefilter/environment_light.h"
+#include "item3d/render/prefilter/equirectangular.h"
 #include "item3d/render/prefilter/specular_chain.h"
-#include "item3d/render/shade.h"
 
 #include <functional>
 
@@ -33,8 +34,8 @@ Image draw_faces(int size, const std::function<Vec3(Vec3)>& radiance) {
 
 ImageBasedLight make_image_based_light(const Image& light, int size) {
     ITEM3D_CHECK(size >= 256 && size <= 1024, "an image-based light has faces of 256 to 1024");
-    const torch::NoGradGuard no_grad;
-    const torch::Tensor cube = equirectangular_to_cube(to_tensor(light), size).contiguous();
+    const at::NoGradGuard no_grad;
+    const at::Tensor cube = equirectangular_to_cube(to_tensor(light), size).contiguous();
     const EnvironmentLight prefiltered = prefilter(cube);
     kernels::ShadeParameters chain{};
     set_specular_chain(chain, prefiltered.specular, prefiltered.roughness);

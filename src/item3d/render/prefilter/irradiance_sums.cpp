@@ -3,9 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/render/dispatch.h"
 #include "item3d/render/prefilter/specular_sums.h"
-
-#include <ATen/ops/topk.h>
-#include <ATen/ops/where.h>
+#include "item3d/tensors/tensor.h"
 
 #include <algorithm>
 
@@ -20,7 +18,7 @@ constexpr int coarse_size = irradiance_size / 2;
 constexpr std::int64_t most_bright = 64;
 constexpr float bright_share = 1e-3f;  ///< of all light
 
-BrightParameters bright_parameters(const torch::Tensor& bright, int size) {
+BrightParameters bright_parameters(const at::Tensor& bright, int size) {
     BrightParameters p{};
     p.texels = bright.const_data_ptr<std::int64_t>();
     p.count = static_cast<int>(bright.numel());
@@ -28,7 +26,7 @@ BrightParameters bright_parameters(const torch::Tensor& bright, int size) {
     return p;
 }
 
-void set_bright(CubePlanes& planes, const torch::Tensor& bright, const float* values) {
+void set_bright(CubePlanes& planes, const at::Tensor& bright, const float* values) {
     BrightParameters p = bright_parameters(bright, planes.size());
     p.out = planes.writable();
     p.values = values;
@@ -36,7 +34,7 @@ void set_bright(CubePlanes& planes, const torch::Tensor& bright, const float* va
                                   p.count);
 }
 
-CubePlanes without(const CubePlanes& flux, const torch::Tensor& bright) {
+CubePlanes without(const CubePlanes& flux, const at::Tensor& bright) {
     CubePlanes rest = flux.clone();
     set_bright(rest, bright, nullptr);
     fill_halo(rest, CubePlanes::halo);
@@ -50,17 +48,15 @@ std::int64_t irradiance_runs(int length) {
 
 }  // namespace
 
-torch::Tensor bright_texels(const CubePlanes& flux) {
-    const torch::Tensor light =
-        from_planes(flux, torch::ones({flux.size(), flux.size()}, flux.options()))
-            .sum(-1)
-            .flatten();
-    const torch::Tensor least = bright_share * light.clamp_min(0).sum();
+at::Tensor bright_texels(const CubePlanes& flux) {
+    const at::Tensor light =
+        from_planes(flux, at::ones({flux.size(), flux.size()}, flux.options())).sum(-1).flatten();
+    const at::Tensor least = bright_share * light.clamp_min(0).sum();
     const auto [brightest, texels] = at::topk(light, most_bright);
     return at::where(brightest > least, texels, -1);
 }
 
-CubePlanes irradiance_sums(const CubePlanes& flux, const torch::Tensor& bright) {
+CubePlanes irradiance_sums(const CubePlanes& flux, const at::Tensor& bright) {
     const int size = flux.size();
     ITEM3D_CHECK(size <= irradiance_size, "irradiance_sums: a map of at most 128 texels");
     const CubePlanes rest = without(flux, bright);
@@ -79,7 +75,7 @@ CubePlanes irradiance_sums(const CubePlanes& flux, const torch::Tensor& bright) 
 }
 
 CubePlanes irradiance_sums_transposed(const CubePlanes& gradient, int size,
-                                      const torch::Tensor& bright) {
+                                      const at::Tensor& bright) {
     CubePlanes coarse = cosine_sums(restricted(gradient), std::min(size, coarse_size));
     if (size == irradiance_size) {
         fill_halo(coarse, 1);
@@ -87,13 +83,13 @@ CubePlanes irradiance_sums_transposed(const CubePlanes& gradient, int size,
     }
     const int length = gradient.device().is_cuda() ? kernels::device_bright_run : irradiance_size;
     const std::int64_t runs = irradiance_runs(length);
-    const torch::Tensor partial_sums = torch::empty({runs, bright.numel(), 3}, gradient.options());
+    const at::Tensor partial_sums = at::empty({runs, bright.numel(), 3}, gradient.options());
     BrightParameters p = bright_parameters(bright, size);
     p.gradient = gradient.view();
     p.partial_sums = partial_sums.data_ptr<float>();
     dispatch<kernels::sum_bright<irradiance_size>>(gradient.device(), "bright_irradiance_gradient",
                                                    &RenderTable::sum_bright, p, runs, 16);
-    const torch::Tensor sums = partial_sums.sum(0);
+    const at::Tensor sums = partial_sums.sum(0);
     set_bright(coarse, bright, sums.const_data_ptr<float>());
     return coarse;
 }

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "item3d/render/kernels/shade.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <cmath>
 #include <vector>
@@ -12,7 +11,7 @@ namespace item3d {
 
 /// maps: [6, S, S, 3] each, at least four, and kept by the caller; roughness: ascending.
 inline void set_specular_chain(kernels::ShadeParameters& parameters,
-                               const std::vector<torch::Tensor>& maps,
+                               const std::vector<at::Tensor>& maps,
                                const std::vector<float>& roughness) {
     parameters.levels = static_cast<int>(maps.size());
     for (std::size_t level = 0; level < maps.size(); ++level) {

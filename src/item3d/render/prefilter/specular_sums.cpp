@@ -52,14 +52,13 @@ SumKernels sum_kernels() {
 /// turned_face), and perhaps the shared one.
 struct TurnedPlanes {
     int size, count;
-    torch::Tensor values;
+    at::Tensor values;
 };
 /// faces: to turn for, so many in steps of 6 / faces.
 TurnedPlanes turned_planes(const CubePlanes& map, int faces) {
     const int size = map.size(), count = 3 * faces + (map.shared_plane() ? 1 : 0);
     // Vectors read into the padding, with weights of 0.
-    TurnedPlanes turned{size, count,
-                        torch::zeros({count * kernels::far_plane(size)}, map.options())};
+    TurnedPlanes turned{size, count, at::zeros({count * kernels::far_plane(size)}, map.options())};
     const kernels::TurnParameters p{map.view(), turned.values.data_ptr<float>(), faces,
                                     run_length(map.device(), size)};
     dispatch<kernels::turn_planes>(map.device(), "turn_planes", &RenderTable::turn_planes, p,
@@ -71,10 +70,10 @@ TurnedPlanes turned_planes(const CubePlanes& map, int faces) {
 /// Of a turned map, to the planes of `out` from the first on.
 void sum_far(const TurnedPlanes& map, const ZonalKernel& kernel, CubePlanes& out) {
     const int size = map.size, out_size = out.size();
-    const torch::Tensor centres =
-        (2 * torch::arange(size, out.options()) + 1) / static_cast<float>(size) - 1.0f;
-    const torch::Tensor squares = centres.square();
-    const torch::Tensor inverse_lengths = (1 + squares + squares.unsqueeze(1)).rsqrt();
+    const at::Tensor centres =
+        (2 * at::arange(size, out.options()) + 1) / static_cast<float>(size) - 1.0f;
+    const at::Tensor squares = centres.square();
+    const at::Tensor inverse_lengths = (1 + squares + squares.unsqueeze(1)).rsqrt();
     const float reach = kernel.reach();
     // The corners of a face are 54.7 degrees off its centre.
     const float farthest = reach + 0.9554f;
@@ -119,10 +118,9 @@ NearParameters near_parameters(const CubePlanes& source, const CubeDirections& d
 
 }  // namespace
 
-CubeDirections::CubeDirections(int size, torch::Device device)
+CubeDirections::CubeDirections(int size, at::Device device)
     : row_(size + 2 * CubePlanes::halo),
-      values_(torch::empty({3, row_, row_},
-                           torch::TensorOptions().dtype(torch::kFloat32).device(device))) {
+      values_(at::empty({3, row_, row_}, at::TensorOptions().dtype(at::kFloat).device(device))) {
     dispatch<kernels::halo_texel_direction>(
         device, "cube_directions", &RenderTable::cube_directions,
         kernels::DirectionParameters{values_.data_ptr<float>(), size}, row_ * row_, 4096);
@@ -175,11 +173,11 @@ CubePlanes cosine_sums(const CubePlanes& source, int out_size) {
     sum_far(turned_planes(folded(source), 3), kernel, even);
 
     const std::int64_t rows = static_cast<std::int64_t>(6) * source.size();
-    const torch::Tensor row_moments = torch::empty({rows, 3, 3}, source.options());
+    const at::Tensor row_moments = at::empty({rows, 3, 3}, source.options());
     dispatch<kernels::row_moments>(
         source.device(), "row_moments", &RenderTable::row_moments,
         kernels::MomentParameters{source.view(), row_moments.data_ptr<float>()}, rows, 16);
-    const torch::Tensor moments = row_moments.sum(0, false, torch::kFloat64).to(torch::kFloat32);
+    const at::Tensor moments = row_moments.sum(0, false, at::kDouble).to(at::kFloat);
 
     CubePlanes out(out_size, source.shared_plane(), source.device());
     const kernels::CosineParameters p{even.view(), moments.const_data_ptr<float>(), out.writable(),

@@ -12,14 +12,14 @@ namespace item3d {
 /// Unit directions of the texels of face 0 and of its halo, as three planes.
 class CubeDirections {
   public:
-    CubeDirections(int size, torch::Device device);
+    CubeDirections(int size, at::Device device);
     /// Of texel (0, 0).
     const float* data() const;
     std::int64_t plane_step() const { return row_ * row_; }
 
   private:
     std::int64_t row_;
-    torch::Tensor values_;
+    at::Tensor values_;
 };
 
 /// Gets the sums of row_tile texels of all planes, [planes, row_tile].

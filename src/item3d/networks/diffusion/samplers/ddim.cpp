@@ -1,6 +1,8 @@
 // DDIM (Song et al. 2021, eq. 12).
+#include "item3d/networks/diffusion/samplers/ddim.h"
+
 #include "item3d/core/error.h"
-#include "item3d/networks/diffusion/samplers/methods.h"
+#include "item3d/networks/diffusion/samplers/timesteps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +17,8 @@ class Ddim : public TimestepSampler {
 
     bool draws_noise(int) const override { return eta_ > 0; }
 
-    torch::Tensor step(int i, const torch::Tensor& model_output, const torch::Tensor& sample,
-                       const torch::Tensor& fresh_noise) override {
+    at::Tensor step(int i, const at::Tensor& model_output, const at::Tensor& sample,
+                    const at::Tensor& fresh_noise) override {
         const SchedulerConfig& config = schedule_.config();
         const double alpha = alpha_at(whole_timestep(i));
         const double alpha_next = alpha_or_final(whole_timestep(i) - stride_);
@@ -27,7 +29,7 @@ class Ddim : public TimestepSampler {
         const double variance = (1 - alpha_next) / (1 - alpha) * (1 - alpha / alpha_next);
         const double deviation = eta_ * std::sqrt(std::max(variance, 0.0));
         const double direction = std::sqrt(std::max(1 - alpha_next - deviation * deviation, 0.0));
-        torch::Tensor result = std::sqrt(alpha_next) * clean + direction * noise;
+        at::Tensor result = std::sqrt(alpha_next) * clean + direction * noise;
         if (eta_ > 0) {
             ITEM3D_CHECK(fresh_noise.defined(), "eta > 0 needs noise");
             result = result + deviation * fresh_noise;

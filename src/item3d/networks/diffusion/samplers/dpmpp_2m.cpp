@@ -1,7 +1,10 @@
 // DPM-Solver++(2M) (Lu et al. 2022, algorithm 2): a multistep method of second order in
 // lambda = log(sqrt(abar) / sqrt(1 - abar)) for the predicted picture. The first and the last step
 // are of first order.
-#include "item3d/networks/diffusion/samplers/methods.h"
+#include "item3d/networks/diffusion/samplers/dpmpp_2m.h"
+
+#include "item3d/networks/diffusion/samplers/sigmas.h"
+#include "item3d/networks/diffusion/samplers/timesteps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,16 +20,15 @@ class Dpmpp2m : public Sampler {
         sigmas_.assign(steps.sigmas.begin() + options.skip, steps.sigmas.end());
     }
 
-    torch::Tensor add_noise(int i, const torch::Tensor& clean,
-                            const torch::Tensor& noise) const override {
+    at::Tensor add_noise(int i, const at::Tensor& clean, const at::Tensor& noise) const override {
         return signal(i) * clean + deviation(i) * noise;
     }
 
-    torch::Tensor step(int i, const torch::Tensor& model_output, const torch::Tensor& sample,
-                       const torch::Tensor&) override {
-        const torch::Tensor clean =
+    at::Tensor step(int i, const at::Tensor& model_output, const at::Tensor& sample,
+                    const at::Tensor&) override {
+        const at::Tensor clean =
             schedule_.interpret(model_output, sample, signal(i) * signal(i)).clean;
-        torch::Tensor estimate = clean;
+        at::Tensor estimate = clean;
         const double h = lambda(i + 1) - lambda(i);
         if (before_.defined() && i + 1 < steps()) {
             const double h_before = lambda(i) - lambda(i - 1);
@@ -65,7 +67,7 @@ class Dpmpp2m : public Sampler {
     double lambda(int i) const { return -std::log(sigma(i)); }
 
     std::vector<double> sigmas_;
-    torch::Tensor before_;  ///< the picture that the step before predicted
+    at::Tensor before_;  ///< the picture that the step before predicted
 };
 
 }  // namespace

@@ -1,6 +1,9 @@
 // Euler's method for dx / dsigma = (x - x_0) / sigma (Karras et al. 2022, algorithm 1). Samples are
 // x_0 + sigma eps, so that the network's input has to be scaled.
-#include "item3d/networks/diffusion/samplers/methods.h"
+#include "item3d/networks/diffusion/samplers/euler.h"
+
+#include "item3d/networks/diffusion/samplers/sigmas.h"
+#include "item3d/networks/diffusion/samplers/timesteps.h"
 
 #include <cmath>
 
@@ -29,17 +32,16 @@ class Euler : public Sampler {
         // A model that starts at full noise adds it to nothing; leading spacing leaves some signal.
         return schedule_.config().spacing() == "leading" ? std::hypot(sigmas_[0], 1) : sigmas_[0];
     }
-    torch::Tensor add_noise(int i, const torch::Tensor& clean,
-                            const torch::Tensor& noise) const override {
+    at::Tensor add_noise(int i, const at::Tensor& clean, const at::Tensor& noise) const override {
         return clean + sigma(i) * noise;
     }
-    torch::Tensor scale_input(int i, const torch::Tensor& sample) const override {
+    at::Tensor scale_input(int i, const at::Tensor& sample) const override {
         return sample / std::hypot(sigma(i), 1);
     }
-    torch::Tensor step(int i, const torch::Tensor& model_output, const torch::Tensor& sample,
-                       const torch::Tensor&) override {
+    at::Tensor step(int i, const at::Tensor& model_output, const at::Tensor& sample,
+                    const at::Tensor&) override {
         const double alpha = 1 / (1 + sigma(i) * sigma(i));
-        const torch::Tensor clean =
+        const at::Tensor clean =
             schedule_.interpret(model_output, scale_input(i, sample), alpha).clean;
         return sample + (sample - clean) / sigma(i) * (sigma(i + 1) - sigma(i));
     }

@@ -1,7 +1,9 @@
 // PNDM (Liu et al. 2022) without Runge-Kutta steps: the noise is extrapolated from up to four
 // predictions (Adams-Bashforth), and the first step is done twice, the second time with the mean of
 // the noise at both its ends.
-#include "item3d/networks/diffusion/samplers/methods.h"
+#include "item3d/networks/diffusion/samplers/pndm.h"
+
+#include "item3d/networks/diffusion/samplers/timesteps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +18,8 @@ class Pndm : public TimestepSampler {
         if (timesteps_.size() > 1) timesteps_.insert(timesteps_.begin() + 1, timesteps_[1]);
     }
 
-    torch::Tensor step(int i, const torch::Tensor& model_output, const torch::Tensor& sample,
-                       const torch::Tensor&) override {
+    at::Tensor step(int i, const at::Tensor& model_output, const at::Tensor& sample,
+                    const at::Tensor&) override {
         if (i == 1) {  // from the first timestep again
             const std::int64_t first = std::min<std::int64_t>(
                 whole_timestep(i) + stride_, schedule_.config().num_train_timesteps - 1);
@@ -30,8 +32,8 @@ class Pndm : public TimestepSampler {
     }
 
   private:
-    torch::Tensor extrapolate() const {
-        const std::vector<torch::Tensor> e(outputs_.rbegin(), outputs_.rend());
+    at::Tensor extrapolate() const {
+        const std::vector<at::Tensor> e(outputs_.rbegin(), outputs_.rend());
         switch (e.size()) {
             case 1:
                 return e[0];
@@ -45,15 +47,15 @@ class Pndm : public TimestepSampler {
     }
 
     /// Eq. 9 of the paper, which is DDIM's step.
-    torch::Tensor move(const torch::Tensor& sample, const torch::Tensor& model_output,
-                       std::int64_t from, std::int64_t to) const {
+    at::Tensor move(const at::Tensor& sample, const at::Tensor& model_output, std::int64_t from,
+                    std::int64_t to) const {
         const double alpha_next = alpha_or_final(to);
         const auto [clean, noise] = schedule_.interpret(model_output, sample, alpha_at(from));
         return std::sqrt(alpha_next) * clean + std::sqrt(1 - alpha_next) * noise;
     }
 
-    torch::Tensor start_;
-    std::vector<torch::Tensor> outputs_;  ///< the last four at different timesteps
+    at::Tensor start_;
+    std::vector<at::Tensor> outputs_;  ///< the last four at different timesteps
 };
 
 }  // namespace

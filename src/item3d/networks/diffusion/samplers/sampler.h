@@ -2,8 +2,7 @@
 #pragma once
 
 #include "item3d/networks/diffusion/noise_schedule.h"
-
-#include <torch/types.h>
+#include "item3d/tensors/tensor.h"
 
 #include <memory>
 #include <vector>
@@ -27,10 +26,9 @@ class Sampler {
     /// The standard deviation of the noise that a whole run starts from.
     virtual double initial_scale() const { return 1.0; }
     /// A picture with as much noise as step i starts from.
-    virtual torch::Tensor add_noise(int i, const torch::Tensor& clean,
-                                    const torch::Tensor& noise) const = 0;
+    virtual at::Tensor add_noise(int i, const at::Tensor& clean, const at::Tensor& noise) const = 0;
     /// What the network reads at step i.
-    virtual torch::Tensor scale_input(int i, const torch::Tensor& sample) const {
+    virtual at::Tensor scale_input(int i, const at::Tensor& sample) const {
         (void)i;
         return sample;
     }
@@ -41,8 +39,8 @@ class Sampler {
     }
     /// The sample after step i. model_output: of the configured prediction_type. fresh_noise:
     /// standard normal, of the sample's shape; read where draws_noise(i).
-    virtual torch::Tensor step(int i, const torch::Tensor& model_output,
-                               const torch::Tensor& sample, const torch::Tensor& fresh_noise) = 0;
+    virtual at::Tensor step(int i, const at::Tensor& model_output, const at::Tensor& sample,
+                            const at::Tensor& fresh_noise) = 0;
 
   protected:
     explicit Sampler(const NoiseSchedule& schedule) : schedule_(schedule) {}

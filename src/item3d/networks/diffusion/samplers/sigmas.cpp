@@ -1,4 +1,4 @@
-#include "item3d/networks/diffusion/samplers/methods.h"
+#include "item3d/networks/diffusion/samplers/sigmas.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +22,8 @@ double timestep_of(const std::vector<double>& sigmas, double sigma) {
 }  // namespace
 
 std::vector<double> training_sigmas(const NoiseSchedule& schedule) {
-    const torch::Tensor& alphas = schedule.alphas_cumprod();
-    const torch::Tensor sigmas = ((1 - alphas) / alphas).sqrt();
+    const at::Tensor& alphas = schedule.alphas_cumprod();
+    const at::Tensor sigmas = ((1 - alphas) / alphas).sqrt();
     std::vector<double> result{sigmas.data_ptr<float>(), sigmas.data_ptr<float>() + sigmas.numel()};
     // The root of 2^24 - 1 is this to float's precision, but only some processors' root; any number
     // but a power of two costs each sample a rounding that the small ones after the first step

@@ -1,5 +1,4 @@
-// Ceramics, glass-like materials, leather and other made things.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/crafts.h"
 
 #include <array>
 

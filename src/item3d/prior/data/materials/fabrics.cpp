@@ -1,5 +1,4 @@
-// Fabrics, most of them dyed in a plain colour.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/fabrics.h"
 
 namespace item3d::paint {
 namespace {

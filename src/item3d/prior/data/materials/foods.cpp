@@ -1,5 +1,4 @@
-// Materials that are eaten.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/foods.h"
 
 #include <array>
 

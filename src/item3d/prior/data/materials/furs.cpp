@@ -1,5 +1,4 @@
-// Patterns of animals.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/furs.h"
 
 namespace item3d::paint {
 namespace {

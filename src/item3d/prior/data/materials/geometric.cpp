@@ -1,6 +1,4 @@
-// Patterns of two colours: what the prior finds hardest, so cells are large and edges soft enough
-// to survive 64 pixels.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/geometric.h"
 
 namespace item3d::paint {
 namespace {
@@ -36,7 +34,7 @@ Wording wording_of(const TwoTone& tones, const std::string& adjective, const std
 }
 
 // All of these lie in the same place of the same space on every object, and the network is told
-// where that is (models/shape_condition.h): as small as it is, it draws blots where the place of
+// where that is (shape_condition.h): as small as it is, it draws blots where the place of
 // each stripe is chance.
 
 ProceduralMaterial stripes(Random& random, const MaterialWish& wish) {

@@ -1,10 +1,11 @@
-// What the files of this folder share: each returns the kinds of one theme.
+// What the files of the themes share (metals.h, woods.h, ...); each returns its kinds.
 //
 // Scales: an object of radius 1 is 25 to 30 pixels of a picture of 64, so a wave of frequency f
 // (radians a unit) is 170 / f pixels long, and a cell of a pattern with f cells a unit is 27 / f
 // wide. Nothing here is meant to be seen that is finer than four pixels.
 #pragma once
 
+#include "item3d/prior/data/materials/colors.h"
 #include "item3d/prior/data/materials/materials.h"
 #include "item3d/prior/data/shapes/noise.h"
 
@@ -22,18 +23,6 @@ struct MaterialKind {
     ProceduralMaterial (*make)(Random&, const MaterialWish&);
     std::vector<MaterialWord> words;
 };
-
-std::vector<MaterialKind> plain_materials();
-std::vector<MaterialKind> metal_materials();
-std::vector<MaterialKind> wood_materials();
-std::vector<MaterialKind> stone_materials();
-std::vector<MaterialKind> craft_materials();
-std::vector<MaterialKind> fabric_materials();
-std::vector<MaterialKind> nature_materials();
-std::vector<MaterialKind> food_materials();
-std::vector<MaterialKind> fur_patterns();
-std::vector<MaterialKind> geometric_patterns();
-std::vector<MaterialKind> ornament_patterns();
 
 /// The word of a kind that has one alone: its caption is "a {word} {o}" unless given.
 MaterialWord word_of(const std::string& group, const std::string& kind, const std::string& word,
@@ -77,7 +66,6 @@ inline Vec3 limit(const Vec3& color) {
 /// A colour somewhat like the given one: brighter or darker, and each channel a little.
 Vec3 vary(Random& random, const Vec3& color, double spread = .12);
 
-Vec3 color_named(const std::string& name);
 /// A plain colour, as wished or at random.
 std::string one_color(Random& random, const MaterialWish& wish);
 /// Two different ones.

@@ -1,7 +1,18 @@
 #include "item3d/prior/data/materials/materials.h"
 
 #include "item3d/core/error.h"
+#include "item3d/prior/data/materials/crafts.h"
+#include "item3d/prior/data/materials/fabrics.h"
+#include "item3d/prior/data/materials/foods.h"
+#include "item3d/prior/data/materials/furs.h"
+#include "item3d/prior/data/materials/geometric.h"
 #include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/metals.h"
+#include "item3d/prior/data/materials/nature.h"
+#include "item3d/prior/data/materials/ornaments.h"
+#include "item3d/prior/data/materials/plain.h"
+#include "item3d/prior/data/materials/stones.h"
+#include "item3d/prior/data/materials/woods.h"
 
 #include <algorithm>
 

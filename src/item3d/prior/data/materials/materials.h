@@ -10,17 +10,6 @@
 
 namespace item3d {
 
-struct PlainColor {
-    std::string name;
-    Vec3 linear;  ///< base colour, linear RGB
-};
-/// The 24 plain colours: "red" ... "mustard".
-const std::vector<PlainColor>& plain_colors();
-/// Base colours (normal reflectance) of "gold", "silver", "copper", "bronze", ...
-const std::vector<PlainColor>& metal_colors();
-/// Whether two of those names look too much the same to make a pattern.
-bool colors_alike(const std::string& first, const std::string& second);
-
 struct MaterialValue {
     Vec3 base_color;  ///< linear
     float roughness;

@@ -1,5 +1,4 @@
-// Metals by name and finish.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/metals.h"
 
 #include <array>
 

@@ -1,5 +1,4 @@
-// What grows or falls on things, and elements.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/nature.h"
 
 namespace item3d::paint {
 namespace {

@@ -1,5 +1,4 @@
-// Irregular patterns: flowers, camouflage, cracks, flames.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/ornaments.h"
 
 namespace item3d::paint {
 namespace {

@@ -1,5 +1,4 @@
-// One colour with a finish.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/plain.h"
 
 #include <array>
 

@@ -1,5 +1,4 @@
-// Stones, natural and made.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/stones.h"
 
 namespace item3d::paint {
 namespace {

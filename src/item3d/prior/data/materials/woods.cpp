@@ -1,5 +1,4 @@
-// Woods: rings of a trunk, cut into boards.
-#include "item3d/prior/data/materials/makers.h"
+#include "item3d/prior/data/materials/woods.h"
 
 #include <array>
 

@@ -1,5 +1,4 @@
-// Animals, heads at +x.
-#include "item3d/prior/data/shapes/makers.h"
+#include "item3d/prior/data/shapes/animals.h"
 
 namespace item3d {
 namespace {

@@ -1,5 +1,4 @@
-// Figures that stand upright, faces at +z.
-#include "item3d/prior/data/shapes/makers.h"
+#include "item3d/prior/data/shapes/figures.h"
 
 namespace item3d {
 namespace {

@@ -1,5 +1,4 @@
-// Fruit, vegetables and cakes.
-#include "item3d/prior/data/shapes/makers.h"
+#include "item3d/prior/data/shapes/food.h"
 
 namespace item3d {
 namespace {

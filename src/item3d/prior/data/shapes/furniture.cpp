@@ -1,5 +1,4 @@
-// Furniture.
-#include "item3d/prior/data/shapes/makers.h"
+#include "item3d/prior/data/shapes/furniture.h"
 
 namespace item3d {
 namespace {

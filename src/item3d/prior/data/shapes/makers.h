@@ -1,4 +1,4 @@
-// What the files of this folder share: each returns the classes of one theme.
+// What the files of the themes share (animals.h, food.h, ...); each returns its classes.
 #pragma once
 
 #include "item3d/core/random.h"
@@ -28,15 +28,6 @@ struct ShapeMaker {
     ShapeClass shape;
     Shape (*make)(Draw&);
 };
-
-std::vector<ShapeMaker> vessel_shapes();
-std::vector<ShapeMaker> furniture_shapes();
-std::vector<ShapeMaker> vehicle_shapes();
-std::vector<ShapeMaker> food_shapes();
-std::vector<ShapeMaker> animal_shapes();
-std::vector<ShapeMaker> figure_shapes();
-std::vector<ShapeMaker> thing_shapes();
-std::vector<ShapeMaker> solid_shapes();
 
 /// A shape of one piece.
 inline Shape whole(SignedDistance distance) {

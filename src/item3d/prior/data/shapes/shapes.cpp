@@ -2,7 +2,15 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/random.h"
+#include "item3d/prior/data/shapes/animals.h"
+#include "item3d/prior/data/shapes/figures.h"
+#include "item3d/prior/data/shapes/food.h"
+#include "item3d/prior/data/shapes/furniture.h"
 #include "item3d/prior/data/shapes/makers.h"
+#include "item3d/prior/data/shapes/solids.h"
+#include "item3d/prior/data/shapes/things.h"
+#include "item3d/prior/data/shapes/vehicles.h"
+#include "item3d/prior/data/shapes/vessels.h"
 
 #include <algorithm>
 

@@ -1,5 +1,4 @@
-// Abstract solids, and shapes of no kind.
-#include "item3d/prior/data/shapes/makers.h"
+#include "item3d/prior/data/shapes/solids.h"
 
 namespace item3d {
 namespace {

@@ -1,5 +1,4 @@
-// Buildings, plants, clothes and tools.
-#include "item3d/prior/data/shapes/makers.h"
+#include "item3d/prior/data/shapes/things.h"
 
 namespace item3d {
 namespace {

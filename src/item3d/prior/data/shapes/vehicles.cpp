@@ -1,5 +1,4 @@
-// Vehicles, along the x axis, front at +x.
-#include "item3d/prior/data/shapes/makers.h"
+#include "item3d/prior/data/shapes/vehicles.h"
 
 namespace item3d {
 namespace {

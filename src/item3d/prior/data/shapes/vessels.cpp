@@ -1,5 +1,4 @@
-// Things that hold something.
-#include "item3d/prior/data/shapes/makers.h"
+#include "item3d/prior/data/shapes/vessels.h"
 
 namespace item3d {
 namespace {

@@ -1,0 +1,36 @@
+// The commands of item3d, and which of its programs has each.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace item3d {
+
+struct CommandEntry {
+    std::string_view name;
+    std::string_view family;  ///< item3d-FAMILY is the program that has it
+    std::string_view description;
+};
+
+/// In the order of `item3d --help`.
+inline constexpr std::array commands = {
+    CommandEntry{"edit", "edit", "Edit the look of a textured model from two sentences"},
+    CommandEntry{"reconstruct", "reconstruct", "Make a model from photographs with poses"},
+    CommandEntry{"render", "edit", "Draw pictures of a model"},
+    CommandEntry{"light", "edit", "Convert, change and describe a light"},
+    CommandEntry{"relight", "edit", "Show a model under another light"},
+    CommandEntry{"generate", "edit", "Draw pictures from a prompt with the prior alone"},
+    CommandEntry{"caption", "edit", "Describe a picture or a model in words"},
+    CommandEntry{"score", "edit", "Measure by CLIP how well an edit follows its sentences"},
+    CommandEntry{"prior", "train", "Train, fetch and inspect priors"},
+    CommandEntry{"bench", "bench", "Measure how fast this machine is"},
+};
+
+/// Null where there is none of this name.
+constexpr const CommandEntry* find_command(std::string_view name) {
+    for (const CommandEntry& command : commands)
+        if (command.name == name) return &command;
+    return nullptr;
+}
+
+}  // namespace item3d

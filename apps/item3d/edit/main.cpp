@@ -1,0 +1,11 @@
+// item3d-edit: edits, renders, relights, generates, captions and scores.
+#include "apps/item3d/edit/commands.h"
+#include "apps/item3d/run.h"
+
+int main(int argc, char** argv) {
+    return item3d::run_program(
+        argc, argv,
+        {item3d::add_edit_command, item3d::add_render_command, item3d::add_light_command,
+         item3d::add_relight_command, item3d::add_generate_command, item3d::add_caption_command,
+         item3d::add_score_command});
+}

@@ -1,0 +1,99 @@
+#include "apps/item3d/run.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/tensors/tensor_memory.h"
+
+#include <c10/util/Exception.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <regex>
+#include <string>
+#include <system_error>
+
+namespace item3d {
+namespace {
+
+int fail(ExitCode code, std::string message) {
+    for (char& character : message) {
+        if (character == '\n' || character == '\r') character = ' ';
+    }
+    fmt::print(stderr, "item3d: {}\n", message);
+    return static_cast<int>(code);
+}
+
+int fail_as_bug(const std::string& message) {
+    return fail(ExitCode::bug,
+                "error: " + message + " (this is a bug of item3d: please report it)");
+}
+
+std::string first_line(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
+
+/// LibTorch says that the CPU's memory is spent in words alone.
+bool says_out_of_memory(const std::string& message) {
+    return message.find("can't allocate memory") != std::string::npos ||
+           message.find("not enough memory") != std::string::npos;
+}
+
+/// What LibTorch says has the size that it lacked, among names of its files.
+int fail_out_of_memory(const std::string& message) {
+    std::smatch size;
+    std::string lacking;
+    if (std::regex_search(message, size, std::regex("allocate ([0-9]+) bytes")))
+        lacking = fmt::format(" ({:.3g} GB more were wanted)", std::stod(size[1]) / 1e9);
+    return fail(ExitCode::no_resource, "error: out of memory" + lacking +
+                                           "; close other programs, or choose smaller pictures "
+                                           "or fewer at a time");
+}
+
+int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
+    CLI::App app("Edits the look of textured 3D models from two sentences.", "item3d");
+    app.require_subcommand(1);
+    for (const AddCommand add_command : add_commands)
+        add_command(app);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        // --help comes this way too; it is no error.
+        return app.exit(error) == 0 ? static_cast<int>(ExitCode::done)
+                                    : static_cast<int>(ExitCode::usage);
+    }
+    return static_cast<int>(ExitCode::done);
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
+    // A file that may not grow any more is an error of write(), not the end of the program.
+    std::signal(SIGXFSZ, SIG_IGN);
+    give_large_tensors_a_region();
+    try {
+        return parse_and_run(argc, argv, add_commands);
+    } catch (const Interrupted& stop) {
+        return fail(stop.code(), std::string("interrupted: ") + stop.what());
+    } catch (const Error& error) {
+        return fail(error.code(), std::string("error: ") + error.what());
+    } catch (const std::bad_alloc&) {
+        return fail_out_of_memory("");
+    } catch (const std::filesystem::filesystem_error& error) {
+        const bool full = error.code() == std::errc::no_space_on_device;
+        return fail(full ? ExitCode::no_resource : ExitCode::bad_input,
+                    std::string("error: ") + error.what());
+    } catch (const c10::Error& error) {
+        const std::string message = first_line(error.what_without_backtrace());
+        if (says_out_of_memory(message)) return fail_out_of_memory(message);
+        return fail_as_bug(message);
+    } catch (const std::exception& error) {
+        return fail_as_bug(error.what());
+    } catch (...) {
+        return fail_as_bug("an exception of unknown type");
+    }
+}
+
+}  // namespace item3d

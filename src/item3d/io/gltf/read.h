@@ -1,0 +1,14 @@
+// glTF 2.0 files to models. Internal to io.
+#pragma once
+
+#include "item3d/core/files.h"
+#include "item3d/scene/model.h"
+
+#include <filesystem>
+
+namespace item3d {
+
+/// glTF 2.0, binary or JSON. Throws InputError.
+Model read_gltf(const std::filesystem::path& path, const Bytes& bytes);
+
+}  // namespace item3d

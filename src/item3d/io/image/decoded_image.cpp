@@ -1,0 +1,29 @@
+#include "item3d/io/image/decoded_image.h"
+
+#include "item3d/core/error.h"
+
+#include <fmt/format.h>
+
+namespace item3d {
+
+void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels,
+                      std::uint64_t available, std::uint64_t most_pixels_per_byte,
+                      const std::string& subject) {
+    constexpr std::uint64_t most_values = 1ull << 28;
+    if (width == 0 || height == 0 || channels == 0) {
+        throw InputError(subject, fmt::format("declares {} x {} pixels", width, height));
+    }
+    if (width > most_values || height > most_values || width * height > most_values / channels) {
+        throw InputError(
+            subject, fmt::format("declares {} x {} pixels, more than can be used", width, height),
+            "scale it down");
+    }
+    if (width * height > (available + 64) * most_pixels_per_byte) {
+        throw InputError(subject,
+                         fmt::format("declares {} x {} pixels, but {} bytes cannot hold them",
+                                     width, height, available),
+                         "the file is damaged");
+    }
+}
+
+}  // namespace item3d

@@ -1,0 +1,19 @@
+// JPEG pictures. Internal to io.
+#pragma once
+
+#include "item3d/core/files.h"
+#include "item3d/io/image/decoded_image.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace item3d {
+
+/// `subject` names the picture in errors. Throws InputError.
+DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& subject);
+
+/// 4:4:4, quality 95; an alpha channel is dropped.
+Bytes encode_jpeg(const Image& image);
+
+}  // namespace item3d

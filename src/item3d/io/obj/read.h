@@ -1,0 +1,14 @@
+// Wavefront OBJ files to models. Internal to io.
+#pragma once
+
+#include "item3d/core/files.h"
+#include "item3d/scene/model.h"
+
+#include <filesystem>
+
+namespace item3d {
+
+/// Wavefront OBJ with its MTL files, one primitive a material. Throws InputError.
+Model read_obj(const std::filesystem::path& path, const Bytes& bytes);
+
+}  // namespace item3d

@@ -1,0 +1,31 @@
+// A pipeline's folder in the diffusers layout: its index, and its parts, for trainings that write
+// one after another.
+#pragma once
+
+#include "item3d/networks/diffusion/autoencoder.h"
+#include "item3d/networks/diffusion/unet.h"
+#include "item3d/networks/vision_language/clip_text.h"
+
+#include <filesystem>
+
+namespace item3d {
+
+/// What model_index.json says.
+struct PipelineIndex {
+    bool has_second_text_encoder = false;  ///< SDXL
+    bool force_zeros_for_empty_prompt = false;
+
+    /// Throws InputError where there is no folder, no index, or a part of a class that we have not.
+    static PipelineIndex read(const std::filesystem::path& folder);
+};
+
+/// Parts of a pipeline's folder, each into a sub-folder that must exist. Weights are written as
+/// `dtype`.
+void save_unet(const std::filesystem::path& folder, const UNet2DCondition& unet,
+               at::ScalarType dtype = at::kHalf);
+void save_autoencoder(const std::filesystem::path& folder, const Autoencoder& autoencoder,
+                      at::ScalarType dtype = at::kHalf);
+void save_clip_text(const std::filesystem::path& folder, const ClipTextModel& model,
+                    at::ScalarType dtype = at::kHalf);
+
+}  // namespace item3d

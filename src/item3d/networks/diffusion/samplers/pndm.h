@@ -1,0 +1,12 @@
+// PNDM (Liu et al. 2022), behind make_sampler.
+#pragma once
+
+#include "item3d/networks/diffusion/samplers/sampler.h"
+
+#include <memory>
+
+namespace item3d {
+
+std::unique_ptr<Sampler> make_pndm(const NoiseSchedule& schedule, const SamplerOptions& options);
+
+}  // namespace item3d

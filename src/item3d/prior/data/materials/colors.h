@@ -1,0 +1,24 @@
+// The colours that have names, of paint and of metals.
+#pragma once
+
+#include "item3d/core/math.h"
+
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+struct PlainColor {
+    std::string name;
+    Vec3 linear;  ///< base colour, linear RGB
+};
+/// The 24 plain colours: "red" ... "mustard".
+const std::vector<PlainColor>& plain_colors();
+/// Base colours (normal reflectance) of "gold", "silver", "copper", "bronze", ...
+const std::vector<PlainColor>& metal_colors();
+/// Of either list; the name must be there.
+Vec3 color_named(const std::string& name);
+/// Whether two of those names look too much the same to make a pattern.
+bool colors_alike(const std::string& first, const std::string& second);
+
+}  // namespace item3d

@@ -1,0 +1,12 @@
+// Ceramics, glass-like materials, leather and other made things.
+#pragma once
+
+#include "item3d/prior/data/materials/makers.h"
+
+#include <vector>
+
+namespace item3d::paint {
+
+std::vector<MaterialKind> craft_materials();
+
+}  // namespace item3d::paint

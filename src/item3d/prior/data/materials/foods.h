@@ -1,0 +1,12 @@
+// Materials that are eaten.
+#pragma once
+
+#include "item3d/prior/data/materials/makers.h"
+
+#include <vector>
+
+namespace item3d::paint {
+
+std::vector<MaterialKind> food_materials();
+
+}  // namespace item3d::paint

@@ -1,0 +1,13 @@
+// Patterns of two colours: what the prior finds hardest, so cells are large and edges soft enough
+// to survive 64 pixels.
+#pragma once
+
+#include "item3d/prior/data/materials/makers.h"
+
+#include <vector>
+
+namespace item3d::paint {
+
+std::vector<MaterialKind> geometric_patterns();
+
+}  // namespace item3d::paint

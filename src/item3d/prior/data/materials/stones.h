@@ -1,0 +1,12 @@
+// Stones, natural and made.
+#pragma once
+
+#include "item3d/prior/data/materials/makers.h"
+
+#include <vector>
+
+namespace item3d::paint {
+
+std::vector<MaterialKind> stone_materials();
+
+}  // namespace item3d::paint

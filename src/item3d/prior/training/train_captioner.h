@@ -1,0 +1,24 @@
+// The small captioner beside the prior and its training.
+#pragma once
+
+#include "item3d/networks/vision_language/blip.h"
+#include "item3d/prior/data/captions.h"
+#include "item3d/prior/data/labeled_pictures.h"
+#include "item3d/prior/training/settings.h"
+
+#include <nlohmann/json.hpp>
+
+#include <vector>
+
+namespace item3d {
+
+BlipConfig prior_captioner_config(int vocabulary);
+
+/// Trains it on the pictures and writes it now and then, with all its other files, into its
+/// sub-folder of settings.output. Returns {"samples", "loss", ...}. Throws Interrupted after
+/// writing a checkpoint. Where settings.begin_with has a captioner, its weights are begun with and
+/// it takes its vocabulary; else `words` become the vocabulary.
+nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings& settings,
+                               const std::vector<WordCount>& words, BlipConfig config);
+
+}  // namespace item3d

@@ -1,0 +1,15 @@
+// COLMAP's sparse models (https://colmap.github.io/format.html), text and binary.
+#pragma once
+
+#include "item3d/reconstruct/dataset/source.h"
+
+#include <filesystem>
+
+namespace item3d {
+
+/// COLMAP's cameras and images, text or binary, in `model`; picture names are relative to `images`.
+/// Models SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE,
+/// SIMPLE_RADIAL_FISHEYE and RADIAL_FISHEYE.
+SourceDataset read_colmap(const std::filesystem::path& model, const std::filesystem::path& images);
+
+}  // namespace item3d

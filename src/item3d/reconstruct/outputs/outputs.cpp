@@ -1,0 +1,111 @@
+#include "item3d/reconstruct/outputs/outputs.h"
+
+#include "item3d/core/version.h"
+#include "item3d/field/bake/bake.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/reconstruct/surface/plain_model.h"
+
+#include <ATen/Parallel.h>
+
+namespace item3d {
+
+namespace {
+
+nlohmann::json score_json(const std::vector<ScoredView>& views) {
+    if (views.empty()) return nullptr;
+    const auto one = [](const ViewScore& score) {
+        return nlohmann::json{
+            {"psnr", score.psnr}, {"ssim", score.ssim}, {"mask_overlap", score.mask_overlap}};
+    };
+    nlohmann::json result = one(mean_score(views));
+    for (const ScoredView& view : views) {
+        nlohmann::json entry = one(view.score);
+        entry["name"] = view.score.name;
+        result["views"].push_back(std::move(entry));
+    }
+    return result;
+}
+
+}  // namespace
+
+Model bake_and_save(const std::filesystem::path& file, const Model& model, Appearance& appearance,
+                    const ReconstructRequest& request) {
+    const at::NoGradGuard no_gradient;
+    Model neutral = model;
+    set_constant_material(neutral, appearance.field->options().ranges);
+    NeuralTexture fitted = constant_field(appearance.field->options());
+    const Geometry geometry = Geometry::from_model(neutral);
+    const TexturedMaterials materials(neutral);
+    const FieldSpace space(neutral, {0});
+    const Atlas atlas = make_atlas(neutral, space, {0}, request.texture_size);
+    BakeOptions options;
+    options.texture_size = request.texture_size;
+    // Shadows are the renderer's business: a baked occlusion would darken the model a second time.
+    options.channels = {.base_color = true,
+                        .occlusion = false,
+                        .roughness = true,
+                        .metallic = true,
+                        .normal = request.refine.normal_map};
+    const ModelEdit edit =
+        bake({neutral, geometry, materials, space, atlas}, fitted, appearance.field, options);
+    save_model(file, neutral, edit);
+    return load_model(file);
+}
+
+nlohmann::json summary_json(const Reconstruction& result) {
+    const ReconstructRequest& request = result.request;
+    nlohmann::json rotation = nlohmann::json::array();
+    for (int row = 0; row < 3; ++row)
+        rotation.push_back({result.dataset.world_from_dataset[0][row],
+                            result.dataset.world_from_dataset[1][row],
+                            result.dataset.world_from_dataset[2][row]});
+    nlohmann::json seconds;
+    for (const auto& [stage, value] : result.times.stages())
+        seconds[stage] = value;
+    seconds["total"] = result.times.total();
+    nlohmann::json summary{{"version", version()},
+                           {"command", request.command},
+                           {"dataset",
+                            {{"path", request.dataset.string()},
+                             {"kind", dataset_kind_name(result.dataset.kind)},
+                             {"train", result.dataset.train.size()},
+                             {"test", result.dataset.test.size()},
+                             {"masks", result.dataset.masks},
+                             {"views_cut_off", result.dataset.cut_off},
+                             {"world_from_dataset", rotation}}},
+                           {"settings",
+                            {{"mesh", request.mesh.string()},
+                             {"extraction", request.shape.extraction},
+                             {"cells", request.shape.cells},
+                             {"shape_iterations", request.shape.iterations},
+                             {"refine_iterations", request.refine.iterations},
+                             {"move_vertices", request.move_vertices},
+                             {"shadows", request.refine.shadows},
+                             {"normal_map", request.refine.normal_map},
+                             {"demodulation", request.refine.weights.demodulation},
+                             {"texture_size", request.texture_size},
+                             {"seed", request.refine.seed},
+                             {"threads", at::get_num_threads()}}},
+                           {"model",
+                            {{"triangles", result.model.triangle_count()},
+                             {"vertices", result.model.primitives.front().positions.size()}}},
+                           {"scores",
+                            {{"train", score_json(result.train)},
+                             {"test", score_json(result.test)},
+                             {"test_without_shadows", score_json(result.test_without_shadows)}}},
+                           {"warnings", result.warnings},
+                           {"seconds", seconds},
+                           {"peak_memory_bytes", peak_memory_bytes()}};
+    if (result.shape) summary["scores"]["hull_overlap"] = result.shape->hull_overlap;
+    if (result.chamfer) summary["scores"]["chamfer"] = *result.chamfer;
+    if (!result.relit.empty()) {
+        const Vec3 gain = result.relit_gain;
+        summary["scores"]["relit_gain"] = {gain.x, gain.y, gain.z};
+        summary["scores"]["relit"] = score_json(result.relit);
+        summary["scores"]["relit_scaled"] = score_json(result.relit_scaled);
+    }
+    return summary;
+}
+
+}  // namespace item3d

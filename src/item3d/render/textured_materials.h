@@ -1,0 +1,27 @@
+// A model's own textures and factors, evaluated at surface points.
+#pragma once
+
+#include "item3d/render/shade.h"
+#include "item3d/scene/model.h"
+
+#include <memory>
+
+namespace item3d {
+
+/// The materials of a model as tensors, textures linearised (sRGB decoded before filtering).
+class TexturedMaterials {
+  public:
+    explicit TexturedMaterials(const Model& model, at::Device device = at::kCPU);
+    /// With each texture's wrap modes, filtered where the surface has UV footprints. Vertex colours
+    /// multiply the base colour. `normal`, `emissive` and `alpha` are undefined where no material
+    /// of the model has such; alpha of masked materials is 0 or 1.
+    MaterialSample sample(const Surface& surface) const;
+    /// Whether any material is masked or blended.
+    bool has_alpha() const;
+
+  private:
+    struct State;
+    std::shared_ptr<const State> state_;
+};
+
+}  // namespace item3d

@@ -1,0 +1,29 @@
+// Line charts of self-contained HTML pages.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// One line of a chart: values[i] stands at x = first + i * step. Values that are not finite leave
+/// a gap.
+struct Curve {
+    std::string name;
+    std::vector<double> values;
+    double first = 0;
+    double step = 1;
+};
+
+struct Chart {
+    std::string title;
+    std::string x_label;
+    std::vector<Curve> curves;
+    /// Draws a running mean over the faint raw line; for noisy curves.
+    bool smooth = false;
+};
+
+/// A line chart as inline SVG. Charts without a finite value say so.
+std::string html_chart(const Chart& chart);
+
+}  // namespace item3d

@@ -1,0 +1,88 @@
+#include "item3d/scene/normals.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace item3d {
+
+std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
+                                 std::span<const std::uint32_t> indices) {
+    using DVec3 = glm::dvec3;
+    const auto key = [&](std::uint32_t i) {
+        return std::array{positions[i].x, positions[i].y, positions[i].z};
+    };
+    std::vector<std::uint32_t> order(positions.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const auto left = key(a);
+        const auto right = key(b);
+        return left != right ? left < right : a < b;
+    });
+    // place[i]: which distinct position vertex i stands at.
+    std::vector<std::uint32_t> place(positions.size());
+    std::uint32_t places = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (i > 0 && key(order[i]) != key(order[i - 1])) ++places;
+        place[order[i]] = places;
+    }
+
+    std::vector<DVec3> sums(positions.empty() ? 0 : places + 1, DVec3(0.0));
+    for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
+        const DVec3 a(positions[indices[t]]);
+        const DVec3 b(positions[indices[t + 1]]);
+        const DVec3 c(positions[indices[t + 2]]);
+        // Twice the area times the unit normal.
+        const DVec3 face = glm::cross(b - a, c - a);
+        for (int k = 0; k < 3; ++k)
+            sums[place[indices[t + k]]] += face;
+    }
+    std::vector<Vec3> normals(positions.size());
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const DVec3 sum = sums[place[i]];
+        const double length = glm::length(sum);
+        normals[i] = length > 0.0 ? Vec3(sum / length) : Vec3(0.0f, 0.0f, 1.0f);
+    }
+    return normals;
+}
+
+std::vector<std::uint32_t> make_flat(Primitive& primitive) {
+    using DVec3 = glm::dvec3;
+    std::vector<std::uint32_t> sources = primitive.indices;
+    // The triangles of mirrored nodes were turned over when they were read.
+    for (std::size_t t = 0; primitive.is_mirrored && t < sources.size(); t += 3)
+        std::swap(sources[t + 1], sources[t + 2]);
+
+    const auto gather = [&](auto& values) {
+        auto old = std::move(values);
+        values.clear();
+        if (old.empty()) return;
+        values.reserve(sources.size());
+        for (const std::uint32_t vertex : sources)
+            values.push_back(old[vertex]);
+    };
+    gather(primitive.positions);
+    gather(primitive.uvs);
+    gather(primitive.colors);
+    primitive.tangents.clear();
+    primitive.normals.clear();
+    for (std::size_t t = 0; t < sources.size(); t += 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t corner = primitive.is_mirrored ? (3 - k) % 3 : k;
+            primitive.indices[t + k] = static_cast<std::uint32_t>(t + corner);
+        }
+        const auto at = [&](std::size_t k) {
+            return DVec3(primitive.positions[primitive.indices[t + k]]);
+        };
+        const DVec3 normal = glm::cross(at(1) - at(0), at(2) - at(0));
+        const double length = glm::length(normal);
+        // A triangle without area is not seen from any side.
+        const bool has_area = std::isfinite(length) && length > 0.0;
+        primitive.normals.insert(primitive.normals.end(), 3,
+                                 has_area ? Vec3(normal / length) : Vec3(0.0f, 0.0f, 1.0f));
+    }
+    return sources;
+}
+
+}  // namespace item3d
