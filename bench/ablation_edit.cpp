@@ -2,8 +2,10 @@
 
 #include "item3d/core/files.h"
 #include "item3d/core/stage_times.h"
-#include "item3d/edit/outputs/outputs.h"
-#include "item3d/edit/outputs/surface_means.h"
+#include "item3d/edit/material_source.h"
+#include "item3d/edit/optimize/begin.h"
+#include "item3d/edit/optimize/optimize.h"
+#include "item3d/edit/outputs/baked_files.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/io/load.h"
 #include "item3d/io/load_light.h"
@@ -39,9 +41,8 @@ EditRequest request_of(const Contender& contender, const SuiteCase& test, std::u
                       {"settle", 0},
                       {"detail", "off"},
                       {"texture_size", test.group == "stripes" ? 512 : 256}});
-    request.settings = resolve_settings(options.prior, overrides);
-    if (wants_captions(request.settings))
-        request.captioner = find_in_prior(options.prior, "captioner");
+    request.plan = resolve_plan(options.prior, overrides);
+    if (request.plan.asks_captioner) request.captioner = find_in_prior(options.prior, "captioner");
     return request;
 }
 
@@ -82,12 +83,12 @@ json run_ablation_edit(const Contender& contender, const SuiteCase& test, std::u
     times.end_stage("bake");
 
     const at::NoGradGuard no_grad;
-    const EnvironmentLight light = prefilter(load_light(request.settings.light), 64);
+    const EnvironmentLight light = prefilter(load_light(request.plan.light), 64);
     const auto cameras = picture_cameras(scene.model, view_count);
     const at::Tensor was = draw_pictures(scene.model, light, cameras, view_pixels);
     const at::Tensor is = draw_pictures(edited, light, cameras, view_pixels);
     const ClipScores scores = clip_scores(judge.clip, over_white(was), over_white(is),
-                                          request.settings.from, request.settings.to);
+                                          request.plan.from, request.plan.to);
     const SurfaceMeans means = surface_means(edited, scene.materials);
     save_first(folder / "before.png", over_white(was));
     save_first(folder / "after.png", over_white(is));
@@ -97,11 +98,11 @@ json run_ablation_edit(const Contender& contender, const SuiteCase& test, std::u
         {{"contender", contender.name},
          {"group", test.group},
          {"mesh", test.mesh},
-         {"from", request.settings.from},
-         {"to", request.settings.to},
+         {"from", request.plan.from},
+         {"to", request.plan.to},
          {"seed", seed},
          {"rows", options.rows},
-         {"iterations", request.settings.iterations},
+         {"iterations", request.plan.iterations},
          {"directional", scores.mean.directional},
          {"global", scores.mean.global},
          {"global_before", scores.mean.global_before},
@@ -112,7 +113,7 @@ json run_ablation_edit(const Contender& contender, const SuiteCase& test, std::u
          {"seconds_optimize", times.stages()[1].second},
          {"seconds_adjust", iterations.adjust},
          {"seconds", times.total()}});
-    if (wants_captions(request.settings)) {
+    if (request.plan.asks_captioner) {
         result["captions"] = json::array();
         for (const AdjustmentRecord& record : state.adjustment.records)
             result["captions"].push_back(record);

@@ -113,7 +113,7 @@ json run_case(const LeakOptions& options, const std::string& word, const std::st
                       {"light_augment", augment},
                       {"detail", "off"}};
     overrides.update(options.overrides);
-    request.settings = resolve_settings(options.prior, overrides);
+    request.plan = resolve_plan(options.prior, overrides);
     edit_model(request);
     const Model edited = load_model(request.output / "model.glb");
     const Leak leak = measure_leak(edited, options.light);

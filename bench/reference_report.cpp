@@ -13,6 +13,7 @@
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 
 #include <CLI/CLI.hpp>
 

@@ -111,10 +111,10 @@ json run_case(const std::string& noun, const std::filesystem::path& mesh, const 
     json overrides = options.overrides;
     overrides.update({{"from", article + noun}, {"to", article + noun + " " + wish.words}});
     overrides["optimize"] = "light";
-    request.settings = resolve_settings(options.prior, overrides);
+    request.plan = resolve_plan(options.prior, overrides);
     const FoundLight found = find_light(request);
 
-    const Image first = load_light(request.settings.light);
+    const Image first = load_light(request.plan.light);
     const Model model = load_model(mesh);
     const LitPicture before = look(model, first);
     const LitPicture after = look(model, found.light);
@@ -127,7 +127,7 @@ json run_case(const std::string& noun, const std::filesystem::path& mesh, const 
     if (&wish == &wishes.front()) tiles.push_back({before.picture, noun});
     tiles.push_back({after.picture, wish.words});
     return {{"mesh", noun},
-            {"to", request.settings.to},
+            {"to", request.plan.to},
             {"luminance", {before.luminance, after.luminance}},
             {"color_temperature", {kelvin_before, kelvin_after}},
             {"right", right},

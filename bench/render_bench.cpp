@@ -5,6 +5,7 @@
 #include "item3d/render/antialias.h"
 #include "item3d/render/interpolate.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 #include "item3d/render/render.h"
 #include "item3d/render/textured_materials.h"
 #include "item3d/scene/sphere.h"

@@ -52,4 +52,4 @@ set_target_properties(item3d_cuda PROPERTIES
     INSTALL_RPATH $ORIGIN)
 file(GLOB CUDA_RUNTIME ${CUDA_ROOT}/lib/libcudart.so.*)
 target_link_libraries(item3d_cuda PRIVATE ${CUDA_RUNTIME} -Wl,--no-undefined)
-install(TARGETS item3d_cuda LIBRARY DESTINATION lib/item3d)
+install(TARGETS item3d_cuda LIBRARY DESTINATION lib/item3d COMPONENT programs)

@@ -1,4 +1,5 @@
-# Debian packages and what scripts/setup.sh fetched into .deps/.
+# Debian packages and what scripts/setup.sh fetched into .deps/. The installed package (Install.cmake)
+# includes this file too, hence imported targets, and PUBLIC requirements by name.
 set(ITEM3D_DEPS ${CMAKE_SOURCE_DIR}/.deps CACHE PATH "Where scripts/setup.sh put what it fetched")
 
 find_package(Threads REQUIRED)
@@ -19,26 +20,18 @@ find_package(meshoptimizer CONFIG REQUIRED)
 get_target_property(FMT_INCLUDE fmt::fmt INTERFACE_INCLUDE_DIRECTORIES)
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/fmt)
 file(CREATE_LINK ${FMT_INCLUDE}/fmt ${CMAKE_BINARY_DIR}/fmt/fmt SYMBOLIC)
-add_library(item3d_fmt INTERFACE)
-target_include_directories(item3d_fmt SYSTEM BEFORE INTERFACE
-    $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/fmt>)
+add_library(item3d_fmt INTERFACE IMPORTED GLOBAL)
+target_include_directories(item3d_fmt SYSTEM BEFORE INTERFACE ${CMAKE_BINARY_DIR}/fmt)
 target_link_libraries(item3d_fmt INTERFACE fmt::fmt)
 
 # OpenMP by its flag alone: LibTorch brings a libgomp of its own, and a full path to the compiler's
 # would set two of the same name against each other.
-add_library(item3d_openmp INTERFACE)
+add_library(item3d_openmp INTERFACE IMPORTED GLOBAL)
 target_compile_options(item3d_openmp INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fopenmp>)
 target_link_options(item3d_openmp INTERFACE -fopenmp)
 
-# How everything of ours is compiled.
-add_library(item3d_options INTERFACE)
-target_link_libraries(item3d_options INTERFACE item3d_openmp)
-target_compile_options(item3d_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
-    # How vectors are passed between files; ours are inlined.
-    -Wno-psabi)
-
 if(NOT ITEM3D_LOADERS_ONLY)
-    include(LibTorch)
+    include(${CMAKE_CURRENT_LIST_DIR}/LibTorch.cmake)
     find_package(embree 3 REQUIRED)
     pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp libwebpmux libwebpdemux)
     pkg_check_modules(EXIF REQUIRED IMPORTED_TARGET libexif)

@@ -1,10 +1,14 @@
-# cmake --install BUILD --prefix PREFIX:
-#   bin/item3d, bin/parity   the programs; bin/item3d-commands, which item3d becomes
-#   lib/item3d/              LibTorch's libraries, found by the programs through $ORIGIN/../lib/item3d,
-#                            and libitem3d_cuda.so (cmake/Cuda.cmake), opened from there
+# cmake --install BUILD --prefix PREFIX [--component programs|development]
+#
+# programs:
+#   bin/item3d, bin/parity   the programs that people start
+#   lib/item3d/              what item3d becomes (item3d-edit, ...), LibTorch's libraries, found through
+#                            $ORIGIN, and libitem3d_cuda.so (cmake/Cuda.cmake), opened from there
 #   share/item3d/            assets: the embedded prior and the demo model
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets/ DESTINATION share/item3d)
-
+# development: the rooms as libraries for find_package(item3d), with LibTorch's headers where
+# ITEM3D_TORCH_ROOT has them
+#   include/item3d/, lib/libitem3d_*.a, lib/cmake/item3d/
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets/ DESTINATION share/item3d COMPONENT programs)
 if(ITEM3D_TORCH_ROOT STREQUAL "${ITEM3D_DEPS}/site/torch")
     # Their own run path has $ORIGIN in it, so that they find each other in one folder.
     file(GLOB LIBRARIES
@@ -12,5 +16,20 @@ if(ITEM3D_TORCH_ROOT STREQUAL "${ITEM3D_DEPS}/site/torch")
         ${ITEM3D_TORCH_ROOT}/lib/libc10.so
         ${ITEM3D_TORCH_ROOT}/lib/libgomp*.so*
         ${ITEM3D_DEPS}/site/nvidia/cu13/lib/*.so.*)
-    install(PROGRAMS ${LIBRARIES} DESTINATION lib/item3d)
+    install(PROGRAMS ${LIBRARIES} DESTINATION lib/item3d COMPONENT programs)
 endif()
+
+include(CMakePackageConfigHelpers)
+get_property(ROOMS GLOBAL PROPERTY ITEM3D_ROOMS)
+install(TARGETS ${ROOMS} item3d_xatlas EXPORT item3d
+    ARCHIVE DESTINATION lib COMPONENT development
+    FILE_SET HEADERS DESTINATION include COMPONENT development)
+install(EXPORT item3d NAMESPACE item3d:: FILE item3d-targets.cmake
+    DESTINATION lib/cmake/item3d COMPONENT development)
+configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/item3d-config.cmake.in
+    ${CMAKE_BINARY_DIR}/item3d-config.cmake INSTALL_DESTINATION lib/cmake/item3d)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/item3d-config-version.cmake
+    COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/item3d-config.cmake ${CMAKE_BINARY_DIR}/item3d-config-version.cmake
+    cmake/Dependencies.cmake cmake/LibTorch.cmake
+    DESTINATION lib/cmake/item3d COMPONENT development)

@@ -19,7 +19,7 @@ set_target_properties(item3d_torch_cpu PROPERTIES
     IMPORTED_LOCATION ${ITEM3D_TORCH_ROOT}/lib/libtorch_cpu.so
     IMPORTED_LINK_DEPENDENT_LIBRARIES item3d_c10)
 
-add_library(item3d_torch INTERFACE)
+add_library(item3d_torch INTERFACE IMPORTED GLOBAL)
 target_include_directories(item3d_torch SYSTEM INTERFACE
     ${ITEM3D_TORCH_ROOT}/include
     ${ITEM3D_TORCH_ROOT}/include/torch/csrc/api/include)

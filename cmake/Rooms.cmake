@@ -16,6 +16,13 @@
 # (cmake/PrecompiledHeaders.cmake).
 include(PrecompiledHeaders)
 
+# How everything of ours is compiled.
+add_library(item3d_options INTERFACE)
+target_link_libraries(item3d_options INTERFACE item3d_openmp)
+target_compile_options(item3d_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
+    # How vectors are passed between files; ours are inlined.
+    -Wno-psabi)
+
 # item3d_layers(ROOM RESULT): the rooms that ROOM may include.
 file(STRINGS ${CMAKE_SOURCE_DIR}/cmake/layers.txt ITEM3D_LAYERS REGEX "^[a-z]")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/layers.txt)
@@ -143,6 +150,6 @@ function(item3d_program NAME KIND)
             list(APPEND RPATH ${ITEM3D_TORCH_ROOT}/lib)
         endif()
         set_target_properties(${NAME} PROPERTIES INSTALL_RPATH "${RPATH}")
-        install(TARGETS ${NAME} RUNTIME DESTINATION ${ARG_INSTALL})
+        install(TARGETS ${NAME} RUNTIME DESTINATION ${ARG_INSTALL} COMPONENT programs)
     endif()
 endfunction()

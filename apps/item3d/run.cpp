@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
-#include "item3d/tensors/tensor_memory.h"
+#include "item3d/tensors/process.h"
 
 #include <c10/util/Exception.h>
 
@@ -72,7 +72,7 @@ int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_c
 int run_program(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
     // A file that may not grow any more is an error of write(), not the end of the program.
     std::signal(SIGXFSZ, SIG_IGN);
-    give_large_tensors_a_region();
+    prepare_process();
     try {
         return parse_and_run(argc, argv, add_commands);
     } catch (const Interrupted& stop) {

@@ -42,7 +42,7 @@ TEST(Error, CheckThrowsWithExpressionAndDetail) {
         const std::string message = error.what();
         EXPECT_NE(message.find("size == 4"), std::string::npos) << message;
         EXPECT_NE(message.find("size 3"), std::string::npos) << message;
-        EXPECT_NE(message.find("core_basics.cpp:"), std::string::npos) << message;
+        EXPECT_NE(message.find("basics.cpp:"), std::string::npos) << message;
     }
 }
 

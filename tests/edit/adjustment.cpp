@@ -2,6 +2,7 @@
 // that one which fails does no harm.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/edit/optimize/begin.h"
 #include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/scene.h"
 #include "tests/support/edit.h"
@@ -38,10 +39,9 @@ std::vector<Caption> four_times(const std::string& text, bool ended = true) {
 class AdjustmentTest : public testing::EditTest {
   protected:
     EditRequest captioned(const std::string& output, int iterations) const {
-        EditRequest edit = request(output, iterations);
+        EditRequest edit =
+            request(output, iterations, {{"adjust", "caption"}, {"adjust_every", 2}});
         edit.captioner = fs::path(ITEM3D_TEST_DATA) / "models" / "blip";
-        edit.settings.adjust = "caption";
-        edit.settings.adjust_every = 2;
         fs::create_directories(edit.output);
         return edit;
     }
@@ -158,14 +158,13 @@ TEST_F(AdjustmentTest, captions_need_a_captioner) {
     EditRequest edit = captioned("out", 1);
     edit.captioner.clear();
     EXPECT_THROW(load_scene(edit), InputError);
-    edit.settings.guidance = "sds";  // has no source: no captioner is needed
+    change(edit, {{"guidance", "sds"}});  // has no source: no captioner is needed
     EXPECT_FALSE(load_scene(edit).captioner);
 }
 
-TEST_F(AdjustmentTest, an_edit_that_has_settled_stops_and_resumes_to_the_same_bytes) {
+TEST_F(AdjustmentTest, an_edit_that_has_converged_stops_and_resumes_to_the_same_bytes) {
     EditRequest edit = captioned("whole", 200);
-    edit.settings.settle = 0.99f;
-    edit.settings.adjust_every = 50;
+    change(edit, {{"settle", 0.99f}, {"adjust_every", 50}});
     // From the third line on the direction is gone; the first window is of the whole direction.
     const auto speech = [](int call) {
         return four_times(call < 2 ? "a red cube" : "a blue cube");

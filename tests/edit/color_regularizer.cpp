@@ -20,7 +20,8 @@ at::Tensor random_rows(std::int64_t rows, std::int64_t columns, std::uint64_t st
     return at::rand({rows, columns}, generator, at::kDouble);
 }
 
-/// What Evenness::backward() goes down: the sum of Geman and McClure's norm of each departure.
+/// What ColorRegularizer::backward() goes down: the sum of Geman and McClure's norm of each
+/// departure.
 double unevenness(const at::Tensor& change, const at::Tensor& color) {
     const Departures found = departures(change, color, scale);
     const at::Tensor squared = found.values.square().sum(1);
@@ -40,7 +41,7 @@ double spread(const Image& was, const Image& now) {
 
 }  // namespace
 
-TEST(Evenness, finds_nothing_in_a_recolouring) {
+TEST(ColorRegularizer, finds_nothing_in_a_recolouring) {
     const at::Tensor color = random_rows(500, 3, 1).round();
     const at::Tensor change =
         0.2 + color.mm(at::tensor({-0.9, 0.1, 0.0, 0.0, -0.5, 0.2, 0.1, 0.0, 0.3}, at::kFloat)
@@ -51,7 +52,7 @@ TEST(Evenness, finds_nothing_in_a_recolouring) {
     EXPECT_GT(found.weights.min().item<double>(), 0.9);
 }
 
-TEST(Evenness, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
+TEST(ColorRegularizer, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
     const at::Tensor color = at::full({1000, 3}, 0.5, at::kDouble);
     at::Tensor change = at::full({1000, 3}, 0.3, at::kDouble);
     change.narrow(0, 0, 100) += 0.05;   // a blotch
@@ -63,7 +64,7 @@ TEST(Evenness, finds_a_blotch_and_lets_a_part_of_another_colour_go) {
     EXPECT_NEAR(found.values[900][0].item<double>(), 0.0, 0.01);
 }
 
-TEST(Evenness, its_gradient_is_that_of_the_robust_norm) {
+TEST(ColorRegularizer, its_gradient_is_that_of_the_robust_norm) {
     // Plain, so that the ridge has no share in it; small, so that the refits have converged.
     const at::Tensor color = at::full({64, 3}, 0.5, at::kDouble);
     const at::Tensor change = 0.1 * random_rows(64, 3, 3);
@@ -87,14 +88,13 @@ TEST_F(EditTest, evenness_makes_the_change_even) {
     const Image was = base_color_of(edit.model);
     const double uneven = spread(was, base_color_of(edit.output / "model.glb"));
     edit.output = folder_ / "even";
-    edit.settings.evenness = 1e6f;
+    change(edit, {{"evenness", 1e6f}});
     edit_model(edit);
     const double even = spread(was, base_color_of(edit.output / "model.glb"));
     EXPECT_LT(even, 0.7 * uneven);
     // Where the target names detail there is none to be had.
     edit.output = folder_ / "detail";
-    edit.settings.detail_words = {"blue"};
-    edit.settings.detail = "off";
+    change(edit, {{"detail_words", {"blue"}}, {"detail", "off"}});
     edit_model(edit);
     EXPECT_DOUBLE_EQ(spread(was, base_color_of(edit.output / "model.glb")), uneven);
 }

@@ -24,53 +24,54 @@ std::vector<float> curve(int count, double floor, double time, std::uint64_t see
 
 }  // namespace
 
-TEST(FixedPoint, is_found_where_the_direction_has_faded) {
+TEST(Convergence, is_found_where_the_direction_has_faded) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-        const auto settled = settled_at(curve(600, 0.1, 60, seed), 0.3);
-        ASSERT_TRUE(settled) << seed;
-        EXPECT_GE(*settled, 150);
-        EXPECT_LT(*settled, 400);
+        const auto converged = converged_at(curve(600, 0.1, 60, seed), 0.3);
+        ASSERT_TRUE(converged) << seed;
+        EXPECT_GE(*converged, 150);
+        EXPECT_LT(*converged, 400);
     }
 }
 
-TEST(FixedPoint, is_not_found_in_noise) {
+TEST(Convergence, is_not_found_in_noise) {
     for (std::uint64_t seed = 0; seed < 200; ++seed)
-        EXPECT_FALSE(settled_at(curve(600, 1, 60, seed), 0.4)) << seed;
+        EXPECT_FALSE(converged_at(curve(600, 1, 60, seed), 0.4)) << seed;
 }
 
-TEST(FixedPoint, waits_while_the_direction_still_shrinks) {
+TEST(Convergence, waits_while_the_direction_still_shrinks) {
     std::vector<float> lengths;
     for (int i = 0; i < 300; ++i)
         lengths.push_back(std::exp(-static_cast<float>(i) / 50));
-    EXPECT_FALSE(settled_at(lengths, 0.5));
+    EXPECT_FALSE(converged_at(lengths, 0.5));
     lengths.insert(lengths.end(), 100, lengths.back());
-    ASSERT_TRUE(settled_at(lengths, 0.5));
-    EXPECT_GT(*settled_at(lengths, 0.5), 300);
+    ASSERT_TRUE(converged_at(lengths, 0.5));
+    EXPECT_GT(*converged_at(lengths, 0.5), 300);
 }
 
-TEST(FixedPoint, stays_where_it_was_found) {
+TEST(Convergence, stays_where_it_was_found) {
     const std::vector<float> lengths = curve(600, 0.1, 60, 3);
-    const auto settled = settled_at(lengths, 0.3);
-    ASSERT_TRUE(settled);
+    const auto converged = converged_at(lengths, 0.3);
+    ASSERT_TRUE(converged);
     const auto so_far = [&](std::int64_t count) {
-        return settled_at({lengths.begin(), lengths.begin() + count}, 0.3);
+        return converged_at({lengths.begin(), lengths.begin() + count}, 0.3);
     };
-    EXPECT_FALSE(so_far(*settled - 1));
-    EXPECT_EQ(so_far(*settled), settled);
-    EXPECT_EQ(so_far(*settled + 50), settled);
+    EXPECT_FALSE(so_far(*converged - 1));
+    EXPECT_EQ(so_far(*converged), converged);
+    EXPECT_EQ(so_far(*converged + 50), converged);
 }
 
-TEST(FixedPoint, takes_its_time_and_survives_what_is_not_finite) {
+TEST(Convergence, takes_its_time_and_survives_what_is_not_finite) {
     std::vector<float> lengths(50, 1.0f);
     lengths.resize(149, 0.01f);
-    EXPECT_FALSE(settled_at(lengths, 0.5));
+    EXPECT_FALSE(converged_at(lengths, 0.5));
     lengths.resize(200, 0.01f);
     lengths[40] = std::numeric_limits<float>::quiet_NaN();
     lengths[10] = std::numeric_limits<float>::infinity();
-    EXPECT_EQ(settled_at(lengths, 0.5), 150);
-    EXPECT_FALSE(settled_at(lengths, 0));
-    EXPECT_FALSE(settled_at({}, 0.5));
-    EXPECT_FALSE(settled_at(std::vector<float>(200, std::numeric_limits<float>::quiet_NaN()), 0.5));
+    EXPECT_EQ(converged_at(lengths, 0.5), 150);
+    EXPECT_FALSE(converged_at(lengths, 0));
+    EXPECT_FALSE(converged_at({}, 0.5));
+    EXPECT_FALSE(
+        converged_at(std::vector<float>(200, std::numeric_limits<float>::quiet_NaN()), 0.5));
 }
 
 }  // namespace item3d

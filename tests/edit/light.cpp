@@ -15,10 +15,7 @@ class EditLightTest : public EditTest {
   protected:
     EditRequest light_request(const std::string& output, const std::string& optimize,
                               const std::string& kind) const {
-        EditRequest edit = request(output, 4);
-        edit.settings.optimize = optimize;
-        edit.settings.light_model = kind;
-        return edit;
+        return request(output, 4, {{"optimize", optimize}, {"light_model", kind}});
     }
 };
 

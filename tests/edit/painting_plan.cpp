@@ -15,10 +15,9 @@ double fresh_share(const PaintingView& view) {
 }
 
 TEST_F(EditTest, later_painting_views_leave_what_earlier_ones_painted) {
-    EditRequest edit = request("out", 1);
-    edit.settings.resolution = 64;
+    const EditRequest edit = request("out", 1, {{"resolution", 64}});
     const EditScene scene = load_scene(edit);
-    const std::vector<PaintingView> plan = plan_painting(scene, edit.settings);
+    const std::vector<PaintingView> plan = plan_painting(scene, edit.plan);
     ASSERT_EQ(plan.size(), 20u);
     const auto pixels = [](const at::Tensor& cells) {
         return at::upsample_nearest2d(cells, {64, 64});
@@ -33,15 +32,15 @@ TEST_F(EditTest, later_painting_views_leave_what_earlier_ones_painted) {
     for (std::size_t i = 5; i < 8; ++i)
         last += fresh_share(plan[i]) / 3;
     EXPECT_LT(last, 0.3 * fresh_share(plan[0]));
-    EXPECT_EQ(plan[7].round, PaintingRound::begin);
+    EXPECT_EQ(plan[7].round, PaintingRound::initial);
     // Each round paints everything.
-    EXPECT_EQ(plan[8].round, PaintingRound::again);
+    EXPECT_EQ(plan[8].round, PaintingRound::refine);
     EXPECT_EQ(plan[13].first_of_round, 8);
     EXPECT_GT(fresh_share(plan[8]), 0.2);
     EXPECT_EQ(plan[14].round, PaintingRound::close_up);
     EXPECT_EQ(plan[14].first_of_round, 14);
     EXPECT_GT(fresh_share(plan[14]), 0.2);
-    EXPECT_TRUE(plan_painting(scene, edit.settings)[19].known.equal(plan[19].known));
+    EXPECT_TRUE(plan_painting(scene, edit.plan)[19].known.equal(plan[19].known));
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ TEST(Adam, MatchesTorchOnDenseGradients) {
     ours.set_requires_grad(true);
     theirs.set_requires_grad(true);
     Adam adam;
-    adam.add_group("group", {ours}, {.learning_rate = 0.05, .beta1 = 0.9, .beta2 = 0.99, .epsilon = 1e-8});
+    adam.add_group("group", {ours},
+                   {.learning_rate = 0.05, .beta1 = 0.9, .beta2 = 0.99, .epsilon = 1e-8});
     torch::optim::Adam reference(
         {theirs}, torch::optim::AdamOptions(0.05).betas(std::make_tuple(0.9, 0.99)).eps(1e-8));
     const at::Tensor goal = at::randn({5, 3});

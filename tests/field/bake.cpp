@@ -6,6 +6,7 @@
 #include "item3d/field/adam.h"
 #include "item3d/field/fit.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 #include "tests/support/field_models.h"
 
 #include <gtest/gtest.h>

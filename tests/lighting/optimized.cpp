@@ -32,7 +32,8 @@ TEST(LightModels, BeginAtTheLightThatWasGiven) {
         EXPECT_EQ(begin(LightKind::texels, preset)->image(64).pixels.size(), light.pixels.size());
         const LightDescription texels = describe_light(begin(LightKind::texels, preset)->image(64));
         EXPECT_NEAR(texels.peak_irradiance_over_pi, wanted.peak_irradiance_over_pi, 1e-3);
-        const LightDescription physical = describe_light(begin(LightKind::physical, preset)->image(64));
+        const LightDescription physical =
+            describe_light(begin(LightKind::physical, preset)->image(64));
         EXPECT_NEAR(physical.peak_irradiance_over_pi / wanted.peak_irradiance_over_pi, 1, 0.35)
             << preset;
         // A sunset scatters its colours; on the Planckian locus it is 3900 K and not 3300.
@@ -45,7 +46,8 @@ TEST(LightModels, ComeFromWhereWordsSay) {
          {SkyAngles{10, 5}, SkyAngles{235, 25}, SkyAngles{100, 90}, SkyAngles{325, -35}}) {
         for (const LightKind kind : {LightKind::physical, LightKind::texels}) {
             const LightDescription light = describe_light(begin(kind, "studio", from)->image(128));
-            EXPECT_LT(angle_between(to_sky_angles(light.lobe.direction), from), 3) << static_cast<int>(kind);
+            EXPECT_LT(angle_between(to_sky_angles(light.lobe.direction), from), 3)
+                << static_cast<int>(kind);
         }
     }
 }

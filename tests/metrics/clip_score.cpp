@@ -2,6 +2,7 @@
 
 #include "item3d/networks/layers/load_parameters.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 #include "item3d/report/model_pictures.h"
 
 #include <ATen/Parallel.h>

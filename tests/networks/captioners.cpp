@@ -56,7 +56,7 @@ TEST(Blip, WritesTheReferencesCaptions) {
     const Golden golden("blip");
     const BlipModel model = load_blip(fixture("blip"));
     const at::Tensor pixels = golden.in("pixel_values");
-    const at::Tensor begin = at::tensor({{model->config().bos_token_id}}, at::kLong);
+    const at::Tensor begin = at::full({1, 1}, model->config().bos_token_id, at::kLong);
     const at::Tensor prompt = at::cat({begin, golden.out("prompt_ids").slice(1, 1, -1)}, 1);
     DecodingOptions options;
     options.max_new_tokens = 12;

@@ -34,7 +34,7 @@ void write_clip(const std::filesystem::path& folder) {
     for (const char* half : {"clip_text_proj_eos", "clip_vision_proj"})
         for (const auto& tensor : SafeTensors::open(fixture(half) / "model.safetensors").tensors())
             tensors.push_back(tensor);
-    tensors.emplace_back("logit_scale", at::tensor(2.0f));
+    tensors.emplace_back("logit_scale", at::scalar_tensor(2.0f));
     save_safetensors(folder / "model.safetensors", tensors);
 }
 

@@ -67,7 +67,7 @@ TEST(Lora, AFusedConvolutionActsAsThroughTheRank) {
     fuse(unet,
          {{"lora_unet_input_blocks_1_0_in_layers_2.lora_down.weight", down},
           {"lora_unet_input_blocks_1_0_in_layers_2.lora_up.weight", up},
-          {"lora_unet_input_blocks_1_0_in_layers_2.alpha", at::tensor(3.0f)}},
+          {"lora_unet_input_blocks_1_0_in_layers_2.alpha", at::scalar_tensor(3.0f)}},
          0.5);
     const at::Tensor x = at::randn({1, 8, 5, 6});
     const at::Tensor change = at::conv2d(x, weight_of(unet, module) - before, {}, 1, 1);

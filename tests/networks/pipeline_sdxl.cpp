@@ -70,8 +70,8 @@ TEST(PipelineSdxl, SurvivesSaving) {
         return model.predict_noise(latents, t, model.encode_text({"a duck", ""}));
     };
     EXPECT_LT(largest_difference(predict(again), predict(pipeline)), 1e-6);
-    EXPECT_TRUE(again.force_zeros_for_empty_prompt);
-    EXPECT_EQ(again.scheduler.config().sampler_name(), "euler");
+    EXPECT_TRUE(again.encode_no_text().states.eq(0).all().item<bool>());
+    EXPECT_EQ(again.schedule().config().sampler_name(), "euler");
 }
 
 TEST(PipelineSdxl, SaysWhatIsWrongWithAFolder) {

@@ -49,8 +49,8 @@ TEST(TextualInversion, IsCalledAfterTheFileAndItsVectorsAlone) {
 TEST(TextualInversion, TeachesBothEncodersOfAPair) {
     const Pipeline first = Pipeline::load(fixture("pipeline_sd"));
     const Pipeline second = Pipeline::load(fixture("pipeline_sd"));
-    const std::vector<TextEncoderPair> pair = {{first.tokenizer, first.text_encoder},
-                                               {second.tokenizer, second.text_encoder}};
+    const std::vector<TextEncoderPair> pair = {{first.text().tokenizer, first.text().model},
+                                               {second.text().tokenizer, second.text().model}};
     const TemporaryFolder folder;
     const auto path = folder.path() / "style.safetensors";
     save_safetensors(path,

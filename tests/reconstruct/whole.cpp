@@ -7,6 +7,7 @@
 #include "item3d/reconstruct/reconstruct.h"
 #include "item3d/reconstruct/surface/plain_model.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 #include "item3d/render/render.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/textured_materials.h"

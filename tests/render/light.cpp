@@ -200,7 +200,8 @@ TEST(AdjustLight, IsThatOfImages) {
     const at::Tensor map = at::rand({4, 16, 3});
     for (const float degrees : {0.0f, 33.0f, -100.0f, 360.0f, 765.0f}) {
         const Image expected = adjust_light(to_image(map), degrees, -1.5f);
-        const at::Tensor found = adjust_light(map, at::tensor(degrees), at::tensor(-1.5f));
+        const at::Tensor found =
+            adjust_light(map, at::scalar_tensor(degrees), at::scalar_tensor(-1.5f));
         EXPECT_LT((found - to_tensor(expected)).abs().max().item<float>(), 2e-5f) << degrees;
     }
 }
@@ -208,8 +209,8 @@ TEST(AdjustLight, IsThatOfImages) {
 TEST(AdjustLight, GradientsByTexelsAngleAndExposure) {
     at::manual_seed(6);
     const auto real = at::TensorOptions().dtype(at::kDouble);
-    const std::array<at::Tensor, 3> at = {at::rand({4, 16, 3}, real), at::tensor(40.0, real),
-                                          at::tensor(0.7, real)};
+    const std::array<at::Tensor, 3> at = {at::rand({4, 16, 3}, real), at::scalar_tensor(40.0, real),
+                                          at::scalar_tensor(0.7, real)};
     const at::Tensor weights = at::randn({4, 16, 3}, real);
     const auto loss = [&](const std::array<at::Tensor, 3>& x) {
         return (adjust_light(x[0], x[1], x[2]) * weights).sum();
@@ -253,13 +254,13 @@ TEST(AdjustLight, GradientsThroughThePicture) {
     };
     // In the middle between two columns: the interpolation's slope jumps at them.
     const float angle = 360.0f / 128 * 10.5f;
-    at::Tensor degrees = at::tensor(angle).set_requires_grad(true);
-    at::Tensor exposure = at::tensor(0.3f).set_requires_grad(true);
+    at::Tensor degrees = at::scalar_tensor(angle).set_requires_grad(true);
+    at::Tensor exposure = at::scalar_tensor(0.3f).set_requires_grad(true);
     loss(degrees, exposure).backward();
     const auto slope = [&](float by_degrees, float by_exposure) {
         const auto at = [&](float sign) {
-            return loss(at::tensor(angle + sign * by_degrees),
-                        at::tensor(0.3f + sign * by_exposure))
+            return loss(at::scalar_tensor(angle + sign * by_degrees),
+                        at::scalar_tensor(0.3f + sign * by_exposure))
                 .item<double>();
         };
         return (at(1) - at(-1)) / (2.0 * (by_degrees + by_exposure));

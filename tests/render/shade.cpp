@@ -1,6 +1,7 @@
 #include "item3d/render/pictures.h"
 #include "item3d/render/prefilter/bsdf_table.h"
 #include "item3d/render/scatter.h"
+#include "item3d/render/srgb.h"
 #include "tests/support/render.h"
 
 namespace item3d {
@@ -207,8 +208,8 @@ TEST(Srgb, IsTheInverseAndHasBoundedGradients) {
     const at::Tensor x = at::linspace(0, 1, 1001);
     EXPECT_LT((srgb_to_linear(linear_to_srgb(x)) - x).abs().max().item<float>(), 1e-6);
     for (const float value : {0.0f, 0.001f, 0.0031308f, 0.2f, 1.0f})
-        EXPECT_NEAR(linear_to_srgb(at::tensor(value)).item<float>(), item3d::linear_to_srgb(value),
-                    1e-6);
+        EXPECT_NEAR(linear_to_srgb(at::scalar_tensor(value)).item<float>(),
+                    item3d::linear_to_srgb(value), 1e-6);
     at::Tensor leaf =
         at::tensor({-1.0f, 0.0f, 1e-8f, 0.003f, 0.0032f, 0.5f, 3.0f}).set_requires_grad(true);
     linear_to_srgb(leaf).sum().backward();

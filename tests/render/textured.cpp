@@ -1,5 +1,6 @@
 
 #include "item3d/render/render.h"
+#include "item3d/render/srgb.h"
 #include "item3d/render/texture.h"
 #include "item3d/render/textured_materials.h"
 #include "tests/support/render.h"

@@ -7,6 +7,7 @@
 #include "item3d/io/save.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include <filesystem>
@@ -72,22 +73,32 @@ class EditTest : public ::testing::Test {
         save_model(path, model);
     }
 
-    EditRequest request(const std::string& output, int iterations) const {
+    /// settings: instead of these.
+    EditRequest request(const std::string& output, int iterations,
+                        const nlohmann::json& settings = nlohmann::json::object()) const {
         EditRequest request;
         request.model = folder_ / "cube.glb";
         request.prior = fs::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd";
         request.output = folder_ / output;
-        request.settings.from = "a red cube";
-        request.settings.to = "a blue cube";
-        request.settings.fit_steps = 30;
-        request.settings.iterations = iterations;
-        request.settings.batch = 1;
-        request.settings.resolution = 32;
-        request.settings.light_augment = "off";  // other lights take a second each edit
+        change(request, {{"from", "a red cube"},
+                         {"to", "a blue cube"},
+                         {"fit_steps", 30},
+                         {"iterations", iterations},
+                         {"batch", 1},
+                         {"resolution", 32},
+                         {"light_augment", "off"}});  // other lights take a second each edit
+        change(request, settings);
         request.precision = "fp32";
         request.picture_pixels = 32;
         request.command = "item3d edit";
         return request;
+    }
+
+    /// Plans the request anew with other settings.
+    static void change(EditRequest& request, const nlohmann::json& settings) {
+        nlohmann::json all = request.plan;
+        all.update(settings);
+        request.plan = EditPlan(all.get<EditSettings>());
     }
 
     Image base_color_of(const fs::path& path) const {

@@ -8,15 +8,21 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 namespace item3d::testing {
 
-/// The networks here are so small that more threads would only wait for one another.
-inline const bool one_thread = [] {
-    at::set_num_threads(1);
+/// The networks here are so small that more threads would only wait for one another: one, but where
+/// ITEM3D_TEST_THREADS says otherwise (scripts/test_matrix.sh).
+inline int test_threads() {
+    const char* wanted = std::getenv("ITEM3D_TEST_THREADS");
+    return wanted ? std::max(1, std::atoi(wanted)) : 1;
+}
+inline const bool threads_are_set = [] {
+    at::set_num_threads(test_threads());
     return true;
 }();
 

@@ -35,7 +35,7 @@ TEST(SafeTensors, KeepsEveryTypeShapeAndTheMetadata) {
                              at::kShort, at::kChar, at::kByte, at::kBool})
         tensors.emplace_back(std::string("x.") + c10::toString(dtype),
                              at::arange(7).reshape({1, 7}).to(dtype));
-    tensors.emplace_back("scalar", at::tensor(2.5f));
+    tensors.emplace_back("scalar", at::scalar_tensor(2.5f));
     tensors.emplace_back("empty", at::empty({0, 3}));
     tensors.emplace_back("transposed", at::arange(6.0f).reshape({2, 3}).t());
     save_safetensors(folder.path() / "a.safetensors", tensors, {{"format", "pt"}});

@@ -4,9 +4,9 @@
 
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
-#include "apps/item3d/edit/extras_options.h"
 #include "apps/item3d/edit/light_options.h"
 #include "apps/item3d/edit/picture_options.h"
+#include "apps/item3d/edit/setting_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"

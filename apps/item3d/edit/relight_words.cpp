@@ -100,7 +100,7 @@ void add_words_options(CLI::App& command, RelightWords& words) {
             "--light-model", set("light_model"),
             "physical (a sky, a sun and a ground in eight numbers; the default for small priors) "
             "or texels (each of the environment's by itself)")
-        ->check(CLI::IsMember(light_model_names()))
+        ->check(CLI::IsMember(light_kind_names()))
         ->group(group);
     command
         .add_option_function<std::string>("--guidance", set("guidance"),
@@ -158,7 +158,7 @@ WordsLight light_by_words(const RelightWords& words, const std::filesystem::path
     nlohmann::json overrides = words.overrides;
     overrides.update({{"from", from}, {"to", to}, {"optimize", "light"}, {"light", from_light}});
     if (said.from) overrides["light_from"] = {said.from->azimuth, said.from->elevation};
-    request.settings = resolve_settings(request.prior, overrides);
+    request.plan = resolve_plan(request.prior, overrides);
     request.model = model;
     request.output = output;
     request.device = device;

@@ -16,6 +16,7 @@
 #include "item3d/metrics/color.h"
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 #include "item3d/render/scatter.h"
 #include "item3d/render/textured_materials.h"
 #include "item3d/report/picture.h"

@@ -18,20 +18,20 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
 /// Streams of a run's seed. Each use draws from a stream of its own, so that no two draw the same
 /// numbers; a value that changes changes the results of what draws from it.
 enum class RandomStream : std::uint64_t {
-    surface_means = 0,           ///< edit: points at which a material's means are taken
-    noise = 1,                   ///< guidance: timestep and noise
-    renoise = 5,                 ///< guidance: of the learned source's samples
-    further_noise = 8,           ///< guidance: what methods draw besides
-    spread = 6,                  ///< edit: offsets of the points where a material is looked up
-    painting = 7,                ///< edit: which view the detail stage fits next
-    color_points = 9,            ///< edit: where the colour regulariser looks
-    field = 0x6669656c64,        ///< field: first values of the neural texture
-    fit = 0x666974,              ///< field: points that it is fitted at
-    metallic = 0x6d6574616c,     ///< field: points at which its mean metallic is measured
-    view_order = 0x76696577,     ///< reconstruct: in which order the photographs come
-    shape = 0x7368617065,        ///< reconstruct: the search for a shape; generate: its choice of one
-    refinement = 0x726566696e65, ///< reconstruct: materials and light
-    chamfer = 0x6368616d,        ///< reconstruct: points that two meshes are compared at
+    surface_means = 0,        ///< edit: points at which a material's means are taken
+    noise = 1,                ///< guidance: timestep and noise
+    renoise = 5,              ///< guidance: of the learned source's samples
+    further_noise = 8,        ///< guidance: what methods draw besides
+    spread = 6,               ///< edit: offsets of the points where a material is looked up
+    painting = 7,             ///< edit: which view the detail stage fits next
+    color_points = 9,         ///< edit: where the colour regulariser looks
+    field = 0x6669656c64,     ///< field: first values of the neural texture
+    fit = 0x666974,           ///< field: points that it is fitted at
+    metallic = 0x6d6574616c,  ///< field: points at which its mean metallic is measured
+    view_order = 0x76696577,  ///< reconstruct: in which order the photographs come
+    shape = 0x7368617065,     ///< reconstruct: the search for a shape; generate: its choice of one
+    refinement = 0x726566696e65,  ///< reconstruct: materials and light
+    chamfer = 0x6368616d,         ///< reconstruct: points that two meshes are compared at
 };
 
 /// Streams of a seed that an index was mixed into. No such seed is a run's own, so that a value may

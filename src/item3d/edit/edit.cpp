@@ -2,8 +2,12 @@
 
 #include "item3d/core/files.h"
 #include "item3d/core/stage_times.h"
+#include "item3d/edit/detail/detail_stage.h"
+#include "item3d/edit/optimize/begin.h"
 #include "item3d/edit/optimize/optimize.h"
-#include "item3d/edit/outputs/outputs.h"
+#include "item3d/edit/outputs/baked_files.h"
+#include "item3d/edit/outputs/pictures.h"
+#include "item3d/edit/outputs/summary.h"
 #include "item3d/edit/scene.h"
 
 namespace item3d {
@@ -23,7 +27,7 @@ nlohmann::json edit_model(const EditRequest& request) {
     const IterationTimes iteration_times = optimize(request, scene, state);
     times.end_stage("optimize");
 
-    if (wants_detail(request.settings)) {
+    if (request.plan.paints_detail) {
         add_detail(request, scene, state);
         times.end_stage("detail");
     }

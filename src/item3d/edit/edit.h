@@ -2,32 +2,11 @@
 // -> step } -> bake -> write.
 #pragma once
 
-#include "item3d/edit/settings.h"
-#include "item3d/tensors/tensor.h"
+#include "item3d/edit/request.h"
 
 #include <nlohmann/json.hpp>
 
-#include <filesystem>
-#include <string>
-
 namespace item3d {
-
-struct EditRequest {
-    std::filesystem::path model;
-    std::filesystem::path prior;      ///< folder in the diffusers layout
-    std::filesystem::path output;     ///< folder, made when it is not there
-    std::filesystem::path clip;       ///< CLIP model that scores the result; empty: none
-    std::filesystem::path captioner;  ///< BLIP or BLIP-2; read where wants_captions(settings)
-    EditSettings settings;
-    bool resume = false;
-    /// Stop as an interrupt would when this many iterations are done; 0: run to the end.
-    int stop_after = 0;
-    at::Device device = at::kCPU;
-    std::string precision = "auto";  ///< of the networks: auto, fp32, bf16, fp16
-    std::string memory = "auto";     ///< auto, low (less memory, more time), high
-    int picture_pixels = 384;        ///< side of the report's views; its turntable has 3/4 of it
-    std::string command;             ///< as typed, for edit.json and the resume hint
-};
 
 /// Runs an edit and writes everything that docs/formats.md lists into the output folder. Returns
 /// the content of edit.json. Throws InputError, ResourceError, and Interrupted (with the checkpoint

@@ -2,22 +2,11 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
-#include "item3d/edit/metals.h"
+#include "item3d/core/random.h"
 
 #include <algorithm>
 
 namespace item3d {
-
-ChannelMask edited_channels(const EditSettings& settings) {
-    const auto edited = [&](const char* name) {
-        return std::find(settings.keep.begin(), settings.keep.end(), name) == settings.keep.end();
-    };
-    if (!edits_texture(settings)) return {false, false, false, false, false};
-    const bool metal =
-        settings.metallic == "always" || names_metal(settings.from) || names_metal(settings.to);
-    return {edited("base_color"), edited("occlusion"), edited("roughness"),
-            edited("metallic") && metal, edited("normal")};
-}
 
 std::vector<int> select_materials(const Model& model, const std::vector<std::string>& names) {
     std::vector<bool> used(model.materials.size(), false);
@@ -80,6 +69,21 @@ MaterialSample MaterialSource::sample(const Surface& surface, NeuralTexture& fie
             own.normal.defined() ? at::where(here, edited.normal, own.normal) : edited.normal;
     }
     return mixed;
+}
+
+SurfaceMeans surface_means(const Model& model, const std::vector<int>& materials,
+                           std::uint64_t seed) {
+    const at::NoGradGuard no_grad;
+    const Geometry geometry = Geometry::from_model(model);
+    const FieldSpace space(model, materials);
+    const SurfaceSampler sampler(geometry, space);
+    Random random(seed, RandomStream::surface_means);
+    const MaterialSample sample = TexturedMaterials(model).sample(sampler.sample(20000, random));
+    const at::Tensor color = sample.base_color.mean(0).contiguous();
+    const at::Tensor orm = sample.orm.mean(0).contiguous();
+    const float* rgb = color.data_ptr<float>();
+    const float* values = orm.data_ptr<float>();
+    return {Vec3(rgb[0], rgb[1], rgb[2]), values[1], values[2]};
 }
 
 }  // namespace item3d

@@ -1,27 +1,19 @@
 // Which surface points the edit changes, and what they are made of.
 #pragma once
 
-#include "item3d/edit/settings.h"
+#include "item3d/core/math.h"
+#include "item3d/edit/plan.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/field/surface_points.h"
 #include "item3d/render/textured_materials.h"
+#include "item3d/scene/model.h"
 #include "item3d/tensors/tensor.h"
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace item3d {
-
-/// Material channels that an edit may change or keep.
-struct ChannelMask {
-    bool base_color = true;
-    bool occlusion = true;
-    bool roughness = true;
-    bool metallic = true;
-    bool normal = true;
-    bool any() const { return base_color || occlusion || roughness || metallic || normal; }
-};
-/// What the settings say to edit: all but `keep`, and metallic only as its own setting allows.
-ChannelMask edited_channels(const EditSettings& settings);
 
 /// Indices into Model::materials of the named ones (all for an empty list), in rising order.
 /// Throws InputError that lists the model's materials when a name is not among them.
@@ -49,5 +41,17 @@ class MaterialSource {
     at::Tensor orm_is_edited_;  ///< [3] bool
     ChannelMask channels_;
 };
+
+/// Mean values over a surface, by area: what an edit changed, in numbers.
+struct SurfaceMeans {
+    Vec3 base_color{0.0f};  ///< linear RGB
+    float roughness = 0;
+    float metallic = 0;
+};
+
+/// Of the named materials (indices into Model::materials), at 20,000 points that depend on the
+/// seed.
+SurfaceMeans surface_means(const Model& model, const std::vector<int>& materials,
+                           std::uint64_t seed = 0);
 
 }  // namespace item3d

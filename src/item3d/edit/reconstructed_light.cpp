@@ -1,6 +1,6 @@
 #include "item3d/edit/reconstructed_light.h"
 
-#include "item3d/edit/settings.h"
+#include "item3d/edit/plan.h"
 
 namespace item3d {
 
@@ -14,8 +14,8 @@ std::filesystem::path reconstructed_light(const std::filesystem::path& model) {
 }
 
 bool suits_found_light(const std::filesystem::path& prior, const nlohmann::json& overrides) {
-    const bool texture_alone = overrides.value("optimize", "texture") == "texture";
-    return !texture_alone || !prior_defaults(prior).contains("light");
+    return overrides.get<EditSettings>().optimize != Optimize::texture ||
+           !prior_defaults(prior).contains("light");
 }
 
 }  // namespace item3d

@@ -1,9 +1,10 @@
 #include "item3d/edit/relight.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/stage_times.h"
+#include "item3d/edit/optimize/begin.h"
 #include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/scene.h"
-#include "item3d/edit/timing.h"
 #include "item3d/lighting/optimized/physical_light.h"
 
 namespace item3d {
@@ -24,7 +25,7 @@ nlohmann::json values_json(const PhysicalValues& values) {
 }  // namespace
 
 FoundLight find_light(const EditRequest& request) {
-    ITEM3D_CHECK(!edits_texture(request.settings), "find_light changes no texture");
+    ITEM3D_CHECK(!request.plan.edits_texture, "find_light changes no texture");
     StageTimes times;
     const EditScene scene = load_scene(request);
     EditState state = begin_or_resume(request, scene);
@@ -38,7 +39,7 @@ FoundLight find_light(const EditRequest& request) {
     nlohmann::json seconds = nlohmann::json::object();
     for (const auto& [stage, value] : times.stages())
         seconds[stage] = value;
-    found.record = {{"settings", request.settings}, {"seconds", seconds}};
+    found.record = {{"settings", request.plan}, {"seconds", seconds}};
     if (const auto* physical = dynamic_cast<const PhysicalLight*>(state.light.get()))
         found.record["values"] = values_json(physical->values());
     return found;

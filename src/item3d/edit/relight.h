@@ -1,8 +1,10 @@
 // The light alone, found by guidance: geometry and materials stay as they are.
 #pragma once
 
-#include "item3d/edit/edit.h"
+#include "item3d/edit/request.h"
 #include "item3d/scene/image.h"
+
+#include <nlohmann/json.hpp>
 
 namespace item3d {
 
@@ -13,7 +15,7 @@ struct FoundLight {
     nlohmann::json record;
 };
 
-/// Optimises the light that the request's settings begin with towards their target sentence. Keeps
+/// Optimises the light that the request's plan begins with towards their target sentence. Keeps
 /// checkpoints and a preview in the request's output folder, which must be there, and takes them up
 /// where the request says resume. Throws as edit_model.
 FoundLight find_light(const EditRequest& request);

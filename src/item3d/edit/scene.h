@@ -1,8 +1,8 @@
 // Everything that an edit reads and does not change.
 #pragma once
 
-#include "item3d/edit/edit.h"
 #include "item3d/edit/material_source.h"
+#include "item3d/edit/request.h"
 #include "item3d/edit/views.h"
 #include "item3d/field/atlas/atlas.h"
 #include "item3d/networks/diffusion/diffusion_model.h"
@@ -23,17 +23,16 @@ struct EditScene {
     Geometry geometry;
     BoundingSphere sphere;
     std::vector<int> materials;  ///< edited ones, indices into model.materials
-    ChannelMask channels;
-    Atlas atlas;  ///< the UV maps that the result is baked into
+    Atlas atlas;                 ///< the UV maps that the result is baked into
     std::unique_ptr<FieldSpace> space;
     std::unique_ptr<TexturedMaterials> textured;
     std::unique_ptr<MaterialSource> source;
     std::unique_ptr<LightRig> lights;
-    /// Ready some time after the rest: who asks earlier waits, or hears why it cannot be loaded.
+    /// Loads asynchronously; get() blocks and rethrows load errors.
     std::shared_future<std::shared_ptr<const DiffusionModel>> loading_prior;
     const std::shared_ptr<const DiffusionModel>& prior() const { return loading_prior.get(); }
     std::shared_future<std::string> hashing_weights;  ///< hash_of_weights() of the prior
-    std::shared_ptr<const Captioner> captioner;       ///< none unless wants_captions()
+    std::shared_ptr<const Captioner> captioner;       ///< none unless the plan asks it
     at::ScalarType precision = at::kFloat;
     at::Device device = at::kCPU;  ///< where all tensors of the edit are
 };

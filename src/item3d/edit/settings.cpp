@@ -1,24 +1,83 @@
 #include "item3d/edit/settings.h"
 
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/edit/settings_table.h"
 
 namespace item3d {
+namespace {
 
-void to_json(nlohmann::json& json, const EditSettings& settings) {
-    json = nlohmann::json::object();
-    for (const Setting& setting : settings_table())
-        json[setting.name] = setting.get(settings);
+using nlohmann::json;
+
+const char* type_name(SettingType type) {
+    switch (type) {
+        case SettingType::text:
+            return "text";
+        case SettingType::choice:
+            return "choice";
+        case SettingType::integer:
+        case SettingType::unsigned_integer:
+            return "integer";
+        case SettingType::number:
+            return "number";
+        case SettingType::numbers:
+            return "numbers";
+        case SettingType::texts:
+        case SettingType::repeated_texts:
+            return "texts";
+    }
+    ITEM3D_CHECK(false, "unknown type of a setting");
 }
 
-void from_json(const nlohmann::json& json, EditSettings& settings) {
+}  // namespace
+
+void to_json(json& json, const EditSettings& settings) {
+    json = nlohmann::json::object();
+    for (const Setting& row : settings_table())
+        json[row.name] = row.get(settings);
+}
+
+void from_json(const json& json, EditSettings& settings) {
     settings = {};
-    for (const Setting& setting : settings_table())
-        if (json.contains(setting.name)) setting.set(settings, json.at(setting.name));
+    for (const Setting& row : settings_table())
+        if (json.contains(row.name)) row.set(settings, json.at(row.name));
 }
 
 void check_settings(const EditSettings& settings) {
-    for (const Setting& setting : settings_table())
-        setting.check(settings);
+    for (const Setting& row : settings_table())
+        row.check(settings);
+}
+
+std::string readable(const json& value) {
+    if (value.is_number_float()) return fmt::format("{}", value.get<float>());
+    if (value.is_array()) {
+        std::string list;
+        for (const json& each : value)
+            list += (list.empty() ? "" : ", ") + readable(each);
+        return list.empty() ? "none" : list;
+    }
+    if (!value.is_string()) return value.dump();
+    return value.get<std::string>().empty() ? "none" : value.get<std::string>();
+}
+
+std::string settings_markdown() {
+    std::string text =
+        "# Settings of an edit\n\n"
+        "<!-- Written from src/item3d/edit/settings_table.cpp by a test:\n"
+        "     ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='*settings_page*' -->\n\n"
+        "Everything that changes the result of `item3d edit`. A prior brings values of its own in\n"
+        "`prior.json` under `\"defaults\"`, options override these, and `edit.json` lists what an "
+        "edit\nwas done with under `\"settings\"`. Settings without an option are a prior's to "
+        "say.\n\n"
+        "| Setting | Option | Default | Values | Meaning |\n|---|---|---|---|---|\n";
+    for (const Setting& row : settings_table()) {
+        const std::string value = readable(row.get({}));
+        text += fmt::format("| `{}` | {} | {} | {}{} | {} |\n", row.name,
+                            row.flag.empty() ? "" : "`" + row.flag + "`",
+                            value == "none" ? "" : "`" + value + "`", type_name(row.type),
+                            row.values.empty() ? "" : ": " + row.values, row.help);
+    }
+    return text;
 }
 
 }  // namespace item3d

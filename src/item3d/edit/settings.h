@@ -81,4 +81,11 @@ void from_json(const nlohmann::json& json, EditSettings& settings);
 /// Throws InputError that names the option of the first setting that is out of range.
 void check_settings(const EditSettings& settings);
 
+/// A value as people write it: 0.06 and not all digits of the nearest float, lists without
+/// brackets, "none" for what is empty.
+std::string readable(const nlohmann::json& value);
+
+/// The content of docs/reference/settings.md: all settings as a table.
+std::string settings_markdown();
+
 }  // namespace item3d

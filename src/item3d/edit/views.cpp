@@ -15,10 +15,7 @@ namespace {
 constexpr float degrees = pi / 180.0f;
 constexpr int light_rotations = 6;
 
-// Streams of the edit's seed; the guidance uses 1 and 5, render_view 6, the detail stage 7 and 8.
-enum Stream : std::uint64_t { camera_stream = 2, background_stream = 3, light_stream = 4 };
-
-Random iteration_random(std::uint64_t seed, Stream stream, std::int64_t iteration) {
+Random iteration_random(std::uint64_t seed, IndexedStream stream, std::int64_t iteration) {
     return Random(mix_bits(seed) ^ static_cast<std::uint64_t>(iteration), stream);
 }
 
@@ -42,7 +39,7 @@ BoundingSphere bounding_sphere(const Model& model) {
 
 std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std::uint64_t seed,
                                    std::int64_t iteration) {
-    Random random = iteration_random(seed, camera_stream, iteration);
+    Random random = iteration_random(seed, IndexedStream::cameras, iteration);
     std::vector<Camera> cameras;
     for (int i = 0; i < count; ++i) {
         const auto azimuth = static_cast<float>(random.uniform(0, 2 * pi));
@@ -66,7 +63,7 @@ at::Tensor sample_backgrounds(const std::string& background, int count, std::uin
                               std::int64_t iteration) {
     at::Tensor colors = at::empty({count, 3});
     const Vec3 named = background == "vary" ? Vec3(0) : linear_background(background);
-    Random random = iteration_random(seed, background_stream, iteration);
+    Random random = iteration_random(seed, IndexedStream::backgrounds, iteration);
     for (int i = 0; i < count; ++i) {
         const Vec3 color = background == "vary"
                                ? Vec3(srgb_to_linear(static_cast<float>(random.uniform(0.5, 1.0))))
@@ -77,7 +74,7 @@ at::Tensor sample_backgrounds(const std::string& background, int count, std::uin
     return colors;
 }
 
-LightRig::LightRig(const std::string& light, const std::string& augment, int cube_size,
+LightRig::LightRig(const std::string& light, LightAugment variation, int cube_size,
                    at::Device device)
     : cube_size_(cube_size), device_(device) {
     const auto add = [&](Source source, int rotations, float first) {
@@ -88,8 +85,8 @@ LightRig::LightRig(const std::string& light, const std::string& augment, int cub
                  {}});
         sources_.push_back(std::move(source));
     };
-    add({light, load_light(light)}, augment == "off" ? 1 : light_rotations, 0);
-    if (augment != "all") return;
+    add({light, load_light(light)}, variation == LightAugment::off ? 1 : light_rotations, 0);
+    if (variation != LightAugment::all) return;
     exposure_range_ = 0.5f;
     // White lights alone: under a sunset, what is white looks orange to the prior.
     for (const char* preset : {"studio", "overcast", "noon"})
@@ -113,7 +110,7 @@ const EnvironmentLight& LightRig::studio() {
 }
 
 EnvironmentLight LightRig::pick(std::uint64_t seed, std::int64_t iteration) {
-    Random random = iteration_random(seed, light_stream, iteration);
+    Random random = iteration_random(seed, IndexedStream::lights, iteration);
     EnvironmentLight light =
         at(static_cast<std::size_t>(random.index(static_cast<std::int64_t>(lights_.size()))));
     if (exposure_range_ == 0) return light;

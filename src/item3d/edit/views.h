@@ -33,7 +33,7 @@ at::Tensor sample_backgrounds(const std::string& background, int count, std::uin
                               std::int64_t iteration);
 
 /// The lights of an edit, each prefiltered when it is first wanted. Shading that stays the same in
-/// every picture could be painted into the base colour; a light that moves cannot. augment:
+/// every picture could be painted into the base colour; a light that moves cannot. variation:
 ///   off     the light as it is, always;
 ///   rotate  turned to six azimuths;
 ///   all     also exchanged for presets of daylight and the studio, and brighter or darker by up to
@@ -41,8 +41,7 @@ at::Tensor sample_backgrounds(const std::string& background, int count, std::uin
 class LightRig {
   public:
     /// light: preset or file. Throws InputError.
-    LightRig(const std::string& light, const std::string& augment, int cube_size,
-             at::Device device);
+    LightRig(const std::string& light, LightAugment variation, int cube_size, at::Device device);
     EnvironmentLight pick(std::uint64_t seed, std::int64_t iteration);
     /// The light as it was given, for pictures.
     const EnvironmentLight& front() { return at(0); }

@@ -39,8 +39,8 @@ class Adam {
     /// Gradients become undefined (the next backward makes new ones).
     void zero_grad();
 
-    /// All that a resumed run needs, by name ("network.1.momentum": of the group's parameter 1). The
-    /// tensors are the optimiser's own: clone them to keep them beyond the next step.
+    /// All that a resumed run needs, by name ("network.1.momentum": of the group's parameter 1).
+    /// The tensors are the optimiser's own: clone them to keep them beyond the next step.
     std::map<std::string, at::Tensor> state() const;
     /// Copies values of state() back. Throws std::logic_error for a missing name or a wrong shape.
     void load_state(const std::map<std::string, at::Tensor>& state);

@@ -1,8 +1,12 @@
 #include "item3d/field/neural_texture.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/parallel.h"
 #include "item3d/core/random.h"
+#include "item3d/field/cuda/module.h"
+#include "item3d/field/kernels/bounded.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 
 #include <torch/csrc/autograd/custom_function.h>
 
@@ -12,22 +16,48 @@ namespace item3d {
 namespace {
 
 constexpr int output_width = 8;  // base colour 3, orm 3, normal's x and y
-/// How far the sigmoid overshoots each end of a range before the clamp. Black and white lie on its
-/// slope instead of at its infinite ends, so an edit can leave them again.
-constexpr float overshoot = 0.05f;
+constexpr float awake = 0.5f;    ///< bound of hidden units' first biases
 
-constexpr float awake = 0.5f;  ///< bound of hidden units' first biases
+using torch::autograd::AutogradContext;
+using torch::autograd::tensor_list;
 
-/// Clamps the value and lets the gradient through.
-class ClampValue : public torch::autograd::Function<ClampValue> {
-  public:
-    static at::Tensor forward(torch::autograd::AutogradContext*, const at::Tensor& value,
-                              const at::Tensor& low, const at::Tensor& high) {
-        return at::clamp(value, low, high);
+constexpr std::int64_t bounded_grain = 4096;
+
+/// x [P, N] -> values in the ranges low .. high [N] (kernels/bounded.h).
+struct Bounded : torch::autograd::Function<Bounded> {
+    static void run(const BoundedParameters& p, const at::Tensor& x) {
+        const bool back = p.gradient != nullptr;
+        if (x.is_cuda()) {
+            const cuda::FieldTable& table = cuda::field_table();
+            cuda::run(back ? table.bounded_backward : table.bounded, p, x.numel(), x.device());
+        } else if (back) {
+            parallel_for(
+                "bounded backward", x.numel(), [=](std::int64_t i) { bounded_backward(p, i); },
+                bounded_grain);
+        } else {
+            parallel_for(
+                "bounded", x.numel(), [=](std::int64_t i) { bounded_forward(p, i); },
+                bounded_grain);
+        }
     }
-    static torch::autograd::variable_list backward(torch::autograd::AutogradContext*,
-                                                   torch::autograd::variable_list grads) {
-        return {grads[0], at::Tensor(), at::Tensor()};
+    static at::Tensor forward(AutogradContext* context, const at::Tensor& x_, const at::Tensor& low,
+                              const at::Tensor& high) {
+        const at::Tensor x = x_.contiguous(), out = at::empty_like(x);
+        run({x.const_data_ptr<float>(), low.const_data_ptr<float>(), high.const_data_ptr<float>(),
+             nullptr, x.size(1), out.data_ptr<float>()},
+            x);
+        context->save_for_backward({x, low, high});
+        return out;
+    }
+    static tensor_list backward(AutogradContext* context, tensor_list gradients) {
+        const tensor_list saved = context->get_saved_variables();
+        const at::Tensor& x = saved[0];
+        const at::Tensor gradient = gradients[0].contiguous(), out = at::empty_like(x);
+        run({x.const_data_ptr<float>(), saved[1].const_data_ptr<float>(),
+             saved[2].const_data_ptr<float>(), gradient.const_data_ptr<float>(), x.size(1),
+             out.data_ptr<float>()},
+            x);
+        return {out, at::Tensor(), at::Tensor()};
     }
 };
 
@@ -97,10 +127,7 @@ at::Tensor NeuralTextureImpl::encoded(const at::Tensor& positions) {
         x = at::linear(x, weights_[i], biases_[i]);
         if (i + 1 < weights_.size()) x = at::relu(x);
     }
-    const at::Tensor span = high_ - low_;
-    const at::Tensor wide =
-        at::addcmul(low_ - overshoot * span, at::sigmoid(x), (1.0f + 2.0f * overshoot) * span);
-    return ClampValue::apply(wide, low_, high_);
+    return Bounded::apply(x, low_, high_);
 }
 
 MaterialSample NeuralTextureImpl::forward(const at::Tensor& positions) {

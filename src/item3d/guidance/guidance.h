@@ -18,18 +18,18 @@ namespace item3d {
 /// omega(t), how much a timestep counts: sqrt(abar)(1 - abar), 1/(1 - abar), 1 - abar, 1.
 enum class Weighting { early, late, dreamfusion, uniform };
 
-/// What moves rdl's source: its denoising loss (learned_source.h), captions (caption_source.h), which
-/// whoever makes them hands to Guidance::shift_source(), or nothing. caption_paper: with the sign of
-/// the paper's formula.
+/// What moves rdl's source: its denoising loss (learned_source.h), captions (caption_source.h),
+/// which whoever makes them hands to Guidance::shift_source(), or nothing. caption_paper: with the
+/// sign of the paper's formula.
 enum class Adjustment { learned, caption, caption_paper, off };
 
 /// How the timesteps of the iterations follow one another, see scheduled_timestep().
 enum class TimestepSchedule { uniform, anneal, dreamtime };
 
 struct GuidanceOptions {
-    std::string method = "rdl";  ///< one of guidance_methods()
+    std::string method = "rdl";               ///< one of guidance_methods()
     Adjustment adjust = Adjustment::learned;  ///< only rdl has a direction to adjust
-    float guidance_scale = 7.5f;  ///< w of classifier-free guidance
+    float guidance_scale = 7.5f;              ///< w of classifier-free guidance
     /// What classifier-free guidance starts from, in place of the empty prompt; it cancels in rdl's
     /// direction. nfsd and csd have a term of its own for it, default_negative_prompt() when empty.
     std::string negative_prompt;

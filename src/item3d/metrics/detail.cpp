@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 
 #include <cmath>
 
@@ -13,7 +14,7 @@ constexpr double least_deviation = 1e-3;
 
 /// L* / 100 of [N, 3, H, W] sRGB -> [N, 1, H, W].
 at::Tensor lightness(const at::Tensor& images) {
-    const at::Tensor linear = srgb_to_linear(images.to(at::kDouble).clamp(0, 1));
+    const at::Tensor linear = srgb_to_linear(images.to(at::kFloat).clamp(0, 1)).to(at::kDouble);
     const at::Tensor y = 0.2126729 * linear.narrow(1, 0, 1) + 0.7151522 * linear.narrow(1, 1, 1) +
                          0.0721750 * linear.narrow(1, 2, 1);
     constexpr double threshold = 216.0 / 24389.0;

@@ -7,17 +7,6 @@
 
 namespace item3d {
 
-at::Tensor linear_to_srgb(const at::Tensor& linear) {
-    // The power's argument stays above the linear part, where its slope is largest (12.7).
-    const at::Tensor curved = 1.055f * linear.clamp_min(0.0031308f).pow(1.0f / 2.4f) - 0.055f;
-    return at::where(linear <= 0.0031308f, 12.92f * linear, curved);
-}
-
-at::Tensor srgb_to_linear(const at::Tensor& encoded) {
-    const at::Tensor curved = ((encoded.clamp_min(0.04045f) + 0.055f) / 1.055f).pow(2.4f);
-    return at::where(encoded <= 0.04045f, encoded / 12.92f, curved);
-}
-
 at::Tensor to_tensor(const Image& image, at::Device device) {
     at::Tensor tensor = at::empty({image.height, image.width, image.channels}, at::kFloat);
     ITEM3D_CHECK(static_cast<std::size_t>(tensor.numel()) == image.pixels.size(),

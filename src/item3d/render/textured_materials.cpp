@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/math.h"
 #include "item3d/core/parallel.h"
+#include "item3d/render/srgb.h"
 #include "item3d/render/texture.h"
 
 #include <algorithm>

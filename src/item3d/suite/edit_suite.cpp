@@ -47,9 +47,9 @@ EditRequest request_of(const SuiteEdit& edit, const SuiteOptions& options, const
                       {"seed", options.seed}};
     if (edit.method == "sds") overrides["guidance"] = "sds";
     if (edit.method == "off") overrides["adjust"] = "off";
-    request.settings = resolve_settings(options.prior, overrides);
+    request.plan = resolve_plan(options.prior, overrides);
     request.command = fmt::format("item3d edit {} --from '{}' --to '{}'", request.model.string(),
-                                  request.settings.from, request.settings.to);
+                                  request.plan.from, request.plan.to);
     return request;
 }
 
@@ -78,7 +78,7 @@ json verdict_of(const SuiteCase& test, const json& summary, const EditRequest& r
                 {"right", metallic > metal_enough}};
     }
     if (test.word.empty() || !judge.clip) return json::object();
-    const at::Tensor pictures = pictures_of(request.output / "model.glb", request.settings.light);
+    const at::Tensor pictures = pictures_of(request.output / "model.glb", request.plan.light);
     const std::string found =
         look_by_clip(pictures, test.mesh, *judge.clip, judge.vocabulary, {"materials", "patterns"});
     return {{"found", found}, {"right", found == test.word}};

@@ -1,4 +1,4 @@
-// Where the program's large tensors lie.
+// Where the large tensors of a process lie.
 #pragma once
 
 namespace item3d {

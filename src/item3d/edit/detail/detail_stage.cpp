@@ -1,9 +1,10 @@
+#include "item3d/edit/detail/detail_stage.h"
+
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/edit/detail/painting_plan.h"
 #include "item3d/edit/optimize/checkpoint_state.h"
 #include "item3d/edit/optimize/checkpoint_writer.h"
-#include "item3d/edit/optimize/optimize.h"
 #include "item3d/edit/optimize/render_view.h"
 #include "item3d/networks/diffusion/generate.h"
 #include "item3d/networks/diffusion/shape_condition.h"
@@ -19,11 +20,11 @@ namespace {
 
 constexpr int sampling_steps = 24;
 /// How much of a picture noise replaces: nearly all where the prior is told the shape.
-constexpr double begin_strength = 0.95;
-constexpr double begin_strength_without_shape = 0.7;
-constexpr double again_strength = 0.7;
+constexpr double initial_strength = 0.95;
+constexpr double initial_strength_without_shape = 0.7;
+constexpr double refine_strength = 0.7;
 constexpr double close_up_strength = 0.5;
-constexpr float guidance_scale = 5.0f;
+constexpr float painting_guidance_scale = 5.0f;
 /// A small autoencoder flattens what it decodes; so much of what is fine is added once more.
 constexpr float sharpening = 0.3f;
 /// Fine is what two box filters of this part of the picture's edge take away.
@@ -31,14 +32,12 @@ constexpr int filter_share = 8;
 constexpr float known_weight = 0.3f;  ///< of what earlier views painted, where a view is fitted
 constexpr int fits = 24;              ///< steps of the optimiser for each view
 constexpr int last_fits = 200;        ///< and for all pictures together at the end
-constexpr double learning_rate = 0.01;
-constexpr double network_learning_rate = 0.0025;
+constexpr double table_rate = 0.01, network_rate = 0.0025;  ///< learning rates
 /// As a part of the first, where the stage ends, so that no picture counts more for coming last.
-constexpr double final_learning_rate = 0.05;
+constexpr double final_rate = 0.05;
 constexpr float spread = 0.5f;  ///< pixels, see ViewOptions
 /// Pixels of a picture's edge up to which what its view sees is kept: about 2 MB each.
 constexpr int largest_kept = 128;
-constexpr std::uint64_t choice_stream = 7;  // of the edit's seed
 
 at::Tensor blur(at::Tensor images) {
     const auto size = images.size(2) / filter_share | 1;
@@ -61,7 +60,7 @@ at::Tensor inner(const at::Tensor& coverage) {
 
 /// What a view of the plan shows whatever the stage has painted so far.
 struct PaintedView {
-    SeenModel seen;
+    GBuffer gbuffer;
     MaterialSample before;  ///< the field's materials as the stage began
 };
 
@@ -76,29 +75,28 @@ at::Tensor drift(const MaterialSample& now, const MaterialSample& before) {
 /// The stage in progress.
 class Painter {
   public:
-    Painter(const EditScene& scene, const EditSettings& settings, EditState& state)
-        : scene_(scene),
-          settings_(settings),
-          state_(state),
-          plan_(plan_painting(scene, settings)) {}
+    Painter(const EditScene& scene, const EditPlan& plan, EditState& state)
+        : scene_(scene), plan_(plan), state_(state), views_(plan_painting(scene, plan)) {
+        set_learning_rates(1);
+    }
 
     void paint(std::size_t index);
 
   private:
     PaintedView see(std::size_t index);
-    EditView render(std::size_t index, const SeenModel& seen, float spread_pixels = 0,
+    EditView render(std::size_t index, const GBuffer& gbuffer, float spread_pixels = 0,
                     std::uint64_t draw = 0) const;
     at::Tensor known_pixels(std::size_t index) const;
     double strength(const PaintingView& planned) const;
-    at::Tensor target(std::size_t index, const SeenModel& seen) const;
+    at::Tensor target(std::size_t index, const GBuffer& gbuffer) const;
     void fit_step(std::size_t chosen, std::uint64_t draw);
-    void set_learning_rate(double factor);
+    void set_learning_rates(double factor);
     void fit_all();
 
     const EditScene& scene_;
-    const EditSettings& settings_;
+    const EditPlan& plan_;
     EditState& state_;
-    std::vector<PaintingView> plan_;
+    std::vector<PaintingView> views_;
     std::map<std::size_t, PaintedView> kept_;  ///< views of the plan, where they are small
 };
 
@@ -107,60 +105,60 @@ PaintedView Painter::see(std::size_t index) {
     const auto found = kept_.find(index);
     if (found != kept_.end()) return found->second;
     const at::NoGradGuard no_grad;
-    PaintedView view{see_model(scene_, settings_, {plan_[index].camera}), {}};
-    const auto& [raster, surface, shape, own] = view.seen;
+    PaintedView view{rasterize_views(scene_, plan_, {views_[index].camera}), {}};
+    const auto& [raster, surface, shape, own] = view.gbuffer;
     view.before = scene_.source->sample(surface, state_.detail.before, own);
-    if (settings_.resolution <= largest_kept) kept_[index] = view;
+    if (plan_.resolution <= largest_kept) kept_[index] = view;
     return view;
 }
 
-EditView Painter::render(std::size_t index, const SeenModel& seen, float spread_pixels,
+EditView Painter::render(std::size_t index, const GBuffer& gbuffer, float spread_pixels,
                          std::uint64_t draw) const {
-    ViewOptions options{settings_.iterations + static_cast<std::int64_t>(index)};
+    ViewOptions options{plan_.iterations + static_cast<std::int64_t>(index)};
     options.light = &scene_.lights->studio();
     options.spread = spread_pixels;
     options.spread_draw = draw;
-    return render_view(scene_, settings_, state_.field, seen, options);
+    return render_view(scene_, plan_, state_.field, gbuffer, options);
 }
 
 /// [1, 1, R, R] 0 .. 1.
 at::Tensor Painter::known_pixels(std::size_t index) const {
-    return at::upsample_bilinear2d(plan_[index].known, plan_[index].facing.sizes().slice(2),
+    return at::upsample_bilinear2d(views_[index].known, views_[index].facing.sizes().slice(2),
                                    /*align_corners=*/false);
 }
 
 double Painter::strength(const PaintingView& planned) const {
     switch (planned.round) {
-        case PaintingRound::again:
-            return again_strength;
+        case PaintingRound::refine:
+            return refine_strength;
         case PaintingRound::close_up:
             return close_up_strength;
-        case PaintingRound::begin:
+        case PaintingRound::initial:
             break;
     }
-    return takes_shape(*scene_.prior()) ? begin_strength : begin_strength_without_shape;
+    return takes_shape(*scene_.prior()) ? initial_strength : initial_strength_without_shape;
 }
 
 /// What the prior would rather see from here.
-at::Tensor Painter::target(std::size_t index, const SeenModel& seen) const {
+at::Tensor Painter::target(std::size_t index, const GBuffer& gbuffer) const {
     const at::NoGradGuard no_grad;
-    const EditView view = render(index, seen);
+    const EditView view = render(index, gbuffer);
     const DiffusionModel& prior = *scene_.prior();
-    const PaintingView& planned = plan_[index];
+    const PaintingView& planned = views_[index];
     const at::Tensor latents = prior.encode_image(view.images * 2 - 1);
     GenerateOptions options;
     options.prompt = scene_.to;
-    options.negative_prompt = settings_.negative_prompt;
+    options.negative_prompt = plan_.negative_prompt;
     options.steps = sampling_steps;
-    options.guidance_scale = guidance_scale;
+    options.guidance_scale = painting_guidance_scale;
     options.image = latents;
     options.keep = planned.known;
     options.strength = strength(planned);
     options.scheduler = "ddim";
     options.eta = 1;
-    options.seed = mix_bits(settings_.seed) + index;
+    options.seed = mix_bits(plan_.seed) + index;
     options.show_progress = false;
-    const at::Tensor condition = condition_of_shape(prior, seen.shape, latents);
+    const at::Tensor condition = condition_of_shape(prior, gbuffer.shape, latents);
     const at::Tensor sampled = generate_latents(prior, options, condition);
     const at::Tensor decoded = prior.decode_image(sampled) / 2 + 0.5f;
     // Not the render with what has changed: it has what a pixel of the round before was too coarse
@@ -171,9 +169,9 @@ at::Tensor Painter::target(std::size_t index, const SeenModel& seen) const {
 }
 
 void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
-    const auto& [seen, before] = see(chosen);
-    const EditView view = render(chosen, seen, spread, draw);
-    const at::Tensor weight = inner(view.coverage) * plan_[chosen].facing *
+    const auto& [gbuffer, before] = see(chosen);
+    const EditView view = render(chosen, gbuffer, spread, draw);
+    const at::Tensor weight = inner(view.coverage) * views_[chosen].facing *
                               (1 - (1 - known_weight) * known_pixels(chosen));
     const at::Tensor apart =
         ((view.images - state_.detail.targets[chosen]).square() * weight).sum() /
@@ -184,66 +182,57 @@ void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
 }
 
 void Painter::paint(std::size_t index) {
-    state_.detail.targets.push_back(target(index, see(index).seen));
+    state_.detail.targets.push_back(target(index, see(index).gbuffer));
     for (std::size_t i = 0; i < fits; ++i) {
         const std::uint64_t draw = index * fits + i;
-        Random random(settings_.seed, choice_stream, draw);
+        Random random(plan_.seed, RandomStream::painting, draw);
         // Every other step looks back, so that one view does not undo another; not to the pictures
         // of earlier rounds, which this one refines.
-        const auto first = static_cast<std::size_t>(plan_[index].first_of_round);
+        const auto first = static_cast<std::size_t>(views_[index].first_of_round);
         const auto back = random.index(static_cast<std::int64_t>(index - first) + 1);
         fit_step(i % 2 == 0 ? index : index - static_cast<std::size_t>(back), draw);
     }
-    if (index + 1 == plan_.size()) fit_all();
+    if (index + 1 == views_.size()) fit_all();
     ++state_.iteration;
 }
 
-void Painter::set_learning_rate(double factor) {
-    state_.detail.optimizer.options(0).learning_rate = factor * learning_rate;
-    state_.detail.optimizer.options(1).learning_rate = factor * network_learning_rate;
+void Painter::set_learning_rates(double factor) {
+    state_.detail.optimizer.options("table").learning_rate = factor * table_rate;
+    state_.detail.optimizer.options("network").learning_rate = factor * network_rate;
 }
 
 /// To all pictures but those that the stage began with. What a view got right may have suffered
 /// from the views that came after it.
 void Painter::fit_all() {
-    const auto first = std::find_if(plan_.begin(), plan_.end(), [](const PaintingView& view) {
-        return view.round != PaintingRound::begin;
+    const auto first = std::find_if(views_.begin(), views_.end(), [](const PaintingView& view) {
+        return view.round != PaintingRound::initial;
     });
-    const std::int64_t skipped = first - plan_.begin();
-    const std::int64_t count = plan_.end() - first;
+    const std::int64_t skipped = first - views_.begin();
+    const std::int64_t count = views_.end() - first;
     if (count == 0) return;
     for (std::size_t i = 0; i < last_fits; ++i) {
         const double left = 1 - static_cast<double>(i) / last_fits;
-        set_learning_rate(final_learning_rate + (1 - final_learning_rate) * left);
-        const std::uint64_t draw = plan_.size() * fits + i;
-        Random random(settings_.seed, choice_stream, draw);
+        set_learning_rates(final_rate + (1 - final_rate) * left);
+        const std::uint64_t draw = views_.size() * fits + i;
+        Random random(plan_.seed, RandomStream::painting, draw);
         fit_step(static_cast<std::size_t>(skipped + random.index(count)), draw);
     }
 }
 
 }  // namespace
 
-void begin_detail(EditState& state) {
-    state.detail.before = snapshot(state.field);
-    AdamOptions options;
-    options.learning_rate = learning_rate;
-    state.detail.optimizer.add_group({state.field->table()}, options);
-    options.learning_rate = network_learning_rate;
-    state.detail.optimizer.add_group(state.field->network_parameters(), options);
-}
-
 void add_detail(const EditRequest& request, const EditScene& scene, EditState& state) {
-    const EditSettings& settings = request.settings;
-    const std::int64_t total = total_iterations(settings);
+    const EditPlan& plan = request.plan;
+    const std::int64_t total = plan.total_iterations;
     if (state.iteration >= total) return;
-    if (state.detail.before.is_empty()) begin_detail(state);
-    Progress progress("detail", settings.detail_views, state.iteration - settings.iterations);
-    Safekeeping safekeeping(request, scene);
-    Painter painter(scene, settings, state);
+    if (!state.detail.has_begun()) state.detail.begin(state.field);
+    Progress progress("detail", plan.detail_views, state.iteration - plan.iterations);
+    CheckpointWriter checkpoints(request, scene);
+    Painter painter(scene, plan, state);
     while (state.iteration < total) {
         painter.paint(state.detail.targets.size());
-        progress.update(state.iteration - settings.iterations);
-        safekeeping.after_step(state, progress);
+        progress.update(state.iteration - plan.iterations);
+        checkpoints.after_step(state, progress);
     }
     save_state(request, state);
 }

@@ -10,11 +10,10 @@
 namespace item3d {
 namespace {
 
-constexpr std::uint64_t camera_stream = 8;  // of the edit's seed; others are in views.cpp
 constexpr float golden_angle = 2.39996323f;
-constexpr float degrees = pi / 180.0f;
-constexpr double begin_share = 0.4, again_share = 0.3;  ///< of the views
-constexpr int samples = 2;                              ///< along a pixel's edge
+constexpr float one_degree = pi / 180.0f;
+constexpr double initial_share = 0.4, refine_share = 0.3;  ///< of the views
+constexpr int samples = 2;                                 ///< along a pixel's edge
 constexpr float flattest = 0.2f;        ///< cosine below which a view does not count
 constexpr float clearly_better = 0.7f;  ///< of a view's own cosine an earlier one must have reached
 constexpr float known_share = 0.75f;    ///< of a latent cell
@@ -23,19 +22,20 @@ constexpr float depth_tolerance = 0.03f;
 
 PaintingRound round_of(int index, int views) {
     const auto end_of = [&](double share) { return std::max(1l, std::lround(share * views)); };
-    return index < end_of(begin_share)                 ? PaintingRound::begin
-           : index < end_of(begin_share + again_share) ? PaintingRound::again
-                                                       : PaintingRound::close_up;
+    return index < end_of(initial_share)                  ? PaintingRound::initial
+           : index < end_of(initial_share + refine_share) ? PaintingRound::refine
+                                                          : PaintingRound::close_up;
 }
 
 Camera paint_camera(const BoundingSphere& sphere, int index, bool close_up, std::uint64_t seed) {
-    Random random(mix_bits(seed) + static_cast<std::uint64_t>(index), camera_stream);
+    Random random(mix_bits(seed) + static_cast<std::uint64_t>(index),
+                  IndexedStream::painting_cameras);
     const auto draw = [&](double low, double high) {
         return static_cast<float>(random.uniform(low, high));
     };
     const float azimuth = golden_angle * static_cast<float>(index) + draw(-.2, .2);
-    const float elevation = draw(-10, 45) * degrees;
-    const float field_of_view = draw(25.7, 45) * degrees;
+    const float elevation = draw(-10, 45) * one_degree;
+    const float field_of_view = draw(25.7, 45) * one_degree;
     const float fill = close_up ? draw(1.3, 2.0) : draw(0.85, 1.05);
     const float distance = sphere.radius / (fill * std::sin(0.5f * field_of_view));
     const float aside = (close_up ? 0.4f : 0.05f) * sphere.radius;
@@ -101,20 +101,20 @@ at::Tensor known_cells(const at::Tensor& fresh, std::int64_t pixels_each) {
 
 }  // namespace
 
-std::vector<PaintingView> plan_painting(const EditScene& scene, const EditSettings& settings) {
+std::vector<PaintingView> plan_painting(const EditScene& scene, const EditPlan& plan) {
     const at::NoGradGuard no_grad;
     const std::int64_t pixels_each = scene.prior()->downscale();
-    std::vector<PaintingView> plan;
+    std::vector<PaintingView> views;
     std::vector<Sight> earlier;
-    for (int i = 0; i < settings.detail_views; ++i) {
+    for (int i = 0; i < plan.detail_views; ++i) {
         PaintingView view;
-        view.round = round_of(i, settings.detail_views);
-        const bool begins_round = plan.empty() || plan.back().round != view.round;
+        view.round = round_of(i, plan.detail_views);
+        const bool begins_round = views.empty() || views.back().round != view.round;
         if (begins_round) earlier.clear();
-        view.first_of_round = begins_round ? i : plan.back().first_of_round;
+        view.first_of_round = begins_round ? i : views.back().first_of_round;
         view.camera =
-            paint_camera(scene.sphere, i, view.round == PaintingRound::close_up, settings.seed);
-        const Sight sight(scene.geometry, view.camera, settings.resolution * samples);
+            paint_camera(scene.sphere, i, view.round == PaintingRound::close_up, plan.seed);
+        const Sight sight(scene.geometry, view.camera, plan.resolution * samples);
         const at::Tensor own = as_pixels(sight, sight.cosine);
         view.facing = (own > flattest).to(at::kFloat);
         at::Tensor best = at::zeros_like(sight.cosine);
@@ -127,9 +127,9 @@ std::vector<PaintingView> plan_painting(const EditScene& scene, const EditSettin
         view.known = known_cells(fresh, pixels_each);
         earlier.push_back(sight);
         earlier.back().surface = {};  // large; later views ask for its depth alone
-        plan.push_back(view);
+        views.push_back(view);
     }
-    return plan;
+    return views;
 }
 
 }  // namespace item3d

@@ -2,8 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/edit/field_pictures.h"
-#include "item3d/edit/optimize/optimize.h"
+#include "item3d/edit/optimize/render_view.h"
 
 #include <algorithm>
 #include <numeric>
@@ -15,8 +14,8 @@ constexpr int caption_views = 4;  ///< captions are averaged over these
 
 /// A prior of small pictures is quick, and its captions must be too; large ones show more to a
 /// captioner.
-int caption_pixels(const EditSettings& settings) {
-    return std::clamp(settings.resolution, 144, 384);
+int caption_pixels(const EditPlan& plan) {
+    return std::clamp(plan.resolution, 144, 384);
 }
 
 /// Mean over the iterations since the line before; no value where there were none.
@@ -36,15 +35,15 @@ std::vector<at::Tensor> to_bytes(const at::Tensor& pictures) {
 }  // namespace
 
 DirectionAdjustment::DirectionAdjustment(const EditRequest& request, const EditScene& scene)
-    : settings_(request.settings), scene_(scene), cameras_(field_cameras(scene, caption_views)) {
+    : plan_(request.plan), scene_(scene), cameras_(field_cameras(scene, caption_views)) {
     if (!scene.captioner) return;
     source_.emplace(
-        scene.prior(), settings_.from, settings_.to,
-        CaptionSourceOptions{settings_.adjust_strength, settings_.adjust == "caption-paper"});
+        scene.prior(), plan_.from, plan_.to,
+        CaptionSourceOptions{plan_.adjust_strength, plan_.adjust == Adjustment::caption_paper});
 }
 
 void DirectionAdjustment::before_iteration(EditState& state) const {
-    if (state.iteration % settings_.adjust_every == 0) observe(state);
+    if (state.iteration % plan_.adjust_every == 0) observe(state);
 }
 
 void DirectionAdjustment::finish(EditState& state) const {
@@ -59,8 +58,8 @@ void DirectionAdjustment::observe(EditState& state) const {
     // The first view alone where only people look.
     const std::vector<Camera> cameras(cameras_.begin(),
                                       asks ? cameras_.end() : cameras_.begin() + 1);
-    const at::Tensor pictures = draw_field(scene_, state.field, light_as_it_is(scene_, state),
-                                           cameras, caption_pixels(settings_));
+    const at::Tensor pictures = draw_field(scene_, state.field, current_light(scene_, state),
+                                           cameras, caption_pixels(plan_));
 
     AdjustmentRecord record;
     record.iteration = static_cast<std::int64_t>(state.direction_length.size());
@@ -85,7 +84,7 @@ std::vector<Caption> DirectionAdjustment::follow(EditState& state,
             adjustment.captions_before = scene_.captioner->captions(
                 to_bytes(draw_field(scene_, state.fitted,
                                     state.light ? state.first_light : scene_.lights->front(),
-                                    cameras_, caption_pixels(settings_))),
+                                    cameras_, caption_pixels(plan_))),
                 {});
         captions = scene_.captioner->captions(to_bytes(pictures), {});
     } catch (const Interrupted&) {

@@ -1,9 +1,9 @@
-// Direction adjustment by captions (ITEM3D, section 3.4), and the record of how an edit went.
+// Direction adjustment by captions (ITEM3D, section 3.4), and the record of how an edit goes.
 #pragma once
 
-#include "item3d/edit/edit.h"
-#include "item3d/edit/optimize/adjustment_record.h"
+#include "item3d/edit/request.h"
 #include "item3d/edit/scene.h"
+#include "item3d/edit/state.h"
 #include "item3d/guidance/caption_source.h"
 
 #include <optional>
@@ -11,15 +11,6 @@
 #include <vector>
 
 namespace item3d {
-
-struct EditState;
-
-/// Part of a checkpoint; what it did to the source is in the guidance's own state.
-struct AdjustmentState {
-    std::vector<AdjustmentRecord> records;
-    std::vector<Caption> captions_before;  ///< of the unedited model, one for each view
-    std::string failure;                   ///< why the captioner is not asked any more
-};
 
 /// Every adjust_every iterations: pictures of the field as it is, for the record and, where the
 /// settings say so, for a captioner whose words move the source.
@@ -39,7 +30,7 @@ class DirectionAdjustment {
     std::vector<Caption> follow(EditState& state, const at::Tensor& pictures) const;
     void give_up(AdjustmentState& state, const std::string& reason) const;
 
-    const EditSettings& settings_;
+    const EditPlan& plan_;
     const EditScene& scene_;
     std::vector<Camera> cameras_;
     std::optional<CaptionSource> source_;

@@ -1,9 +1,9 @@
+#include "item3d/edit/optimize/begin.h"
+
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
-#include "item3d/edit/metals.h"
 #include "item3d/edit/optimize/checkpoint_state.h"
-#include "item3d/edit/optimize/optimize.h"
-#include "item3d/edit/outputs/surface_means.h"
+#include "item3d/edit/optimize/render_view.h"
 #include "item3d/field/fit.h"
 #include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
@@ -14,13 +14,11 @@
 namespace item3d {
 namespace {
 
-constexpr int small_prior = 128;  ///< pixels; one that sees fewer says little about a light
-
 // AdamW's settings of the published code (betas 0.9 and 0.99), without weight decay: decay would
 // pull an untouched texture towards grey.
-AdamOptions adam_options(const EditSettings& settings) {
+AdamOptions adam_options(const EditPlan& plan) {
     AdamOptions options;
-    options.learning_rate = settings.learning_rate;
+    options.learning_rate = plan.learning_rate;
     return options;
 }
 
@@ -49,56 +47,48 @@ int finest_texture(const EditScene& scene, int texture_size) {
     return finest;
 }
 
-std::unique_ptr<LightModel> begin_light(const EditScene& scene, const EditSettings& settings) {
+std::unique_ptr<LightModel> begin_light(const EditScene& scene, const EditPlan& plan) {
     LightModelOptions options;
-    options.kind = settings.light_model;
-    if (options.kind == "auto")
-        options.kind = settings.resolution <= small_prior ? "physical" : "texels";
-    if (!settings.light_from.empty())
-        options.from = SkyAngles{settings.light_from[0], settings.light_from[1]};
+    options.kind = plan.light_kind;
+    if (!plan.light_from.empty()) options.from = SkyAngles{plan.light_from[0], plan.light_from[1]};
     options.object_color = surface_means(scene.model, scene.materials).base_color;
-    return make_light_model(load_light(settings.light), options);
+    return make_light_model(load_light(plan.light), options);
 }
 
 /// Makes the field look like the input, with metallic where an edit towards or from metal starts.
-void fit_field(const EditScene& scene, const EditSettings& settings, EditState& state) {
+void fit_field(const EditScene& scene, const EditPlan& plan, EditState& state) {
     FitOptions options;
-    options.steps = settings.fit_steps;
-    options.seed = settings.seed;
+    options.steps = plan.fit_steps;
+    options.seed = plan.seed;
     fit_to_materials(state.field, scene.geometry, *scene.space, *scene.textured, options);
     state.fitted = snapshot(state.field);
-    if (scene.channels.metallic && settings.iterations > 0 &&
-        crosses_metallic(settings.from, settings.to)) {
-        const float start = settings.metallic_start;
-        shift_metallic(state.field, scene.geometry, *scene.space,
-                       names_metal(settings.to) ? start : 1 - start);
-    }
+    if (plan.first_metallic)
+        shift_metallic(state.field, scene.geometry, *scene.space, *plan.first_metallic);
 }
 
 }  // namespace
 
 EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
-    const EditSettings& settings = request.settings;
+    const EditPlan& plan = request.plan;
     EditState state;
     state.field = NeuralTexture(suggest_field_options(
-        scene.geometry, *scene.space, finest_texture(scene, settings.texture_size), settings.seed));
+        scene.geometry, *scene.space, finest_texture(scene, plan.texture_size), plan.seed));
     state.field->to(scene.device);
-    if (edits_texture(settings)) {
-        AdamOptions table_options = adam_options(settings);
-        table_options.row_factors = level_factors(state.field, settings.resolution);
-        state.optimizer.add_group({state.field->table()}, table_options);
-        state.optimizer.add_group(state.field->network_parameters(), adam_options(settings));
+    if (plan.edits_texture) {
+        AdamOptions table_options = adam_options(plan);
+        table_options.row_factors = level_factors(state.field, plan.resolution);
+        state.optimizer.add_group("table", {state.field->table()}, table_options);
+        state.optimizer.add_group("network", state.field->network_parameters(), adam_options(plan));
     }
-    if (edits_light(settings)) {
-        state.light = begin_light(scene, settings);
-        const at::NoGradGuard no_grad;
-        state.first_light = prefilter(state.light->cube(optimized_light_size).to(scene.device));
-        state.optimizer.add_group(state.light->parameters(), adam_options(settings));
+    if (plan.edits_light) {
+        state.light = begin_light(scene, plan);
+        state.first_light = current_light(scene, state);
+        state.optimizer.add_group("light", state.light->parameters(), adam_options(plan));
     }
     state.fitted = snapshot(state.field);
     const auto begin_guidance = [&] {
         state.guidance =
-            make_guidance(scene.prior(), scene.from, scene.to, guidance_options(settings));
+            make_guidance(scene.prior(), scene.from, scene.to, plan.guidance_options());
         state.prior_weights = scene.hashing_weights.get();
     };
 
@@ -106,14 +96,14 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         begin_guidance();
         if (load_state(request, state)) {
             note(fmt::format("resuming after iteration {} of {}", state.iteration,
-                             total_iterations(settings)));
+                             plan.total_iterations));
             return state;
         }
         note("nothing to resume in " + request.output.string() + ": beginning anew");
     }
-    if (edits_texture(settings)) fit_field(scene, settings, state);
+    if (plan.edits_texture) fit_field(scene, plan, state);
     if (!state.guidance) begin_guidance();  // the prior was loaded meanwhile
-    if (edits_texture(settings)) save_state(request, state);
+    if (plan.edits_texture) save_state(request, state);
     return state;
 }
 

@@ -10,11 +10,11 @@ std::filesystem::path checkpoint_path(const EditRequest& request) {
 }
 
 nlohmann::json identity_of(const EditRequest& request, const EditState& state) {
-    nlohmann::json identity = request.settings;
+    nlohmann::json identity = request.plan;
     identity["model"] = hash_of_file(request.model);
     identity["prior_weights"] = state.prior_weights;
     identity["precision"] = request.precision;
-    if (wants_captions(request.settings)) identity["captioner"] = request.captioner.string();
+    if (request.plan.asks_captioner) identity["captioner"] = request.captioner.string();
     return identity;
 }
 
@@ -61,17 +61,15 @@ void save_state(const EditRequest& request, const EditState& state) {
     checkpoint.iteration = state.iteration;
     append_parameters(checkpoint.tensors, "fitted.", state.fitted->named_parameters());
     append_parameters(checkpoint.tensors, "field.", state.field->named_parameters());
-    if (state.light) {
-        for (const at::Tensor& parameter : state.light->parameters())
-            checkpoint.tensors.emplace_back("light", parameter.detach());
-    }
+    if (state.light)
+        append_parameters(checkpoint.tensors, "light.", state.light->named_parameters());
     for (const auto& [name, tensor] : state.optimizer.state()) {
         checkpoint.tensors.emplace_back("optimizer." + name, tensor);
     }
     for (const auto& [name, tensor] : state.guidance->state()) {
         checkpoint.tensors.emplace_back("guidance." + name, tensor);
     }
-    if (!state.detail.before.is_empty()) {
+    if (state.detail.has_begun()) {
         append_parameters(checkpoint.tensors, "detail.before.",
                           state.detail.before->named_parameters());
         for (const auto& [name, tensor] : state.detail.optimizer.state()) {
@@ -97,10 +95,7 @@ bool load_state(const EditRequest& request, EditState& state) {
     const CheckpointReader reader(checkpoint_path(request).string(), checkpoint->tensors);
     reader.parameters("fitted.", state.fitted->named_parameters());
     reader.parameters("field.", state.field->named_parameters());
-    if (state.light) {
-        for (const at::Tensor& parameter : state.light->parameters())
-            reader.copy("light", parameter);
-    }
+    if (state.light) reader.parameters("light.", state.light->named_parameters());
     state.optimizer.load_state(reader.with_prefix("optimizer."));
     NamedTensors guidance;
     for (const auto& [name, tensor] : reader.with_prefix("guidance.")) {
@@ -108,7 +103,7 @@ bool load_state(const EditRequest& request, EditState& state) {
     }
     state.guidance->load_state(guidance);
     if (reader.has("detail.before.table")) {
-        begin_detail(state);
+        state.detail.begin(state.field);
         reader.parameters("detail.before.", state.detail.before->named_parameters());
         state.detail.optimizer.load_state(reader.with_prefix("detail.optimizer."));
         if (reader.has("detail.targets"))

@@ -1,7 +1,8 @@
 // An edit's state to and from its checkpoint.
 #pragma once
 
-#include "item3d/edit/optimize/optimize.h"
+#include "item3d/edit/request.h"
+#include "item3d/edit/state.h"
 
 namespace item3d {
 

@@ -3,36 +3,53 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/edit/optimize/checkpoint_state.h"
+#include "item3d/edit/optimize/render_view.h"
 #include "item3d/guidance/noised_latents.h"
+#include "item3d/io/save.h"
+#include "item3d/render/pictures.h"
 
 namespace item3d {
 namespace {
 
 constexpr double seconds_between_checkpoints = 12;
 constexpr double seconds_between_previews = 5;
+constexpr int preview_size = 256;  ///< pixels
 
 }  // namespace
 
 void interrupt(const EditRequest& request, const EditState& state) {
     save_state(request, state);
     throw Interrupted(fmt::format("iteration {} of {} is kept; go on with: {} --resume",
-                                  state.iteration, total_iterations(request.settings),
-                                  request.command));
+                                  state.iteration, request.plan.total_iterations, request.command));
 }
 
-Safekeeping::Safekeeping(const EditRequest& request, const EditScene& scene)
+Preview::Preview(std::filesystem::path path, const EditScene& scene)
+    : path_(std::move(path)), scene_(scene), cameras_(field_cameras(scene, 3)) {}
+
+void Preview::update(NeuralTexture& field, const EnvironmentLight& light) {
+    if (!enabled_) return;
+    const at::Tensor pictures = draw_field(scene_, field, light, cameras_, preview_size);
+    try {
+        save_image(path_, to_image(at::cat(pictures.unbind(0), 1)));
+    } catch (const Error& error) {
+        warn(std::string("no more previews: ") + error.what());
+        enabled_ = false;
+    }
+}
+
+CheckpointWriter::CheckpointWriter(const EditRequest& request, const EditScene& scene)
     : request_(request),
       scene_(scene),
       preview_(request.output / "preview.png", scene),
       checkpointed_(seconds_now()),
       previewed_(checkpointed_) {}
 
-void Safekeeping::update_preview(EditState& state) {
-    preview_.update(state.field, light_as_it_is(scene_, state));
+void CheckpointWriter::update_preview(EditState& state) {
+    preview_.update(state.field, current_light(scene_, state));
 }
 
-void Safekeeping::after_step(EditState& state, Progress& progress) {
-    const std::int64_t total = total_iterations(request_.settings);
+void CheckpointWriter::after_step(EditState& state, Progress& progress) {
+    const std::int64_t total = request_.plan.total_iterations;
     const bool stop = interrupted() || state.iteration == request_.stop_after;
     if (stop && state.iteration < total) {
         progress.finish();

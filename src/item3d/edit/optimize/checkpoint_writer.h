@@ -2,17 +2,37 @@
 #pragma once
 
 #include "item3d/core/progress.h"
-#include "item3d/edit/optimize/optimize.h"
-#include "item3d/edit/optimize/preview.h"
+#include "item3d/edit/request.h"
+#include "item3d/edit/scene.h"
+#include "item3d/edit/state.h"
+
+#include <filesystem>
+#include <vector>
 
 namespace item3d {
 
 /// Writes the checkpoint and throws Interrupted with the command that goes on.
 [[noreturn]] void interrupt(const EditRequest& request, const EditState& state);
 
-class Safekeeping {
+/// A picture of the edit so far, refreshed in the output folder while it runs.
+class Preview {
   public:
-    Safekeeping(const EditRequest& request, const EditScene& scene);
+    Preview(std::filesystem::path path, const EditScene& scene);
+    /// Draws the field in that light from three sides and replaces the picture. A preview that
+    /// cannot be written is not worth stopping an edit for: it warns once and gives up.
+    void update(NeuralTexture& field, const EnvironmentLight& light);
+
+  private:
+    std::filesystem::path path_;
+    const EditScene& scene_;
+    std::vector<Camera> cameras_;
+    bool enabled_ = true;
+};
+
+/// Writes the checkpoint, and refreshes the preview, every few seconds.
+class CheckpointWriter {
+  public:
+    CheckpointWriter(const EditRequest& request, const EditScene& scene);
     /// Call after each step. Throws Interrupted, with the checkpoint written, after Ctrl-C or at
     /// the request's stop_after unless the edit is done by then.
     void after_step(EditState& state, Progress& progress);

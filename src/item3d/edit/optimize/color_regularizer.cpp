@@ -15,7 +15,6 @@ constexpr float blotch = 0.25f;
 constexpr int refits = 3;
 /// Keeps the slopes of a surface without contrast at nothing; that of spots is 0.1 and more.
 constexpr float least_variance = 0.01f;
-constexpr std::uint64_t point_stream = 9;  // of the edit's seed; others are in views.cpp
 
 }  // namespace
 
@@ -37,11 +36,12 @@ Departures departures(const at::Tensor& change, const at::Tensor& color, float s
     return found;
 }
 
-Evenness::Evenness(const EditScene& scene, const EditSettings& settings, const EditState& state) {
-    if (settings.evenness == 0 || !edits_texture(settings) || names_detail(settings)) return;
+ColorRegularizer::ColorRegularizer(const EditScene& scene, const EditPlan& plan,
+                                   const EditState& state) {
+    if (!plan.regularizes_color) return;
     const at::NoGradGuard no_grad;
-    weight_ = settings.evenness;
-    Random random(settings.seed, point_stream);
+    weight_ = plan.evenness;
+    Random random(plan.seed, RandomStream::color_points);
     const Surface surface =
         SurfaceSampler(scene.geometry, *scene.space).sample(draws * points, random);
     const at::Tensor positions = scene.space->positions(surface);
@@ -51,14 +51,14 @@ Evenness::Evenness(const EditScene& scene, const EditSettings& settings, const E
     };
     positions_ = deal(positions);
     fitted_ = deal(NeuralTexture(state.fitted)->encoded(positions));
-    const float base_color = scene.channels.base_color ? 1 : 0;
-    channels_ = at::tensor({base_color, base_color, base_color, 0.0f,
-                            scene.channels.roughness ? 1.0f : 0.0f,
-                            scene.channels.metallic ? 1.0f : 0.0f, 0.0f, 0.0f})
-                    .to(scene.device);
+    const float base_color = plan.channels.base_color ? 1 : 0;
+    channels_ =
+        at::tensor({base_color, base_color, base_color, 0.0f, plan.channels.roughness ? 1.0f : 0.0f,
+                    plan.channels.metallic ? 1.0f : 0.0f, 0.0f, 0.0f})
+            .to(scene.device);
 }
 
-void Evenness::backward(EditState& state) const {
+void ColorRegularizer::backward(EditState& state) const {
     if (weight_ == 0) return;
     const std::int64_t draw = state.iteration % draws;
     const at::Tensor before = fitted_[draw];

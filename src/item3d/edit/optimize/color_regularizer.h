@@ -1,7 +1,8 @@
 // Where a sentence names nothing that has a pattern, blotches are noise that guidance left behind.
 #pragma once
 
-#include "item3d/edit/optimize/optimize.h"
+#include "item3d/edit/scene.h"
+#include "item3d/edit/state.h"
 #include "item3d/tensors/tensor.h"
 
 namespace item3d {
@@ -11,10 +12,11 @@ namespace item3d {
 /// spots and stripes stay to be seen. What departs from the best such function is pulled back, the
 /// less the further it is away (the weights of Geman and McClure), because a part that guidance
 /// keeps apart, as a handle of another colour, is no blotch.
-class Evenness {
+class ColorRegularizer {
   public:
-    /// Does nothing where the settings' `evenness` is 0 or the target names detail, names_detail().
-    Evenness(const EditScene& scene, const EditSettings& settings, const EditState& state);
+    /// Does nothing unless plan.regularizes_color: where `evenness` is 0 or the target names
+    /// detail.
+    ColorRegularizer(const EditScene& scene, const EditPlan& plan, const EditState& state);
 
     /// Adds its gradient to the field's. A function of the field and the iteration alone.
     void backward(EditState& state) const;
@@ -32,7 +34,7 @@ struct Departures {
 };
 
 /// `change` [P, C] without its best affine function of `color` [P, 3]. Points that depart by much
-/// more than `scale` hardly count. For Evenness and its tests.
+/// more than `scale` hardly count. For ColorRegularizer and its tests.
 Departures departures(const at::Tensor& change, const at::Tensor& color, float scale);
 
 }  // namespace item3d

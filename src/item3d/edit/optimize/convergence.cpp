@@ -25,7 +25,7 @@ double mean(const std::vector<float>& values, std::int64_t begin, std::int64_t e
 
 }  // namespace
 
-std::optional<std::int64_t> settled_at(const std::vector<float>& lengths, double part) {
+std::optional<std::int64_t> converged_at(const std::vector<float>& lengths, double part) {
     const auto count = static_cast<std::int64_t>(lengths.size());
     if (part <= 0 || count < least_iterations) return std::nullopt;
     const double bound = part * mean(lengths, 0, window);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int warm_up_iterations = 10;
 constexpr float final_learning_rate = 0.1f;  ///< as a part of the first
-constexpr std::int64_t cool_down = 20;       ///< iterations that a settled edit still takes
+constexpr std::int64_t cool_down = 20;       ///< iterations after an edit has converged
 
 /// Warm-up, then a cosine down to a tenth.
 float scheduled_learning_rate(std::int64_t iteration, std::int64_t iterations) {
@@ -29,76 +29,81 @@ float scheduled_learning_rate(std::int64_t iteration, std::int64_t iterations) {
     return warm_up * (final_learning_rate + (1 - final_learning_rate) * cosine);
 }
 
-/// When the edit settled, if it has. Schedules in which noise levels fall change the direction's
+/// When the edit converged, if it has. Schedules in which noise levels fall change the direction's
 /// length by themselves.
-std::optional<std::int64_t> settled(const EditSettings& settings, const EditState& state) {
-    if (settings.timestep_schedule != "uniform") return std::nullopt;
-    return settled_at(state.direction_length, settings.settle);
+std::optional<std::int64_t> converged(const EditPlan& plan, const EditState& state) {
+    if (plan.timestep_schedule != TimestepSchedule::uniform) return std::nullopt;
+    return converged_at(state.direction_length, plan.settle);
 }
 
 /// As a part of the settings' learning rate: a function of the iteration and of when the edit
-/// settled, so that a resumed run follows the same path. What has settled comes to rest as it would
-/// have at the end: steps as large as in the middle leave noise.
-float learning_rate_factor(const EditSettings& settings, const EditState& state) {
-    const float scheduled = scheduled_learning_rate(state.iteration, settings.iterations);
-    const auto since = settled(settings, state);
+/// converged, so that a resumed run follows the same path. It then comes to rest as it would have
+/// at the end: steps as large as in the middle leave noise.
+float learning_rate_factor(const EditPlan& plan, const EditState& state) {
+    const float scheduled = scheduled_learning_rate(state.iteration, plan.iterations);
+    const auto since = converged(plan, state);
     if (!since) return scheduled;
     const float part = static_cast<float>(state.iteration - *since) / cool_down;
     return scheduled + part * (final_learning_rate - scheduled);
 }
 
-/// Counts as done what a settled edit is spared.
-void end_where_settled(const EditSettings& settings, EditState& state) {
-    const auto since = settled(settings, state);
-    if (!since || state.iteration < *since + cool_down || state.iteration >= settings.iterations)
+/// Counts as done what an edit that has converged is spared.
+void end_where_converged(const EditPlan& plan, EditState& state) {
+    const auto since = converged(plan, state);
+    if (!since || state.iteration < *since + cool_down || state.iteration >= plan.iterations)
         return;
-    note(fmt::format("settled after {} of {} iterations", state.iteration, settings.iterations));
-    state.iteration = settings.iterations;
+    note(fmt::format("settled after {} of {} iterations", state.iteration, plan.iterations));
+    state.iteration = plan.iterations;
 }
 
 /// What guidance looks at. The unedited model is the field as it was fitted, so that a render that
 /// has not been edited yet equals its reference.
-GuidanceInput look(const EditScene& scene, const EditSettings& settings, EditState& state) {
-    const SeenModel seen =
-        see_model(scene, settings,
-                  sample_cameras(scene.sphere, settings.batch, settings.seed, state.iteration));
+GuidanceInput render_guidance_input(const EditScene& scene, const EditPlan& plan,
+                                    EditState& state) {
+    const GBuffer gbuffer = rasterize_views(
+        scene, plan, sample_cameras(scene.sphere, plan.batch, plan.seed, state.iteration));
     ViewOptions options{state.iteration};
     EnvironmentLight light;
     if (state.light) {
-        light = prefilter(state.light->cube(optimized_light_size).to(scene.device));
+        light = prefilter_light(scene, *state.light);
         options.light = &light;
     }
-    GuidanceInput input{render_view(scene, settings, state.field, seen, options).images,
-                        seen.shape};
+    GuidanceInput input{render_view(scene, plan, state.field, gbuffer, options).images,
+                        gbuffer.shape};
     if (state.guidance->needs_reference()) {
         const at::NoGradGuard no_grad;
         if (state.light) options.light = &state.first_light;
-        input.reference = render_view(scene, settings, state.fitted, seen, options).images;
+        input.reference = render_view(scene, plan, state.fitted, gbuffer, options).images;
     }
     return input;
 }
 
-void run_iteration(const EditScene& scene, const EditSettings& settings, const Evenness& evenness,
-                   EditState& state, IterationTimes& times) {
+void set_learning_rates(const EditPlan& plan, EditState& state) {
+    const float factor = learning_rate_factor(plan, state);
+    if (plan.edits_texture)
+        for (const char* group : {"table", "network"})
+            state.optimizer.options(group).learning_rate = factor * plan.learning_rate;
+    if (plan.edits_light)
+        state.optimizer.options("light").learning_rate = factor * plan.light_learning_rate;
+}
+
+void run_iteration(const EditScene& scene, const EditPlan& plan,
+                   const ColorRegularizer& color_regularizer, EditState& state,
+                   IterationTimes& times) {
     const double start = seconds_now();
-    const GuidanceInput input = look(scene, settings, state);
+    const GuidanceInput input = render_guidance_input(scene, plan, state);
     const double rendered = seconds_now();
     const GuidanceOutput guidance = state.guidance->step(input, state.iteration);
     const double guided = seconds_now();
 
     // A single bad prediction (an overflow in bf16) must not destroy the field.
     const at::Tensor gradient = at::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
-    guidance.latents.backward(gradient / settings.batch);
-    evenness.backward(state);
+    guidance.latents.backward(gradient / plan.batch);
+    color_regularizer.backward(state);
     if (state.light) state.light->regularization().backward();
     const double back = seconds_now();
 
-    const float factor = learning_rate_factor(settings, state);
-    for (std::size_t group = 0; group < state.optimizer.group_count(); ++group) {
-        const bool is_light = state.light && group + 1 == state.optimizer.group_count();
-        state.optimizer.options(group).learning_rate =
-            factor * (is_light ? settings.light_learning_rate : settings.learning_rate);
-    }
+    set_learning_rates(plan, state);
     state.optimizer.step();
     state.optimizer.zero_grad();
 
@@ -116,21 +121,11 @@ void run_iteration(const EditScene& scene, const EditSettings& settings, const E
 
 }  // namespace
 
-EnvironmentLight light_as_it_is(const EditScene& scene, const EditState& state) {
-    if (!state.light) return scene.lights->front();
-    const at::NoGradGuard no_grad;
-    return prefilter(state.light->cube(optimized_light_size).to(scene.device));
-}
-
-std::int64_t total_iterations(const EditSettings& settings) {
-    return settings.iterations + (wants_detail(settings) ? settings.detail_views : 0);
-}
-
 IterationTimes optimize(const EditRequest& request, const EditScene& scene, EditState& state) {
-    const EditSettings& settings = request.settings;
+    const EditPlan& plan = request.plan;
     IterationTimes times;
     const DirectionAdjustment adjustment(request, scene);
-    const Evenness evenness(scene, settings, state);
+    const ColorRegularizer color_regularizer(scene, plan, state);
     const auto adjust = [&](const auto& step) {
         const double start = seconds_now();
         try {
@@ -140,16 +135,16 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
         }
         times.adjust += seconds_now() - start;
     };
-    if (state.iteration < settings.iterations) {
-        Progress progress("edit", settings.iterations, state.iteration);
-        Safekeeping safekeeping(request, scene);
-        while (state.iteration < settings.iterations) {
+    if (state.iteration < plan.iterations) {
+        Progress progress("edit", plan.iterations, state.iteration);
+        CheckpointWriter checkpoints(request, scene);
+        while (state.iteration < plan.iterations) {
             adjust([&] { adjustment.before_iteration(state); });
-            run_iteration(scene, settings, evenness, state, times);
-            end_where_settled(settings, state);
+            run_iteration(scene, plan, color_regularizer, state, times);
+            end_where_converged(plan, state);
             progress.update(state.iteration,
                             fmt::format("direction {:.3f}", state.direction_length.back()));
-            safekeeping.after_step(state, progress);
+            checkpoints.after_step(state, progress);
         }
     }
     adjust([&] { adjustment.finish(state); });

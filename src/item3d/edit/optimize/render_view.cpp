@@ -3,6 +3,7 @@
 #include "item3d/core/random.h"
 #include "item3d/render/antialias.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 #include "item3d/render/scatter.h"
 
 #include <ATen/CPUGeneratorImpl.h>
@@ -10,19 +11,14 @@
 namespace item3d {
 namespace {
 
-constexpr std::uint64_t spread_stream = 6;  // of the edit's seed; others are in views.cpp
+constexpr int optimized_light_size = 32;  ///< edge of the cube that a light is optimised on
+constexpr float background_gray = 0.75f;  ///< linear
 
-/// Small pictures are drawn at twice their size and averaged, as the embedded prior's training
-/// pictures were; large ones get their edges from antialias().
-int supersampling(int resolution) {
-    return resolution <= 128 ? 2 : 1;
-}
-
-at::Tensor offsets(const at::Tensor& positions, const EditScene& scene,
-                   const EditSettings& settings, const ViewOptions& options) {
-    Random random(settings.seed, spread_stream, options.spread_draw);
+at::Tensor offsets(const at::Tensor& positions, const EditScene& scene, const EditPlan& plan,
+                   const ViewOptions& options) {
+    Random random(plan.seed, RandomStream::spread, options.spread_draw);
     auto generator = at::detail::createCPUGenerator(random.bits());
-    const float pixel = 2 * scene.sphere.radius / static_cast<float>(settings.resolution);
+    const float pixel = 2 * scene.sphere.radius / static_cast<float>(plan.resolution);
     const at::Tensor directions = at::randn(positions.sizes(), generator, at::kFloat);
     return options.spread * pixel * directions.to(positions.device());
 }
@@ -41,27 +37,26 @@ SeenShape seen_shape(const Raster& raster, const Surface& surface, const Boundin
             pixels(surface.normal)};
 }
 
-SeenModel see_model(const EditScene& scene, const EditSettings& settings,
-                    const std::vector<Camera>& cameras) {
-    const int size = settings.resolution * supersampling(settings.resolution);
-    SeenModel seen;
-    seen.raster = rasterize(scene.geometry, cameras, size, size);
-    seen.surface = interpolate_surface(scene.geometry, seen.raster, cameras);
-    seen.shape = seen_shape(seen.raster, seen.surface, scene.sphere);
-    seen.own = scene.source->own(seen.surface);
-    return seen;
+GBuffer rasterize_views(const EditScene& scene, const EditPlan& plan,
+                        const std::vector<Camera>& cameras) {
+    const int size = plan.resolution * plan.supersampling;
+    GBuffer gbuffer;
+    gbuffer.raster = rasterize(scene.geometry, cameras, size, size);
+    gbuffer.surface = interpolate_surface(scene.geometry, gbuffer.raster, cameras);
+    gbuffer.shape = seen_shape(gbuffer.raster, gbuffer.surface, scene.sphere);
+    gbuffer.own = scene.source->own(gbuffer.surface);
+    return gbuffer;
 }
 
-EditView render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
-                     const SeenModel& seen, const ViewOptions& options) {
-    const auto& [raster, surface, shape, own] = seen;
+EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture& field,
+                     const GBuffer& gbuffer, const ViewOptions& options) {
+    const auto& [raster, surface, shape, own] = gbuffer;
     const EnvironmentLight light =
-        options.light ? *options.light : scene.lights->pick(settings.seed, options.iteration);
+        options.light ? *options.light : scene.lights->pick(plan.seed, options.iteration);
     EditView view;
     view.surface = surface;
     if (options.spread > 0) {
-        view.surface.position =
-            surface.position + offsets(surface.position, scene, settings, options);
+        view.surface.position = surface.position + offsets(surface.position, scene, plan, options);
     }
     view.material = scene.source->sample(view.surface, field, own);
     at::Tensor radiance = shade(surface, view.material, light);
@@ -69,12 +64,12 @@ EditView render_view(const EditScene& scene, const EditSettings& settings, Neura
 
     const int views = raster.views(), size = raster.width();
     const at::Tensor background =
-        sample_backgrounds(settings.background, views, settings.seed, options.iteration)
+        sample_backgrounds(plan.background, views, plan.seed, options.iteration)
             .to(scene.device)
             .view({views, 1, 1, 3})
             .expand({views, size, size, 3});
     at::Tensor picture = scatter(radiance, surface, raster, background);
-    const int scale = size / settings.resolution;
+    const int scale = plan.supersampling;
     if (scale == 1) picture = antialias(picture, raster, scene.geometry);
     view.images = linear_to_srgb(picture.clamp(0, 1)).permute({0, 3, 1, 2});
     view.coverage = (raster.triangle >= 0).to(at::kFloat).unsqueeze(1);
@@ -83,6 +78,33 @@ EditView render_view(const EditScene& scene, const EditSettings& settings, Neura
         view.coverage = at::avg_pool2d(view.coverage, scale);
     }
     return view;
+}
+
+EnvironmentLight prefilter_light(const EditScene& scene, const LightModel& light) {
+    return prefilter(light.cube(optimized_light_size).to(scene.device));
+}
+
+EnvironmentLight current_light(const EditScene& scene, const EditState& state) {
+    if (!state.light) return scene.lights->front();
+    const at::NoGradGuard no_grad;
+    return prefilter_light(scene, *state.light);
+}
+
+std::vector<Camera> field_cameras(const EditScene& scene, int count) {
+    return turntable(scene.model.bounds(), count, 0.35f, 0.6f);
+}
+
+at::Tensor draw_field(const EditScene& scene, NeuralTexture& field, const EnvironmentLight& light,
+                      const std::vector<Camera>& cameras, int size) {
+    const at::NoGradGuard no_grad;
+    const Raster raster = rasterize(scene.geometry, cameras, size, size);
+    const Surface surface = interpolate_surface(scene.geometry, raster, cameras);
+    const MaterialSample material =
+        scene.source->sample(surface, field, scene.source->own(surface));
+    const at::Tensor background = at::full({3}, background_gray, scene.device);
+    const at::Tensor pictures =
+        scatter(shade(surface, material, light), surface, raster, background);
+    return linear_to_srgb(antialias(pictures, raster, scene.geometry).clamp(0, 1));
 }
 
 }  // namespace item3d

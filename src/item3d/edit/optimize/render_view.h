@@ -1,7 +1,9 @@
-// What the prior is shown: the model with the neural texture, from the cameras of an iteration.
+// Pictures of the model with its neural texture: for the prior, from the cameras of an iteration,
+// and for people and captioners.
 #pragma once
 
 #include "item3d/edit/scene.h"
+#include "item3d/edit/state.h"
 #include "item3d/networks/diffusion/shape_condition.h"
 #include "item3d/tensors/tensor.h"
 
@@ -11,15 +13,15 @@
 namespace item3d {
 
 /// What N views show whatever the field holds, on R' x R' pixels: R or finer.
-struct SeenModel {
+struct GBuffer {
     Raster raster;
     Surface surface;
     SeenShape shape;
     MaterialSample own;  ///< the model's own materials
 };
 
-SeenModel see_model(const EditScene& scene, const EditSettings& settings,
-                    const std::vector<Camera>& cameras);
+GBuffer rasterize_views(const EditScene& scene, const EditPlan& plan,
+                        const std::vector<Camera>& cameras);
 
 struct EditView {
     at::Tensor images;        ///< [N, 3, R, R] sRGB, differentiable in the field
@@ -40,7 +42,21 @@ struct ViewOptions {
 /// What these views show of the model in `sphere`.
 SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere);
 
-EditView render_view(const EditScene& scene, const EditSettings& settings, NeuralTexture& field,
-                     const SeenModel& seen, const ViewOptions& options);
+EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture& field,
+                     const GBuffer& gbuffer, const ViewOptions& options);
+
+/// A light that is optimised, as the renderer takes it; differentiable in its parameters.
+EnvironmentLight prefilter_light(const EditScene& scene, const LightModel& light);
+
+/// What the model stands in now: the light that is optimised, or the first of the scene's. No
+/// graph.
+EnvironmentLight current_light(const EditScene& scene, const EditState& state);
+
+/// `count` cameras around the model, a little above it.
+std::vector<Camera> field_cameras(const EditScene& scene, int count);
+
+/// The field as it is: [N, size, size, 3] sRGB in [0, 1], a light grey behind. No graph.
+at::Tensor draw_field(const EditScene& scene, NeuralTexture& field, const EnvironmentLight& light,
+                      const std::vector<Camera>& cameras, int size);
 
 }  // namespace item3d

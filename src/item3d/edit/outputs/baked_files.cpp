@@ -1,5 +1,6 @@
+#include "item3d/edit/outputs/baked_files.h"
+
 #include "item3d/core/files.h"
-#include "item3d/edit/outputs/outputs.h"
 #include "item3d/field/bake/bake.h"
 #include "item3d/io/gltf/light.h"
 #include "item3d/io/load.h"
@@ -48,9 +49,10 @@ constexpr int light_height = 256;
 
 EditedModel bake_textures(const EditRequest& request, const EditScene& scene, EditState& state) {
     BakeOptions options;
-    options.texture_size = request.settings.texture_size;
-    options.channels = {scene.channels.base_color, scene.channels.occlusion,
-                        scene.channels.roughness, scene.channels.metallic, scene.channels.normal};
+    options.texture_size = request.plan.texture_size;
+    const ChannelMask& channels = request.plan.channels;
+    options.channels = {channels.base_color, channels.occlusion, channels.roughness,
+                        channels.metallic, channels.normal};
     const BakeScene bake_scene{scene.model, scene.geometry, *scene.textured, *scene.space,
                                scene.atlas};
     const ModelEdit edit = bake(bake_scene, state.fitted, state.field, options);
@@ -80,7 +82,7 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state) {
     const at::NoGradGuard no_grad;
     EditedModel edited;
-    if (edits_texture(request.settings)) {
+    if (request.plan.edits_texture) {
         edited = bake_textures(request, scene, state);
     } else {
         save_lit_model(request.output / "model.glb", scene.model);

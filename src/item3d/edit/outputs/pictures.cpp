@@ -1,10 +1,11 @@
-#include "item3d/render/pictures.h"
+#include "item3d/edit/outputs/pictures.h"
 
 #include "item3d/core/files.h"
-#include "item3d/edit/outputs/outputs.h"
+#include "item3d/edit/material_source.h"
 #include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
+#include "item3d/render/pictures.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
 #include "item3d/report/model_pictures.h"
@@ -47,7 +48,7 @@ std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
 
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
                          const EditedModel& edited, const std::optional<Clip>& clip) {
-    const EnvironmentLight light = prefilter(load_light(request.settings.light), 256, scene.device);
+    const EnvironmentLight light = prefilter(load_light(request.plan.light), 256, scene.device);
     const int view_pixels = request.picture_pixels;
     const auto cameras = picture_cameras(scene.model, view_count);
     const at::Tensor before = draw_pictures(scene.model, light, cameras, view_pixels);
@@ -59,8 +60,8 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     Pictures pictures;
     const auto before_pictures = to_pictures(before);
     const auto after_pictures = to_pictures(after);
-    save_sheet(request.output / "before.png", before_pictures, request.settings.from);
-    save_sheet(request.output / "after.png", after_pictures, request.settings.to);
+    save_sheet(request.output / "before.png", before_pictures, request.plan.from);
+    save_sheet(request.output / "after.png", after_pictures, request.plan.to);
     pictures.before = to_report(before_pictures);
     pictures.after = to_report(after_pictures);
 
@@ -69,15 +70,15 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
         const at::Tensor frame = drawing.draw({camera}, view_pixels * 3 / 4);
         frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
     }
-    pictures.turntable = {request.settings.to, encode_animation(frames)};
+    pictures.turntable = {request.plan.to, encode_animation(frames)};
     write_atomically(request.output / "turntable.webp", pictures.turntable.bytes);
 
     pictures.means_before = surface_means(scene.model, scene.materials);
     pictures.means_after = surface_means(edited.model, scene.materials);
     pictures.detail_kept = detail_kept(before, after);
     if (clip)
-        pictures.clip = clip_scores(*clip, over_white(before), over_white(after),
-                                    request.settings.from, request.settings.to);
+        pictures.clip = clip_scores(*clip, over_white(before), over_white(after), request.plan.from,
+                                    request.plan.to);
     return pictures;
 }
 

@@ -1,9 +1,11 @@
+#include "item3d/edit/outputs/summary.h"
+
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/version.h"
-#include "item3d/edit/outputs/outputs.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 #include "item3d/report/animation.h"
 #include "item3d/tensors/precision.h"
 #include "item3d/tensors/tensor.h"
@@ -48,7 +50,7 @@ json iteration_json(const IterationTimes& times) {
 
 json adjustment_json(const EditRequest& request, const AdjustmentState& adjustment) {
     json result = {{"records", adjustment.records}};
-    if (wants_captions(request.settings)) {
+    if (request.plan.asks_captioner) {
         result["captioner"] = request.captioner.string();
         json before = json::array();
         for (const Caption& caption : adjustment.captions_before)
@@ -62,7 +64,7 @@ json adjustment_json(const EditRequest& request, const AdjustmentState& adjustme
 json summary_json(const EditRequest& request, const EditScene& scene, const EditState& state,
                   const StageTimes& times, const IterationTimes& iteration_times,
                   const Pictures& pictures) {
-    const EditSettings& settings = request.settings;
+    const EditPlan& plan = request.plan;
     json remade = json::object();
     for (const auto& [material, reason] : scene.atlas.remade) {
         remade[scene.model.materials[static_cast<std::size_t>(material)].name] = reason;
@@ -70,19 +72,19 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
     json summary = {{"version", version()},
                     {"command", request.command},
                     {"model", request.model.string()},
-                    {"from", settings.from},
-                    {"to", settings.to},
+                    {"from", plan.from},
+                    {"to", plan.to},
                     {"read_as", {{"from", scene.from}, {"to", scene.to}}},
                     {"prior", request.prior.string()},
-                    {"guidance", settings.guidance},
-                    {"seed", settings.seed},
+                    {"guidance", plan.guidance},
+                    {"seed", plan.seed},
                     {"device", scene.device.is_cuda() ? "cuda" : "cpu"},
                     {"precision", precision_name(scene.precision)},
                     {"threads", at::get_num_threads()},
-                    {"iterations", settings.iterations},
+                    {"iterations", plan.iterations},
                     {"iterations_done", state.direction_length.size()},
                     {"adjustment", adjustment_json(request, state.adjustment)},
-                    {"settings", settings},
+                    {"settings", plan},
                     {"new_uv_maps", remade},
                     {"scores",
                      {{"detail_kept", pictures.detail_kept},
@@ -136,17 +138,17 @@ std::string timeline_note(const EditState& state) {
     return text + ".";
 }
 
-std::vector<Chart> charts_of(const EditSettings& settings, const EditState& state) {
+std::vector<Chart> charts_of(const EditPlan& plan, const EditState& state) {
     if (state.direction_length.empty()) return {};
     std::vector<Chart> charts;
-    charts.push_back(
-        {settings.guidance == "sds" ? "Length of the score" : "Length of the direction",
-         "iteration",
-         {curve_of("direction", state.direction_length)},
-         true});
+    charts.push_back({plan.guidance == "sds" ? "Length of the score" : "Length of the direction",
+                      "iteration",
+                      {curve_of("direction", state.direction_length)},
+                      true});
     if (state.guidance->text_direction()) {
-        charts.push_back({settings.adjust == "off" ? "Denoising loss of the source sentence"
-                                                   : "Denoising loss of the source as it follows",
+        charts.push_back({plan.adjust == Adjustment::off
+                              ? "Denoising loss of the source sentence"
+                              : "Denoising loss of the source as it follows",
                           "iteration",
                           {curve_of("loss", state.source_loss)},
                           true});
@@ -183,20 +185,7 @@ std::vector<TimelineEntry> timeline_of(const std::vector<AdjustmentRecord>& reco
     return timeline;
 }
 
-/// As people write it: 0.06 and not all digits of the nearest float, lists without brackets.
-std::string readable(const json& value) {
-    if (value.is_number_float()) return fmt::format("{}", value.get<float>());
-    if (value.is_array()) {
-        std::string list;
-        for (const json& each : value)
-            list += (list.empty() ? "" : ", ") + readable(each);
-        return list.empty() ? "none" : list;
-    }
-    if (!value.is_string()) return value.dump();
-    return value.get<std::string>().empty() ? "none" : value.get<std::string>();
-}
-
-TableRows settings_table(const json& summary) {
+TableRows settings_rows(const json& summary) {
     TableRows rows;
     for (const auto& [key, value] : summary["settings"].items()) {
         // No list of materials means that all of them may change.
@@ -220,11 +209,11 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
 
     EditReport report;
     report.model = request.model.filename().string();
-    report.from = request.settings.from;
-    report.to = request.settings.to;
-    if (state.direction_length.size() < static_cast<std::size_t>(request.settings.iterations))
+    report.from = request.plan.from;
+    report.to = request.plan.to;
+    if (state.direction_length.size() < static_cast<std::size_t>(request.plan.iterations))
         report.summary = fmt::format("Settled after {} of {} iterations.",
-                                     state.direction_length.size(), request.settings.iterations);
+                                     state.direction_length.size(), request.plan.iterations);
     report.before = pictures.before;
     report.after = pictures.after;
     report.turntable = pictures.turntable;
@@ -232,8 +221,8 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     report.scores = scores_of(pictures);
     report.timeline = timeline_of(state.adjustment.records);
     report.timeline_note = timeline_note(state);
-    report.charts = charts_of(request.settings, state);
-    report.settings = settings_table(summary);
+    report.charts = charts_of(request.plan, state);
+    report.settings = settings_rows(summary);
     report.seconds = times.stages();
     for (const auto& [material, reason] : scene.atlas.remade) {
         report.warnings.push_back("Material " +

@@ -40,7 +40,7 @@ int by_width(const HashGridParameters& p, std::int64_t count, Stream stream,
     }
 
 ITEM3D_HASH_GRID_KERNELS(HASH_GRID_DEFINITION)
-ITEM3D_OPTIMIZER_KERNELS(ITEM3D_KERNEL_DEFINITION)
+ITEM3D_PLAIN_KERNELS(ITEM3D_KERNEL_DEFINITION)
 
 constexpr FieldTable table{.header = {table_version, sizeof(FieldTable)},
                            ITEM3D_FIELD_KERNELS(ITEM3D_KERNEL_INITIALIZER)};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/field/kernels/adam.h"
+#include "item3d/field/kernels/bounded.h"
 #include "item3d/field/kernels/hash_grid.h"
 #include "item3d/render/cuda/table.h"
 
@@ -16,13 +17,16 @@ namespace item3d::cuda {
     X(hash_grid_table_backward, HashGridParameters, item3d::hash_grid_table_backward<F>(p, i),   \
       "hash_grid_table_backward")
 
-/// The others. adam_step takes a count of the gradient's rows.
-#define ITEM3D_OPTIMIZER_KERNELS(X) X(adam_step, AdamParameters, adam_step_row(p, i), "adam_step")
+/// The others. adam_step takes a count of the gradient's rows, the activation one of values.
+#define ITEM3D_PLAIN_KERNELS(X)                                             \
+    X(adam_step, AdamParameters, adam_step_row(p, i), "adam_step")          \
+    X(bounded, BoundedParameters, item3d::bounded_forward(p, i), "bounded") \
+    X(bounded_backward, BoundedParameters, item3d::bounded_backward(p, i), "bounded backward")
 
 /// All of them, in the order of FieldTable.
 #define ITEM3D_FIELD_KERNELS(X) \
     ITEM3D_HASH_GRID_KERNELS(X) \
-    ITEM3D_OPTIMIZER_KERNELS(X)
+    ITEM3D_PLAIN_KERNELS(X)
 
 struct FieldTable {
     TableHeader header;

@@ -1,5 +1,10 @@
 #include "item3d/kernels/cpu/dispatch.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <string_view>
+
 #if defined(__x86_64__)
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -8,13 +13,29 @@
 namespace item3d {
 
 #if defined(__x86_64__)
+namespace {
+
+constexpr std::array<std::string_view, 5> levels{"none", "avx2", "avx512", "bf16", "amx"};
+
+/// Whether kernels of this level may run: ITEM3D_CPU, where it names a level, is the highest.
+bool is_allowed(std::string_view level) {
+    static const auto highest = [] {
+        const char* wanted = std::getenv("ITEM3D_CPU");
+        const auto found = std::find(levels.begin(), levels.end(), wanted ? wanted : "amx");
+        return found == levels.end() ? levels.end() - 1 : found;
+    }();
+    return std::find(levels.begin(), levels.end(), level) <= highest;
+}
+
+}  // namespace
 
 template <>
 Instructions instructions_for<float>() {
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+    if (is_allowed("avx512") && __builtin_cpu_supports("avx512f") &&
+        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512dq"))
         return Instructions::avx512;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+    if (is_allowed("avx2") && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
         __builtin_cpu_supports("f16c"))
         return Instructions::avx2;
     return Instructions::none;
@@ -22,14 +43,16 @@ Instructions instructions_for<float>() {
 
 template <>
 Instructions instructions_for<BrainFloat>() {
-    return instructions_for<float>() == Instructions::avx512 && __builtin_cpu_supports("avx512bf16")
+    return is_allowed("bf16") && instructions_for<float>() == Instructions::avx512 &&
+                   __builtin_cpu_supports("avx512bf16")
                ? Instructions::avx512
                : Instructions::none;
 }
 
 bool matrix_units_run() {
     static const bool runs = [] {
-        const bool there = instructions_for<BrainFloat>() == Instructions::avx512 &&
+        const bool there = is_allowed("amx") &&
+                           instructions_for<BrainFloat>() == Instructions::avx512 &&
                            __builtin_cpu_supports("amx-tile") && __builtin_cpu_supports("amx-bf16");
         // Linux saves the tiles of programs that ask for them: ARCH_REQ_XCOMP_PERM, XTILEDATA.
         return there && ::syscall(SYS_arch_prctl, 0x1023, 18) == 0;

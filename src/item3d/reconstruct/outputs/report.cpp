@@ -5,6 +5,7 @@
 #include "item3d/lighting/environment.h"
 #include "item3d/reconstruct/outputs/camera_plot.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/html.h"
 #include "item3d/report/html_chart.h"

@@ -4,6 +4,7 @@
 #include "item3d/core/parallel.h"
 #include "item3d/metrics/image_quality.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 #include "item3d/render/render.h"
 
 #include <algorithm>

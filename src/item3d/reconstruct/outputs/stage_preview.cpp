@@ -4,6 +4,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/io/save.h"
 #include "item3d/render/pictures.h"
+#include "item3d/render/srgb.h"
 #include "item3d/render/scatter.h"
 
 #include <algorithm>

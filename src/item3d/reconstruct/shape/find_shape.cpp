@@ -97,12 +97,14 @@ void ShapeSearch::begin_level(int level, const at::Tensor& start) {
     level_ = level;
     field_ = std::make_unique<ShapeField>(lattice_, options_.extraction, start);
     const int first = level > 0 ? end_of_level(level - 1) : 0;
-    learning_.random = Random(options_.seed, RandomStream::shape, static_cast<std::uint64_t>(first) << 32);
+    learning_.random =
+        Random(options_.seed, RandomStream::shape, static_cast<std::uint64_t>(first) << 32);
     learning_.optimizer = {};
     Adam& adam = learning_.optimizer;
     adam.add_group("table", {appearance_.field->table()}, {.learning_rate = 0.01});
     adam.add_group("network", appearance_.field->network_parameters(), {.learning_rate = 0.005});
-    adam.add_group("light", appearance_.light.parameters(), {.learning_rate = 0.05, .beta2 = 0.999});
+    adam.add_group("light", appearance_.light.parameters(),
+                   {.learning_rate = 0.05, .beta2 = 0.999});
     adam.add_group("values", {field_->values},
                    {.learning_rate = options_.value_learning_rate, .beta2 = 0.999});
     adam.add_group("offsets", {field_->offsets},

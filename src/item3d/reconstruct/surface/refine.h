@@ -73,8 +73,8 @@ class Refinement : public Stage {
     std::vector<TargetView> views_;
     RefineOptions options_;
     std::map<std::string, double> rates_;  ///< by group of the optimiser
-    float pixel_;                ///< world units
-    float farthest_;             ///< of smoothness, world units
+    float pixel_;                          ///< world units
+    float farthest_;                       ///< of smoothness, world units
     ViewOrder order_;
     Traced traced_;
     std::optional<Occlusion> occlusion_;

@@ -14,6 +14,7 @@
 #include "item3d/render/kernels/raster.h"
 #include "item3d/render/kernels/scatter.h"
 #include "item3d/render/kernels/shade.h"
+#include "item3d/render/kernels/srgb.h"
 #include "item3d/render/kernels/texture.h"
 #include "item3d/render/kernels/zonal.h"
 
@@ -33,7 +34,7 @@ struct TableHeader {
 };
 
 /// To be raised by whoever changes a table or the parameters of one of its kernels.
-inline constexpr std::uint32_t table_version = 4;
+inline constexpr std::uint32_t table_version = 5;
 
 /// A texture lookup and its gradients, with what each of them reads and writes.
 struct TextureLaunchParameters {
@@ -87,6 +88,12 @@ struct TextureLaunchParameters {
     X(scatter_background, kernels::ScatterParameters, kernels::scatter_background(p, i),           \
       "scatter background")                                                                        \
     X(scatter_values, kernels::ScatterParameters, kernels::scatter_value(p, i), "scatter")         \
+    X(linear_to_srgb, kernels::CurveParameters, kernels::linear_to_srgb(p, i), "linear_to_srgb")   \
+    X(linear_to_srgb_backward, kernels::CurveParameters, kernels::linear_to_srgb_backward(p, i),   \
+      "linear_to_srgb backward")                                                                   \
+    X(srgb_to_linear, kernels::CurveParameters, kernels::srgb_to_linear(p, i), "srgb_to_linear")   \
+    X(srgb_to_linear_backward, kernels::CurveParameters, kernels::srgb_to_linear_backward(p, i),   \
+      "srgb_to_linear backward")                                                                   \
     X(occlusion, kernels::OcclusionParameters, kernels::occlusion_at(p, i), "occlusion")           \
     X(finish_sums, FinishSumsParameters, finish_sum(p, i), "finish_sums")
 

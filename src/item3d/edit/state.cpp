@@ -1,4 +1,4 @@
-#include "item3d/edit/optimize/adjustment_record.h"
+#include "item3d/edit/state.h"
 
 namespace item3d {
 
@@ -18,6 +18,12 @@ void from_json(const nlohmann::json& json, AdjustmentRecord& record) {
             TextDirection{json.at("angle").get<double>(), json.at("length").get<double>()};
     if (json.contains("direction")) record.direction = json.at("direction").get<double>();
     if (json.contains("source_loss")) record.source_loss = json.at("source_loss").get<double>();
+}
+
+void DetailState::begin(const NeuralTexture& field) {
+    before = snapshot(field);
+    optimizer.add_group("table", {field->table()}, {});
+    optimizer.add_group("network", field->network_parameters(), {});
 }
 
 }  // namespace item3d

@@ -1,13 +1,16 @@
-#include "item3d/edit/memory.h"
+#include "item3d/edit/load_networks.h"
 
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/networks/diffusion/running_pipeline.h"
 #include "item3d/networks/verify.h"
 #include "item3d/tensors/precision.h"
 
 #include <algorithm>
 #include <fstream>
+#include <utility>
 
 namespace item3d {
 namespace {
@@ -31,14 +34,14 @@ struct Need {
 Need estimate(const EditRequest& request, at::ScalarType precision) {
     const PriorReport report = verify_prior(request.prior);
     if (!report.usable()) return {};  // loading it will say why
-    const double side = static_cast<double>(request.settings.resolution) / report.resolution;
-    const double pictures = request.settings.batch * side * side;
+    const double side = static_cast<double>(request.plan.resolution) / report.resolution;
+    const double pictures = request.plan.batch * side * side;
     for (const MemoryReport& memory : report.memory) {
         if (memory.precision != precision_name(precision)) continue;
         const auto all = static_cast<double>(memory.weights);
         const auto text = static_cast<double>(memory.text_encoders);
         // Sentences that are not known yet, and LoRA files, want all networks at once.
-        const bool at_once = wants_captions(request.settings) || !request.settings.lora.empty();
+        const bool at_once = request.plan.asks_captioner || !request.plan.lora.empty();
         const double weights = at_once ? all : std::max(all - text, text);
         const double base = weights + static_cast<double>(memory.program);
         return {weights, base + pictures * static_cast<double>(memory.kept_by_gradients),
@@ -47,7 +50,45 @@ Need estimate(const EditRequest& request, at::ScalarType precision) {
     ITEM3D_CHECK(false, "a precision without an estimate");
 }
 
+std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request,
+                                              const PriorNeeds& prior_needs) {
+    const EditPlan& plan = request.plan;
+    if (prior_needs.any_sentence) {
+        auto prior = std::make_shared<Pipeline>(
+            Pipeline::load(request.prior, prior_needs.device, prior_needs.precision));
+        prior->add(plan);
+        return prior;
+    }
+    RunNeeds needs;
+    needs.prompts = {prior_needs.from, prior_needs.to, plan.negative_prompt,
+                     default_negative_prompt()};
+    needs.decoder = plan.paints_detail;
+    return std::make_shared<RunningPipeline>(RunningPipeline::load(
+        request.prior, prior_needs.device, prior_needs.precision, plan, needs));
+}
+
 }  // namespace
+
+std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& request,
+                                                       at::ScalarType precision) {
+    if (!request.plan.asks_captioner) return nullptr;
+    if (request.captioner.empty())
+        throw InputError(
+            "--adjust " + adjustment_names().at(static_cast<std::size_t>(request.plan.adjust)),
+            "needs a captioner, and the prior brings none",
+            "give a folder with BLIP or BLIP-2: --captioner DIR");
+    return load_captioner(request.captioner, request.device, precision);
+}
+
+std::shared_ptr<const DiffusionModel> load_prior(const EditRequest& request,
+                                                 const PriorNeeds& needs) {
+    const auto prior = load_networks(request, needs);
+    const EditPlan& plan = request.plan;
+    for (const auto& [option, text] : {std::pair("--from", plan.from), std::pair("--to", plan.to)})
+        warn_of_lost_words(prior->tokenizer(), option, text);
+    if (needs.low_memory) prior->recompute_in_backward(true);
+    return prior;
+}
 
 bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::Device device) {
     if (request.memory != "auto" && request.memory != "low" && request.memory != "high")

@@ -1,0 +1,27 @@
+// The files that an edited model is in: model.glb, textures/, and its light.
+#pragma once
+
+#include "item3d/edit/request.h"
+#include "item3d/edit/scene.h"
+#include "item3d/edit/state.h"
+#include "item3d/report/report.h"
+#include "item3d/scene/image.h"
+#include "item3d/scene/model.h"
+
+#include <optional>
+#include <vector>
+
+namespace item3d {
+
+/// model.glb as it was written and read back: pictures and scores are of this, not of the field.
+struct EditedModel {
+    Model model;
+    std::vector<TexturePair> textures;
+    std::optional<Image> light;  ///< the new one, where the light was optimised
+};
+
+/// Writes model.glb and textures/; where the texture is not edited, model.glb alone, with all its
+/// bytes. Where the light is, light.hdr and light.exr.
+EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state);
+
+}  // namespace item3d

@@ -1,0 +1,30 @@
+// Pictures of a model before and after its edit, and the scores that are taken of them.
+#pragma once
+
+#include "item3d/edit/outputs/baked_files.h"
+#include "item3d/edit/request.h"
+#include "item3d/edit/scene.h"
+#include "item3d/metrics/clip_score.h"
+#include "item3d/report/report.h"
+
+#include <optional>
+#include <vector>
+
+namespace item3d {
+
+struct Pictures {
+    std::vector<ReportImage> before;
+    std::vector<ReportImage> after;
+    ReportImage turntable;
+    SurfaceMeans means_before;
+    SurfaceMeans means_after;
+    double detail_kept = 0;  ///< correlation of luminance detail before and after, see detail.h
+    std::optional<ClipScores> clip;
+};
+
+/// Draws the same views of both models, each in its light; writes before.png, after.png and
+/// turntable.webp. With `clip`, scores them too.
+Pictures render_pictures(const EditRequest& request, const EditScene& scene,
+                         const EditedModel& edited, const std::optional<Clip>& clip);
+
+}  // namespace item3d

@@ -1,0 +1,29 @@
+// What an edit is asked to do, and with what.
+#pragma once
+
+#include "item3d/edit/plan.h"
+#include "item3d/tensors/tensor.h"
+
+#include <filesystem>
+#include <string>
+
+namespace item3d {
+
+struct EditRequest {
+    std::filesystem::path model;
+    std::filesystem::path prior;      ///< folder in the diffusers layout
+    std::filesystem::path output;     ///< folder, made when it is not there
+    std::filesystem::path clip;       ///< CLIP model that scores the result; empty: none
+    std::filesystem::path captioner;  ///< BLIP or BLIP-2; read where the plan asks it
+    EditPlan plan;
+    bool resume = false;
+    /// Stop as an interrupt would when this many iterations are done; 0: run to the end.
+    int stop_after = 0;
+    at::Device device = at::kCPU;
+    std::string precision = "auto";  ///< of the networks: auto, fp32, bf16, fp16
+    std::string memory = "auto";     ///< auto, low (less memory, more time), high
+    int picture_pixels = 384;        ///< side of the report's views; its turntable has 3/4 of it
+    std::string command;             ///< as typed, for edit.json and the resume hint
+};
+
+}  // namespace item3d

@@ -1,0 +1,54 @@
+#include "item3d/edit/setting.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace item3d::rows {
+
+Setting restricted(Setting setting, const std::string& values,
+                   std::function<bool(const EditSettings&)> fits) {
+    const std::string subject = setting.flag.empty() ? setting.name : setting.flag;
+    setting.values = values;
+    setting.check = [subject, values, fits = std::move(fits)](const EditSettings& settings) {
+        if (!fits(settings)) throw InputError(subject, "must be " + values);
+    };
+    return setting;
+}
+
+Limits between(double low, double high) {
+    return between(low, high, fmt::format("between {:g} and {:g}", low, high));
+}
+
+Limits between(double low, double high, const std::string& words) {
+    return {low, high, words};
+}
+
+Limits at_least(double low) {
+    return {low, std::numeric_limits<double>::infinity(), fmt::format("{:g} or more", low)};
+}
+
+Limits above_zero() {
+    return {std::numeric_limits<float>::denorm_min(), std::numeric_limits<double>::infinity(),
+            "above 0"};
+}
+
+std::string alternatives(const std::vector<std::string>& names) {
+    return fmt::format("{} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
+}
+
+std::size_t find_choice(const std::string& flag, const std::vector<std::string>& names,
+                        const std::string& text) {
+    const auto found = std::find(names.begin(), names.end(), text);
+    if (found == names.end()) throw InputError(flag, "must be " + alternatives(names));
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+Setting repeated(Setting setting) {
+    setting.type = SettingType::repeated_texts;
+    return setting;
+}
+
+}  // namespace item3d::rows

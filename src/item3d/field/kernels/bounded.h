@@ -1,0 +1,41 @@
+// The last activation of the neural texture: a sigmoid that overshoots a range, clamped to it.
+#pragma once
+
+#include "item3d/core/host_device.h"
+
+#include <cmath>
+#include <cstdint>
+
+namespace item3d {
+
+/// How far the sigmoid overshoots each end of a range before the clamp. Black and white lie on its
+/// slope instead of at its infinite ends, so an edit can leave them again.
+inline constexpr float sigmoid_overshoot = 0.05f;
+
+struct BoundedParameters {
+    const float* in;        ///< [count] rows of `width`
+    const float* low;       ///< [width]
+    const float* high;      ///< [width]
+    const float* gradient;  ///< [count] of the result; read by the backward kernel alone
+    std::int64_t width;
+    float* out;  ///< [count] the result, or the gradient of `in`
+};
+
+ITEM3D_HOST_DEVICE inline void bounded_forward(const BoundedParameters& p, std::int64_t i) {
+    const float low = p.low[i % p.width], high = p.high[i % p.width];
+    const float span = high - low;
+    const float sigmoid = 1.0f / (1.0f + std::exp(-p.in[i]));
+    const float wide =
+        low - sigmoid_overshoot * span + sigmoid * ((1.0f + 2.0f * sigmoid_overshoot) * span);
+    p.out[i] = wide < low ? low : wide > high ? high : wide;
+}
+
+/// The clamp lets the gradient through.
+ITEM3D_HOST_DEVICE inline void bounded_backward(const BoundedParameters& p, std::int64_t i) {
+    const float span = p.high[i % p.width] - p.low[i % p.width];
+    const float sigmoid = 1.0f / (1.0f + std::exp(-p.in[i]));
+    p.out[i] =
+        p.gradient[i] * ((1.0f + 2.0f * sigmoid_overshoot) * span) * (1.0f - sigmoid) * sigmoid;
+}
+
+}  // namespace item3d
