@@ -75,6 +75,7 @@ lint: configure
 	@scripts/lint.sh
 
 install: build
+	@$(BUILD) --target parity rooms
 	@cmake --install build --prefix "$(PREFIX)"
 
 clean:

@@ -1,4 +1,4 @@
-// The edit suite with each guidance method, at equal rows of the U-Net.
+// Which guidance method edits best at equal rows of the U-Net? The edit suite with each of them.
 //
 //   ablation -o DIR --mesh cow=spot.obj --mesh object=teapot.obj [--thin] [--rows 800] [--seeds 3]
 //
@@ -13,6 +13,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/suite/models.h"
+#include "item3d/tensors/process.h"
 
 #include <ATen/Parallel.h>
 #include <CLI/CLI.hpp>
@@ -109,6 +110,7 @@ std::vector<json> finished(const AblationOptions& options) {
 }  // namespace item3d
 
 int main(int argc, char** argv) {
+    item3d::prepare_process();
     item3d::AblationOptions options;
     std::vector<std::string> meshes;
     int threads = 1;

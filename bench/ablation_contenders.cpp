@@ -1,3 +1,4 @@
+// Which settings does each contender of the study have, and what do its steps cost?
 #include "bench/ablation_contenders.h"
 
 namespace item3d {

@@ -1,4 +1,4 @@
-// Who takes part in the study of guidance methods.
+// Who takes part in the study of guidance methods?
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// How well does one edit of the study do, and how long does it take?
 #include "bench/ablation_edit.h"
 
 #include "item3d/core/files.h"

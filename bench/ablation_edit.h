@@ -1,4 +1,5 @@
-// One edit of the study, without the report and the pictures that an edit makes for people.
+// How well does one edit of the study do, and how long does it take? It goes without the report and
+// the pictures that an edit makes for people.
 #pragma once
 
 #include "bench/ablation_contenders.h"

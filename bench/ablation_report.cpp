@@ -1,3 +1,4 @@
+// What did the study find?
 #include "bench/ablation_report.h"
 
 #include "item3d/core/files.h"

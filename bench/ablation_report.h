@@ -1,4 +1,4 @@
-// What the study found: a table, as JSON and as Markdown, and the pictures side by side.
+// What did the study find? A table, as JSON and as Markdown, and the pictures side by side.
 #pragma once
 
 #include "bench/ablation_edit.h"

@@ -1,5 +1,5 @@
-// What this machine can do at most, on all threads that OpenMP gives: the measure of how far the
-// renderer's stages are from its limits (docs/benchmarks.md).
+// How fast can this machine copy, gather and multiply at most, on all threads that OpenMP gives?
+// The renderer's stages are held against it (docs/benchmarks.md).
 
 #include "item3d/core/parallel.h"
 

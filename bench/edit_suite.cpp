@@ -1,4 +1,4 @@
-// Edits of real meshes that the prior never saw, judged by numbers and by a page to look at.
+// How good are edits of real meshes that the prior never saw, by numbers and by eye?
 //
 //   edit_suite -o DIR --mesh cow=spot.obj --mesh object=teapot.obj [--prior DIR] [--only colors]
 //
@@ -13,6 +13,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/suite/models.h"
+#include "item3d/tensors/process.h"
 
 #include <CLI/CLI.hpp>
 
@@ -41,6 +42,7 @@ std::vector<SuiteEdit> chosen_edits(const SuiteOptions& options, const std::stri
 }  // namespace item3d
 
 int main(int argc, char** argv) {
+    item3d::prepare_process();
     item3d::SuiteOptions options;
     std::vector<std::string> meshes;
     std::string only;

@@ -1,7 +1,8 @@
-// What an iteration of an edit spends in the neural texture: look-up, gradient, optimiser step.
+// How long does an iteration of an edit spend in the neural texture (look-up, gradient, step)?
 // Arguments: surface points. Points lie on a sphere, in the order of a picture's pixels.
 #include "item3d/field/adam.h"
 #include "item3d/field/neural_texture.h"
+#include "item3d/tensors/process.h"
 #include "item3d/tensors/tensor.h"
 
 #include <benchmark/benchmark.h>
@@ -91,4 +92,10 @@ BENCHMARK(field_iteration)->Apply(sizes);
 }  // namespace
 }  // namespace item3d
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+    item3d::prepare_process();
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}

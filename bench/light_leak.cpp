@@ -1,4 +1,4 @@
-// How much of the light that a texture was edited in is painted into its base colour.
+// How much of the light that a texture was edited in is painted into its base colour?
 //
 //   light_leak -o DIR --mesh cow=spot.obj [--word red] [--augment off] [--light noon]
 //
@@ -22,6 +22,7 @@
 #include "item3d/report/model_pictures.h"
 #include "item3d/report/picture.h"
 #include "item3d/suite/models.h"
+#include "item3d/tensors/process.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -132,6 +133,7 @@ json run_case(const LeakOptions& options, const std::string& word, const std::st
 }  // namespace item3d
 
 int main(int argc, char** argv) {
+    item3d::prepare_process();
     item3d::LeakOptions options;
     std::string mesh;
     std::string settings = "{}";

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""item3d's renderer beside Mitsuba 3: milliseconds for a picture, and for a picture with the gradient of its
-mean square to the base colour texture. One run measures both, one after the other, on as many threads.
+"""How long does a picture take item3d's renderer, and how long Mitsuba 3?
+
+Milliseconds for a picture, and for a picture with the gradient of its mean square to the base colour texture. One run
+measures both, one after the other, on as many threads.
 
     python3 bench/mitsuba_render.py ITEM3D MODEL.obj TEXTURE.png LIGHT.hdr [--size 512] [--samples 16] ...
 

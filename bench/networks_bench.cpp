@@ -1,8 +1,9 @@
-// What an iteration of an edit spends in networks of the embedded prior's size: U-Net, U-Net with a
-// gradient to the text (a learned source), autoencoder. Argument: rows of the batch. Weights are
-// random, which takes the same time.
+// How long does an iteration of an edit spend in networks of the embedded prior's size?
+// U-Net, U-Net with a gradient to the text (a learned source), autoencoder. Argument: rows of the
+// batch. Weights are random, which takes the same time.
 #include "item3d/networks/diffusion/autoencoder_tiny.h"
 #include "item3d/networks/diffusion/unet.h"
+#include "item3d/tensors/process.h"
 #include "item3d/tensors/tensor.h"
 
 #include <ATen/autocast_mode.h>
@@ -100,4 +101,10 @@ BENCHMARK_CAPTURE(encode, bfloat16_and_gradient, at::kBFloat16)
 }  // namespace
 }  // namespace item3d
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+    item3d::prepare_process();
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What each choice of the embedded prior's training is worth: short trainings that differ in one thing.
+"""What is each choice of the embedded prior's training worth? Short trainings that differ in one thing.
 
     bench/prior_ablation.py ITEM3D OUTPUT --samples 40000 --data 40000
 

@@ -1,4 +1,4 @@
-// Renders the scenes of a folder of path-traced references and says how far off we are.
+// How far is the renderer from path-traced references?
 //
 //   reference_report --data DIR -o DIR
 //
@@ -14,6 +14,7 @@
 #include "item3d/io/save.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/srgb.h"
+#include "item3d/tensors/process.h"
 
 #include <CLI/CLI.hpp>
 
@@ -99,6 +100,7 @@ int run(int argc, char** argv) {
 }  // namespace item3d::reference
 
 int main(int argc, char** argv) {
+    item3d::prepare_process();
     try {
         return item3d::reference::run(argc, argv);
     } catch (const std::exception& error) {

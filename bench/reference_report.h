@@ -1,4 +1,4 @@
-// The renderer beside references that other software made: what each part measures and says.
+// What does each part of the renderer's report measure, and how does it say it?
 #pragma once
 
 #include "item3d/tensors/tensor.h"

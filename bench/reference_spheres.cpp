@@ -1,6 +1,7 @@
-// Spheres over roughness and metallic. The error is split in three: what the split sum itself costs
-// (evaluated without our chain of levels, by summing over every texel of the map), what the choice
-// of reflectance model costs, and what our chain adds.
+// How far off are spheres over roughness and metallic?
+// The error is split in three: what the split sum itself costs (evaluated without our chain of
+// levels, by summing over every texel of the map), what the choice of reflectance model costs, and
+// what our chain adds.
 #include "bench/reference_report.h"
 #include "bench/reference_split_sum.h"
 #include "item3d/core/format.h"

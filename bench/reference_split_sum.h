@@ -1,4 +1,5 @@
-// The split sum itself (Karis 2013), without our chain of levels: summed over every texel of a map.
+// What does the split sum itself (Karis 2013) give, without our chain of levels?
+// It is summed over every texel of a map.
 #pragma once
 
 #include "item3d/core/math.h"

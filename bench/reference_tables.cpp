@@ -1,4 +1,4 @@
-// The BSDF table, a white furnace, irradiance, and a texture's gradient.
+// How far off are the BSDF table, a white furnace, irradiance, and a texture's gradient?
 #include "bench/reference_report.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"

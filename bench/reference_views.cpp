@@ -1,4 +1,4 @@
-// A textured model from eight views: what is seen where, and its radiance.
+// How far off is a textured model from eight views: what is seen where, and its radiance?
 #include "bench/reference_report.h"
 #include "bench/reference_split_sum.h"
 #include "item3d/core/files.h"

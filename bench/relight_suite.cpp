@@ -1,4 +1,4 @@
-// Relighting by words, judged by numbers and by a page to look at.
+// Does relighting by words find the light that is asked for, by numbers and by eye?
 //
 //   relight_suite -o DIR --mesh cow=spot.obj --mesh teapot=teapot.obj --mesh object=bunny.obj
 //
@@ -24,6 +24,7 @@
 #include "item3d/report/contact_sheet.h"
 #include "item3d/report/model_pictures.h"
 #include "item3d/report/picture.h"
+#include "item3d/tensors/process.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -168,6 +169,7 @@ void run_suite(const RelightSuiteOptions& options) {
 }  // namespace item3d
 
 int main(int argc, char** argv) {
+    item3d::prepare_process();
     item3d::RelightSuiteOptions options;
     std::vector<std::string> meshes;
     std::string settings = "{}";

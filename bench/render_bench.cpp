@@ -1,14 +1,16 @@
-// How long the renderer's operations take. The mesh is a sphere of about as many triangles as a
-// scanned object; ITEM3D_BENCH_MODEL names a model to use instead.
+// How long does each of the renderer's operations take?
+// The mesh is a sphere of about as many triangles as a scanned object; ITEM3D_BENCH_MODEL names a
+// model to use instead.
 
 #include "item3d/io/load.h"
 #include "item3d/render/antialias.h"
 #include "item3d/render/interpolate.h"
 #include "item3d/render/pictures.h"
-#include "item3d/render/srgb.h"
 #include "item3d/render/render.h"
+#include "item3d/render/srgb.h"
 #include "item3d/render/textured_materials.h"
 #include "item3d/scene/sphere.h"
+#include "item3d/tensors/process.h"
 
 #include <benchmark/benchmark.h>
 
@@ -163,4 +165,10 @@ BENCHMARK(preview_under_another_light)->Arg(512)->Unit(benchmark::kMillisecond)-
 }  // namespace
 }  // namespace item3d
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+    item3d::prepare_process();
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}

@@ -4,7 +4,9 @@
 #
 #   TENSORS             its sources use LibTorch's tensors (item3d/tensors/tensor.h)
 #   PLAIN file...       but these, which do without LibTorch
-#   MODULES file...     and these, which use torch::nn or torch::autograd; ALL: all of them
+#   AUTOGRAD file...    and these, which define torch::autograd functions: compiled all together, since
+#                       what declares those is most of their compilation
+#   MODULES file...     and these, which use torch::nn too; ALL: all of them
 #   FAST                computes on pixels, texels or weights: -O2; other rooms orchestrate: -O1
 #   APART file...       compiled by themselves; all others several at a time, since the templates of
 #                       LibTorch, JSON and the like are most of each one's compilation: names in the
@@ -63,7 +65,7 @@ endfunction()
 
 function(item3d_room NAME)
     cmake_parse_arguments(ARG "TENSORS;FAST" ""
-        "PLAIN;MODULES;APART;EXCEPT;PACKAGES;PRIVATE_PACKAGES" ${ARGN})
+        "PLAIN;AUTOGRAD;MODULES;APART;EXCEPT;PACKAGES;PRIVATE_PACKAGES" ${ARGN})
     set(FOLDER ${CMAKE_CURRENT_SOURCE_DIR}/item3d/${NAME})
     file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS RELATIVE ${FOLDER} ${FOLDER}/*.cpp)
     file(GLOB_RECURSE HEADERS CONFIGURE_DEPENDS ${FOLDER}/*.h)
@@ -111,17 +113,21 @@ function(item3d_room NAME)
     if(NOT ARG_TENSORS AND NOT ARG_MODULES)
         set(PLAIN ${SOURCES})
     endif()
-    if(PLAIN OR ARG_MODULES OR ARG_APART)
-        list(REMOVE_ITEM TENSORS ${PLAIN} ${ARG_MODULES} ${ARG_APART})
+    if(PLAIN OR ARG_AUTOGRAD OR ARG_MODULES OR ARG_APART)
+        list(REMOVE_ITEM TENSORS ${PLAIN} ${ARG_AUTOGRAD} ${ARG_MODULES} ${ARG_APART})
         if(PLAIN AND ARG_APART)
             list(REMOVE_ITEM PLAIN ${ARG_APART})
         endif()
     endif()
-    foreach(LIST PLAIN TENSORS ARG_MODULES ARG_APART)
+    foreach(LIST PLAIN TENSORS ARG_AUTOGRAD ARG_MODULES ARG_APART)
         list(TRANSFORM ${LIST} PREPEND ${FOLDER}/)
     endforeach()
     item3d_sources(${TARGET} plain ${LEVEL} ${PLAIN})
     item3d_sources(${TARGET} tensors ${LEVEL} ${TENSORS})
+    item3d_sources(${TARGET} tensors_autograd ${LEVEL} ${ARG_AUTOGRAD})
+    if(ARG_AUTOGRAD)
+        set_target_properties(${TARGET}_tensors_autograd PROPERTIES UNITY_BUILD_BATCH_SIZE 0)
+    endif()
     item3d_sources(${TARGET} modules ${LEVEL} ${ARG_MODULES})
     if(ARG_APART)
         set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

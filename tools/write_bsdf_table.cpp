@@ -1,4 +1,4 @@
-// Writes the table of bsdf_table(): the build runs this, so that no program has to compute it.
+// What does the table of bsdf_table() hold? The build runs this, so that no program computes it.
 #include "item3d/render/kernels/bsdf.h"
 
 #include <array>

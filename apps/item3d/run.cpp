@@ -8,11 +8,12 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
-#include <regex>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 namespace item3d {
@@ -41,12 +42,14 @@ bool says_out_of_memory(const std::string& message) {
            message.find("not enough memory") != std::string::npos;
 }
 
-/// What LibTorch says has the size that it lacked, among names of its files.
+/// What LibTorch says has the size that it lacked ("allocate N bytes"), among names of its files.
 int fail_out_of_memory(const std::string& message) {
-    std::smatch size;
+    constexpr std::string_view before = "allocate ";
     std::string lacking;
-    if (std::regex_search(message, size, std::regex("allocate ([0-9]+) bytes")))
-        lacking = fmt::format(" ({:.3g} GB more were wanted)", std::stod(size[1]) / 1e9);
+    if (const std::size_t at = message.find(before); at != std::string::npos) {
+        const double bytes = std::strtod(message.c_str() + at + before.size(), nullptr);
+        if (bytes > 0) lacking = fmt::format(" ({:.3g} GB more were wanted)", bytes / 1e9);
+    }
     return fail(ExitCode::no_resource, "error: out of memory" + lacking +
                                            "; close other programs, or choose smaller pictures "
                                            "or fewer at a time");

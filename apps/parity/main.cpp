@@ -4,6 +4,7 @@
 #include "apps/parity/parity.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/tensors/process.h"
 
 #include <cstdio>
 #include <exception>
@@ -102,6 +103,7 @@ int run(const fs::path& folder) {
 }  // namespace item3d::parity
 
 int main(int argc, char** argv) {
+    item3d::prepare_process();
     if (argc != 2) {
         fmt::print(stderr, "usage: parity CASE_DIR\n");
         return static_cast<int>(item3d::ExitCode::usage);

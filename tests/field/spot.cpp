@@ -5,9 +5,9 @@
 #include "item3d/io/load.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/render/pictures.h"
-#include "item3d/render/srgb.h"
 #include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/scatter.h"
+#include "item3d/render/srgb.h"
 
 #include <gtest/gtest.h>
 

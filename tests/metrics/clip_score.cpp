@@ -1,6 +1,7 @@
 #include "item3d/metrics/clip_score.h"
 
 #include "item3d/networks/layers/load_parameters.h"
+#include "item3d/networks/vision_language/clip_model.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/srgb.h"
 #include "item3d/report/model_pictures.h"

@@ -1,3 +1,4 @@
+#include "item3d/networks/vision_language/clip.h"
 #include "item3d/networks/vision_language/clip_model.h"
 
 #include "item3d/core/error.h"

@@ -1,6 +1,5 @@
 #include "item3d/networks/layers/packable_linear.h"
 
-#include "item3d/networks/vision_language/clip_model.h"
 #include "tests/support/networks.h"
 
 namespace item3d {

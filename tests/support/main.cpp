@@ -1,4 +1,5 @@
-// main() of the test programs that compute with LibTorch: the process is set up as the programs' is.
+// main() of the test programs that compute with LibTorch: the process is set up as the programs'
+// is.
 #include "item3d/tensors/process.h"
 
 #include <gtest/gtest.h>

@@ -6,8 +6,8 @@
 #include "item3d/lighting/environment.h"
 #include "item3d/render/antialias.h"
 #include "item3d/render/pictures.h"
-#include "item3d/render/srgb.h"
 #include "item3d/render/scatter.h"
+#include "item3d/render/srgb.h"
 #include "item3d/render/texture.h"
 #include "item3d/scene/sphere.h"
 

@@ -53,7 +53,7 @@ void warn_of_words(const EditRequest& request) {
     }
 }
 
-/// What the options say of the light must be of use.
+/// Throws UsageError for options that the choice of --optimize makes meaningless.
 void refuse_contradictions(const nlohmann::json& overrides) {
     const auto optimize = overrides.get<EditSettings>().optimize;
     const auto given = [&](const char* key) { return overrides.contains(key); };
@@ -81,7 +81,7 @@ void take_found_light(EditCommandOptions& options) {
     }
 }
 
-/// What has no effect with these settings.
+/// Warns of options that have no effect with these settings.
 void warn_of_options(const EditPlan& plan, const nlohmann::json& overrides) {
     if (!plan.negative_prompt.empty() && plan.guidance == "rdl" && !plan.paints_detail) {
         warn(

@@ -172,7 +172,7 @@ Image chosen_light(const RelightCommand& options, const std::optional<SunSetting
     return apply(options.change, sun, base);
 }
 
-/// What is drawn under both lights, and written.
+/// Draws the model under both lights and writes the images.
 void write_pictures(const RelightCommand& options, const Model& model, const Image& old_image,
                     const Image& new_image, at::Device device) {
     const fs::path folder = options.output;
@@ -195,8 +195,8 @@ void write_pictures(const RelightCommand& options, const Model& model, const Ima
                      std::span<const std::uint8_t>(encode_animation(frames)));
 }
 
-/// What model.glb is to bring along. Viewers add up all lights, so where the brightest lobe is one
-/// by itself, the surroundings do without.
+/// The lights that model.glb is to bring along. Viewers add up all lights, so where the brightest
+/// lobe is one by itself, the surroundings do without.
 ModelLights lights_for_model(const RelightCommand& options, const Image& light,
                              const LightLobe& lobe) {
     ModelLights lights;

@@ -25,7 +25,7 @@
 namespace item3d {
 namespace {
 
-/// What a prior that does not say what it knows is taken to know.
+/// Words that a prior knows unless it says what it knows.
 const std::set<std::string> usual_light_words = {
     "afternoon", "backlight",   "blue",      "bright",    "candle",   "candlelight", "cloudy",
     "dark",      "darkness",    "dawn",      "day",       "daylight", "dim",         "dusk",

@@ -15,7 +15,7 @@ namespace item3d {
 std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& request,
                                                        at::ScalarType precision);
 
-/// What of a scene the prior is loaded by.
+/// The part of a scene that loading a prior depends on.
 struct PriorNeeds {
     at::Device device = at::kCPU;
     at::ScalarType precision = at::kFloat;
@@ -29,7 +29,7 @@ struct PriorNeeds {
 std::shared_ptr<const DiffusionModel> load_prior(const EditRequest& request,
                                                  const PriorNeeds& needs);
 
-/// What `--memory` stands for: whether to trade time for memory. "high" and "low" say it; "auto"
+/// Whether to trade time for memory, as `--memory` says. "high" and "low" say it; "auto"
 /// looks at the prior's headers and at what is free, and says what it chose where that is not the
 /// usual. Warns where even the low estimate does not fit. Throws ResourceError when the weights
 /// alone do not, InputError on another word.

@@ -49,8 +49,7 @@ struct SurfaceMeans {
     float metallic = 0;
 };
 
-/// Of the named materials (indices into Model::materials), at 20,000 points that depend on the
-/// seed.
+/// Means of these materials (indices into Model::materials), at 20,000 points drawn with the seed.
 SurfaceMeans surface_means(const Model& model, const std::vector<int>& materials,
                            std::uint64_t seed = 0);
 

@@ -57,8 +57,8 @@ LightKind resolved_kind(LightChoice choice, bool small_prior) {
     return small_prior ? LightKind::physical : LightKind::texels;
 }
 
-/// What a method needs that is not usual: guidance scales, noise levels. rdl and sds are what the
-/// other defaults are for.
+/// Guidance scales and noise levels that a method was published with. The defaults are rdl's and
+/// sds's.
 nlohmann::json published_settings(const std::string& method) {
     if (method == "dds") return {{"timesteps", {0.05, 0.95}}};
     // cfg is published as 100, for neural radiance fields.

@@ -1,4 +1,4 @@
-// What an edit's settings decide, decided once.
+// The plan of an edit: its settings, and the decisions that follow from them.
 #pragma once
 
 #include "item3d/edit/settings.h"

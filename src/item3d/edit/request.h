@@ -1,4 +1,4 @@
-// What an edit is asked to do, and with what.
+// A request for an edit: files, plan, and how to run it.
 #pragma once
 
 #include "item3d/edit/plan.h"

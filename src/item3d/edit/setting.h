@@ -12,7 +12,7 @@
 
 namespace item3d {
 
-/// What a value is. The command line takes a list's values with commas between them, or one each
+/// Type of a value. The command line takes a list separated by commas, or (repeated) one value each
 /// time that the option is given.
 enum class SettingType {
     text,
@@ -70,7 +70,7 @@ Setting setting(const char* name, T Owner::*member, const char* flag, const std:
 Setting restricted(Setting setting, const std::string& values,
                    std::function<bool(const EditSettings&)> fits);
 
-/// What a number may be.
+/// Range of a number, ends included.
 struct Limits {
     double low, high;
     std::string words;  ///< as behind "must be"
@@ -93,7 +93,7 @@ Setting setting(const char* name, T EditSettings::*member, const Limits& limits,
 /// "a, b or c".
 std::string alternatives(const std::vector<std::string>& names);
 
-/// Where `text` stands among `names`. Throws InputError that names flag and choices.
+/// Index of `text` in `names`. Throws InputError that names flag and choices.
 std::size_t find_choice(const std::string& flag, const std::vector<std::string>& names,
                         const std::string& text);
 

@@ -1,4 +1,4 @@
-// What an edit does, in one value that goes into edit.json, the report, and the checkpoint.
+// The settings of an edit: one value that goes into edit.json, the report, and the checkpoint.
 #pragma once
 
 #include "item3d/guidance/guidance.h"
@@ -12,17 +12,17 @@
 
 namespace item3d {
 
-/// What guidance changes.
+/// The part of a model that guidance changes.
 enum class Optimize { texture, light, both };
 
-/// Where metallic is edited. automatic: where a sentence names a metal.
+/// Whether metallic is edited. automatic: where a sentence names a metal.
 enum class Metallic { automatic, always };
 
 /// Whether the detail stage follows the iterations. automatic: where the target sentence has one of
 /// `detail_words` that the source has not.
 enum class Detail { automatic, off, always };
 
-/// Of a light that is optimised. automatic: physical for priors of small pictures.
+/// Kind of a light that is optimised. automatic: physical for priors of small images.
 enum class LightChoice { automatic, physical, texels };
 
 /// How the light varies while a texture is edited, so that no shading is painted (LightRig).
@@ -74,8 +74,8 @@ struct EditSettings : PipelineExtras {
 
 void to_json(nlohmann::json& json, const EditSettings& settings);
 
-/// What is absent is as by default. Throws InputError for the name of a choice that there is not,
-/// and nlohmann::json::exception for a value of another type.
+/// Absent settings take their defaults. Throws InputError for the name of a choice that there is
+/// not, and nlohmann::json::exception for a value of another type.
 void from_json(const nlohmann::json& json, EditSettings& settings);
 
 /// Throws InputError that names the option of the first setting that is out of range.

@@ -127,7 +127,7 @@ std::vector<Setting> light_rows() {
     };
 }
 
-/// What is written: textures, channels, detail.
+/// Textures that are written: size, channels, detail.
 std::vector<Setting> texture_rows() {
     return {
         setting("texture_size", &S::texture_size,
@@ -153,7 +153,7 @@ std::vector<Setting> texture_rows() {
     };
 }
 
-/// What is added to the prior.
+/// Additions to the prior.
 std::vector<Setting> extras_rows() {
     return {
         repeated(setting("lora", &S::lora, "--lora",

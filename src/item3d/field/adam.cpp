@@ -72,12 +72,12 @@ AdamOptions& Adam::options(const std::string& group) {
 
 void Adam::step() {
     const at::NoGradGuard no_grad;
-    ++most_updates_;
+    ++max_updates_;
     for (Group& group : groups_) {
         // Rows were updated differently often, but few counts are many rows': powers are taken once
         // for each count that there can be.
         std::vector<AdamRates> rates;
-        for (int updates = 0; updates <= most_updates_; ++updates) {
+        for (int updates = 0; updates <= max_updates_; ++updates) {
             rates.push_back(make_rates(group.options, std::max(1, updates)));
         }
         for (Slot& slot : group.slots) {
@@ -149,7 +149,7 @@ void Adam::load_state(const std::map<std::string, at::Tensor>& state) {
         at::Tensor target = own;
         target.copy_(found->second);
         if (target.scalar_type() == at::kInt && target.numel() > 0) {
-            most_updates_ = std::max(most_updates_, target.max().item<int>());
+            max_updates_ = std::max(max_updates_, target.max().item<int>());
         }
     }
 }

@@ -31,7 +31,7 @@ class Adam {
     /// Each group has a name of its own. Throws std::logic_error for one that is there already.
     void add_group(const std::string& name, std::vector<at::Tensor> parameters,
                    const AdamOptions& options);
-    /// Of a group; throws std::logic_error where none has this name.
+    /// Options of a group; throws std::logic_error where none has this name.
     AdamOptions& options(const std::string& group);
 
     /// Parameters without a gradient are left alone.
@@ -58,7 +58,7 @@ class Adam {
         AdamOptions options;
     };
     std::vector<Group> groups_;
-    int most_updates_ = 0;  ///< of any row
+    int max_updates_ = 0;  ///< of any row
 };
 
 }  // namespace item3d

@@ -3,8 +3,6 @@
 #include "item3d/core/error.h"
 #include "item3d/guidance/prediction.h"
 
-#include <torch/csrc/autograd/autograd.h>
-
 #include <cmath>
 
 namespace item3d {
@@ -45,7 +43,7 @@ at::Tensor LearnedSource::predict_and_follow(const DiffusionModel& pipeline,
     const at::Tensor prediction =
         pipeline.predict_noise(latents.noisy, latents.timesteps, text, latents.condition);
     const at::Tensor loss = denoising_loss(pipeline, prediction, latents);
-    const auto gradients = torch::autograd::grad({loss}, embeddings);
+    loss.backward({}, std::nullopt, /*create_graph=*/false, embeddings);
     loss_ = loss.item<float>();
 
     const at::NoGradGuard no_grad;
@@ -54,8 +52,9 @@ at::Tensor LearnedSource::predict_and_follow(const DiffusionModel& pipeline,
     const double correction2 = 1 - std::pow(beta2, static_cast<double>(steps_));
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         Part& part = parts_[i];
-        part.first_moment.mul_(beta1).add_(gradients[i], 1 - beta1);
-        part.second_moment.mul_(beta2).addcmul_(gradients[i], gradients[i], 1 - beta2);
+        const at::Tensor gradient = embeddings[i].grad();
+        part.first_moment.mul_(beta1).add_(gradient, 1 - beta1);
+        part.second_moment.mul_(beta2).addcmul_(gradient, gradient, 1 - beta2);
         part.embedding = part.embedding - options_.adjust_learning_rate / correction1 *
                                               part.first_moment /
                                               ((part.second_moment / correction2).sqrt() + epsilon);

@@ -1,7 +1,7 @@
 // How well an edit did what its two sentences say, in CLIP's eyes.
 #pragma once
 
-#include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vision_language/clip.h"
 #include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>

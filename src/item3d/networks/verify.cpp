@@ -8,7 +8,7 @@
 #include "item3d/networks/diffusion/unet.h"
 #include "item3d/networks/layers/packable_linear.h"
 #include "item3d/networks/vision_language/captioner.h"
-#include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vision_language/clip.h"
 #include "item3d/networks/vision_language/clip_text.h"
 #include "item3d/tensors/safetensors.h"
 #include "item3d/tensors/weights.h"

@@ -2,8 +2,8 @@
 
 #include "item3d/metrics/detail.h"
 #include "item3d/render/pictures.h"
-#include "item3d/render/srgb.h"
 #include "item3d/render/render.h"
+#include "item3d/render/srgb.h"
 
 #include <utility>
 

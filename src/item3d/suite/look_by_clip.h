@@ -1,7 +1,7 @@
 // Which of a prior's words a CLIP sees on pictures.
 #pragma once
 
-#include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vision_language/clip.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/tensors/tensor.h"
 

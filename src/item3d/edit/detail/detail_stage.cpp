@@ -9,8 +9,6 @@
 #include "item3d/networks/diffusion/generate.h"
 #include "item3d/networks/diffusion/shape_condition.h"
 
-#include <torch/nn/functional/pooling.h>
-
 #include <algorithm>
 #include <map>
 #include <vector>
@@ -58,7 +56,7 @@ at::Tensor inner(const at::Tensor& coverage) {
     return -at::max_pool2d(-coverage, 3, 1, 1);
 }
 
-/// What a view of the plan shows whatever the stage has painted so far.
+/// A view of the plan, without what the stage has painted.
 struct PaintedView {
     GBuffer gbuffer;
     MaterialSample before;  ///< the field's materials as the stage began
@@ -139,7 +137,7 @@ double Painter::strength(const PaintingView& planned) const {
     return takes_shape(*scene_.prior()) ? initial_strength : initial_strength_without_shape;
 }
 
-/// What the prior would rather see from here.
+/// The image that the prior samples from this view, [1, 3, R, R].
 at::Tensor Painter::target(std::size_t index, const GBuffer& gbuffer) const {
     const at::NoGradGuard no_grad;
     const EditView view = render(index, gbuffer);
@@ -161,8 +159,8 @@ at::Tensor Painter::target(std::size_t index, const GBuffer& gbuffer) const {
     const at::Tensor condition = condition_of_shape(prior, gbuffer.shape, latents);
     const at::Tensor sampled = generate_latents(prior, options, condition);
     const at::Tensor decoded = prior.decode_image(sampled) / 2 + 0.5f;
-    // Not the render with what has changed: it has what a pixel of the round before was too coarse
-    // to see, as noise, and close-ups would keep it.
+    // The decoded image, not the render: a close-up's render shows, as noise, detail that the
+    // pixels of the round before were too coarse to constrain.
     const at::Tensor fresh = 1 - known_pixels(index);
     const at::Tensor painted = view.images + fresh * (decoded - view.images);
     return (painted + sharpening * fresh * fine_part(decoded, view.coverage)).clamp(0, 1);

@@ -2,8 +2,6 @@
 
 #include "item3d/core/random.h"
 
-#include <torch/nn/functional/pooling.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -46,7 +44,7 @@ Camera paint_camera(const BoundingSphere& sphere, int index, bool close_up, std:
     return camera;
 }
 
-/// What a view sees, one row a covered sample.
+/// The surface that a view sees, one row a covered sample.
 struct Sight {
     Camera camera;
     at::Tensor depth;  ///< [S, S]

@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// What a view is for. The plan has them in this order.
+/// The purpose of a view. The plan has them in this order.
 enum class PaintingRound {
     initial,   ///< the whole model, painted anew
     refine,    ///< the whole model once more, from what the round before left

@@ -1,4 +1,4 @@
-// Where an edit begins: a field fitted to the model's own materials, or a checkpoint.
+// The beginning of an edit: a field fitted to the model's own materials, or a checkpoint.
 #pragma once
 
 #include "item3d/edit/request.h"

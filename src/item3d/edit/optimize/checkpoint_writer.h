@@ -1,4 +1,4 @@
-// What happens between the steps of an edit: checkpoints, previews, and stopping when asked to.
+// Between the steps of an edit: checkpoints, previews, and stopping when asked to.
 #pragma once
 
 #include "item3d/core/progress.h"

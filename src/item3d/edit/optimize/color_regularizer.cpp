@@ -9,12 +9,12 @@ namespace {
 
 constexpr std::int64_t points = 2048;  ///< an iteration
 constexpr std::int64_t draws = 16;     ///< iteration i takes those of i modulo this
-/// Of encoded values, where steps look about equal: a blotch departs by less, a part of its own by
+/// In encoded values, where steps look about equal: a blotch departs by less, a part of its own by
 /// more.
 constexpr float blotch = 0.25f;
 constexpr int refits = 3;
 /// Keeps the slopes of a surface without contrast at nothing; that of spots is 0.1 and more.
-constexpr float least_variance = 0.01f;
+constexpr float min_variance = 0.01f;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Departures departures(const at::Tensor& change, const at::Tensor& color, float s
     const std::int64_t count = change.size(0);
     const at::Tensor features =
         at::cat({at::ones_like(color.narrow(1, 0, 1)), color - color.mean(0)}, 1);
-    const at::Tensor ridge = least_variance * static_cast<float>(count) *
+    const at::Tensor ridge = min_variance * static_cast<float>(count) *
                              at::diag(at::tensor({0.0f, 1.0f, 1.0f, 1.0f}, color.options()));
     Departures found{change, at::ones({count, 1}, change.options())};
     for (int i = 0; i < refits; ++i) {

@@ -1,4 +1,4 @@
-// Where a sentence names nothing that has a pattern, blotches are noise that guidance left behind.
+// A regulariser against blotches, which guidance leaves behind where the target has no pattern.
 #pragma once
 
 #include "item3d/edit/scene.h"

@@ -7,10 +7,10 @@ namespace {
 
 /// Lengths depend on the noise level that an iteration draws; over so many of them that evens out.
 constexpr std::int64_t window = 50;
-constexpr std::int64_t least_iterations = 3 * window;
+constexpr std::int64_t min_iterations = 3 * window;
 constexpr double still = 0.9;  ///< a second half of this part of the first is as long
 
-/// Of what is finite; a single overflow in bf16 must not decide.
+/// Mean of the finite values; a single overflow in bf16 must not decide.
 double mean(const std::vector<float>& values, std::int64_t begin, std::int64_t end) {
     double sum = 0;
     int count = 0;
@@ -27,9 +27,9 @@ double mean(const std::vector<float>& values, std::int64_t begin, std::int64_t e
 
 std::optional<std::int64_t> converged_at(const std::vector<float>& lengths, double part) {
     const auto count = static_cast<std::int64_t>(lengths.size());
-    if (part <= 0 || count < least_iterations) return std::nullopt;
+    if (part <= 0 || count < min_iterations) return std::nullopt;
     const double bound = part * mean(lengths, 0, window);
-    for (std::int64_t end = least_iterations; end <= count; ++end) {
+    for (std::int64_t end = min_iterations; end <= count; ++end) {
         const double first = mean(lengths, end - window, end - window / 2);
         const double second = mean(lengths, end - window / 2, end);
         if (first <= bound && second <= bound && second >= still * first) return end;

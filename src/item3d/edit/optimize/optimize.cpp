@@ -56,8 +56,8 @@ void end_where_converged(const EditPlan& plan, EditState& state) {
     state.iteration = plan.iterations;
 }
 
-/// What guidance looks at. The unedited model is the field as it was fitted, so that a render that
-/// has not been edited yet equals its reference.
+/// The images that guidance sees. The unedited model is the field as it was fitted, so that a
+/// render that has not been edited yet equals its reference.
 GuidanceInput render_guidance_input(const EditScene& scene, const EditPlan& plan,
                                     EditState& state) {
     const GBuffer gbuffer = rasterize_views(

@@ -3,8 +3,8 @@
 #include "item3d/core/random.h"
 #include "item3d/render/antialias.h"
 #include "item3d/render/pictures.h"
-#include "item3d/render/srgb.h"
 #include "item3d/render/scatter.h"
+#include "item3d/render/srgb.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 

@@ -12,7 +12,7 @@
 
 namespace item3d {
 
-/// What N views show whatever the field holds, on R' x R' pixels: R or finer.
+/// The part of N views that does not depend on the field, on R' x R' pixels: R or finer.
 struct GBuffer {
     Raster raster;
     Surface surface;
@@ -39,7 +39,7 @@ struct ViewOptions {
     const EnvironmentLight* light = nullptr;  ///< null: what the scene's lights have for it
 };
 
-/// What these views show of the model in `sphere`.
+/// Depth, position and normal of these views, as a prior is told them; sphere: of the model.
 SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere);
 
 EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture& field,
@@ -48,8 +48,7 @@ EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture
 /// A light that is optimised, as the renderer takes it; differentiable in its parameters.
 EnvironmentLight prefilter_light(const EditScene& scene, const LightModel& light);
 
-/// What the model stands in now: the light that is optimised, or the first of the scene's. No
-/// graph.
+/// The light as it is now: the one that is optimised, or the first of the scene's. No graph.
 EnvironmentLight current_light(const EditScene& scene, const EditState& state);
 
 /// `count` cameras around the model, a little above it.

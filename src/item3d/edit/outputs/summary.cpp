@@ -175,8 +175,8 @@ TimelineEntry entry_of(const AdjustmentRecord& record) {
 
 /// No more than fit on a page, the first and the last among them.
 std::vector<TimelineEntry> timeline_of(const std::vector<AdjustmentRecord>& records) {
-    constexpr std::size_t most = 12;
-    const std::size_t count = std::min(records.size(), most);
+    constexpr std::size_t max_entries = 12;
+    const std::size_t count = std::min(records.size(), max_entries);
     std::vector<TimelineEntry> timeline;
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t index = count < 2 ? i : i * (records.size() - 1) / (count - 1);

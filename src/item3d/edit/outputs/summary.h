@@ -1,4 +1,4 @@
-// What an edit says of itself: edit.json and report.html.
+// The record of an edit: edit.json and report.html.
 #pragma once
 
 #include "item3d/core/stage_times.h"

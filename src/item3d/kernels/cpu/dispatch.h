@@ -22,8 +22,8 @@ enum class Instructions {
     avx512,  ///< F, BW, VL and DQ; BF16 too where BrainFloat is multiplied
 };
 
-/// What this processor has for kernels of float or BrainFloat, up to the level that ITEM3D_CPU names
-/// in the environment: none, avx2, avx512, bf16 or amx. Results differ by rounding.
+/// What this processor has for kernels of float or BrainFloat, up to the level that ITEM3D_CPU
+/// names in the environment: none, avx2, avx512, bf16 or amx. Results differ by rounding.
 template <typename Number>
 Instructions instructions_for();
 template <>

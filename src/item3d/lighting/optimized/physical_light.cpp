@@ -31,7 +31,7 @@ constexpr float moonlight_mired = -60;
 /// A sun as warm as this many mired from white has come through twice the air.
 constexpr float warmth_of_low_sun = 40;
 /// A lobe that words asked for shall be seen to be there.
-constexpr float least_spoken_share = 0.25f;
+constexpr float min_spoken_share = 0.25f;
 
 constexpr float lobe_radius = 5 * pi / 180;  ///< a few texels of the cube that is optimised on
 constexpr float horizon_softness = 0.06f;
@@ -107,7 +107,7 @@ at::Tensor PhysicalLight::radiance(const at::Tensor& directions) const {
     const at::Tensor sun_color = color_of(value(sun_warmth) + moonlight);
     const at::Tensor sky_color = color_of(value(sky_warmth) + moonlight);
     at::Tensor share = value(sun_share);
-    if (held_) share = least_spoken_share + (1 - least_spoken_share) * share;
+    if (held_) share = min_spoken_share + (1 - min_spoken_share) * share;
 
     const at::Tensor facing = (directions * sun).sum(-1, true);
     const at::Tensor up = directions.select(-1, 1).unsqueeze(-1);
@@ -160,7 +160,7 @@ PhysicalValues PhysicalLight::values() const {
                           value(glow),
                           {}};
     values.sun = to_sky_angles(Vec3(d[0].item<float>(), d[1].item<float>(), d[2].item<float>()));
-    if (held_) values.sun_share = least_spoken_share + (1 - least_spoken_share) * values.sun_share;
+    if (held_) values.sun_share = min_spoken_share + (1 - min_spoken_share) * values.sun_share;
     return values;
 }
 

@@ -17,7 +17,7 @@ constexpr float smoothness_weight = 9;
 constexpr float start_weight = 0.006f;
 constexpr float green_weight = 2;
 constexpr float object_weight = 2;
-constexpr float least_color = 0.02f;  ///< of the object, before its logarithm is taken
+constexpr float min_color = 0.02f;  ///< of the object, before its logarithm is taken
 /// In log RGB, across the way that light takes from warm to cool (physical_light.h).
 const Vec3 green_direction = glm::normalize(Vec3(-0.65f, 1.0f, -0.35f));
 
@@ -38,7 +38,7 @@ TexelLight::TexelLight(const Image& light, const LightModelOptions& options)
         solid_angles_[0][0][y][0] = texel_solid_angle(y, change_height);
     solid_angles_ = solid_angles_ / solid_angles_.mean();
 
-    const Vec3 color = glm::log(glm::max(options.object_color, Vec3(least_color)));
+    const Vec3 color = glm::log(glm::max(options.object_color, Vec3(min_color)));
     const Vec3 chroma = color - (color.x + color.y + color.z) / 3;
     const float length = glm::length(chroma);
     object_chroma_ = std::min(1.0f, length);

@@ -8,14 +8,6 @@
 
 namespace item3d {
 namespace nn = torch::nn;
-namespace {
-
-at::Tensor unit_length(const at::Tensor& features) {
-    return features / features.norm(2, {-1}, /*keepdim=*/true).clamp_min(1e-12);
-}
-
-}  // namespace
-
 ClipConfig ClipConfig::from_config(const Config& config) {
     for (const std::string& name : config.texts("architectures", {}))
         if (name != "CLIPModel") config.fail("architectures", "CLIPModel");
@@ -77,52 +69,6 @@ void save_clip_model(const std::filesystem::path& folder, const ClipModel& model
     write_atomically(folder / "config.json", model->config().to_json().dump(2) + "\n");
     save_safetensors(folder / "model.safetensors", module_tensors(*model, dtype),
                      {{"format", "pt"}});
-}
-
-Clip Clip::load(const std::filesystem::path& folder, at::Device device, at::ScalarType dtype) {
-    // The small files first: what they lack is found before gigabytes are read.
-    const auto config = ClipConfig::from_config(Config::read(folder / "config.json"));
-    Clip clip;
-    clip.device_ = device;
-    clip.tokenizer = std::make_shared<ClipTokenizer>(ClipTokenizer::load(folder));
-    clip.processor =
-        std::make_shared<ImageProcessor>(ImageProcessor::load(folder, config.vision.image_size));
-    if (clip.tokenizer->largest_id() >= config.text.vocab_size)
-        throw InputError((folder / "vocab.json").string(),
-                         fmt::format("has id {}, but the text model knows {} tokens",
-                                     clip.tokenizer->largest_id(), config.text.vocab_size),
-                         "the tokenizer does not belong to this model");
-    clip.model = load_clip_model(folder, device, dtype);
-    return clip;
-}
-
-Clip Clip::load_to_run(const std::filesystem::path& folder, at::Device device,
-                       at::ScalarType dtype) {
-    const bool packs = PackedMatrix::runs(device, dtype);
-    Clip clip = load(folder, device, packs ? at::kFloat : dtype);
-    if (packs) pack_linear_layers(*clip.model, dtype);
-    return clip;
-}
-
-int Clip::text_length() const {
-    return std::min(tokenizer->model_max_length(), model->config().text.max_position_embeddings);
-}
-
-void Clip::warn_of_lost_words(const std::string& subject, const std::string& text) const {
-    item3d::warn_of_lost_words(*tokenizer, subject, text, text_length());
-}
-
-at::Tensor Clip::embed_texts(const std::vector<std::string>& texts) const {
-    const at::NoGradGuard no_grad;
-    ClipModel network = model;
-    const at::Tensor ids = tokenizer->encode_batch(texts, text_length()).to(device_);
-    return unit_length(network->text_features(ids).to(at::kFloat));
-}
-
-at::Tensor Clip::embed_images(const at::Tensor& images) const {
-    ClipModel network = model;
-    const at::Tensor pixel_values = processor->process_differentiably(images.to(device_));
-    return unit_length(network->image_features(pixel_values).to(at::kFloat));
 }
 
 }  // namespace item3d

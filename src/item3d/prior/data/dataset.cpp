@@ -4,8 +4,8 @@
 #include "item3d/prior/data/captions.h"
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/render/pictures.h"
-#include "item3d/render/srgb.h"
 #include "item3d/render/shade.h"
+#include "item3d/render/srgb.h"
 
 #include <algorithm>
 #include <optional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "item3d/networks/diffusion/diffusion_model.h"
-#include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vision_language/clip.h"
 #include "item3d/prior/data/views.h"
 #include "item3d/scene/image.h"
 

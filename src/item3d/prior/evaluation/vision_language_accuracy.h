@@ -3,7 +3,7 @@
 #pragma once
 
 #include "item3d/networks/vision_language/captioner.h"
-#include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vision_language/clip.h"
 #include "item3d/prior/data/labeled_pictures.h"
 #include "item3d/tensors/tensor.h"
 

@@ -4,8 +4,8 @@
 #include "item3d/core/parallel.h"
 #include "item3d/metrics/image_quality.h"
 #include "item3d/render/pictures.h"
-#include "item3d/render/srgb.h"
 #include "item3d/render/render.h"
+#include "item3d/render/srgb.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include "item3d/core/progress.h"
 #include "item3d/io/save.h"
 #include "item3d/render/pictures.h"
-#include "item3d/render/srgb.h"
 #include "item3d/render/scatter.h"
+#include "item3d/render/srgb.h"
 
 #include <algorithm>
 

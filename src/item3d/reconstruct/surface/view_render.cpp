@@ -2,8 +2,8 @@
 
 #include "item3d/render/antialias.h"
 #include "item3d/render/pictures.h"
-#include "item3d/render/srgb.h"
 #include "item3d/render/scatter.h"
+#include "item3d/render/srgb.h"
 #include "item3d/report/picture.h"
 
 #include <algorithm>
