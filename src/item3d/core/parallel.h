@@ -29,4 +29,17 @@ void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t
     }
 }
 
+/// While it lives, libraries that this thread calls are told of one thread: some choose by that
+/// number, even where they cannot use more, in which order they sum.
+class OneThread {
+  public:
+    OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
+    ~OneThread() { omp_set_num_threads(before_); }
+    OneThread(const OneThread&) = delete;
+    OneThread& operator=(const OneThread&) = delete;
+
+  private:
+    int before_;
+};
+
 }  // namespace item3d

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/networks/diffusion/unet_blocks.h"
+#include "item3d/networks/layers/rowwise_convolution.h"
 
 #include <torch/nn/modules/activation.h>
 #include <torch/nn/modules/linear.h>
@@ -97,7 +98,7 @@ AutoencoderTiny::~AutoencoderTiny() = default;
 at::Tensor AutoencoderTiny::run(const std::vector<Layer>& layers, at::Tensor x) {
     for (Layer layer : layers) {
         if (layer.convolution) {
-            x = layer.convolution(x);
+            x = rowwise_convolution(layer.convolution, x);
         } else if (layer.block) {
             x = layer.block->forward(x);
         } else if (layer.plain == Layer::Plain::relu) {

@@ -3,9 +3,9 @@
 #include "item3d/networks/layers/attention.h"
 #include "item3d/networks/layers/gated_gelu.h"
 #include "item3d/networks/layers/group_norm.h"
+#include "item3d/networks/layers/rowwise_convolution.h"
 
 #include <ATen/autocast_mode.h>
-#include <torch/csrc/autograd/custom_function.h>
 
 namespace item3d {
 namespace nn = torch::nn;
@@ -14,35 +14,6 @@ namespace {
 nn::GroupNorm make_norm(int groups, int channels, double epsilon) {
     return nn::GroupNorm(nn::GroupNormOptions(groups, channels).eps(epsilon));
 }
-
-using torch::autograd::AutogradContext;
-using torch::autograd::tensor_list;
-
-/// conv2d with frozen weights. The library's keeps its input for a gradient of the weights that
-/// nobody asks for; this is differentiable in x alone and keeps nothing of it.
-struct StridedStep : torch::autograd::Function<StridedStep> {
-    static at::Tensor forward(AutogradContext* context, const at::Tensor& x,
-                              const at::Tensor& weight, const at::Tensor& bias, std::int64_t stride,
-                              std::int64_t padding) {
-        context->save_for_backward({weight});
-        context->saved_data["sizes"] = x.sizes().vec();
-        context->saved_data["stride"] = stride;
-        context->saved_data["padding"] = padding;
-        return at::conv2d(x, weight, bias, stride, padding);
-    }
-    static tensor_list backward(AutogradContext* context, tensor_list gradients) {
-        const at::Tensor weight = context->get_saved_variables()[0];
-        const std::int64_t stride = context->saved_data["stride"].toInt();
-        const std::int64_t padding = context->saved_data["padding"].toInt();
-        // The input's numbers do not matter to its own gradient.
-        const at::Tensor shape = at::empty(context->saved_data["sizes"].toIntVector(),
-                                           gradients[0].options(), at::MemoryFormat::ChannelsLast);
-        const auto result = at::convolution_backward(
-            gradients[0], shape, weight, c10::nullopt, {stride, stride}, {padding, padding}, {1, 1},
-            /*transposed=*/false, {0, 0}, /*groups=*/1, {true, false, false});
-        return {std::get<0>(result), {}, {}, {}, {}};
-    }
-};
 
 /// A convolution with a kernel of one pixel. With frozen weights in float32 it is a product of
 /// matrices, which the library takes longer to see by itself.
@@ -164,11 +135,7 @@ DownsampleImpl::DownsampleImpl(int channels, int padding) : padding_(padding) {
 
 at::Tensor DownsampleImpl::forward(const at::Tensor& x) {
     const at::Tensor padded = padding_ == 0 ? at::constant_pad_nd(x, {0, 1, 0, 1}) : x;
-    const bool only_x = at::GradMode::is_enabled() && x.requires_grad() && x.is_cpu() &&
-                        !conv_->weight.requires_grad() && !conv_->bias.requires_grad() &&
-                        !at::autocast::is_autocast_enabled(at::kCPU);
-    if (only_x) return StridedStep::apply(padded, conv_->weight, conv_->bias, 2, padding_);
-    return conv_(padded);
+    return rowwise_convolution(conv_, padded);
 }
 
 UpsampleImpl::UpsampleImpl(int channels) {
