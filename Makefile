@@ -17,7 +17,7 @@ JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
 .PHONY: setup configure build demo check-format check-layers test-loaders test-build test check cuda \
-    bench format lint install clean
+    bench bench-build format lint install clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
 CUDA := $(if $(filter x86_64,$(shell uname -m)),cuda)
@@ -64,8 +64,10 @@ cuda:
 	@cmake --preset release --log-level=WARNING -DITEM3D_CUDA=ON
 	@$(BUILD) --target item3d_cuda
 
-bench: configure
-	@$(BUILD) --target benches
+bench-build: configure
+	@$(BUILD) --target benches parity
+
+bench: bench-build
 	@scripts/bench.sh build
 
 format: setup

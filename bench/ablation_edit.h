@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bench/ablation_contenders.h"
-#include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vision_language/clip.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/suite/cases.h"
 

@@ -1,0 +1,61 @@
+// The promise of docs/method.md: an edit gives the same bytes for any number of threads.
+#include "item3d/core/files.h"
+#include "tests/support/edit.h"
+
+#include <ATen/Parallel.h>
+#include <omp.h>
+
+#include <cstdlib>
+
+namespace item3d::testing {
+namespace {
+
+class Threads : public EditTest {
+  protected:
+    void SetUp() override {
+        EditTest::SetUp();
+        before_ = omp_get_max_threads();
+    }
+    void TearDown() override {
+        use(before_);
+        EditTest::TearDown();
+    }
+
+    static void use(int threads) {
+        omp_set_num_threads(threads);
+        at::set_num_threads(threads);
+    }
+
+    /// model.glb and the state that it was baked from, as the embedded prior makes them.
+    std::string edited_on(int threads, const char* detail) const {
+        use(threads);
+        EditRequest edit =
+            request(std::to_string(threads), 2, {{"to", "a golden cube"}, {"batch", 4}});
+        const char* assets = std::getenv("ITEM3D_ASSETS");
+        edit.prior = fs::path(assets ? assets : "assets") / "prior";
+        change(edit, {{"resolution", 64},
+                      {"light_augment", "all"},
+                      {"detail", detail},
+                      {"detail_views", 1}});
+        edit_model(edit);
+        return read_text(edit.output / "model.glb") +
+               read_text(edit.output / "checkpoint.safetensors");
+    }
+
+  private:
+    int before_ = 1;
+};
+
+TEST_F(Threads, GiveTheSameBytesHoweverMany) {
+    const std::string one = edited_on(1, "off");
+    EXPECT_TRUE(edited_on(2, "off") == one) << "two threads";
+    EXPECT_TRUE(edited_on(3, "off") == one) << "three threads";
+}
+
+TEST_F(Threads, GiveTheSameBytesOfTheDetailStageToo) {
+    const std::string one = edited_on(1, "always");
+    EXPECT_TRUE(edited_on(3, "always") == one) << "three threads";
+}
+
+}  // namespace
+}  // namespace item3d::testing
