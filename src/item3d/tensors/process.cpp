@@ -9,7 +9,7 @@ namespace item3d {
 void prepare_process() {
     // Read by the library with its first product.
     setenv("MKL_CBWR", "AUTO,STRICT", /*overwrite=*/0);
-    if (!std::getenv("ITEM3D_NO_REGION")) give_large_tensors_a_region();
+    give_large_tensors_a_region();
 }
 
 }  // namespace item3d
