@@ -1,7 +1,7 @@
-#include "item3d/networks/vision_language/clip.h"
 #include "item3d/networks/vision_language/clip_model.h"
 
 #include "item3d/core/error.h"
+#include "item3d/networks/vision_language/clip.h"
 #include "item3d/tensors/weights.h"
 #include "tests/support/networks.h"
 
