@@ -6,9 +6,9 @@ namespace {
 
 class Launcher : public Program {
   protected:
-    /// What a program in the place of the commands' sees of GOMP_SPINCOUNT.
+    /// What a program in the place of item3d-edit sees of GOMP_SPINCOUNT.
     std::string spin_count(const std::string& variables) const {
-        const fs::path launcher = folder_ / "item3d", commands = folder_ / "item3d-commands";
+        const fs::path launcher = folder_ / "item3d", commands = folder_ / "item3d-edit";
         fs::copy_file(ITEM3D_PROGRAM, launcher, fs::copy_options::overwrite_existing);
         std::ofstream(commands) << "#!/bin/sh\necho \"${GOMP_SPINCOUNT-none} $*\"\n";
         fs::permissions(commands, fs::perms::owner_all);
