@@ -128,7 +128,7 @@ fs::path assets_folder() {
     if (const char* set = std::getenv("ITEM3D_ASSETS"); set && *set) return set;
     std::error_code code;
     const fs::path program = fs::read_symlink("/proc/self/exe", code);
-    for (const char* relative : {"../assets", "../share/item3d"}) {
+    for (const char* relative : {"../assets", "../share/item3d", "../../share/item3d"}) {
         const fs::path candidate = program.parent_path() / relative;
         if (fs::is_directory(candidate)) return candidate.lexically_normal();
     }

@@ -30,7 +30,7 @@ void* open_module() {
         if (module == nullptr) cannot_use(dlerror());
         return module;
     }
-    cannot_use(c10::str(file_name, ", which `make` builds, is not in ", folder.string()));
+    cannot_use(c10::str(file_name, ", which `make cuda` builds, is not in ", folder.string()));
 }
 
 /// LibTorch before 2.12 gives no way to a CUDA stream but through libtorch_cuda's own headers;
