@@ -2,8 +2,7 @@
 #
 #   KIND   plain: no precompiled header; tensors: item3d/tensors/tensor.h; modules: torch::nn and
 #          torch::autograd as well. A second kind after an underscore (tensors_apart) changes nothing.
-#   LEVEL  computation: -O2; orchestration: -O1, which takes two thirds of the time to compile and
-#          runs as fast where the time goes into calls of kernels and of LibTorch.
+#   LEVEL  computation: -O2; orchestration: -O1, for sources that call kernels and LibTorch.
 #
 # Every file that includes LibTorch pays for what its headers declare, precompiled or not: an empty
 # file takes 2 s with the header of tensors and 5 s with that of modules.

@@ -1,4 +1,4 @@
-// What the commands share: common options, results on stdout.
+// Common options of all commands, and results on stdout.
 //
 // A command is one file of its family's folder, apps/item3d/FAMILY/COMMAND.cpp, with one function
 // that adds it:

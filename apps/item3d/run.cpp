@@ -42,7 +42,7 @@ bool says_out_of_memory(const std::string& message) {
            message.find("not enough memory") != std::string::npos;
 }
 
-/// What LibTorch says has the size that it lacked ("allocate N bytes"), among names of its files.
+/// LibTorch's message names the size that it lacked ("allocate N bytes").
 int fail_out_of_memory(const std::string& message) {
     constexpr std::string_view before = "allocate ";
     std::string lacking;

@@ -1,4 +1,4 @@
-// What the main() of each family of commands does.
+// The main() of each family of commands.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -54,7 +54,7 @@ TEST(Attention, IsTheSameOnOneThreadAndOnMany) {
     const at::Tensor one = attention(x, x, x, 2);
     at::set_num_threads(3);
     const at::Tensor many = attention(x, x, x, 2);
-    at::set_num_threads(1);
+    at::set_num_threads(testing::test_threads());
     EXPECT_TRUE(at::equal(one, many));
 }
 

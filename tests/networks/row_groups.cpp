@@ -52,10 +52,11 @@ TEST(RowGroups, GiveWhatAllRowsTogetherGive) {
 }
 
 TEST(RowGroups, GiveTheSameOnOneThreadAndOnMany) {
+    at::set_num_threads(1);
     const auto one = predict_rows(7, true);
     at::set_num_threads(4);
     const auto many = predict_rows(7, true);
-    at::set_num_threads(1);
+    at::set_num_threads(testing::test_threads());
     EXPECT_TRUE(at::equal(one.first, many.first));
     EXPECT_TRUE(at::equal(one.second, many.second));
 }
