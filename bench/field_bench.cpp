@@ -2,7 +2,6 @@
 // Arguments: surface points. Points lie on a sphere, in the order of a picture's pixels.
 #include "item3d/field/adam.h"
 #include "item3d/field/neural_texture.h"
-#include "item3d/tensors/process.h"
 #include "item3d/tensors/tensor.h"
 
 #include <benchmark/benchmark.h>
@@ -91,11 +90,3 @@ BENCHMARK(field_iteration)->Apply(sizes);
 
 }  // namespace
 }  // namespace item3d
-
-int main(int argc, char** argv) {
-    item3d::prepare_process();
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-    benchmark::RunSpecifiedBenchmarks();
-    return 0;
-}

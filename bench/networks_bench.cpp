@@ -3,7 +3,6 @@
 // batch. Weights are random, which takes the same time.
 #include "item3d/networks/diffusion/autoencoder_tiny.h"
 #include "item3d/networks/diffusion/unet.h"
-#include "item3d/tensors/process.h"
 #include "item3d/tensors/tensor.h"
 
 #include <ATen/autocast_mode.h>
@@ -100,11 +99,3 @@ BENCHMARK_CAPTURE(encode, bfloat16_and_gradient, at::kBFloat16)
 
 }  // namespace
 }  // namespace item3d
-
-int main(int argc, char** argv) {
-    item3d::prepare_process();
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-    benchmark::RunSpecifiedBenchmarks();
-    return 0;
-}

@@ -10,7 +10,6 @@
 #include "item3d/render/srgb.h"
 #include "item3d/render/textured_materials.h"
 #include "item3d/scene/sphere.h"
-#include "item3d/tensors/process.h"
 
 #include <benchmark/benchmark.h>
 
@@ -164,11 +163,3 @@ BENCHMARK(preview_under_another_light)->Arg(512)->Unit(benchmark::kMillisecond)-
 
 }  // namespace
 }  // namespace item3d
-
-int main(int argc, char** argv) {
-    item3d::prepare_process();
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-    benchmark::RunSpecifiedBenchmarks();
-    return 0;
-}

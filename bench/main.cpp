@@ -1,0 +1,12 @@
+// How long do the operations of one room take? main() of the programs that measure them.
+#include "item3d/tensors/process.h"
+
+#include <benchmark/benchmark.h>
+
+int main(int argc, char** argv) {
+    item3d::prepare_process();
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}
