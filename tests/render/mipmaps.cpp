@@ -61,7 +61,7 @@ TEST(TexturePyramid, KeepsTheMeanOfAnySize) {
         const at::Tensor texture = at::rand({height, width, 3});
         const auto levels = texture_pyramid(texture);
         EXPECT_EQ(levels.back().numel(), 3);
-        const at::Tensor error = levels.back().flatten() - texture.mean({0, 1});
+        const at::Tensor error = levels.back().flatten() - texture.mean(at::IntArrayRef{0, 1});
         EXPECT_LT(error.abs().max().item<float>(), 0.03f) << height << " x " << width;
     }
 }

@@ -16,8 +16,11 @@ namespace item3d {
 /// start takes longer than reading its weights.
 template <typename Make>
 auto without_initial_values(const Make& make) {
-    // In-place operations of the meta backend look at shapes and leave the values alone.
-    const c10::impl::IncludeDispatchKeyGuard guard(c10::DispatchKey::Meta);
+    // In-place operations of the meta backend look at shapes and leave the values alone. The guard
+    // restores all of the keys: IncludeDispatchKeyGuard leaves the backend's bit set (LibTorch 2.11).
+    auto keys = c10::impl::tls_local_dispatch_key_set();
+    keys.included_ = keys.included_.add(c10::DispatchKey::Meta);
+    const c10::impl::ForceDispatchKeyGuard guard(keys);
     return make();
 }
 
