@@ -17,7 +17,8 @@ namespace item3d {
 template <typename Make>
 auto without_initial_values(const Make& make) {
     // In-place operations of the meta backend look at shapes and leave the values alone. The guard
-    // restores all of the keys: IncludeDispatchKeyGuard leaves the backend's bit set (LibTorch 2.11).
+    // restores all of the keys: IncludeDispatchKeyGuard leaves the backend's bit set
+    // (LibTorch 2.11).
     auto keys = c10::impl::tls_local_dispatch_key_set();
     keys.included_ = keys.included_.add(c10::DispatchKey::Meta);
     const c10::impl::ForceDispatchKeyGuard guard(keys);
