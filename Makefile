@@ -12,7 +12,7 @@
 # JOBS=N limits how many compilers run at once.
 
 PREFIX ?= /usr/local
-# A file that includes LibTorch takes about 1.5 GB to compile.
+# A file that includes LibTorch takes about 1.7 GB to compile.
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build

@@ -24,6 +24,11 @@ target_link_libraries(item3d_options INTERFACE item3d_openmp)
 target_compile_options(item3d_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
     # How vectors are passed between files; ours are inlined.
     -Wno-psabi)
+# GCC collects garbage from 128 MB on; a file with LibTorch's headers holds a gigabyte that stays, and
+# compiles in an eighth less time when it is not searched again and again.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(item3d_options INTERFACE "SHELL:--param ggc-min-heapsize=1500000")
+endif()
 
 # item3d_layers(ROOM RESULT): the rooms that ROOM may include.
 file(STRINGS ${CMAKE_SOURCE_DIR}/cmake/layers.txt ITEM3D_LAYERS REGEX "^[a-z]")
