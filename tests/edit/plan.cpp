@@ -38,16 +38,6 @@ TEST(EditPlan, metallic_is_left_alone_where_no_metal_is_named) {
     EXPECT_TRUE(is_edited("a copper cube", "auto"));
 }
 
-TEST(EditPlan, metallic_begins_on_its_way_where_one_sentence_names_a_metal) {
-    const auto first = [](const std::string& from, const std::string& to) {
-        return plan_of({{"from", from}, {"to", to}, {"metallic_start", 0.25}}).first_metallic;
-    };
-    EXPECT_EQ(first("a wooden door", "a steel door"), 0.25f);
-    EXPECT_EQ(first("a steel door", "a wooden door"), 0.75f);
-    EXPECT_FALSE(first("a silver ring", "a golden ring"));
-    EXPECT_FALSE(first("a red mug", "a blue mug"));
-}
-
 TEST(EditPlan, detail_is_painted_where_the_target_alone_names_such_a_material) {
     nlohmann::json settings = {{"from", "a red mug"}, {"to", "a Marble mug"}};
     const auto painted = [&](const nlohmann::json& more) {

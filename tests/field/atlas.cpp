@@ -21,6 +21,11 @@ class AtlasTest : public ::testing::Test {
     void TearDown() override { set_verbosity(Verbosity::normal); }
 };
 
+std::ptrdiff_t free_texels(const UvRaster& raster) {
+    return std::count_if(raster.owners.begin(), raster.owners.end(),
+                         [](const UvOwner& owner) { return owner.triangle < 0; });
+}
+
 TEST(UvRaster, CoversEachTexelOnceAlongSharedEdges) {
     // A fan around an odd centre: every texel of the square belongs to exactly one triangle.
     const Vec2 center(0.4137f, 0.5519f);
@@ -42,10 +47,11 @@ TEST(UvRaster, CoversEachTexelOnceAlongSharedEdges) {
         triangles.push_back(triangle);
     }
     int overlaps = 0;
-    const UvRaster raster = rasterize_uv(
-        triangles, 61, 47, [&](std::size_t, std::int32_t, std::int32_t) { return ++overlaps > 0; });
+    const UvRaster raster =
+        rasterize_uv(triangles, 61, 47, {},
+                     [&](std::size_t, const UvOwner&, const UvOwner&) { return ++overlaps > 0; });
     EXPECT_EQ(overlaps, 0);
-    EXPECT_EQ(std::count(raster.triangle.begin(), raster.triangle.end(), -1), 0);
+    EXPECT_EQ(free_texels(raster), 0);
     for (int y = 0; y < 47; ++y) {
         for (int x = 0; x < 61; ++x) {
             const UvTriangle& t = triangles[static_cast<std::size_t>(raster.at(x, y))];
@@ -64,7 +70,48 @@ TEST(UvRaster, SurvivesUselessTriangles) {
                                             {Vec2(0.5f), Vec2(0.5f), Vec2(0.5f)},
                                             {Vec2(1e30f), Vec2(-1e30f, 0), Vec2(0, 1)}};
     const UvRaster raster = rasterize_uv(triangles, 8, 8);
-    EXPECT_EQ(std::count(raster.triangle.begin(), raster.triangle.end(), -1), 64);
+    EXPECT_EQ(free_texels(raster), 64);
+}
+
+TEST(UvRaster, ATextureThatRepeatsIsCoveredWholly) {
+    for (const Wrap wrap : {Wrap::repeat, Wrap::mirrored_repeat}) {
+        for (const float repetitions : {3.0f, 40.0f}) {
+            const std::vector<UvTriangle> square{
+                {Vec2(0), Vec2(repetitions, 0), Vec2(repetitions)},
+                {Vec2(0), Vec2(repetitions), Vec2(0, repetitions)}};
+            const UvRaster raster = rasterize_uv(square, 16, 8, {wrap, wrap});
+            EXPECT_EQ(free_texels(raster), 0);
+            for (int y = 0; y < raster.height; ++y) {
+                for (int x = 0; x < raster.width; ++x) {
+                    const Vec2 uv = raster.uv_at(x, y);
+                    const auto t = static_cast<std::size_t>(raster.at(x, y));
+                    const Vec2 b = uv_barycentrics(square[t], uv);
+                    const Vec2 back =
+                        square[t][0] * b.x + square[t][1] * b.y + square[t][2] * (1.0f - b.x - b.y);
+                    EXPECT_LT(glm::length(back - uv), 1e-3f);  // it lies inside
+                    EXPECT_NEAR(wrap_coordinate(uv.x, wrap), (static_cast<float>(x) + 0.5f) / 16,
+                                1e-4f);
+                    EXPECT_NEAR(wrap_coordinate(uv.y, wrap), (static_cast<float>(y) + 0.5f) / 8,
+                                1e-4f);
+                }
+            }
+        }
+    }
+}
+
+TEST(UvRaster, FacesOfAPaletteClaimTheirTexels) {
+    const Vec2 center(2.5f / 8, 0.5f), border(6.0f / 8, 0.5f);
+    const std::vector<UvTriangle> palette{
+        {center, center, center},
+        {center, center, center},
+        {border, border + Vec2(0.01f, 0), border + Vec2(0, 0.01f)}};
+    UvRaster raster = rasterize_uv(palette, 8, 1, {Wrap::clamp_to_edge, Wrap::clamp_to_edge});
+    EXPECT_EQ(free_texels(raster), 8);
+    claim_texels(raster, palette);
+    EXPECT_EQ(raster.at(2, 0), 0);  // the first one's
+    EXPECT_EQ(raster.at(5, 0), 2);  // what linear filtering mixes at the border
+    EXPECT_EQ(raster.at(6, 0), 2);
+    EXPECT_EQ(free_texels(raster), 5);
 }
 
 TEST_F(AtlasTest, KeepsAUvMapThatCanBeUsed) {
@@ -101,7 +148,7 @@ TEST_F(AtlasTest, KeepsAMapThatCrossesTheBorderOfARepeatingTexture) {
     EXPECT_GE(raster.at(90, 50), 0);
     // u = 0.105 repeats at 1.105, which lies at x = 2 * 0.775 / 0.9 - 1.
     const std::size_t t = static_cast<std::size_t>(raster.at(10, 50));
-    const Vec2 b = uv_barycentrics(atlas.triangles[t], Vec2(0.105f, 0.505f));
+    const Vec2 b = uv_barycentrics(atlas.triangles[t], raster.uv_at(10, 50));
     const Primitive& quad = model.primitives[0];
     const auto corner = [&](std::size_t c) { return quad.positions[quad.indices[3 * t + c]]; };
     const Vec3 place = corner(0) * b.x + corner(1) * b.y + corner(2) * (1.0f - b.x - b.y);
@@ -157,7 +204,7 @@ TEST_F(AtlasTest, NewUvMapsAreValidAndShareOneAtlas) {
     }
     EXPECT_EQ(find_uv_problem(remade, {0, 1}), "");
     const UvRaster raster = rasterize_uv(atlas.triangles, 256, 256);
-    const auto unused = std::count(raster.triangle.begin(), raster.triangle.end(), -1);
+    const auto unused = free_texels(raster);
     EXPECT_LT(unused, 256 * 256 * 2 / 3);
 }
 

@@ -173,7 +173,7 @@ TEST(Fit, ShiftsMetallicToAMean) {
     };
     const MaterialSample before = sample();
     for (const float mean : {0.5f, 0.2f, 0.8f}) {
-        shift_metallic(sphere.field, sphere.geometry, sphere.space, mean);
+        shift_mean(sphere.field, sphere.geometry, sphere.space, OrmChannel::metallic, mean);
         EXPECT_NEAR(sample().orm.select(1, 2).mean().item<float>(), mean, 0.02f);
     }
     EXPECT_TRUE(at::equal(sample().base_color, before.base_color));

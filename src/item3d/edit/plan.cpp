@@ -100,9 +100,6 @@ EditPlan::EditPlan(EditSettings settings) : EditSettings(std::move(settings)) {
                     (detail == Detail::automatic ? target_names_detail : detail == Detail::always);
     total_iterations = iterations + (paints_detail ? detail_views : 0);
     channels = edited_channels(*this);
-    const bool to_metal = names_metal(to);
-    if (channels.metallic && iterations > 0 && names_metal(from) != to_metal)
-        first_metallic = to_metal ? metallic_start : 1 - metallic_start;
     light_kind = resolved_kind(light_model, small_prior);
     light_variation = edits_light ? LightAugment::off : light_augment;
     light_cube_size = small_prior ? 64 : 256;

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 
 namespace item3d {
@@ -37,11 +36,6 @@ struct EditPlan : EditSettings {
     std::int64_t total_iterations = 0;  ///< and views of the detail stage
     /// All but `keep`, and metallic only as its own setting allows.
     ChannelMask channels;
-    /// Mean metallic that the field begins with, where an edit leads towards or away from metal:
-    /// near 0 and 1 base colour alone can imitate the other side well enough to hold the optimiser
-    /// there, and "golden" ends as yellow paint; an edit that begins on its way lets the light
-    /// decide.
-    std::optional<float> first_metallic;
     LightKind light_kind = LightKind::texels;          ///< of a light that is optimised
     LightAugment light_variation = LightAugment::off;  ///< a light that is optimised stays as it is
     int light_cube_size = 256;                         ///< texels of the edge of prefiltered lights

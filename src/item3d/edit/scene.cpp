@@ -2,6 +2,7 @@
 
 #include "item3d/core/progress.h"
 #include "item3d/edit/load_networks.h"
+#include "item3d/field/atlas/shared_texels.h"
 #include "item3d/io/load.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/tensors/checkpoint.h"
@@ -34,14 +35,20 @@ EditScene load_scene(const EditRequest& request) {
             note("material '" + material.name + "' is unlit; edited, it is a surface in light");
         material.unlit = false;
     }
+    scene.start = choose_start(plan, vocabulary, scene.model, scene.materials);
     scene.geometry = Geometry::from_model(scene.model, device);
     scene.sphere = bounding_sphere(scene.model);
     scene.space = std::make_unique<FieldSpace>(scene.model, scene.materials, device);
-    if (plan.edits_texture)
-        scene.atlas = make_atlas(scene.model, *scene.space, scene.materials, plan.texture_size);
+    if (plan.edits_texture) {
+        scene.atlas =
+            make_atlas(scene.model, *scene.space, scene.materials, plan.texture_size, plan.uv);
+        if (!scene.atlas.shared.empty())
+            scene.space->share(std::make_shared<SharedTexels>(scene.model, scene.atlas,
+                                                              plan.texture_size, device));
+    }
     scene.textured = std::make_unique<TexturedMaterials>(scene.model, device);
     scene.source = std::make_unique<MaterialSource>(scene.model, *scene.textured, *scene.space,
-                                                    scene.materials, plan.channels, device);
+                                                    scene.materials, scene.start.channels, device);
     scene.lights =
         std::make_unique<LightRig>(plan.light, plan.light_variation, plan.light_cube_size, device);
     return scene;

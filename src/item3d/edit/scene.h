@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/edit/material_source.h"
+#include "item3d/edit/material_start.h"
 #include "item3d/edit/request.h"
 #include "item3d/edit/views.h"
 #include "item3d/field/atlas/atlas.h"
@@ -23,6 +24,7 @@ struct EditScene {
     Geometry geometry;
     BoundingSphere sphere;
     std::vector<int> materials;  ///< edited ones, indices into model.materials
+    MaterialStart start;         ///< and which channels are edited
     Atlas atlas;                 ///< the UV maps that the result is baked into
     std::unique_ptr<FieldSpace> space;
     std::unique_ptr<TexturedMaterials> textured;

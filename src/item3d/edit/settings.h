@@ -1,6 +1,7 @@
 // The settings of an edit: one value that goes into edit.json, the report, and the checkpoint.
 #pragma once
 
+#include "item3d/field/atlas/atlas.h"
 #include "item3d/guidance/guidance.h"
 #include "item3d/networks/diffusion/pipeline_extras.h"
 
@@ -62,6 +63,7 @@ struct EditSettings : PipelineExtras {
     LightAugment light_augment = LightAugment::all;
     std::string background = "vary";
     int texture_size = 0;
+    UvPolicy uv = UvPolicy::automatic;
     std::vector<std::string> keep = {"occlusion", "normal"};
     Metallic metallic = Metallic::automatic;
     float metallic_start = 0.5f;

@@ -130,23 +130,34 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
     return result;
 }
 
-void shift_metallic(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
-                    float mean) {
+void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
+                OrmChannel channel, float mean) {
+    constexpr float most_variation = 0.5f;  // standard deviation before the range is applied
     const at::NoGradGuard no_grad;
     Random random(0, RandomStream::metallic);
     const at::Tensor positions =
         space.positions(SurfaceSampler(geometry, space).sample(4096, random));
-    at::Tensor bias = field->metallic_bias();
-    const float start = bias.item<float>();
-    // Metallic rises with the bias; a sigmoid is flat beyond these.
-    float low = start - 16.0f;
-    float high = start + 16.0f;
-    for (int step = 0; step < 24; ++step) {
-        const float middle = 0.5f * (low + high);
-        bias.fill_(middle);
-        const float reached = field->forward(positions).orm.select(1, 2).mean().item<float>();
-        (reached < mean ? low : high) = middle;
-    }
+    at::Tensor bias = field->output_bias(channel);
+    at::Tensor weights = field->output_weights(channel);
+    const auto values = [&] {
+        return field->forward(positions).orm.select(1, static_cast<std::int64_t>(channel));
+    };
+    /// Sets the bias so that the mean becomes `wanted`.
+    const auto solve = [&](float wanted) {
+        // Values rise with the bias; a sigmoid is flat beyond these.
+        float low = -32.0f, high = 32.0f;
+        for (int step = 0; step < 26; ++step) {
+            const float middle = 0.5f * (low + high);
+            bias.fill_(middle);
+            (values().mean().item<float>() < wanted ? low : high) = middle;
+        }
+    };
+    // In the middle of the range the differences show as they are.
+    solve(0.5f);
+    const at::Tensor shown = values().clamp(1e-4f, 1.0f - 1e-4f);
+    const float variation = (shown / (1.0f - shown)).log().std().item<float>();
+    if (variation > most_variation) weights.mul_(most_variation / variation);
+    solve(mean);
 }
 
 }  // namespace item3d

@@ -32,9 +32,10 @@ NeuralTextureOptions suggest_field_options(const Geometry& geometry, const Field
 FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
                            const TexturedMaterials& materials, const FitOptions& options = {});
 
-/// Moves metallic by one constant of the network's output (before its range is applied), so that
-/// its mean over the edited surface becomes `mean`.
-void shift_metallic(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
-                    float mean);
+/// Moves an output so that its mean over the edited surface becomes `mean`, by a constant before
+/// its range is applied. Where values lie at the range's end, differences that cannot be seen there
+/// would come out as blotches: they are scaled down.
+void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
+                OrmChannel channel, float mean);
 
 }  // namespace item3d

@@ -42,6 +42,8 @@ struct NeuralTextureOptions {
     std::uint64_t seed = 0;
 };
 
+enum class OrmChannel { occlusion, roughness, metallic };
+
 /// A hash grid and a network with two hidden layers. Parameters: "table", the grid's features with
 /// sparse gradients (for Adam of adam.h), and "weight0", "bias0", ... of the network. Made on the
 /// CPU; to(device) moves it.
@@ -69,11 +71,16 @@ class NeuralTextureImpl {
     /// Weights and biases of the network.
     std::vector<at::Tensor> network_parameters() const;
 
-    /// A view of the one bias that all metallic values share.
-    at::Tensor metallic_bias() { return biases_.back().detach().select(0, metallic_output); }
+    /// Views of the last layer's parameters for one output.
+    at::Tensor output_weights(OrmChannel channel) {
+        return weights_.back().detach().select(0, first_orm + static_cast<int>(channel));
+    }
+    at::Tensor output_bias(OrmChannel channel) {
+        return biases_.back().detach().select(0, first_orm + static_cast<int>(channel));
+    }
 
   private:
-    static constexpr int metallic_output = 5;  ///< after base colour 3, occlusion, roughness
+    static constexpr int first_orm = 3;  ///< after base colour
 
     NeuralTextureOptions options_;
     HashGrid grid_;

@@ -1,6 +1,7 @@
 #include "item3d/field/surface_points.h"
 
 #include "item3d/core/error.h"
+#include "item3d/field/atlas/shared_texels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,10 +92,13 @@ FieldSpace::FieldSpace(const Model& model, const std::vector<int>& materials, at
 }
 
 at::Tensor FieldSpace::positions(const Surface& surface) const {
-    if (!has_instances_) return surface.position;
-    const at::Tensor transform = transforms_.index_select(0, surface.primitive);  // [P, 4, 3]
-    return at::matmul(surface.position.unsqueeze(1), transform.narrow(1, 0, 3)).squeeze(1) +
-           transform.select(1, 3);
+    at::Tensor positions = surface.position;
+    if (has_instances_) {
+        const at::Tensor transform = transforms_.index_select(0, surface.primitive);  // [P, 4, 3]
+        positions = at::matmul(positions.unsqueeze(1), transform.narrow(1, 0, 3)).squeeze(1) +
+                    transform.select(1, 3);
+    }
+    return shared_ ? shared_->representatives(surface, positions) : positions;
 }
 
 SurfaceSampler::SurfaceSampler(const Geometry& geometry, const FieldSpace& space)

@@ -49,6 +49,7 @@ KnownWord read_word(const std::string& kind, const nlohmann::json& entry) {
         const auto color = entry.at("base_color").get<std::vector<float>>();
         if (color.size() == 3) known.base_color = Vec3(color[0], color[1], color[2]);
     }
+    if (entry.contains("roughness")) known.roughness = entry.at("roughness").get<float>();
     return known;
 }
 
@@ -117,6 +118,22 @@ std::string PriorVocabulary::reading(const std::string& prompt) const {
     words[*noun] = any_object;
     if (*noun > 0 && words[*noun - 1] == "a") words[*noun - 1] = "an";
     return fmt::format("{}", fmt::join(words, " "));
+}
+
+std::vector<KnownWord> PriorVocabulary::named(const std::string& kind,
+                                              const std::string& prompt) const {
+    const std::vector<std::string> prompt_has = prompt_words(prompt);
+    std::vector<KnownWord> found;
+    for (const KnownWord& known : words_) {
+        if (known.kind != kind) continue;
+        const bool is_named = std::any_of(
+            known.spellings.begin(), known.spellings.end(), [&](const std::string& spelling) {
+                return std::find(prompt_has.begin(), prompt_has.end(), spelling) !=
+                       prompt_has.end();
+            });
+        if (is_named) found.push_back(known);
+    }
+    return found;
 }
 
 std::vector<std::string> PriorVocabulary::unknown_words(const std::string& prompt) const {

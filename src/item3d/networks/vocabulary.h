@@ -23,6 +23,7 @@ struct KnownWord {
     double accuracy = 0;                 ///< of the diffusion classifier on held-out shapes, 0 .. 1
     std::string taken_for;               ///< the word it is most often taken for; may be empty
     std::optional<Vec3> base_color;      ///< linear RGB, for colours and metals
+    std::optional<float> roughness;      ///< of metals: the middle of what the prior has seen
 };
 
 /// The content of a prior.json. Priors without one (a Stable Diffusion folder) know everything as
@@ -39,6 +40,8 @@ class PriorVocabulary {
     bool open() const { return all_words_.empty(); }
     const std::vector<KnownWord>& words() const { return words_; }
     std::vector<KnownWord> words_of(const std::string& kind) const;
+    /// Words of `kind` that the prompt names, in the order of the vocabulary.
+    std::vector<KnownWord> named(const std::string& kind, const std::string& prompt) const;
 
     /// Words of the prompt, in its order and each once, that the prior was never trained on.
     std::vector<std::string> unknown_words(const std::string& prompt) const;

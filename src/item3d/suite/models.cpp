@@ -66,9 +66,8 @@ void paint_primitive(const Primitive& primitive, Image& image, std::vector<std::
             const int triangle = raster.at(x, y);
             if (triangle < 0) continue;
             const auto first = 3 * static_cast<std::size_t>(triangle);
-            const Vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(image.width),
-                          (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height));
-            const Vec2 weight = uv_barycentrics(triangles[static_cast<std::size_t>(triangle)], uv);
+            const Vec2 weight =
+                uv_barycentrics(triangles[static_cast<std::size_t>(triangle)], raster.uv_at(x, y));
             const Vec3 position =
                 weight.x * primitive.positions[primitive.indices[first]] +
                 weight.y * primitive.positions[primitive.indices[first + 1]] +

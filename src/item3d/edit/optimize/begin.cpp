@@ -55,15 +55,18 @@ std::unique_ptr<LightModel> begin_light(const EditScene& scene, const EditPlan& 
     return make_light_model(load_light(plan.light), options);
 }
 
-/// Makes the field look like the input, with metallic where an edit towards or from metal starts.
+/// Makes the field look like the input, with metallic and roughness where the edit starts.
 void fit_field(const EditScene& scene, const EditPlan& plan, EditState& state) {
     FitOptions options;
     options.steps = plan.fit_steps;
     options.seed = plan.seed;
     fit_to_materials(state.field, scene.geometry, *scene.space, *scene.textured, options);
     state.fitted = snapshot(state.field);
-    if (plan.first_metallic)
-        shift_metallic(state.field, scene.geometry, *scene.space, *plan.first_metallic);
+    const auto begin_at = [&](OrmChannel channel, std::optional<float> mean) {
+        if (mean) shift_mean(state.field, scene.geometry, *scene.space, channel, *mean);
+    };
+    begin_at(OrmChannel::metallic, scene.start.metallic);
+    begin_at(OrmChannel::roughness, scene.start.roughness);
 }
 
 }  // namespace

@@ -51,11 +51,11 @@ ColorRegularizer::ColorRegularizer(const EditScene& scene, const EditPlan& plan,
     };
     positions_ = deal(positions);
     fitted_ = deal(NeuralTexture(state.fitted)->encoded(positions));
-    const float base_color = plan.channels.base_color ? 1 : 0;
-    channels_ =
-        at::tensor({base_color, base_color, base_color, 0.0f, plan.channels.roughness ? 1.0f : 0.0f,
-                    plan.channels.metallic ? 1.0f : 0.0f, 0.0f, 0.0f})
-            .to(scene.device);
+    const float base_color = scene.start.channels.base_color ? 1 : 0;
+    channels_ = at::tensor({base_color, base_color, base_color, 0.0f,
+                            scene.start.channels.roughness ? 1.0f : 0.0f,
+                            scene.start.channels.metallic ? 1.0f : 0.0f, 0.0f, 0.0f})
+                    .to(scene.device);
 }
 
 void ColorRegularizer::backward(EditState& state) const {

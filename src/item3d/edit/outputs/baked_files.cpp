@@ -50,7 +50,7 @@ constexpr int light_height = 256;
 EditedModel bake_textures(const EditRequest& request, const EditScene& scene, EditState& state) {
     BakeOptions options;
     options.texture_size = request.plan.texture_size;
-    const ChannelMask& channels = request.plan.channels;
+    const ChannelMask& channels = scene.start.channels;
     options.channels = {channels.base_color, channels.occlusion, channels.roughness,
                         channels.metallic, channels.normal};
     const BakeScene bake_scene{scene.model, scene.geometry, *scene.textured, *scene.space,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace item3d {
 namespace {
@@ -31,6 +32,19 @@ UvTriangle corners_of(const std::vector<Vec2>& uvs, const std::vector<std::uint3
     return {uvs[indices[first]], uvs[indices[first + 1]], uvs[indices[first + 2]]};
 }
 
+/// Indices into Model::textures, the base colour's first.
+std::vector<int> textures_of(const Material& material) {
+    std::vector<int> textures;
+    for (const int index : {material.base_color_texture, material.metallic_roughness_texture,
+                            material.occlusion_texture, material.normal_texture})
+        if (index >= 0) textures.push_back(index);
+    return textures;
+}
+
+bool has_textures(const Model& model, int material) {
+    return !textures_of(model.materials[static_cast<std::size_t>(material)]).empty();
+}
+
 /// Whether all textures of the material repeat along an axis; those that an edit adds do.
 struct Repetition {
     bool u = true, v = true;
@@ -38,9 +52,7 @@ struct Repetition {
 
 Repetition repetition_of(const Model& model, const Material& material) {
     Repetition repeats;
-    for (const int index : {material.base_color_texture, material.metallic_roughness_texture,
-                            material.occlusion_texture, material.normal_texture}) {
-        if (index < 0) continue;
+    for (const int index : textures_of(material)) {
         const Texture& texture = model.textures[static_cast<std::size_t>(index)];
         repeats.u = repeats.u && texture.wrap_u == Wrap::repeat;
         repeats.v = repeats.v && texture.wrap_v == Wrap::repeat;
@@ -64,6 +76,13 @@ bool is_placed(const UvTriangle& uv, Repetition repeats) {
         finite = finite && std::isfinite(corner.x) && std::isfinite(corner.y);
     }
     return finite && is_good(low.x, high.x, repeats.u) && is_good(low.y, high.y, repeats.v);
+}
+
+bool have_uvs(const Model& model, const std::vector<int>& primitives) {
+    return std::all_of(primitives.begin(), primitives.end(), [&](int index) {
+        const Primitive& primitive = model.primitives[static_cast<std::size_t>(index)];
+        return primitive.uvs.size() == primitive.positions.size();
+    });
 }
 
 }  // namespace
@@ -103,11 +122,14 @@ std::string find_uv_problem(const Model& model, const std::vector<int>& primitiv
     std::size_t overlaps = 0;
     constexpr std::size_t texel_count = std::size_t{overlap_resolution} * overlap_resolution;
     const float same_place = 1e-3f * glm::length(high - low);
-    const auto on_overlap = [&](std::size_t texel, std::int32_t first, std::int32_t second) {
-        const Vec2 uv((static_cast<float>(texel % overlap_resolution) + 0.5f) / overlap_resolution,
-                      (static_cast<float>(texel / overlap_resolution) + 0.5f) / overlap_resolution);
-        const auto place = [&](std::int32_t t) {
-            const std::size_t i = static_cast<std::size_t>(t);
+    const auto on_overlap = [&](std::size_t texel, const UvOwner& first, const UvOwner& second) {
+        const auto coordinate = [](std::size_t at, int tile) {
+            return (static_cast<float>(at) + 0.5f) / overlap_resolution + static_cast<float>(tile);
+        };
+        const auto place = [&](const UvOwner& owner) {
+            const auto i = static_cast<std::size_t>(owner.triangle);
+            const Vec2 uv(coordinate(texel % overlap_resolution, owner.tile_u),
+                          coordinate(texel / overlap_resolution, owner.tile_v));
             const Vec2 b = uv_barycentrics(triangles[i], uv);
             return places[i][0] * b.x + places[i][1] * b.y + places[i][2] * (1.0f - b.x - b.y);
         };
@@ -116,10 +138,9 @@ std::string find_uv_problem(const Model& model, const std::vector<int>& primitiv
         return static_cast<double>(overlaps) <= tolerated_overlap * texel_count;
     };
     const UvRaster raster =
-        rasterize_uv(triangles, overlap_resolution, overlap_resolution, on_overlap);
-    const std::size_t used =
-        raster.triangle.size() -
-        static_cast<std::size_t>(std::count(raster.triangle.begin(), raster.triangle.end(), -1));
+        rasterize_uv(triangles, overlap_resolution, overlap_resolution, {}, on_overlap);
+    const auto used = std::count_if(raster.owners.begin(), raster.owners.end(),
+                                    [](const UvOwner& owner) { return owner.triangle >= 0; });
     if (used == 0) return "its UV map is smaller than a texel";
     const double share = static_cast<double>(overlaps) / static_cast<double>(used);
     if (share > tolerated_overlap) return "its UV map overlaps itself";
@@ -144,8 +165,16 @@ std::pair<int, int> atlas_size(const Model& model, int material, int texture_siz
     return {scaled(width), scaled(height)};
 }
 
+UvWrap wrap_of(const Model& model, int material) {
+    const std::vector<int> textures =
+        textures_of(model.materials[static_cast<std::size_t>(material)]);
+    if (textures.empty()) return {};
+    const Texture& first = model.textures[static_cast<std::size_t>(textures.front())];
+    return {first.wrap_u, first.wrap_v};
+}
+
 Atlas make_atlas(const Model& model, const FieldSpace& space, const std::vector<int>& materials,
-                 int texture_size) {
+                 int texture_size, UvPolicy policy) {
     Atlas atlas;
     std::vector<std::size_t> first_triangle(model.primitives.size() + 1, 0);
     for (std::size_t i = 0; i < model.primitives.size(); ++i) {
@@ -161,10 +190,20 @@ Atlas make_atlas(const Model& model, const FieldSpace& space, const std::vector<
             }
         }
         if (firsts.empty()) continue;
-        const std::string problem = find_uv_problem(model, firsts);
+        std::string problem = find_uv_problem(model, firsts);
+        const std::string& name = model.materials[static_cast<std::size_t>(material)].name;
+        const bool keeps = policy == UvPolicy::keep ||
+                           (policy == UvPolicy::automatic && has_textures(model, material));
+        if (keeps && !problem.empty() && have_uvs(model, firsts)) {
+            note("material '" + name + "': " + problem +
+                 ", and is kept: places that share texels change alike (--uv new gives each its "
+                 "own, in a new UV map)");
+            atlas.shared[material] = std::exchange(problem, "");
+        } else if (policy == UvPolicy::make_new && problem.empty()) {
+            problem = "a new UV map is asked for";
+        }
         std::vector<PrimitiveEdit> edits;
         if (!problem.empty()) {
-            const std::string& name = model.materials[static_cast<std::size_t>(material)].name;
             note("material '" + name + "': " + problem + ", so xatlas made a new one");
             atlas.remade[material] = problem;
             std::vector<const Primitive*> parts;

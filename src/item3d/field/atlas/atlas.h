@@ -1,4 +1,4 @@
-// Which UVs an edited material is baked into: the input's own wherever they can be used.
+// Which UVs an edited material is baked into: the input's own wherever there are any.
 #pragma once
 
 #include "item3d/field/atlas/uv_raster.h"
@@ -11,12 +11,21 @@
 
 namespace item3d {
 
+enum class UvPolicy {
+    automatic,  ///< keep for a material with textures, own_texels for one without
+    keep,       ///< own UVs wherever there are any
+    make_new,
+    own_texels,  ///< own UVs where each place of the surface has texels of its own, else new ones
+};
+
 struct Atlas {
     /// One a triangle of Geometry. Zeros for triangles that are not baked: those of materials that
     /// are not edited, and of all instances of a primitive but the first.
     std::vector<UvTriangle> triangles;
     /// Triangles (indices into `triangles`) that are baked, by edited material.
     std::map<int, std::vector<std::int32_t>> material_triangles;
+    /// Materials whose own UVs show a texel in several places, or give some no texels, in words.
+    std::map<int, std::string> shared;
     /// Materials whose UVs are new, and why.
     std::map<int, std::string> remade;
     /// New UVs of all primitives of remade materials (instances all have the same).
@@ -38,9 +47,12 @@ std::string find_uv_problem(const Model& model, const std::vector<int>& primitiv
 std::pair<int, int> atlas_size(const Model& model, int material, int texture_size,
                                bool has_new_uvs = false);
 
+/// How the material's textures show what lies beyond [0, 1]; repeating for a material without.
+UvWrap wrap_of(const Model& model, int material);
+
 /// Decides for each material, has xatlas make new UVs where needed, and says so in a note.
 Atlas make_atlas(const Model& model, const FieldSpace& space, const std::vector<int>& materials,
-                 int texture_size = 0);
+                 int texture_size = 0, UvPolicy policy = UvPolicy::own_texels);
 
 /// The primitive with new UVs: vertices split at the seams, tangents dropped.
 Primitive apply(const PrimitiveEdit& edit, const Primitive& primitive);

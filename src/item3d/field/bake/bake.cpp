@@ -4,6 +4,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/field/bake/fill.h"
 #include "item3d/field/bake/residual_gain.h"
+#include "item3d/field/bake/shrink.h"
 #include "item3d/field/bake/texel_values.h"
 
 #include <algorithm>
@@ -85,6 +86,12 @@ class MaterialBaker {
         const bool same = own != nullptr && is_own_ && own->image.width == size.first &&
                           own->image.height == size.second;
         return same ? &own->image : nullptr;
+    }
+    /// Whether no image of this size is resampled from the source.
+    bool copies_texels(Size size) const {
+        return (!wants_base_color_ || base_color_size_ != size || base_color_texels_ != nullptr) &&
+               (!wants_orm_ || orm_size_ != size || orm_texels_ != nullptr) &&
+               (!wants_normal_ || normal_size_ != size || normal_texels_ != nullptr);
     }
     void plan();
     void start_base_color();
@@ -272,8 +279,9 @@ MaterialEdit MaterialBaker::run(NeuralTexture& fitted, NeuralTexture& now, Progr
     want(wants_normal_, normal_size_);
     for (std::size_t i = 0; i < sizes.size(); ++i) {
         const auto [width, height] = sizes[i];
-        const TexelEvaluator evaluator(scene_, index_, width, height, options_.supersampling,
-                                       wants_normal_);
+        // Of texels that are copied only the change is sampled, which is smooth.
+        const int supersampling = copies_texels(sizes[i]) ? 1 : options_.supersampling;
+        const TexelEvaluator evaluator(scene_, index_, width, height, supersampling, wants_normal_);
         std::optional<RemainderGain> gain;
         if (wants_base_color_ && base_color_size_ == sizes[i])
             gain.emplace(scene_, index_, width, height, fitted, now);
@@ -300,7 +308,11 @@ MaterialEdit MaterialBaker::run(NeuralTexture& fitted, NeuralTexture& now, Progr
             edit.bits_per_channel =
                 std::max(edit.bits_per_channel, texture(source)->bits_per_channel);
         }
-        image = std::move(slot.image);
+        // A new texture has no size of its own unless one is asked for.
+        const bool holds_occlusion = &slot == &orm_ && material_.occlusion_texture >= 0;
+        image = texture(source) == nullptr && !holds_occlusion && options_.texture_size == 0
+                    ? shrink(std::move(slot.image), wrap_of(scene_.model, index_))
+                    : std::move(slot.image);
     };
     finish(wants_base_color_, base_color_, material_.base_color_texture, edit.base_color);
     finish(wants_orm_, orm_, material_.metallic_roughness_texture, edit.metallic_roughness);

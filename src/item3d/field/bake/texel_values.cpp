@@ -36,7 +36,10 @@ TexelEvaluator::TexelEvaluator(const BakeScene& scene, int material, int width, 
     for (const std::int32_t t : model_triangles_) {
         triangles_.push_back(scene.atlas.triangles[static_cast<std::size_t>(t)]);
     }
-    raster_ = rasterize_uv(triangles_, width * samples_, height * samples_);
+    raster_ = rasterize_uv(triangles_, width * samples_, height * samples_,
+                           wrap_of(scene.model, material));
+    if (scene.atlas.shared.count(material) != 0) claim_texels(raster_, triangles_);
+    if (samples_ == 1) widen(raster_);
     if (needs_normals && !scene.atlas.is_own(material)) {
         Model remade;
         for (std::size_t i = 0; i < scene.model.primitives.size(); ++i) {
@@ -90,8 +93,6 @@ std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture&
     std::vector<std::int64_t> triangle;
     std::vector<float> barycentrics;
     std::vector<std::size_t> first_sample;  // of each texel
-    const float scale_x = 1.0f / static_cast<float>(raster_.width);
-    const float scale_y = 1.0f / static_cast<float>(raster_.height);
     for (int y = first; y < last; ++y) {
         for (int x = 0; x < width_; ++x) {
             const std::size_t before = triangle.size();
@@ -100,9 +101,8 @@ std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture&
                 const int sample_y = y * samples_ + s / samples_;
                 const std::int32_t t = raster_.at(sample_x, sample_y);
                 if (t < 0) continue;
-                const Vec2 uv((static_cast<float>(sample_x) + 0.5f) * scale_x,
-                              (static_cast<float>(sample_y) + 0.5f) * scale_y);
-                const Vec2 weights = uv_barycentrics(triangles_[static_cast<std::size_t>(t)], uv);
+                const Vec2 weights = uv_barycentrics(triangles_[static_cast<std::size_t>(t)],
+                                                     raster_.uv_at(sample_x, sample_y));
                 triangle.push_back(model_triangles_[static_cast<std::size_t>(t)]);
                 barycentrics.insert(barycentrics.end(), {weights.x, weights.y});
             }

@@ -310,6 +310,8 @@ nlohmann::json measure_prior(const DiffusionModel& pipeline, const std::vector<S
                 for (const PlainColor& color : *colors)
                     if (color.name == entries[i].word && (kind == "colors" || kind == "materials"))
                         word["base_color"] = {color.linear.x, color.linear.y, color.linear.z};
+            for (const PlainColor& metal : metal_colors())
+                if (metal.name == entries[i].word) word["roughness"] = metal_roughness(metal.name);
             list.push_back(word);
         }
         vocabulary[kind] = list;

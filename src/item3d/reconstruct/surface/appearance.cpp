@@ -33,7 +33,7 @@ Appearance make_appearance(std::array<Vec3, 2> bounds, const std::vector<TargetV
     {
         // Most things are no metal, and a grey metal explains a picture nearly as well as paint.
         const at::NoGradGuard no_gradient;
-        field->metallic_bias().fill_(-3.0f);
+        field->output_bias(OrmChannel::metallic).fill_(-3.0f);
     }
     return {std::move(field), TrainableLight()};
 }

@@ -30,6 +30,17 @@ const std::vector<PlainColor>& metal_colors() {
     return colors;
 }
 
+std::array<float, 2> metal_roughness_range(const std::string& metal) {
+    if (metal == "chrome") return {.04f, .12f};
+    if (metal == "iron") return {.4f, .6f};
+    return {.12f, .38f};
+}
+
+float metal_roughness(const std::string& metal) {
+    const auto [low, high] = metal_roughness_range(metal);
+    return (low + high) / 2;
+}
+
 Vec3 color_named(const std::string& name) {
     for (const auto* colors : {&plain_colors(), &metal_colors()})
         for (const PlainColor& color : *colors)

@@ -3,6 +3,7 @@
 
 #include "item3d/core/math.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ struct PlainColor {
 const std::vector<PlainColor>& plain_colors();
 /// Base colours (normal reflectance) of "gold", "silver", "copper", "bronze", ...
 const std::vector<PlainColor>& metal_colors();
+/// The middle of the roughness that a metal of this name is drawn with in its usual finish.
+float metal_roughness(const std::string& metal);
+/// The range it is drawn from, lowest and highest.
+std::array<float, 2> metal_roughness_range(const std::string& metal);
 /// Of either list; the name must be there.
 Vec3 color_named(const std::string& name);
 /// Whether two of those names look too much the same to make a pattern.

@@ -55,10 +55,10 @@ ProceduralMaterial metal(Random& random, const MaterialWish& wish) {
     const MetalFinish finish = wish.color.empty() ? draw_finish(random) : MetalFinish::smooth;
     const bool mirror = finish == MetalFinish::polished || name == "chrome";
     const Vec3 color = vary(random, color_named(name), .05);
-    const float roughness = mirror                           ? draw(random, .04, .12)
-                            : finish == MetalFinish::brushed ? draw(random, .35, .5)
-                            : name == "iron"                 ? draw(random, .4, .6)
-                                                             : draw(random, .12, .38);
+    const auto [smoothest, roughest] = metal_roughness_range(mirror ? "chrome" : name);
+    const float roughness = finish == MetalFinish::brushed && !mirror
+                                ? draw(random, .35, .5)
+                                : draw(random, smoothest, roughest);
     const CosineNoise stains(random, 4, 3);
     const CosineNoise scratches(random, 26, 1, Vec3(.12f, 1, .12f));
     const float dents = draw(random, 4.5, 6.5);
