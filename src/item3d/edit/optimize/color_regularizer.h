@@ -5,13 +5,16 @@
 #include "item3d/edit/state.h"
 #include "item3d/tensors/tensor.h"
 
+#include <optional>
+
 namespace item3d {
 
 /// An edit towards a plain colour or metal is taken for a recolouring: what it adds to a material
 /// is an affine function of the base colour that was there, the same all over the surface, so that
 /// spots and stripes stay to be seen. What departs from the best such function is pulled back, the
 /// less the further it is away (the weights of Geman and McClure), because a part that guidance
-/// keeps apart, as a handle of another colour, is no blotch.
+/// keeps apart, as a handle of another colour, is no blotch. Towards a metal, roughness is pulled
+/// to that metal's own: images of a small prior tell little of it.
 class ColorRegularizer {
   public:
     /// Does nothing unless plan.regularizes_color: where `evenness` is 0 or the target names
@@ -25,7 +28,8 @@ class ColorRegularizer {
     float weight_ = 0;
     at::Tensor positions_;  ///< [draws, P, 3] of the surface
     at::Tensor fitted_;     ///< [draws, P, 8] as NeuralTexture::encoded(), before the edit
-    at::Tensor channels_;   ///< [8] 1 for those of base colour, roughness and metallic that change
+    std::optional<float> roughness_;  ///< of the metal that the surface becomes
+    at::Tensor channels_;  ///< [8] 1 for those of base colour, roughness and metallic that change
 };
 
 struct Departures {
