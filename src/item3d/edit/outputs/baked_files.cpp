@@ -46,10 +46,13 @@ void save_texture(const EditRequest& request, const EditScene& scene, const std:
 }
 
 constexpr int light_height = 256;
+/// See BakeOptions::blotch: of an edit that changes the same thing everywhere.
+constexpr float recoloured_blotch = 10.0f / 255;
 
 EditedModel bake_textures(const EditRequest& request, const EditScene& scene, EditState& state) {
     BakeOptions options;
     options.texture_size = request.plan.texture_size;
+    if (request.plan.regularizes_color) options.blotch = recoloured_blotch;
     const ChannelMask& channels = scene.start.channels;
     options.channels = {channels.base_color, channels.occlusion, channels.roughness,
                         channels.metallic, channels.normal};

@@ -89,9 +89,16 @@ class MaterialBaker {
     }
     /// Whether no image of this size is resampled from the source.
     bool copies_texels(Size size) const {
-        return (!wants_base_color_ || base_color_size_ != size || base_color_texels_ != nullptr) &&
-               (!wants_orm_ || orm_size_ != size || orm_texels_ != nullptr) &&
-               (!wants_normal_ || normal_size_ != size || normal_texels_ != nullptr);
+        const auto is_copied = [&](bool wanted, Size own, const Image* texels, int source) {
+            return !wanted || own != size || texels != nullptr || texture(source) == nullptr;
+        };
+        return !has_vertex_colors_ && !has_vertex_alpha_ &&
+               is_copied(wants_base_color_, base_color_size_, base_color_texels_,
+                         material_.base_color_texture) &&
+               is_copied(wants_orm_, orm_size_, orm_texels_,
+                         material_.metallic_roughness_texture) &&
+               is_copied(wants_orm_, orm_size_, occlusion_texels_, material_.occlusion_texture) &&
+               is_copied(wants_normal_, normal_size_, normal_texels_, material_.normal_texture);
     }
     void plan();
     void start_base_color();
@@ -311,7 +318,7 @@ MaterialEdit MaterialBaker::run(NeuralTexture& fitted, NeuralTexture& now, Progr
         // A new texture has no size of its own unless one is asked for.
         const bool holds_occlusion = &slot == &orm_ && material_.occlusion_texture >= 0;
         image = texture(source) == nullptr && !holds_occlusion && options_.texture_size == 0
-                    ? shrink(std::move(slot.image), wrap_of(scene_.model, index_))
+                    ? shrink(std::move(slot.image), wrap_of(scene_.model, index_), options_.blotch)
                     : std::move(slot.image);
     };
     finish(wants_base_color_, base_color_, material_.base_color_texture, edit.base_color);

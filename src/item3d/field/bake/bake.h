@@ -38,6 +38,9 @@ struct BakeOptions {
     /// channel is this.
     float chroma_fade_begin = 0.05f;
     float chroma_fade_end = 0.25f;
+    /// Root mean square, in values of [0, 1], below which a difference within a texture that the
+    /// source did not have is a blotch and takes no texels.
+    float blotch = 1.0f / 255;
     bool show_progress = true;
 };
 

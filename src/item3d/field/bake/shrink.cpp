@@ -8,9 +8,6 @@
 namespace item3d {
 namespace {
 
-constexpr float most_error = 4.0f / 255;
-constexpr double most_mean_square = 1.0 / (255.0 * 255.0);
-
 Image halve(const Image& image) {
     Image half(std::max(1, image.width / 2), std::max(1, image.height / 2), image.channels);
     const int across = image.width / half.width, down = image.height / half.height;
@@ -49,7 +46,7 @@ struct Mix {
 };
 
 /// Whether lookups in `small` give the texels of `image`.
-bool shows(const Image& small, const Image& image, UvWrap wrap) {
+bool shows(const Image& small, const Image& image, UvWrap wrap, float tolerance) {
     std::vector<double> squares(static_cast<std::size_t>(image.channels), 0.0);
     for (int y = 0; y < image.height; ++y) {
         const Mix down(y, image.height, small.height, wrap.v);
@@ -63,19 +60,19 @@ bool shows(const Image& small, const Image& image, UvWrap wrap) {
                     std::lerp(small.at(across.first, down.second, c),
                               small.at(across.second, down.second, c), across.weight);
                 const float error = std::lerp(above, below, down.weight) - image.at(x, y, c);
-                if (std::abs(error) > most_error) return false;
+                if (std::abs(error) > 4 * tolerance) return false;
                 squares[static_cast<std::size_t>(c)] += static_cast<double>(error) * error;
             }
         }
     }
     const double texels = static_cast<double>(image.width) * image.height;
     return std::all_of(squares.begin(), squares.end(),
-                       [&](double sum) { return sum < most_mean_square * texels; });
+                       [&](double sum) { return sum < texels * tolerance * tolerance; });
 }
 
 }  // namespace
 
-Image shrink(Image image, UvWrap wrap) {
+Image shrink(Image image, UvWrap wrap, float tolerance) {
     const auto halves = [](const Image& of) {
         const auto even = [](int edge) { return edge == 1 || edge % 2 == 0; };
         return (of.width > 1 || of.height > 1) && even(of.width) && even(of.height);
@@ -83,7 +80,7 @@ Image shrink(Image image, UvWrap wrap) {
     Image smallest = image;
     while (halves(smallest)) {
         Image half = halve(smallest);
-        if (!shows(half, image, wrap)) break;
+        if (!shows(half, image, wrap, tolerance)) break;
         smallest = std::move(half);
     }
     return smallest;
