@@ -40,8 +40,10 @@ EditScene load_scene(const EditRequest& request) {
     scene.sphere = bounding_sphere(scene.model);
     scene.space = std::make_unique<FieldSpace>(scene.model, scene.materials, device);
     if (plan.edits_texture) {
-        scene.atlas =
-            make_atlas(scene.model, *scene.space, scene.materials, plan.texture_size, plan.uv);
+        // A recoloured surface without textures looks the same whatever its UVs share.
+        const bool keeps = plan.uv == UvPolicy::automatic && plan.regularizes_color;
+        scene.atlas = make_atlas(scene.model, *scene.space, scene.materials, plan.texture_size,
+                                 keeps ? UvPolicy::keep : plan.uv);
         if (!scene.atlas.shared.empty())
             scene.space->share(std::make_shared<SharedTexels>(scene.model, scene.atlas,
                                                               plan.texture_size, device));

@@ -134,8 +134,9 @@ std::vector<Setting> texture_rows() {
                 between(0, 8192, "between 1 and 8192, or 0 for the input's own"), "--texture-size",
                 "Edge of the textures that are written; 0: as the input's"),
         choice("uv", &S::uv, {"auto", "keep", "new"}, "--uv",
-               "The UV map: auto (the input's own where a material has textures or each place has "
-               "texels of its own), keep, or new (each place gets texels of its own)"),
+               "The UV map: auto (the input's own, but for detail on a material without textures "
+               "whose "
+               "UVs overlap), keep, or new (each place gets texels of its own)"),
         kept_channels(),
         choice("metallic", &S::metallic, {"auto", "always"}, "--metallic",
                "auto: edit metallic where a sentence names a metal; always: in any case"),
