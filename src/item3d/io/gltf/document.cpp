@@ -22,6 +22,15 @@ std::uint32_t read_u32(const Bytes& bytes, std::size_t offset) {
     return value;
 }
 
+// Chunks start at multiples of four, but some programs write them without padding: behind a length
+// that is no multiple of four the next begins at once, if what is there can be the BIN chunk.
+std::size_t next_chunk(const Bytes& bytes, std::size_t end, std::size_t length) {
+    const bool is_unpadded = end % 4 != 0 && end + 8 <= length &&
+                             read_u32(bytes, end + 4) == binary_chunk &&
+                             read_u32(bytes, end) <= length - end - 8;
+    return is_unpadded ? end : (end + 3) / 4 * 4;
+}
+
 // Fills the document's chunks and returns the JSON text.
 std::string_view read_container(const Bytes& bytes, SourceDocument& document,
                                 std::optional<Bytes>& binary) {
@@ -63,8 +72,7 @@ std::string_view read_container(const Bytes& bytes, SourceDocument& document,
         } else {
             document.other_chunks.push_back({type, Bytes(begin, end)});
         }
-        // Chunks start at multiples of four.
-        offset = (offset + chunk_length + 3) / 4 * 4;
+        offset = next_chunk(bytes, offset + chunk_length, length);
     }
     return text;
 }
