@@ -89,7 +89,7 @@ std::vector<Camera> choose_cameras(const RenderCommand& options, const Model& mo
     const std::array<Vec3, 2> bounds = model.bounds();
     std::vector<Camera> cameras;
     if (!options.cameras.empty()) {
-        cameras = load_cameras(options.cameras);
+        cameras = load_cameras(options.cameras, model.origin);
         for (Camera& camera : cameras)
             fit_depth_range(camera, bounds);
     } else if (options.views > 0) {
@@ -170,6 +170,21 @@ class Painter {
         return to_image(render(geometry_, materials_, light_, {camera}, options)[0].cpu());
     }
 
+    /// Whether any pixel of the picture shows some of the model.
+    bool sees_model(const Camera& camera) const {
+        const at::NoGradGuard no_gradients;
+        Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
+        for (int layer = 0; layer < most_layers; ++layer) {
+            const at::Tensor covered = raster.triangle >= 0;
+            if (!covered.any().item<bool>()) return false;
+            if (!materials_.has_alpha()) return true;
+            const Surface surface = interpolate_surface(geometry_, raster, {camera});
+            if ((materials_.sample(surface).alpha > 0).any().item<bool>()) return true;
+            raster = rasterize(geometry_, {camera}, size_.width, size_.height, raster.depth);
+        }
+        return false;
+    }
+
     /// What a PNG shows of linear().
     Image display(const Image& linear, const Camera& camera) const {
         if (channel_ == "mask") return linear;
@@ -207,7 +222,6 @@ class Painter {
 
     /// The nearest surface that is at least half opaque.
     Raster visible(const Camera& camera) const {
-        constexpr int most_layers = 8;
         Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
         for (int layer = 1; materials_.has_alpha() && layer < most_layers; ++layer) {
             const Surface surface = interpolate_surface(geometry_, raster, {camera});
@@ -241,6 +255,8 @@ class Painter {
         return picture;
     }
 
+    static constexpr int most_layers = 8;
+
     std::string channel_;
     PictureSize size_;
     int samples_;
@@ -265,6 +281,7 @@ void run_render(const RenderCommand& options, at::Device device) {
     const Painter painter(options, model, device);
 
     nlohmann::json files = nlohmann::json::array();
+    bool model_is_seen = false;
     Progress progress("render", static_cast<std::int64_t>(cameras.size()));
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         if (interrupted()) {
@@ -272,6 +289,7 @@ void run_render(const RenderCommand& options, at::Device device) {
         }
         const fs::path path = destination.file(cameras[i]);
         const Image linear = painter.linear(cameras[i]);
+        model_is_seen = model_is_seen || painter.sees_model(cameras[i]);
         if (destination.extension == ".exr") {
             save_image(path, linear, 32);
         } else {
@@ -282,6 +300,11 @@ void run_render(const RenderCommand& options, at::Device device) {
         progress.update(static_cast<std::int64_t>(i + 1));
     }
     progress.finish();
+    if (!model_is_seen) {
+        warn(options.model + ": nothing of it is in the " +
+             (cameras.size() == 1 ? "picture" : "pictures") +
+             (options.cameras.empty() ? "" : "; do the cameras look at it?"));
+    }
     if (options.json) {
         print_json({{"files", files},
                     {"width", size.width},

@@ -17,6 +17,8 @@ struct EditRequest {
     std::filesystem::path captioner;  ///< BLIP or BLIP-2; read where the plan asks it
     EditPlan plan;
     bool resume = false;
+    /// Edit materials whose base colour's picture cannot be read, by their factors.
+    bool allow_missing_textures = false;
     /// Stop as an interrupt would when this many iterations are done; 0: run to the end.
     int stop_after = 0;
     at::Device device = at::kCPU;

@@ -1,14 +1,18 @@
 #include "item3d/io/load.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/progress.h"
 #include "item3d/io/gltf/read.h"
 #include "item3d/io/image/formats.h"
 #include "item3d/io/obj/read.h"
 #include "item3d/io/text.h"
+#include "item3d/scene/visibility.h"
 
 namespace item3d {
 
-Model load_model(const std::filesystem::path& path) {
+namespace {
+
+Model read_model(const std::filesystem::path& path) {
     const Bytes bytes = read_bytes(path);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const std::string extension = to_lower(path.extension().string());
@@ -26,6 +30,17 @@ Model load_model(const std::filesystem::path& path) {
     throw InputError(path.string(),
                      "a model was expected (.glb, .gltf or .obj), found '" + extension + "'",
                      "convert it to one of these");
+}
+
+}  // namespace
+
+Model load_model(const std::filesystem::path& path) {
+    Model model = read_model(path);
+    if (!is_visible(model)) {
+        warn(path.string() +
+             ": nothing of it is seen: it is wholly transparent, or its triangles have no area");
+    }
+    return model;
 }
 
 Image load_image(const std::filesystem::path& path) {

@@ -11,7 +11,7 @@ namespace item3d {
 
 /// glTF 2.0 (.glb, .gltf) or OBJ with MTL, by content and extension. A texture that cannot be read
 /// is a warning (the factor is used). A model without triangles or with non-finite positions is an
-/// InputError.
+/// InputError, one of which nothing can be seen a warning.
 Model load_model(const std::filesystem::path& path);
 
 /// PNG, JPEG, Radiance HDR, OpenEXR, by content. Channels as in the file (palettes are expanded,

@@ -33,13 +33,14 @@ double float32_step(std::span<const glm::dvec3> positions) {
     return side > 0.0 ? std::min(1.0, step / side) : 0.0;
 }
 
-void put_origin_back(Model& model) {
-    if (model.origin == glm::dvec3(0.0)) return;
+void move_origin(Model& model, const glm::dvec3& origin) {
+    if (model.origin == origin) return;
+    const glm::dvec3 shift = model.origin - origin;
     for (Primitive& primitive : model.primitives) {
         for (Vec3& position : primitive.positions)
-            position = Vec3(glm::dvec3(position) + model.origin);
+            position = Vec3(glm::dvec3(position) + shift);
     }
-    model.origin = glm::dvec3(0.0);
+    model.origin = origin;
 }
 
 }  // namespace item3d

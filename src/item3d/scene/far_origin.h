@@ -17,8 +17,8 @@ glm::dvec3 far_origin(const glm::dvec3& low, const glm::dvec3& high);
 /// at most 1; 0 where they are one point, or none.
 double float32_step(std::span<const glm::dvec3> positions);
 
-/// Adds Model::origin to all positions, as far as float32 goes, and sets it to zero: for uses in
-/// which coordinates of the file count.
-void put_origin_back(Model& model);
+/// Moves all positions so that Model::origin is this one; zero: as the file has them, as far as
+/// float32 goes. For models that are compared, or seen by cameras, in one space.
+void move_origin(Model& model, const glm::dvec3& origin);
 
 }  // namespace item3d
