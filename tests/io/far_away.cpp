@@ -76,7 +76,7 @@ TEST(FarAway, PositionsThatFloatsCannotHoldAreSaid) {
     const fs::path folder = fresh_folder("far_floats");
     GltfFile file = read_gltf_file(data_folder() / "gltf" / "sparse.gltf");
     // A triangle whose float positions are half a metre apart.
-    const float floats[] = {436123.0f, 5120456.0f, 0.0f, 436124.0f, 5120456.0f,
+    const float floats[] = {436123.0f, 5120456.0f, 0.0f,       436124.0f, 5120456.0f,
                             0.0f,      436123.0f,  5120457.0f, 0.0f};
     const auto* raw = reinterpret_cast<const std::uint8_t*>(floats);
     write_quickly(folder / "a.bin", Bytes(raw, raw + sizeof floats));

@@ -15,8 +15,7 @@ std::string cube_text(glm::dvec3 centre = glm::dvec3(0.0), double side = 1.0,
         text += "v";
         for (int c = 0; c < 3; ++c) {
             char word[64];
-            std::snprintf(word, sizeof word, " %.6f",
-                          centre[c] + (i >> c & 1 ? 0.5 : -0.5) * side);
+            std::snprintf(word, sizeof word, " %.6f", centre[c] + (i >> c & 1 ? 0.5 : -0.5) * side);
             text += word;
         }
         text += "\n";
@@ -159,13 +158,11 @@ TEST(Obj, OldEncodingsAreToldByTheFilesThatAreThere) {
         const fs::path folder = fresh_folder("obj_encoding");
         put_red(folder / "t.png");
         put(folder / (c.name + ".mtl"), red_mtl);
-        put(folder / "q.obj",
-            "mtllib " + c.written + ".mtl\n" + cube_text({}, 1, "usemtl a\n"));
+        put(folder / "q.obj", "mtllib " + c.written + ".mtl\n" + cube_text({}, 1, "usemtl a\n"));
         if (c.name.find('\xcc') == std::string::npos) {
             EXPECT_TRUE(load_and_listen(folder / "q.obj").is_red()) << c.name;
         }
-        put(folder / "m.mtl",
-            "newmtl " + c.written + "\nmap_Kd " + c.written + ".png\n");
+        put(folder / "m.mtl", "newmtl " + c.written + "\nmap_Kd " + c.written + ".png\n");
         put_red(folder / (c.name + ".png"));
         put(folder / "q.obj", "mtllib m.mtl\n" + cube_text({}, 1, "usemtl " + c.name + "\n"));
         const Loaded loaded = load_and_listen(folder / "q.obj");
@@ -198,8 +195,8 @@ TEST(Obj, Utf16IsRead) {
             const fs::path folder = fresh_folder("obj_utf16");
             put_red(folder / "t.png");
             put(folder / "m.mtl", wide(red_mtl, is_little, has_mark));
-            put(folder / "q.obj", wide("mtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n"),
-                                       is_little, has_mark));
+            put(folder / "q.obj",
+                wide("mtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n"), is_little, has_mark));
             EXPECT_TRUE(load_and_listen(folder / "q.obj").is_red());
         }
     }
@@ -218,8 +215,9 @@ TEST(Obj, WhatIsNoNumberIsSaidWithItsLine) {
     replace("vt 1 1\n", "vt 0.5 -nan(ind)\n");
     put(folder / "q.obj", text);
     const Loaded loaded = load_and_listen(folder / "q.obj");
-    EXPECT_TRUE(loaded.says("q.obj:10: a texture coordinate is not a finite number; 0 is used (the "
-                            "first of 2)"))
+    EXPECT_TRUE(
+        loaded.says("q.obj:10: a texture coordinate is not a finite number; 0 is used (the "
+                    "first of 2)"))
         << loaded.said;
     for (const Vec2& uv : loaded.model.primitives[0].uvs)
         EXPECT_TRUE(std::isfinite(uv.x) && std::isfinite(uv.y));
@@ -306,8 +304,8 @@ TEST(Obj, WhatIsWhollyInvisibleIsTakenAsOpaque) {
     }
     // One among others is meant so; it is said all the same.
     put(folder / "m.mtl", "newmtl a\nd 0\nnewmtl b\nKd 1 0 0\n");
-    put(folder / "q.obj", "mtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n") +
-                              "usemtl b\nf 1/1 2/2 8/3\n");
+    put(folder / "q.obj",
+        "mtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n") + "usemtl b\nf 1/1 2/2 8/3\n");
     const Loaded mixed = load_and_listen(folder / "q.obj");
     EXPECT_EQ(mixed.model.materials[0].base_color_factor.w, 0.0f);
     EXPECT_TRUE(mixed.says("material 'a' is wholly transparent")) << mixed.said;

@@ -52,7 +52,7 @@ EditScene load_scene(const EditRequest& request) {
                                                 low_memory, scene.from, scene.to})
                               .share();
     scene.hashing_weights = std::async(std::launch::async, hash_of_weights, request.prior).share();
-    scene.model = load_model(request.model);
+    scene.model = load_model(request.model, {.texture_folders = request.texture_folders});
     scene.materials = select_materials(scene.model, plan.material);
     check_looks(request, scene.model, scene.materials);
     for (const int index : scene.materials) {

@@ -139,9 +139,8 @@ std::string decode_text(std::string_view bytes, const std::vector<std::string>& 
         if (!text) continue;
         const icu::UnicodeString whole = composed(*text);
         const bool holds_one =
-            std::any_of(wanted.begin(), wanted.end(), [&](const icu::UnicodeString& name) {
-                return whole.indexOf(name) >= 0;
-            });
+            std::any_of(wanted.begin(), wanted.end(),
+                        [&](const icu::UnicodeString& name) { return whole.indexOf(name) >= 0; });
         if (!holds_one) continue;
         note(subject + ": is not UTF-8; read as " + encoding.shown);
         return utf8_of(*text);
@@ -155,8 +154,8 @@ std::vector<std::string> names_below(const fs::path& folder) {
     std::vector<std::string> names;
     std::error_code code;
     const fs::path root = folder.empty() ? fs::path(".") : folder;
-    for (fs::recursive_directory_iterator i(
-             root, fs::directory_options::skip_permission_denied, code),
+    for (fs::recursive_directory_iterator
+             i(root, fs::directory_options::skip_permission_denied, code),
          end;
          !code && i != end && names.size() < most_names; i.increment(code)) {
         if (i.depth() >= 3) i.disable_recursion_pending();

@@ -12,7 +12,7 @@ namespace item3d {
 
 namespace {
 
-Model read_model(const std::filesystem::path& path) {
+Model read_model(const std::filesystem::path& path, const LoadOptions& options) {
     const Bytes bytes = read_bytes(path);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const std::string extension = to_lower(path.extension().string());
@@ -20,8 +20,8 @@ Model read_model(const std::filesystem::path& path) {
         throw InputError(path.string(), "a model was expected, the file is empty",
                          "export it again");
     }
-    if (text.starts_with("glTF") || extension == ".gltf") return read_gltf(path, bytes);
-    if (extension == ".obj") return read_obj(path, bytes);
+    if (text.starts_with("glTF") || extension == ".gltf") return read_gltf(path, bytes, options);
+    if (extension == ".obj") return read_obj(path, bytes, options);
     if (extension == ".glb") {
         throw InputError(path.string(),
                          "a binary glTF was expected, the file does not start with 'glTF'",
@@ -34,8 +34,8 @@ Model read_model(const std::filesystem::path& path) {
 
 }  // namespace
 
-Model load_model(const std::filesystem::path& path) {
-    Model model = read_model(path);
+Model load_model(const std::filesystem::path& path, const LoadOptions& options) {
+    Model model = read_model(path, options);
     if (!is_visible(model)) {
         warn(path.string() +
              ": nothing of it is seen: it is wholly transparent, or its triangles have no area");

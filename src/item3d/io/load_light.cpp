@@ -78,10 +78,9 @@ void make_usable(Image& light, const std::string& path) {
         is_black = is_black && value == 0;
     }
     if (undefined > light.pixels.size() / 2) {
-        throw InputError(path,
-                         fmt::format("{} of {} values are not numbers", undefined,
-                                     light.pixels.size()),
-                         "render or export it again");
+        throw InputError(
+            path, fmt::format("{} of {} values are not numbers", undefined, light.pixels.size()),
+            "render or export it again");
     }
     if (is_black) {
         throw InputError(
@@ -89,9 +88,10 @@ void make_usable(Image& light, const std::string& path) {
             "give another one, or a preset");
     }
     if (unbounded > 0) {
-        warn(fmt::format("{}: {} values are infinite or above {:g} and are taken as {:g}; a sun may "
-                         "be weaker than it was",
-                         path, unbounded, most_radiance, sun));
+        warn(
+            fmt::format("{}: {} values are infinite or above {:g} and are taken as {:g}; a sun may "
+                        "be weaker than it was",
+                        path, unbounded, most_radiance, sun));
     }
     if (undefined > 0) {
         warn(fmt::format("{}: {} values are not numbers and are taken as 0", path, undefined));

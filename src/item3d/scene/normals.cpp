@@ -59,9 +59,8 @@ CornerNormals grouped_normals(std::span<const Vec3> positions,
         // Twice the area times the unit normal.
         const DVec3 face = glm::cross(b - a, c - a);
         for (std::size_t k = 0; k < 3; ++k) {
-            const auto [entry, is_new] =
-                numbers.try_emplace(Key{place[indices[t + k]], groups[t / 3]},
-                                    static_cast<std::uint32_t>(sums.size()));
+            const auto [entry, is_new] = numbers.try_emplace(
+                Key{place[indices[t + k]], groups[t / 3]}, static_cast<std::uint32_t>(sums.size()));
             if (is_new) sums.emplace_back(0.0);
             sums[entry->second] += face;
             result.corners.push_back(entry->second);

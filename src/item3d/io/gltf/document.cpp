@@ -297,8 +297,15 @@ Bytes read_image_bytes(const SourceDocument& document, std::size_t index) {
     if (image.has("uri")) {
         const std::string uri = image.text("uri", "");
         if (is_data_uri(uri)) return decode_data_uri(uri, place);
-        return read_bytes(resolve_in_folder(document.path.parent_path(),
-                                            uri_to_relative_path(uri, place), place));
+        const fs::path folder = document.path.parent_path();
+        const fs::path relative = uri_to_relative_path(uri, place);
+        try {
+            return read_bytes(resolve_in_folder(folder, relative, place));
+        } catch (const InputError&) {
+            const auto found = find_allowed(document.texture_folders, folder, relative, place);
+            if (!found) throw;
+            return read_bytes(*found);
+        }
     }
     const auto view = image.index("bufferView", root_of(document).list_size("bufferViews"));
     if (!view) image.fail("neither uri nor bufferView is there");

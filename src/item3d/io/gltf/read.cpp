@@ -318,8 +318,8 @@ void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
         // The node's own transform does not count for a skinned mesh.
         const auto skin = root_.item("nodes", *node).index("skin", root_.list_size("skins"));
         if (skin && !vertices.positions.empty()) {
-            matrices = blend_joints(*document_, nodes_, *attributes, *skin,
-                                    vertices.positions.size());
+            matrices =
+                blend_joints(*document_, nodes_, *attributes, *skin, vertices.positions.size());
         }
     }
     place(vertices, matrices, primitive);
@@ -403,8 +403,10 @@ Model GltfReader::read() {
 
 }  // namespace
 
-Model read_gltf(const std::filesystem::path& path, const Bytes& bytes) {
-    return GltfReader(parse_gltf(path, bytes)).read();
+Model read_gltf(const std::filesystem::path& path, const Bytes& bytes, const LoadOptions& options) {
+    const auto document = parse_gltf(path, bytes);
+    document->texture_folders = options.texture_folders;
+    return GltfReader(document).read();
 }
 
 }  // namespace item3d

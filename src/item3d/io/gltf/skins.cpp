@@ -51,8 +51,8 @@ std::vector<glm::dmat4> blend_joints(const SourceDocument& document, const NodeT
         if (!weights_index) attributes.fail(weights_name + " is missing");
         const Accessor indices = read_vectors(document, *joints_index, 4, 4);
         const Accessor weights = read_vectors(document, *weights_index, 4, 4);
-        for (const auto& [name, found] : {std::pair(joints_name, indices.count),
-                                          std::pair(weights_name, weights.count)}) {
+        for (const auto& [name, found] :
+             {std::pair(joints_name, indices.count), std::pair(weights_name, weights.count)}) {
             if (found != count)
                 attributes.fail(fmt::format("{} has {} elements, POSITION {}", name, found, count));
         }

@@ -65,9 +65,8 @@ void ObjLibraries::read_statement(const std::string& statement,
 
 // Many programs look for no other library, so that anything may stand behind mtllib.
 std::string ObjLibraries::read_own_name(const ObjFile& file) {
-    const bool wants_materials =
-        std::any_of(file.material_names.begin(), file.material_names.end(),
-                    [](const std::string& name) { return !name.empty(); });
+    const bool wants_materials = std::any_of(file.material_names.begin(), file.material_names.end(),
+                                             [](const std::string& name) { return !name.empty(); });
     const std::string own = path_.stem().string() + ".mtl";
     std::error_code code;
     if (!wants_materials || !fs::is_regular_file(path_.parent_path() / own, code)) return "";

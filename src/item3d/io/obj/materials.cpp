@@ -80,8 +80,8 @@ int channel_of(const MtlMap& map, const Image& image, int otherwise) {
 Image opacity_values(const MtlMap& map, const Image& image) {
     Image result(image.width, image.height, 1);
     const auto value = [&](std::size_t pixel, int c) {
-        return image.pixels[pixel * static_cast<std::size_t>(image.channels) +
-                            static_cast<std::size_t>(c)];
+        return image
+            .pixels[pixel * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(c)];
     };
     const int alpha = image.channels - 1;
     bool uses_alpha = false;
@@ -104,8 +104,12 @@ Image opacity_values(const MtlMap& map, const Image& image) {
 
 }  // namespace
 
-ObjMaterials::ObjMaterials(Model& model, fs::path folder, std::string subject)
-    : model_(model), folder_(std::move(folder)), subject_(std::move(subject)) {}
+ObjMaterials::ObjMaterials(Model& model, fs::path folder, std::string subject,
+                           std::vector<fs::path> allowed)
+    : model_(model),
+      folder_(std::move(folder)),
+      allowed_(std::move(allowed)),
+      subject_(std::move(subject)) {}
 
 fs::path ObjMaterials::find_picture_file(const MtlMap& map) const {
     const std::vector<fs::path> folders{map.folder, folder_};
@@ -115,7 +119,7 @@ fs::path ObjMaterials::find_picture_file(const MtlMap& map) const {
         } catch (const InputError&) {
         }
     }
-    return resolve_beside(folder_, folders, map.file, subject_);
+    return resolve_beside(folder_, folders, map.file, subject_, allowed_);
 }
 
 const Texture* ObjMaterials::read(const MtlMap& map) {
@@ -148,8 +152,8 @@ int ObjMaterials::add_cut_out(const Texture* base, const Texture& opacity,
                               const MtlMaterial& source) {
     const bool base_is_larger = base && base->image.width >= opacity.image.width;
     const Image& larger = base_is_larger ? base->image : opacity.image;
-    const Image alpha = resample(opacity_values(*source.opacity_map, opacity.image), larger.width,
-                                 larger.height);
+    const Image alpha =
+        resample(opacity_values(*source.opacity_map, opacity.image), larger.width, larger.height);
     const Image colors = base ? resample(base->image, larger.width, larger.height) : Image();
     Texture texture;
     texture.name = base ? base->name : opacity.name;

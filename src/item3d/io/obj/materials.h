@@ -26,7 +26,9 @@ class ObjMaterials {
   public:
     /// folder: of the model, where pictures are looked for after that of the MTL file; subject: the
     /// OBJ file, for warnings.
-    ObjMaterials(Model& model, std::filesystem::path folder, std::string subject);
+    /// allowed: LoadOptions::texture_folders.
+    ObjMaterials(Model& model, std::filesystem::path folder, std::string subject,
+                 std::vector<std::filesystem::path> allowed);
 
     /// Returns the index of the new material in the model.
     int add(const MtlMaterial& source);
@@ -47,6 +49,7 @@ class ObjMaterials {
 
     Model& model_;
     std::filesystem::path folder_;
+    std::vector<std::filesystem::path> allowed_;
     std::string subject_;
     std::map<std::string, std::optional<Texture>> pictures_;
     std::map<std::pair<std::string, bool>, int> added_;

@@ -70,7 +70,8 @@ bool take_option(std::string_view& text, MtlMap& map) {
     }
     if (shape->name == "-s" && count > 0)
         map.scale = Vec2(values[0], count > 1 ? values[1] : values[0]);
-    if (shape->name == "-o" && count > 0) map.offset = Vec2(values[0], count > 1 ? values[1] : 0.0f);
+    if (shape->name == "-o" && count > 0)
+        map.offset = Vec2(values[0], count > 1 ? values[1] : 0.0f);
     if (shape->name == "-bm" && count > 0) map.bump_multiplier = values[0];
     if (shape->name == "-clamp") map.clamp = word == "on";
     if (shape->name == "-imfchan") map.channel = word.empty() ? '\0' : word[0];
@@ -155,10 +156,9 @@ void read_statement(const std::string& key, std::string_view rest, MtlMaterial& 
 }
 
 void set_folder(MtlMaterial& material, const std::filesystem::path& folder) {
-    for (auto* map :
-         {&material.diffuse_map, &material.metallic_map, &material.roughness_map,
-          &material.specular_map, &material.occlusion_map, &material.emission_map,
-          &material.normal_map, &material.bump_map, &material.opacity_map}) {
+    for (auto* map : {&material.diffuse_map, &material.metallic_map, &material.roughness_map,
+                      &material.specular_map, &material.occlusion_map, &material.emission_map,
+                      &material.normal_map, &material.bump_map, &material.opacity_map}) {
         if (*map) (*map)->folder = folder;
     }
 }

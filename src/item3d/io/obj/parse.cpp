@@ -84,8 +84,7 @@ class ObjParser {
         if (count < 3) fail(lines_.line_number(), "a vertex needs three coordinates");
         for (int c = 0; c < 3; ++c) {
             if (!std::isfinite(static_cast<float>(values[c]))) {
-                fail(lines_.line_number(),
-                     "a vertex has a coordinate that is not a finite number",
+                fail(lines_.line_number(), "a vertex has a coordinate that is not a finite number",
                      "export the mesh again");
             }
         }
@@ -145,9 +144,8 @@ class ObjParser {
         const std::string_view position = word.substr(0, first);
         const auto index = read_index(position, file_.positions.size());
         if (!index) {
-            fail(lines_.line_number(),
-                 fmt::format("index {} points before the first of {}", position,
-                             file_.positions.size()));
+            fail(lines_.line_number(), fmt::format("index {} points before the first of {}",
+                                                   position, file_.positions.size()));
         }
         corner.position = *index;
         if (first == std::string_view::npos) return corner;
@@ -232,9 +230,10 @@ class ObjParser {
         say(missing_uvs_,
             file_.uvs.empty()
                 ? "a corner names a texture coordinate, but the file has none; it goes without"
-                : fmt::format("a corner names a texture coordinate that is none of the file's {}; 0 "
-                              "is used",
-                              file_.uvs.size()));
+                : fmt::format(
+                      "a corner names a texture coordinate that is none of the file's {}; 0 "
+                      "is used",
+                      file_.uvs.size()));
         say(missing_normals_,
             fmt::format("a corner names a normal, but {}; one of the shape is used",
                         file_.normals.empty()

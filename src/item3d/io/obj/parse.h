@@ -36,7 +36,7 @@ struct ObjFile {
     std::vector<Vec2> uvs;
     std::vector<Vec3> normals;  ///< unit length, or zero where the file's is no direction
     std::vector<ObjCorner> corners;
-    std::vector<ObjFace> faces;  ///< all corners of all faces are within the lists
+    std::vector<ObjFace> faces;               ///< all corners of all faces are within the lists
     std::vector<std::string> material_names;  ///< as written; "" for faces before any usemtl
     std::vector<std::string> libraries;       ///< what stands behind each mtllib
 };

@@ -39,8 +39,8 @@ struct ObjTriangles {
 
 class ObjReader {
   public:
-    ObjReader(const fs::path& path, ObjFile file)
-        : path_(path), file_(std::move(file)), libraries_(path, file_) {}
+    ObjReader(const fs::path& path, ObjFile file, const LoadOptions& options)
+        : path_(path), file_(std::move(file)), libraries_(path, file_), options_(options) {}
 
     Model read() {
         model_.name = to_utf8(path_.stem().string());
@@ -116,7 +116,8 @@ class ObjReader {
     void add_materials() {
         std::vector<std::string> unknown;
         std::map<const MtlMaterial*, std::size_t> slots;
-        ObjMaterials materials(model_, path_.parent_path(), path_.string());
+        ObjMaterials materials(model_, path_.parent_path(), path_.string(),
+                               options_.texture_folders);
         // Names that mean one material: its triangles are one primitive.
         std::vector<std::pair<MtlMaterial, ObjTriangles>> parts;
         for (std::size_t m = 0; m < file_.material_names.size(); ++m) {
@@ -154,8 +155,7 @@ class ObjReader {
         primitive.material = material;
         primitive.name =
             model_.materials.back().name.empty() ? model_.name : model_.materials.back().name;
-        const MtlMap placing =
-            source.diffuse_map.value_or(source.opacity_map.value_or(MtlMap{}));
+        const MtlMap placing = source.diffuse_map.value_or(source.opacity_map.value_or(MtlMap{}));
         const bool any_uv = std::any_of(corners.begin(), corners.end(),
                                         [](const ObjCorner& corner) { return corner.uv >= 0; });
         std::unordered_map<ObjCorner, std::uint32_t, CornerHash> vertices;
@@ -178,6 +178,7 @@ class ObjReader {
     fs::path path_;
     ObjFile file_;
     ObjLibraries libraries_;
+    LoadOptions options_;
     std::vector<Vec3> positions_;          ///< without the origin
     std::vector<ObjTriangles> triangles_;  ///< by name of the material
     Model model_;
@@ -185,7 +186,7 @@ class ObjReader {
 
 }  // namespace
 
-Model read_obj(const fs::path& path, const Bytes& bytes) {
+Model read_obj(const fs::path& path, const Bytes& bytes, const LoadOptions& options) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     std::string decoded;
     const bool is_plain = is_utf8(text) && text.find('\0') == std::string_view::npos;
@@ -198,7 +199,7 @@ Model read_obj(const fs::path& path, const Bytes& bytes) {
                         file.positions.size()),
             "export it with its faces");
     }
-    return ObjReader(path, std::move(file)).read();
+    return ObjReader(path, std::move(file), options).read();
 }
 
 }  // namespace item3d

@@ -64,7 +64,8 @@ class ObjWriter {
     void write(const fs::path& path) {
         name_materials();
         const auto box = model_.bounds();
-        const float side = std::max({box[1].x - box[0].x, box[1].y - box[0].y, box[1].z - box[0].z});
+        const float side =
+            std::max({box[1].x - box[0].x, box[1].y - box[0].y, box[1].z - box[0].z});
         // Two more than float32 tells apart within the model.
         decimals_ = std::clamp(8 - static_cast<int>(std::floor(std::log10(side))), 0, 17);
         fmt::format_to(std::back_inserter(obj_), "# item3d\nmtllib {}.mtl\n", stem_);
