@@ -105,6 +105,24 @@ TEST(GltfFlaws, AModelOfWhichNothingIsSeenIsSaid) {
     EXPECT_NE(said_of().find("nothing of it is seen"), std::string::npos);
 }
 
+TEST(GltfFlaws, PicturesElsewhereAreReadFromFoldersThatAreAllowed) {
+    const fs::path folder = fresh_folder("allowed_pictures");
+    fs::create_directories(folder / "model");
+    fs::create_directories(folder / "shared");
+    save_image(folder / "shared" / "t.png", checkered_image(4, 4, 3));
+    GltfFile file = read_gltf_file(data_folder() / "gltf" / "full_pbr.glb");
+    for (auto& image : file.json["images"])
+        image = {{"uri", "../shared/t.png"}};
+    write_quickly(folder / "model" / "a.glb", container(file, 0, true));
+    EXPECT_TRUE(load_model(folder / "model" / "a.glb").textures.empty());
+    const Model model =
+        load_model(folder / "model" / "a.glb", {.texture_folders = {folder / "shared"}});
+    EXPECT_FALSE(model.textures.empty());
+    // A .glb that is written has them in it.
+    save_model(folder / "b.glb", model);
+    EXPECT_EQ(load_model(folder / "b.glb").textures.size(), model.textures.size());
+}
+
 TEST(GltfFlaws, TheMissingPictureOfTheBaseColorIsNamed) {
     const fs::path folder = fresh_folder("missing_picture");
     GltfFile file = read_gltf_file(data_folder() / "gltf" / "full_pbr.glb");

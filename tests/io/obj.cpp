@@ -93,6 +93,23 @@ TEST(Obj, LibrariesInFoldersFindTheirTextures) {
     }
 }
 
+TEST(Obj, TexturesElsewhereAreReadFromFoldersThatAreAllowed) {
+    const fs::path folder = fresh_folder("obj_allowed");
+    put(folder / "model/q.obj", "mtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n"));
+    put_red(folder / "shared/t.png");
+    const LoadOptions options{.texture_folders = {folder / "shared"}};
+    for (const std::string name : {"../shared/t.png", "C:\\work\\t.png", "t.png"}) {
+        put(folder / "model/m.mtl", "newmtl a\nmap_Kd " + name + "\n");
+        EXPECT_EQ(load_model(folder / "model/q.obj").materials[0].base_color_texture, -1) << name;
+        EXPECT_EQ(load_model(folder / "model/q.obj", options).materials[0].base_color_texture, 0)
+            << name;
+    }
+    fs::create_symlink(folder / "secret.png", folder / "shared/link.png");
+    put_red(folder / "secret.png");
+    put(folder / "model/m.mtl", "newmtl a\nmap_Kd ../shared/link.png\n");
+    EXPECT_EQ(load_model(folder / "model/q.obj", options).materials[0].base_color_texture, -1);
+}
+
 TEST(Obj, RemarksAndOptionsBehindNamesAreLeftOut) {
     const fs::path folder = fresh_folder("obj_remarks");
     put_red(folder / "t.png");

@@ -41,6 +41,7 @@ struct RenderCommand : CommonOptions {
     std::string output;
     int views = 0;  ///< 0: one picture from the default camera
     std::string cameras;
+    std::vector<fs::path> texture_folders;
     std::string format = "png";
     std::string light = "studio";
     float light_rotation = 0;
@@ -275,7 +276,7 @@ void run_render(const RenderCommand& options, at::Device device) {
         throw UsageError("--occlusion is of --channel shaded alone");
     }
     const PictureSize size = parse_size(options.size);
-    const Model model = load_model(options.model);
+    const Model model = load_model(options.model, {.texture_folders = options.texture_folders});
     const std::vector<Camera> cameras = choose_cameras(options, model, size);
     const Destination destination = choose_destination(options, cameras.size());
     const Painter painter(options, model, device);
@@ -330,6 +331,13 @@ void add_render_command(CLI::App& app) {
     command->add_option("--cameras", options->cameras,
                         "A NeRF-synthetic transforms.json in the model's own axes: one picture for "
                         "each frame, named after it");
+    command
+        ->add_option("--textures", options->texture_folders,
+                     "A folder that textures may be read from beside the model's own; may be given "
+                     "several times")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(CLI::ExistingDirectory);
     command->add_option("--format", options->format, "Of pictures that go into a folder")
         ->check(CLI::IsMember({"png", "exr"}))
         ->capture_default_str();
