@@ -9,6 +9,7 @@
 #include "tests/support/io.h"
 
 #include <functional>
+#include <limits>
 
 namespace item3d {
 namespace {
@@ -157,6 +158,46 @@ TEST(ImageBasedLight, ExplainsWhatItCannotRead) {
         [](auto& light) { light["specularImages"][0][3] = light["specularImages"][1][3]; });
     expect_refused([](auto& light) { light["intensity"] = -1; });
     expect_refused([](auto& light) { light["rotation"] = {0, 0, 0, 0}; });
+}
+
+// Suns beyond what half floats hold are infinite in them.
+TEST(LoadLight, InfiniteAndUndefinedValuesAreReplaced) {
+    const fs::path folder = fresh_folder("light_infinite");
+    Image light(8, 4, 3, 0.5f);
+    light.at(3, 1, 0) = std::numeric_limits<float>::infinity();
+    light.at(4, 1, 2) = std::numeric_limits<float>::quiet_NaN();
+    light.at(5, 1, 1) = -std::numeric_limits<float>::infinity();
+    const auto load = [&](const char* name, int bits, std::string& said) {
+        save_image(folder / name, light, bits);
+        testing::internal::CaptureStderr();
+        const Image loaded = load_light((folder / name).string());
+        said = testing::internal::GetCapturedStderr();
+        return loaded;
+    };
+    std::string said;
+    for (const int bits : {16, 32}) {
+        const Image loaded = load("a.exr", bits, said);
+        EXPECT_EQ(loaded.at(3, 1, 0), 65504.0f);
+        EXPECT_EQ(loaded.at(4, 1, 2), 0.0f);
+        EXPECT_EQ(loaded.at(5, 1, 1), 0.0f);
+        EXPECT_EQ(loaded.at(0, 0, 0), 0.5f);
+        EXPECT_NE(said.find("1 values are infinite"), std::string::npos) << said;
+        EXPECT_NE(said.find("1 values are not numbers"), std::string::npos) << said;
+        EXPECT_NE(said.find("1 negative values"), std::string::npos) << said;
+    }
+    // Finite, but sums of it are not; what is brighter than a half float stays as it is.
+    light.at(3, 1, 0) = 3e38f;
+    light.at(4, 1, 2) = 2e6f;
+    light.at(5, 1, 1) = 0.5f;
+    EXPECT_EQ(load("b.exr", 32, said).at(3, 1, 0), 2e6f);
+    EXPECT_NE(said.find("1 values are infinite or above"), std::string::npos) << said;
+    save_image(folder / "c.hdr", light);
+    testing::internal::CaptureStderr();
+    EXPECT_NEAR(load_light((folder / "c.hdr").string()).at(4, 1, 2), 2e6f, 2e4f);
+    testing::internal::GetCapturedStderr();
+    light = Image(8, 4, 3, std::numeric_limits<float>::quiet_NaN());
+    save_image(folder / "d.exr", light, 32);
+    EXPECT_THROW(load_light((folder / "d.exr").string()), InputError);
 }
 
 }  // namespace

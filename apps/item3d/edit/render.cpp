@@ -41,6 +41,7 @@ struct RenderCommand : CommonOptions {
     std::string output;
     int views = 0;  ///< 0: one picture from the default camera
     std::string cameras;
+    std::vector<fs::path> texture_folders;
     std::string format = "png";
     std::string light = "studio";
     float light_rotation = 0;
@@ -89,7 +90,7 @@ std::vector<Camera> choose_cameras(const RenderCommand& options, const Model& mo
     const std::array<Vec3, 2> bounds = model.bounds();
     std::vector<Camera> cameras;
     if (!options.cameras.empty()) {
-        cameras = load_cameras(options.cameras);
+        cameras = load_cameras(options.cameras, model.origin);
         for (Camera& camera : cameras)
             fit_depth_range(camera, bounds);
     } else if (options.views > 0) {
@@ -170,6 +171,21 @@ class Painter {
         return to_image(render(geometry_, materials_, light_, {camera}, options)[0].cpu());
     }
 
+    /// Whether any pixel of the picture shows some of the model.
+    bool sees_model(const Camera& camera) const {
+        const at::NoGradGuard no_gradients;
+        Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
+        for (int layer = 0; layer < most_layers; ++layer) {
+            const at::Tensor covered = raster.triangle >= 0;
+            if (!covered.any().item<bool>()) return false;
+            if (!materials_.has_alpha()) return true;
+            const Surface surface = interpolate_surface(geometry_, raster, {camera});
+            if ((materials_.sample(surface).alpha > 0).any().item<bool>()) return true;
+            raster = rasterize(geometry_, {camera}, size_.width, size_.height, raster.depth);
+        }
+        return false;
+    }
+
     /// What a PNG shows of linear().
     Image display(const Image& linear, const Camera& camera) const {
         if (channel_ == "mask") return linear;
@@ -207,7 +223,6 @@ class Painter {
 
     /// The nearest surface that is at least half opaque.
     Raster visible(const Camera& camera) const {
-        constexpr int most_layers = 8;
         Raster raster = rasterize(geometry_, {camera}, size_.width, size_.height);
         for (int layer = 1; materials_.has_alpha() && layer < most_layers; ++layer) {
             const Surface surface = interpolate_surface(geometry_, raster, {camera});
@@ -241,6 +256,8 @@ class Painter {
         return picture;
     }
 
+    static constexpr int most_layers = 8;
+
     std::string channel_;
     PictureSize size_;
     int samples_;
@@ -259,12 +276,13 @@ void run_render(const RenderCommand& options, at::Device device) {
         throw UsageError("--occlusion is of --channel shaded alone");
     }
     const PictureSize size = parse_size(options.size);
-    const Model model = load_model(options.model);
+    const Model model = load_model(options.model, {.texture_folders = options.texture_folders});
     const std::vector<Camera> cameras = choose_cameras(options, model, size);
     const Destination destination = choose_destination(options, cameras.size());
     const Painter painter(options, model, device);
 
     nlohmann::json files = nlohmann::json::array();
+    bool model_is_seen = false;
     Progress progress("render", static_cast<std::int64_t>(cameras.size()));
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         if (interrupted()) {
@@ -272,6 +290,7 @@ void run_render(const RenderCommand& options, at::Device device) {
         }
         const fs::path path = destination.file(cameras[i]);
         const Image linear = painter.linear(cameras[i]);
+        model_is_seen = model_is_seen || painter.sees_model(cameras[i]);
         if (destination.extension == ".exr") {
             save_image(path, linear, 32);
         } else {
@@ -282,6 +301,11 @@ void run_render(const RenderCommand& options, at::Device device) {
         progress.update(static_cast<std::int64_t>(i + 1));
     }
     progress.finish();
+    if (!model_is_seen) {
+        warn(options.model + ": nothing of it is in the " +
+             (cameras.size() == 1 ? "picture" : "pictures") +
+             (options.cameras.empty() ? "" : "; do the cameras look at it?"));
+    }
     if (options.json) {
         print_json({{"files", files},
                     {"width", size.width},
@@ -307,6 +331,13 @@ void add_render_command(CLI::App& app) {
     command->add_option("--cameras", options->cameras,
                         "A NeRF-synthetic transforms.json in the model's own axes: one picture for "
                         "each frame, named after it");
+    command
+        ->add_option("--textures", options->texture_folders,
+                     "A folder that textures may be read from beside the model's own; may be given "
+                     "several times")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(CLI::ExistingDirectory);
     command->add_option("--format", options->format, "Of pictures that go into a folder")
         ->check(CLI::IsMember({"png", "exr"}))
         ->capture_default_str();

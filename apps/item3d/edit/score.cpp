@@ -8,6 +8,7 @@
 #include "item3d/lighting/environment.h"
 #include "item3d/metrics/clip_score.h"
 #include "item3d/report/model_pictures.h"
+#include "item3d/scene/far_origin.h"
 #include "item3d/tensors/precision.h"
 
 #include <chrono>
@@ -52,7 +53,9 @@ void check_sentence(const std::string& option, const std::string& sentence) {
 void run_score(const ScoreCommand& options, at::Device device) {
     check_sentence("--from", options.from);
     check_sentence("--to", options.to);
-    const Model before = load_model(options.before), after = load_model(options.after);
+    const Model before = load_model(options.before);
+    Model after = load_model(options.after);
+    move_origin(after, before.origin);
     const Clip clip =
         Clip::load_to_run(options.clip, device, choose_precision(options.precision, device));
     clip.warn_of_lost_words("--from", options.from);

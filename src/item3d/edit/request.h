@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -17,6 +18,9 @@ struct EditRequest {
     std::filesystem::path captioner;  ///< BLIP or BLIP-2; read where the plan asks it
     EditPlan plan;
     bool resume = false;
+    std::vector<std::filesystem::path> texture_folders;  ///< see LoadOptions
+    /// Edit materials whose base colour's picture cannot be read, by their factors.
+    bool allow_missing_textures = false;
     /// Stop as an interrupt would when this many iterations are done; 0: run to the end.
     int stop_after = 0;
     at::Device device = at::kCPU;

@@ -1,14 +1,40 @@
 #include "item3d/edit/scene.h"
 
+#include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/load_networks.h"
 #include "item3d/field/atlas/shared_texels.h"
 #include "item3d/io/load.h"
 #include "item3d/networks/vocabulary.h"
+#include "item3d/scene/visibility.h"
 #include "item3d/tensors/checkpoint.h"
 #include "item3d/tensors/precision.h"
 
 namespace item3d {
+
+namespace {
+
+/// Throws InputError where there is nothing to see, or another thing than the file means.
+void check_looks(const EditRequest& request, const Model& model,
+                 const std::vector<int>& materials) {
+    if (!is_visible(model, materials)) {
+        throw InputError(request.model.string(),
+                         "nothing of what is to be edited is seen: it is wholly transparent, or "
+                         "its triangles have no area",
+                         "give its materials an opacity above 0");
+    }
+    if (request.allow_missing_textures) return;
+    for (const int index : materials) {
+        const Material& material = model.materials[static_cast<std::size_t>(index)];
+        if (material.missing_base_color.empty()) continue;
+        throw InputError(request.model.string(),
+                         "the base colour '" + material.missing_base_color + "' of material '" +
+                             material.name + "' cannot be read (see the warning)",
+                         "bring it there, or edit without it by --allow-missing-textures");
+    }
+}
+
+}  // namespace
 
 EditScene load_scene(const EditRequest& request) {
     const at::Device device = request.device;
@@ -27,8 +53,9 @@ EditScene load_scene(const EditRequest& request) {
                                                 low_memory, scene.from, scene.to})
                               .share();
     scene.hashing_weights = std::async(std::launch::async, hash_of_weights, request.prior).share();
-    scene.model = load_model(request.model);
+    scene.model = load_model(request.model, {.texture_folders = request.texture_folders});
     scene.materials = select_materials(scene.model, plan.material);
+    check_looks(request, scene.model, scene.materials);
     for (const int index : scene.materials) {
         Material& material = scene.model.materials[static_cast<std::size_t>(index)];
         if (material.unlit)

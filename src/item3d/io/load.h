@@ -6,13 +6,19 @@
 #include "item3d/scene/model.h"
 
 #include <filesystem>
+#include <vector>
 
 namespace item3d {
 
+struct LoadOptions {
+    /// Folders beside the model's own that textures may be read from.
+    std::vector<std::filesystem::path> texture_folders;
+};
+
 /// glTF 2.0 (.glb, .gltf) or OBJ with MTL, by content and extension. A texture that cannot be read
 /// is a warning (the factor is used). A model without triangles or with non-finite positions is an
-/// InputError.
-Model load_model(const std::filesystem::path& path);
+/// InputError, one of which nothing can be seen a warning.
+Model load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// PNG, JPEG, Radiance HDR, OpenEXR, by content. Channels as in the file (palettes are expanded,
 /// 1-bit and 16-bit scaled to [0, 1]).

@@ -52,25 +52,49 @@ Image read_picture(const std::string& path) {
     return light;
 }
 
+/// The most that a light may be: sums over a sphere of it are far below what float32 holds.
+constexpr float most_radiance = 1e12f;
+
+/// What infinite values become: half floats end at 65504, so that suns beyond are infinite in them.
+float sun_radiance(const Image& light) {
+    float largest = 65504.0f;
+    for (const float value : light.pixels) {
+        if (value <= most_radiance) largest = std::max(largest, value);
+    }
+    return largest;
+}
+
 /// Throws InputError for what is no light; warns of what is left out.
 void make_usable(Image& light, const std::string& path) {
-    std::size_t negative = 0;
+    std::size_t negative = 0, unbounded = 0, undefined = 0;
     bool is_black = true;
-    for (std::size_t i = 0; i < light.pixels.size(); ++i) {
-        float& value = light.pixels[i];
-        if (!std::isfinite(value)) {
-            const std::size_t pixel = i / 3, width = static_cast<std::size_t>(light.width);
-            throw InputError(path, fmt::format("pixel ({}, {}) is not a finite number",
-                                               pixel % width, pixel / width));
-        }
+    const float sun = sun_radiance(light);
+    for (float& value : light.pixels) {
+        undefined += std::isnan(value) ? 1 : 0;
+        unbounded += value > most_radiance ? 1 : 0;
         negative += value < 0 ? 1 : 0;
-        value = std::max(0.0f, value);
+        if (value > most_radiance) value = sun;
+        value = value > 0 ? value : 0.0f;  // of no number as well
         is_black = is_black && value == 0;
+    }
+    if (undefined > light.pixels.size() / 2) {
+        throw InputError(
+            path, fmt::format("{} of {} values are not numbers", undefined, light.pixels.size()),
+            "render or export it again");
     }
     if (is_black) {
         throw InputError(
             path, negative > 0 ? "has no value above 0: no light" : "is black all over: no light",
             "give another one, or a preset");
+    }
+    if (unbounded > 0) {
+        warn(
+            fmt::format("{}: {} values are infinite or above {:g} and are taken as {:g}; a sun may "
+                        "be weaker than it was",
+                        path, unbounded, most_radiance, sun));
+    }
+    if (undefined > 0) {
+        warn(fmt::format("{}: {} values are not numbers and are taken as 0", path, undefined));
     }
     if (negative > 0) warn(fmt::format("{}: {} negative values are taken as 0", path, negative));
 }

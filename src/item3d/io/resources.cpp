@@ -3,9 +3,11 @@
 #include "item3d/core/error.h"
 #include "item3d/io/text.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstring>
+#include <optional>
 
 namespace item3d {
 namespace fs = std::filesystem;
@@ -91,6 +93,61 @@ fs::path resolve_in_folder(const fs::path& folder, const fs::path& relative,
         throw InputError(subject, "refers to '" + name + "', which is not a file");
     }
     return target;
+}
+
+fs::path resolve_beside(const fs::path& root, const std::vector<fs::path>& folders,
+                        const std::string& name, const std::string& subject,
+                        const std::vector<fs::path>& allowed) {
+    std::string slashed = name;
+    std::replace(slashed.begin(), slashed.end(), '\\', '/');
+    const fs::path relative = slashed;
+    const fs::path bare = relative.filename();
+    std::error_code code;
+    const fs::path top = fs::weakly_canonical(root.empty() ? fs::path(".") : root, code);
+    if (bare.empty()) throw InputError(subject, "refers to a file without a name");
+    std::optional<InputError> first;
+    for (const fs::path& wanted : {relative, bare}) {
+        for (const fs::path& folder : folders) {
+            const fs::path from =
+                fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, code)
+                    .lexically_relative(top);
+            try {
+                return resolve_in_folder(root, (from / wanted).lexically_normal(), subject);
+            } catch (const InputError& error) {
+                if (!first) first = error;
+            }
+        }
+    }
+    for (const fs::path& folder : folders) {
+        if (const auto found = find_allowed(allowed, folder, relative, subject)) return *found;
+    }
+    throw *first;
+}
+
+std::optional<fs::path> find_allowed(const std::vector<fs::path>& allowed, const fs::path& folder,
+                                     const fs::path& name, const std::string& subject) {
+    std::error_code code;
+    const fs::path target =
+        fs::weakly_canonical((folder.empty() ? fs::path(".") : folder) / name, code);
+    for (const fs::path& root : allowed) {
+        std::vector<fs::path> tries{target.lexically_relative(fs::weakly_canonical(root, code))};
+        for (auto from = name.begin(); from != name.end(); ++from) {
+            fs::path end;
+            for (auto part = from; part != name.end(); ++part)
+                end /= *part;
+            tries.push_back(end);
+        }
+        for (const fs::path& wanted : tries) {
+            if (wanted.empty() || wanted.is_absolute() || *wanted.begin() == "..") continue;
+            if (!fs::is_regular_file(root / wanted, code)) continue;
+            try {
+                return resolve_in_folder(root, wanted, subject);
+            } catch (const InputError&) {
+                // A link that leads out of it.
+            }
+        }
+    }
+    return std::nullopt;
 }
 
 bool is_data_uri(std::string_view uri) {

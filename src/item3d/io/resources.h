@@ -4,8 +4,10 @@
 #include "item3d/core/files.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace item3d {
 
@@ -14,6 +16,23 @@ namespace item3d {
 std::filesystem::path resolve_in_folder(const std::filesystem::path& folder,
                                         const std::filesystem::path& relative,
                                         const std::string& subject);
+
+/// The regular file that a text format names, with '/' or '\\' as separators: relative to the first
+/// of `folders` that has it, else by its bare name (exporters write paths of the machine that they
+/// ran on). Nothing outside `root` is read, but for what find_allowed() finds. Throws the
+/// InputError of the first try.
+std::filesystem::path resolve_beside(const std::filesystem::path& root,
+                                     const std::vector<std::filesystem::path>& folders,
+                                     const std::string& name, const std::string& subject,
+                                     const std::vector<std::filesystem::path>& allowed = {});
+
+/// A file in one of the folders that the user allows (LoadOptions::texture_folders): what `folder`
+/// / `name` is, where that lies in one of them, else the longest end of `name` that one of them
+/// has. No value: there is none.
+std::optional<std::filesystem::path> find_allowed(const std::vector<std::filesystem::path>& allowed,
+                                                  const std::filesystem::path& folder,
+                                                  const std::filesystem::path& name,
+                                                  const std::string& subject);
 
 bool is_data_uri(std::string_view uri);
 /// The bytes of "data:...;base64,..." or "data:,...". Throws InputError.

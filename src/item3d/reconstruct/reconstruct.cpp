@@ -13,6 +13,7 @@
 #include "item3d/reconstruct/outputs/report.h"
 #include "item3d/reconstruct/stage_runner.h"
 #include "item3d/reconstruct/surface/plain_model.h"
+#include "item3d/scene/far_origin.h"
 
 #include <algorithm>
 
@@ -83,8 +84,9 @@ void score(Reconstruction& result) {
         result.relit_scaled = relit.score(targets, result.relit_gain);
     }
     if (!request.reference.empty()) {
-        result.chamfer =
-            chamfer_distance(mesh_of(result.model), mesh_of(load_model(request.reference)));
+        Model reference = load_model(request.reference);
+        move_origin(reference, glm::dvec3(0.0));
+        result.chamfer = chamfer_distance(mesh_of(result.model), mesh_of(reference));
     }
 }
 

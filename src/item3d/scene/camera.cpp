@@ -75,6 +75,14 @@ float field_of_view_of(const nlohmann::json& object, const std::string& subject)
     return 0;
 }
 
+/// From the positions that the rows of a pose end with, where they are numbers.
+void take_off(const glm::dvec3& origin, nlohmann::json& rows) {
+    for (std::size_t i = 0; i < 3 && rows.is_array() && i < rows.size(); ++i) {
+        if (!rows[i].is_array() || rows[i].size() != 4 || !rows[i][3].is_number()) continue;
+        rows[i][3] = rows[i][3].get<double>() - origin[static_cast<int>(i)];
+    }
+}
+
 }  // namespace
 
 Mat4 Camera::world_to_camera() const {
@@ -183,7 +191,7 @@ void fit_depth_range(Camera& camera, std::array<Vec3, 2> bounds) {
     camera.near_plane = std::min(camera.near_plane, 0.98f * camera.far_plane);
 }
 
-std::vector<Camera> load_cameras(const std::filesystem::path& path) {
+std::vector<Camera> load_cameras(const std::filesystem::path& path, const glm::dvec3& origin) {
     const std::string subject = path.string();
     nlohmann::json document;
     try {
@@ -200,12 +208,13 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path) {
 
     std::vector<Camera> cameras;
     std::set<std::string> names;
-    for (const nlohmann::json& frame : document["frames"]) {
+    for (nlohmann::json& frame : document["frames"]) {
         const std::string where = fmt::format("{}: frame {}", subject, cameras.size());
         if (!frame.is_object() || !frame.contains("transform_matrix")) {
             throw InputError(where, "expected an object with \"transform_matrix\"");
         }
         Camera camera;
+        if (origin != glm::dvec3(0.0)) take_off(origin, frame["transform_matrix"]);
         camera.camera_to_world = pose_from_rows(frame["transform_matrix"], where);
         camera.field_of_view_x = field_of_view_of(frame, where);
         if (camera.field_of_view_x == 0) camera.field_of_view_x = shared_field_of_view;

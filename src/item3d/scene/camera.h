@@ -51,8 +51,10 @@ float horizontal_field_of_view(float field_of_view, float aspect);
 void fit_depth_range(Camera& camera, std::array<Vec3, 2> bounds);
 
 /// Reads NeRF-synthetic transforms.json (camera_angle_x, frames[].transform_matrix, file_path).
-/// Matrices are taken in the model's own axes. A camera is named after its frame's file (no folder,
-/// no extension), made unique where two frames share a name. Throws InputError.
-std::vector<Camera> load_cameras(const std::filesystem::path& path);
+/// Matrices are taken in the model's own axes, `origin` (Model::origin) off their positions. A
+/// camera is named after its frame's file (no folder, no extension), made unique where two frames
+/// share a name. Throws InputError.
+std::vector<Camera> load_cameras(const std::filesystem::path& path,
+                                 const glm::dvec3& origin = glm::dvec3(0.0));
 
 }  // namespace item3d

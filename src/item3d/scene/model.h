@@ -31,6 +31,8 @@ struct Material {
     std::string name;
     Vec4 base_color_factor{1.0f};
     int base_color_texture = -1;
+    /// What the file says is the base colour's picture, where that cannot be read.
+    std::string missing_base_color;
     float metallic_factor = 1.0f;
     float roughness_factor = 1.0f;
     /// Roughness in G and metallic in B, linear.
@@ -55,7 +57,7 @@ struct Primitive {
     std::string name;
     std::vector<Vec3> positions;
     /// Unit length. Always there: where the file has none, flat for glTF (each corner is a vertex
-    /// of its own then) and area-weighted by position for OBJ.
+    /// of its own then) and by smoothing groups for OBJ, area-weighted by position.
     std::vector<Vec3> normals;
     /// Empty when the file has none. glTF's convention: (0, 0) is the top left corner of the image.
     std::vector<Vec2> uvs;
@@ -82,6 +84,9 @@ struct Model {
     std::vector<Primitive> primitives;
     std::vector<Material> materials;
     std::vector<Texture> textures;
+    /// What was taken off the positions of the file (far_origin.h); zero for all but models far
+    /// from their origin. Writers add it again, in double precision.
+    glm::dvec3 origin{0.0};
     /// What was loaded, for writing an edited copy that keeps all else. Null for made models.
     std::shared_ptr<const SourceDocument> source;
 

@@ -1,15 +1,19 @@
 #include "item3d/scene/normals.h"
 
+#include "item3d/core/random.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <unordered_map>
 
 namespace item3d {
 
-std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
-                                 std::span<const std::uint32_t> indices) {
-    using DVec3 = glm::dvec3;
+namespace {
+
+/// For each vertex: which distinct position it stands at, from 0.
+std::vector<std::uint32_t> number_places(std::span<const Vec3> positions) {
     const auto key = [&](std::uint32_t i) {
         return std::array{positions[i].x, positions[i].y, positions[i].z};
     };
@@ -20,15 +24,62 @@ std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
         const auto right = key(b);
         return left != right ? left < right : a < b;
     });
-    // place[i]: which distinct position vertex i stands at.
     std::vector<std::uint32_t> place(positions.size());
     std::uint32_t places = 0;
     for (std::size_t i = 0; i < order.size(); ++i) {
         if (i > 0 && key(order[i]) != key(order[i - 1])) ++places;
         place[order[i]] = places;
     }
+    return place;
+}
 
-    std::vector<DVec3> sums(positions.empty() ? 0 : places + 1, DVec3(0.0));
+}  // namespace
+
+CornerNormals grouped_normals(std::span<const Vec3> positions,
+                              std::span<const std::uint32_t> indices,
+                              std::span<const std::int64_t> groups) {
+    using DVec3 = glm::dvec3;
+    const std::vector<std::uint32_t> place = number_places(positions);
+    struct Key {
+        std::uint32_t place;
+        std::int64_t group;
+        bool operator==(const Key&) const = default;
+    };
+    const auto hash = [](const Key& key) {
+        return mix_bits(mix_bits(key.place) ^ static_cast<std::uint64_t>(key.group));
+    };
+    std::unordered_map<Key, std::uint32_t, decltype(hash)> numbers(0, hash);
+    std::vector<DVec3> sums;
+    CornerNormals result;
+    result.corners.reserve(indices.size());
+    for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
+        const DVec3 a(positions[indices[t]]);
+        const DVec3 b(positions[indices[t + 1]]);
+        const DVec3 c(positions[indices[t + 2]]);
+        // Twice the area times the unit normal.
+        const DVec3 face = glm::cross(b - a, c - a);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [entry, is_new] = numbers.try_emplace(
+                Key{place[indices[t + k]], groups[t / 3]}, static_cast<std::uint32_t>(sums.size()));
+            if (is_new) sums.emplace_back(0.0);
+            sums[entry->second] += face;
+            result.corners.push_back(entry->second);
+        }
+    }
+    for (const DVec3& sum : sums) {
+        const double length = glm::length(sum);
+        result.normals.push_back(length > 0.0 ? Vec3(sum / length) : Vec3(0.0f, 0.0f, 1.0f));
+    }
+    return result;
+}
+
+std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
+                                 std::span<const std::uint32_t> indices) {
+    using DVec3 = glm::dvec3;
+    const std::vector<std::uint32_t> place = number_places(positions);
+    const std::uint32_t places =
+        place.empty() ? 0 : *std::max_element(place.begin(), place.end()) + 1;
+    std::vector<DVec3> sums(places, DVec3(0.0));
     for (std::size_t t = 0; t + 2 < indices.size(); t += 3) {
         const DVec3 a(positions[indices[t]]);
         const DVec3 b(positions[indices[t + 1]]);

@@ -14,6 +14,18 @@ namespace item3d {
 std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
                                  std::span<const std::uint32_t> indices);
 
+/// Normals that several corners may share.
+struct CornerNormals {
+    std::vector<std::uint32_t> corners;  ///< one for each of the indices: into normals
+    std::vector<Vec3> normals;           ///< unit length
+};
+
+/// As smooth_normals, but over the triangles of one group alone: edges between groups are sharp.
+/// `groups`: one a triangle, any numbers.
+CornerNormals grouped_normals(std::span<const Vec3> positions,
+                              std::span<const std::uint32_t> indices,
+                              std::span<const std::int64_t> groups);
+
 /// What glTF asks for: flat shading, and tangents of the file without effect. Every corner
 /// becomes a vertex of its own, in the order of the file (so that all nodes with the mesh, mirrored
 /// or not, number them alike). Returns, for each new vertex, the one that it was.

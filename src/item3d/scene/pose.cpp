@@ -49,9 +49,10 @@ Mat4 checked_pose(Mat4 pose, const std::string& subject) {
 }
 
 Mat4 pose_from_rows(const nlohmann::json& rows, const std::string& subject) {
-    if (!rows.is_array() || rows.size() != 4) throw wrong_pose(subject, "must have 4 rows");
+    if (!rows.is_array() || (rows.size() != 4 && rows.size() != 3))
+        throw wrong_pose(subject, "must have 4 rows");
     Mat4 pose(1.0f);
-    for (int row = 0; row < 4; ++row) {
+    for (int row = 0; row < static_cast<int>(rows.size()); ++row) {
         if (!rows[row].is_array() || rows[row].size() != 4) {
             throw wrong_pose(subject, "must have rows of 4");
         }

@@ -13,7 +13,7 @@ namespace item3d {
 /// rotation, a translation, and perhaps one scale for each axis.
 Mat4 checked_pose(Mat4 pose, const std::string& subject);
 
-/// checked_pose of a list of four rows of four numbers.
+/// checked_pose of a list of four rows of four numbers, or of three: the last is 0 0 0 1.
 Mat4 pose_from_rows(const nlohmann::json& rows, const std::string& subject);
 
 /// A number of a JSON file. Throws InputError naming `what` where it is none, or not finite.

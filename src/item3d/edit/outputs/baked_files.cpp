@@ -5,6 +5,7 @@
 #include "item3d/io/gltf/light.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
+#include "item3d/scene/far_origin.h"
 
 #include <cctype>
 #include <optional>
@@ -77,6 +78,7 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
                      source.normal_texture, bits, edited.textures);
     }
     edited.model = load_model(path);
+    move_origin(edited.model, scene.model.origin);
     return edited;
 }
 

@@ -22,6 +22,15 @@ std::uint32_t read_u32(const Bytes& bytes, std::size_t offset) {
     return value;
 }
 
+// Chunks start at multiples of four, but some programs write them without padding: behind a length
+// that is no multiple of four the next begins at once, if what is there can be the BIN chunk.
+std::size_t next_chunk(const Bytes& bytes, std::size_t end, std::size_t length) {
+    const bool is_unpadded = end % 4 != 0 && end + 8 <= length &&
+                             read_u32(bytes, end + 4) == binary_chunk &&
+                             read_u32(bytes, end) <= length - end - 8;
+    return is_unpadded ? end : (end + 3) / 4 * 4;
+}
+
 // Fills the document's chunks and returns the JSON text.
 std::string_view read_container(const Bytes& bytes, SourceDocument& document,
                                 std::optional<Bytes>& binary) {
@@ -63,8 +72,7 @@ std::string_view read_container(const Bytes& bytes, SourceDocument& document,
         } else {
             document.other_chunks.push_back({type, Bytes(begin, end)});
         }
-        // Chunks start at multiples of four.
-        offset = (offset + chunk_length + 3) / 4 * 4;
+        offset = next_chunk(bytes, offset + chunk_length, length);
     }
     return text;
 }
@@ -289,8 +297,15 @@ Bytes read_image_bytes(const SourceDocument& document, std::size_t index) {
     if (image.has("uri")) {
         const std::string uri = image.text("uri", "");
         if (is_data_uri(uri)) return decode_data_uri(uri, place);
-        return read_bytes(resolve_in_folder(document.path.parent_path(),
-                                            uri_to_relative_path(uri, place), place));
+        const fs::path folder = document.path.parent_path();
+        const fs::path relative = uri_to_relative_path(uri, place);
+        try {
+            return read_bytes(resolve_in_folder(folder, relative, place));
+        } catch (const InputError&) {
+            const auto found = find_allowed(document.texture_folders, folder, relative, place);
+            if (!found) throw;
+            return read_bytes(*found);
+        }
     }
     const auto view = image.index("bufferView", root_of(document).list_size("bufferViews"));
     if (!view) image.fail("neither uri nor bufferView is there");

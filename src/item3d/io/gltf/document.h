@@ -41,6 +41,8 @@ class SourceDocument {
     std::map<std::pair<int, int>, std::vector<std::uint32_t>> split_vertices;
     /// buffers[0] is the BIN chunk of a .glb.
     bool has_binary_chunk = false;
+    /// LoadOptions::texture_folders.
+    std::vector<std::filesystem::path> texture_folders;
     struct Chunk {
         std::uint32_t type;
         Bytes bytes;

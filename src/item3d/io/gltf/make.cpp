@@ -181,6 +181,7 @@ class GltfMaker {
             {Json{{"attributes", std::move(attributes)},
                   {"indices", builder_.add_indices(primitive.indices, primitive.positions.size())},
                   {"material", primitive.material}}});
+        if (model_.origin != glm::dvec3(0.0)) node["translation"] = list_of(model_.origin);
         node["mesh"] = append(json_, "meshes", std::move(mesh));
         append(json_["scenes"][0], "nodes", append(json_, "nodes", std::move(node)));
     }

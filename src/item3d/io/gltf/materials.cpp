@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/image/formats.h"
+#include "item3d/io/resources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +114,8 @@ class MaterialReader {
             return read_texture(*info);
         };
         material.base_color_texture = read_slot(slots.base_color);
+        if (slots.base_color && material.base_color_texture < 0)
+            material.missing_base_color = picture_name(*slots.base_color);
         material.metallic_roughness_texture = read_slot(slots.metallic_roughness);
         material.normal_texture = read_slot(slots.normal);
         material.occlusion_texture = read_slot(slots.occlusion);
@@ -122,6 +125,18 @@ class MaterialReader {
         }
         if (slots.occlusion)
             material.occlusion_strength = unit(slots.occlusion->number("strength", 1.0));
+    }
+
+    // The address of a texture's picture, its name, or its place in the document.
+    std::string picture_name(const GltfObject& info) const {
+        const auto texture = info.index("index", root_.list_size("textures"));
+        if (!texture) return info.where();
+        const auto image =
+            root_.item("textures", *texture).index("source", root_.list_size("images"));
+        if (!image) return info.where();
+        const GltfObject object = root_.item("images", *image);
+        const std::string uri = object.text("uri", "");
+        return uri.empty() || is_data_uri(uri) ? object.text("name", object.where()) : uri;
     }
 
     // -1 when the picture cannot be read.

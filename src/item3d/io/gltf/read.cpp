@@ -4,10 +4,13 @@
 #include "item3d/io/gltf/read.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/progress.h"
 #include "item3d/io/gltf/accessors.h"
 #include "item3d/io/gltf/draco.h"
 #include "item3d/io/gltf/materials.h"
 #include "item3d/io/gltf/nodes.h"
+#include "item3d/io/gltf/skins.h"
+#include "item3d/scene/far_origin.h"
 #include "item3d/scene/normals.h"
 
 #include <fmt/format.h>
@@ -16,6 +19,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <string>
 
 namespace item3d {
 namespace {
@@ -61,6 +66,7 @@ class GltfReader {
     Model read();
 
   private:
+    void add_meshes();
     void add_mesh(std::size_t mesh, std::optional<std::size_t> node);
     void add_primitive(const GltfObject& mesh, const GltfObject& source, Primitive primitive,
                        std::optional<std::size_t> node);
@@ -69,12 +75,9 @@ class GltfReader {
                              Vertices& vertices) const;
     std::vector<double> morph_weights(const GltfObject& mesh, const GltfObject& source,
                                       std::optional<std::size_t> node) const;
-    std::vector<glm::dmat4> joint_matrices(std::size_t skin) const;
-    std::vector<glm::dmat4> blend_joints(const GltfObject& attributes, std::size_t skin,
-                                         std::size_t count) const;
     void place(const Vertices& vertices, const std::vector<glm::dmat4>& matrices,
-               Primitive& primitive) const;
-    void read_uvs(const GltfObject& attributes, Primitive& primitive) const;
+               Primitive& primitive);
+    void read_uvs(const GltfObject& attributes, Primitive& primitive);
     void read_colors(const GltfObject& attributes, Primitive& primitive) const;
     void read_triangles(const GltfObject& source, std::size_t mode, Primitive& primitive) const;
     void count_vertices(const GltfObject& source, std::size_t count);
@@ -87,6 +90,9 @@ class GltfReader {
     GltfObject root_;
     NodeTree nodes_;
     Model model_;
+    glm::dvec3 low_{std::numeric_limits<double>::max()};  ///< of all positions, in the world
+    glm::dvec3 high_{std::numeric_limits<double>::lowest()};
+    std::set<std::string> warnings_;
     std::size_t vertex_count_ = 0;
     bool uses_default_material_ = false;
 };
@@ -170,73 +176,19 @@ void GltfReader::apply_morph_targets(const GltfObject& source, const std::vector
     }
 }
 
-std::vector<glm::dmat4> GltfReader::joint_matrices(std::size_t index) const {
-    const GltfObject skin = root_.item("skins", index);
-    const std::size_t count = skin.list_size("joints");
-    std::vector<glm::dmat4> matrices;
-    for (std::size_t j = 0; j < count; ++j) {
-        matrices.push_back(nodes_.world[skin.index_item("joints", j, nodes_.world.size())]);
-    }
-    if (const auto accessor = accessor_of(skin, "inverseBindMatrices")) {
-        const Accessor inverse = read_accessor(*document_, *accessor);
-        if (inverse.type != "MAT4" || inverse.count < count) {
-            skin.fail("inverseBindMatrices must be a MAT4 for each joint");
-        }
-        for (std::size_t j = 0; j < count; ++j) {
-            glm::dmat4 matrix;
-            for (int c = 0; c < 16; ++c)
-                matrix[c / 4][c % 4] = inverse.value(j, c);
-            matrices[j] = matrices[j] * matrix;
-        }
-    }
-    return matrices;
-}
-
-// One matrix a vertex: the weighted mean of its joints'.
-std::vector<glm::dmat4> GltfReader::blend_joints(const GltfObject& attributes, std::size_t skin,
-                                                 std::size_t count) const {
-    const std::vector<glm::dmat4> joints = joint_matrices(skin);
-    std::vector<glm::dmat4> blended(count, glm::dmat4(0.0));
-    std::vector<double> sums(count, 0.0);
-    for (int set = 0; attributes.has(fmt::format("JOINTS_{}", set).c_str()); ++set) {
-        const std::string joints_name = fmt::format("JOINTS_{}", set);
-        const std::string weights_name = fmt::format("WEIGHTS_{}", set);
-        const auto joints_index = accessor_of(attributes, joints_name.c_str());
-        const auto weights_index = accessor_of(attributes, weights_name.c_str());
-        if (!weights_index) attributes.fail(weights_name + " is missing");
-        const Accessor indices = read_vectors(*document_, *joints_index, 4, 4);
-        const Accessor weights = read_vectors(*document_, *weights_index, 4, 4);
-        check_count(attributes, joints_name.c_str(), indices.count, count);
-        check_count(attributes, weights_name.c_str(), weights.count, count);
-        for (std::size_t i = 0; i < count; ++i) {
-            for (int c = 0; c < 4; ++c) {
-                const double weight = weights.value(i, c);
-                if (weight == 0.0) continue;
-                const double joint = indices.raw(i, c);
-                if (!(joint >= 0.0) || joint >= static_cast<double>(joints.size())) {
-                    attributes.fail(fmt::format("joint {} of {}", joint, joints.size()));
-                }
-                blended[i] += weight * joints[static_cast<std::size_t>(joint)];
-                sums[i] += weight;
-            }
-        }
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        blended[i] = sums[i] > 0.0 ? blended[i] / sums[i] : glm::dmat4(1.0);
-    }
-    return blended;
-}
-
 // matrices: one for all vertices, or one a vertex.
 void GltfReader::place(const Vertices& vertices, const std::vector<glm::dmat4>& matrices,
-                       Primitive& primitive) const {
+                       Primitive& primitive) {
     const std::size_t count = vertices.positions.size();
     primitive.is_mirrored = count > 0 && glm::determinant(glm::dmat3(matrices[0])) < 0.0;
     bool all_normals = !vertices.normals.empty();
     for (std::size_t i = 0; i < count; ++i) {
         const glm::dmat4& matrix = matrices[matrices.size() == 1 ? 0 : i];
         const glm::dvec3 x(matrix[0]), y(matrix[1]), z(matrix[2]);
-        primitive.positions.emplace_back(matrix * glm::dvec4(vertices.positions[i], 1.0));
+        const glm::dvec3 position(matrix * glm::dvec4(vertices.positions[i], 1.0));
+        low_ = glm::min(low_, position);
+        high_ = glm::max(high_, position);
+        primitive.positions.emplace_back(position - model_.origin);
         if (all_normals) {
             // Cofactors are the inverse transpose times the determinant and exist for any matrix.
             const glm::dvec3& n = vertices.normals[i];
@@ -261,7 +213,7 @@ void GltfReader::place(const Vertices& vertices, const std::vector<glm::dmat4>& 
     if (!all_normals) primitive.normals.clear();
 }
 
-void GltfReader::read_uvs(const GltfObject& attributes, Primitive& primitive) const {
+void GltfReader::read_uvs(const GltfObject& attributes, Primitive& primitive) {
     const std::size_t materials = root_.list_size("materials");
     UvLayout layout;
     if (static_cast<std::size_t>(primitive.material) < materials) {
@@ -273,11 +225,20 @@ void GltfReader::read_uvs(const GltfObject& attributes, Primitive& primitive) co
     if (!index) return;
     const Accessor uvs = read_vectors(*document_, *index, 2, 2);
     check_count(attributes, name.c_str(), uvs.count, primitive.positions.size());
+    std::size_t not_finite = 0;
     for (std::size_t i = 0; i < uvs.count; ++i) {
         Vec2 uv(uvs.value(i, 0), uvs.value(i, 1));
         if (layout.is_transformed()) uv = layout.apply(uv);
-        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = Vec2(0.0f);
+        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
+            uv = Vec2(0.0f);
+            ++not_finite;
+        }
         primitive.uvs.push_back(uv);
+    }
+    if (not_finite > 0) {
+        warnings_.insert(fmt::format(
+            "{}: mesh '{}': {} of {} texture coordinates ({}) are not finite numbers; 0 is used",
+            document_->path.string(), primitive.name, not_finite, uvs.count, name));
     }
 }
 
@@ -345,13 +306,20 @@ void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
     primitive.material = static_cast<int>(material.value_or(materials));
 
     Vertices vertices = read_vertices(*attributes);
+    if (const double part = float32_step(vertices.positions); part > 1e-4) {
+        warnings_.insert(fmt::format(
+            "{}: mesh '{}' lies so far from its origin that its positions, 32-bit numbers, go in "
+            "steps of {:.1g} of its size; export it nearer to the origin",
+            document_->path.string(), primitive.name, part));
+    }
     apply_morph_targets(source, morph_weights(mesh, source, node), vertices);
     std::vector<glm::dmat4> matrices{node ? nodes_.world[*node] : glm::dmat4(1.0)};
     if (node && attributes->has("JOINTS_0")) {
         // The node's own transform does not count for a skinned mesh.
         const auto skin = root_.item("nodes", *node).index("skin", root_.list_size("skins"));
         if (skin && !vertices.positions.empty()) {
-            matrices = blend_joints(*attributes, *skin, vertices.positions.size());
+            matrices =
+                blend_joints(*document_, nodes_, *attributes, *skin, vertices.positions.size());
         }
     }
     place(vertices, matrices, primitive);
@@ -392,10 +360,10 @@ void GltfReader::add_mesh(std::size_t index, std::optional<std::size_t> node) {
     }
 }
 
-Model GltfReader::read() {
-    check_required_extensions(*document_);
-    nodes_ = read_nodes(*document_);
+void GltfReader::add_meshes() {
     const std::size_t meshes = root_.list_size("meshes");
+    model_.primitives.clear();
+    vertex_count_ = 0;
     for (const std::size_t node : nodes_.scene) {
         if (const auto mesh = root_.item("nodes", node).index("mesh", meshes))
             add_mesh(*mesh, node);
@@ -405,6 +373,18 @@ Model GltfReader::read() {
         for (std::size_t mesh = 0; mesh < meshes; ++mesh)
             add_mesh(mesh, std::nullopt);
     }
+}
+
+Model GltfReader::read() {
+    check_required_extensions(*document_);
+    nodes_ = read_nodes(*document_);
+    const std::size_t meshes = root_.list_size("meshes");
+    add_meshes();
+    // Few models are far from the origin: those are read once more, with it taken off.
+    model_.origin = far_origin(low_, high_);
+    if (model_.origin != glm::dvec3(0.0)) add_meshes();
+    for (const std::string& warning : warnings_)
+        warn(warning);
     if (model_.primitives.empty()) {
         throw InputError(
             document_->path.string(),
@@ -423,8 +403,10 @@ Model GltfReader::read() {
 
 }  // namespace
 
-Model read_gltf(const std::filesystem::path& path, const Bytes& bytes) {
-    return GltfReader(parse_gltf(path, bytes)).read();
+Model read_gltf(const std::filesystem::path& path, const Bytes& bytes, const LoadOptions& options) {
+    const auto document = parse_gltf(path, bytes);
+    document->texture_folders = options.texture_folders;
+    return GltfReader(document).read();
 }
 
 }  // namespace item3d

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/core/files.h"
+#include "item3d/io/load.h"
 #include "item3d/scene/model.h"
 
 #include <filesystem>
@@ -9,6 +10,6 @@
 namespace item3d {
 
 /// glTF 2.0, binary or JSON. Throws InputError.
-Model read_gltf(const std::filesystem::path& path, const Bytes& bytes);
+Model read_gltf(const std::filesystem::path& path, const Bytes& bytes, const LoadOptions& options);
 
 }  // namespace item3d

@@ -58,31 +58,78 @@ float clamp_unit(float value) {
     return std::clamp(value, 0.0f, 1.0f);
 }
 
+std::string picture_key(const MtlMap& map) {
+    return map.folder.string() + "\n" + map.file;
+}
+
+bool is_same_picture(const std::optional<MtlMap>& a, const std::optional<MtlMap>& b) {
+    return a && b && picture_key(*a) == picture_key(*b);
+}
+
+/// The channel that -imfchan names, or `otherwise`, of a picture that has so many.
+int channel_of(const MtlMap& map, const Image& image, int otherwise) {
+    const std::size_t named = std::string_view("rgb").find(map.channel);
+    const int colors = image.channels < 3 ? 1 : 3;
+    if (map.channel == 'm' && image.channels % 2 == 0) return image.channels - 1;
+    if (map.channel != 0 && named != std::string_view::npos)
+        return std::min(static_cast<int>(named), colors - 1);
+    return std::min(otherwise, image.channels - 1);
+}
+
+/// One channel: what -imfchan says, else alpha where it varies, else the mean of the colours.
+Image opacity_values(const MtlMap& map, const Image& image) {
+    Image result(image.width, image.height, 1);
+    const auto value = [&](std::size_t pixel, int c) {
+        return image
+            .pixels[pixel * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(c)];
+    };
+    const int alpha = image.channels - 1;
+    bool uses_alpha = false;
+    for (std::size_t i = 0; image.channels % 2 == 0 && i < result.pixels.size(); ++i)
+        uses_alpha = uses_alpha || value(i, alpha) != value(0, alpha);
+    const bool is_named = map.channel != 0 && map.channel != 'l';
+    for (std::size_t i = 0; i < result.pixels.size(); ++i) {
+        if (is_named) {
+            result.pixels[i] = value(i, channel_of(map, image, 0));
+        } else if (uses_alpha && map.channel == 0) {
+            result.pixels[i] = value(i, alpha);
+        } else if (image.channels < 3) {
+            result.pixels[i] = value(i, 0);
+        } else {
+            result.pixels[i] = (value(i, 0) + value(i, 1) + value(i, 2)) / 3.0f;
+        }
+    }
+    return result;
+}
+
 }  // namespace
 
-ObjMaterials::ObjMaterials(Model& model, fs::path folder, std::string subject)
-    : model_(model), folder_(std::move(folder)), subject_(std::move(subject)) {}
+ObjMaterials::ObjMaterials(Model& model, fs::path folder, std::string subject,
+                           std::vector<fs::path> allowed)
+    : model_(model),
+      folder_(std::move(folder)),
+      allowed_(std::move(allowed)),
+      subject_(std::move(subject)) {}
+
+fs::path ObjMaterials::find_picture_file(const MtlMap& map) const {
+    const std::vector<fs::path> folders{map.folder, folder_};
+    if (!map.file_and_comment.empty()) {
+        try {
+            return resolve_beside(folder_, folders, map.file_and_comment, subject_);
+        } catch (const InputError&) {
+        }
+    }
+    return resolve_beside(folder_, folders, map.file, subject_, allowed_);
+}
 
 const Texture* ObjMaterials::read(const MtlMap& map) {
-    const auto found = pictures_.find(map.file);
+    const auto found = pictures_.find(picture_key(map));
     if (found != pictures_.end()) return found->second ? &*found->second : nullptr;
-    std::optional<Texture>& slot = pictures_[map.file];
-    std::string name = map.file;
-    std::replace(name.begin(), name.end(), '\\', '/');
+    std::optional<Texture>& slot = pictures_[picture_key(map)];
     try {
-        // Exporters write paths of the machine that they ran on: the bare name is tried as well.
-        fs::path path;
-        try {
-            path = resolve_in_folder(folder_, name, subject_);
-        } catch (const InputError&) {
-            const fs::path bare = fs::path(name).filename();
-            if (bare.empty() || bare == fs::path(name)) throw;
-            std::error_code code;
-            if (!fs::is_regular_file(folder_ / bare, code)) throw;
-            path = resolve_in_folder(folder_, bare, subject_);
-        }
+        const fs::path path = find_picture_file(map);
         DecodedImage decoded = decode_image(read_bytes(path), path.string());
-        slot = Texture{to_utf8(fs::path(name).stem().string()), std::move(decoded.image),
+        slot = Texture{to_utf8(path.stem().string()), std::move(decoded.image),
                        std::min(decoded.bits_per_channel, 16), Wrap::repeat, Wrap::repeat};
     } catch (const InputError& error) {
         warn(std::string(error.what()) + "; the material's factors are used");
@@ -91,13 +138,39 @@ const Texture* ObjMaterials::read(const MtlMap& map) {
 }
 
 int ObjMaterials::add_texture(const Texture& texture, const MtlMap& map) {
-    const auto key = std::pair(map.file, map.clamp);
+    const auto key = std::pair(picture_key(map), map.clamp);
     const auto found = added_.find(key);
     if (found != added_.end()) return found->second;
     Texture copy = texture;
     if (map.clamp) copy.wrap_u = copy.wrap_v = Wrap::clamp_to_edge;
     model_.textures.push_back(std::move(copy));
     return added_[key] = static_cast<int>(model_.textures.size()) - 1;
+}
+
+// The larger of the two pictures gives the size.
+int ObjMaterials::add_cut_out(const Texture* base, const Texture& opacity,
+                              const MtlMaterial& source) {
+    const bool base_is_larger = base && base->image.width >= opacity.image.width;
+    const Image& larger = base_is_larger ? base->image : opacity.image;
+    const Image alpha =
+        resample(opacity_values(*source.opacity_map, opacity.image), larger.width, larger.height);
+    const Image colors = base ? resample(base->image, larger.width, larger.height) : Image();
+    Texture texture;
+    texture.name = base ? base->name : opacity.name;
+    texture.bits_per_channel =
+        std::max(base ? base->bits_per_channel : 8, opacity.bits_per_channel);
+    if ((source.diffuse_map ? source.diffuse_map : source.opacity_map)->clamp)
+        texture.wrap_u = texture.wrap_v = Wrap::clamp_to_edge;
+    texture.image = Image(larger.width, larger.height, 4, 1.0f);
+    for (std::size_t i = 0; i < alpha.pixels.size(); ++i) {
+        for (std::size_t c = 0; c < 3 && base; ++c) {
+            const auto channels = static_cast<std::size_t>(colors.channels);
+            texture.image.pixels[4 * i + c] = colors.pixels[i * channels + (channels < 3 ? 0 : c)];
+        }
+        texture.image.pixels[4 * i + 3] = alpha.pixels[i];
+    }
+    model_.textures.push_back(std::move(texture));
+    return static_cast<int>(model_.textures.size()) - 1;
 }
 
 void ObjMaterials::set_metallic_roughness(const MtlMaterial& source, Material& material) {
@@ -143,17 +216,18 @@ void ObjMaterials::set_metallic_roughness(const MtlMaterial& source, Material& m
                                      : source.occlusion_map;
     if (any_map->clamp) texture.wrap_u = texture.wrap_v = Wrap::clamp_to_edge;
     texture.image = Image(width, height, 3, 1.0f);
-    const auto copy_channel = [&](const Texture* part, int from, int to) {
+    const auto copy_channel = [&](const Texture* part, const auto& map, int otherwise, int to) {
         if (!part) return;
+        const int from = channel_of(*map, part->image, otherwise);
         const Image scaled = resample(part->image, width, height);
         const std::size_t count = static_cast<std::size_t>(width) * height;
         for (std::size_t i = 0; i < count; ++i) {
             texture.image.pixels[3 * i + to] = scaled.pixels[i * scaled.channels + from];
         }
     };
-    copy_channel(occlusion, 0, 0);
-    copy_channel(roughness, packed ? 1 : 0, 1);
-    copy_channel(metallic, packed ? 2 : 0, 2);
+    copy_channel(occlusion, source.occlusion_map, 0, 0);
+    copy_channel(roughness, roughness_map, packed ? 1 : 0, 1);
+    copy_channel(metallic, metallic_map, packed ? 2 : 0, 2);
     if (roughness) material.roughness_factor = 1.0f;
     if (metallic) material.metallic_factor = 1.0f;
     model_.textures.push_back(std::move(texture));
@@ -175,21 +249,30 @@ void ObjMaterials::set_normals(const MtlMaterial& source, Material& material) {
     material.normal_scale = map->bump_multiplier;
 }
 
-int ObjMaterials::add(const MtlMaterial& source) {
-    Material material;
-    material.name = to_utf8(source.name);
+void ObjMaterials::set_base_color(const MtlMaterial& source, Material& material) {
     const Vec3 diffuse = glm::clamp(source.diffuse.value_or(Vec3(0.8f)), 0.0f, 1.0f);
     material.base_color_factor = Vec4(diffuse, 1.0f);
-    if (source.diffuse_map) {
-        if (const Texture* texture = read(*source.diffuse_map)) {
-            material.base_color_factor = Vec4(1.0f);
-            material.base_color_texture = add_texture(*texture, *source.diffuse_map);
-        }
+    const Texture* base = source.diffuse_map ? read(*source.diffuse_map) : nullptr;
+    const bool is_separate =
+        source.opacity_map && !is_same_picture(source.opacity_map, source.diffuse_map);
+    const Texture* cut = is_separate ? read(*source.opacity_map) : nullptr;
+    if (base) material.base_color_factor = Vec4(1.0f);
+    if (source.diffuse_map && !base) material.missing_base_color = source.diffuse_map->file;
+    if (cut) {
+        material.base_color_texture = add_cut_out(base, *cut, source);
+    } else if (base) {
+        material.base_color_texture = add_texture(*base, *source.diffuse_map);
     }
-    const float opacity = clamp_unit(source.opacity.value_or(1.0f));
+    const float opacity =
+        clamp_unit(source.opacity.value_or(1.0f - source.transparency.value_or(0.0f)));
     material.base_color_factor.w = opacity;
     if (opacity < 1.0f || source.opacity_map) material.alpha = Material::Alpha::blend;
+}
 
+int ObjMaterials::add(const MtlMaterial& source) {
+    Material material;
+    material.name = to_utf8(without_remark(source.name));
+    set_base_color(source, material);
     set_metallic_roughness(source, material);
     set_normals(source, material);
     material.emissive_factor = glm::max(source.emission.value_or(Vec3(0.0f)), 0.0f);
@@ -199,8 +282,31 @@ int ObjMaterials::add(const MtlMaterial& source) {
             material.emissive_factor = Vec3(1.0f);
         }
     }
+    has_opacity_map_.push_back(source.opacity_map.has_value());
     model_.materials.push_back(std::move(material));
     return static_cast<int>(model_.materials.size()) - 1;
+}
+
+void ObjMaterials::make_visible() {
+    const auto is_invisible = [](const Material& material) {
+        return material.base_color_factor.w <= 0.0f;
+    };
+    if (std::all_of(model_.materials.begin(), model_.materials.end(), is_invisible)) {
+        warn(subject_ +
+             ": all of it is wholly transparent (d 0 or Tr 1 in its material library); taken as "
+             "opaque");
+        for (std::size_t i = 0; i < model_.materials.size(); ++i) {
+            model_.materials[i].base_color_factor.w = 1.0f;
+            if (!has_opacity_map_[i]) model_.materials[i].alpha = Material::Alpha::opaque;
+        }
+        return;
+    }
+    for (const Material& material : model_.materials) {
+        if (is_invisible(material)) {
+            warn(subject_ + ": material '" + material.name +
+                 "' is wholly transparent (d 0 or Tr 1): nothing of it is seen");
+        }
+    }
 }
 
 }  // namespace item3d

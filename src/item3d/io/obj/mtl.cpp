@@ -1,6 +1,7 @@
 #include "item3d/io/obj/mtl.h"
 
 #include "item3d/core/files.h"
+#include "item3d/io/encoding.h"
 #include "item3d/io/text.h"
 
 #include <cmath>
@@ -39,45 +40,76 @@ constexpr OptionShape option_shapes[] = {
     {"-type", 1, false},   {"-colorspace", 1, false},
 };
 
+const OptionShape* option_shape(std::string_view word) {
+    const std::string option = to_lower(word);
+    for (const OptionShape& candidate : option_shapes) {
+        if (candidate.name == option) return &candidate;
+    }
+    return nullptr;
+}
+
+// Takes an option and its words off the text; false, and nothing taken, where none begins it.
+bool take_option(std::string_view& text, MtlMap& map) {
+    std::string_view rest = text;
+    const OptionShape* shape = option_shape(take_word(rest));
+    if (!shape) return false;
+    float values[3] = {0, 0, 0};
+    std::string word;
+    int count = 0;
+    for (; count < shape->most_words; ++count) {
+        std::string_view ahead = rest;
+        const std::string_view next = take_word(ahead);
+        if (shape->numeric) {
+            const auto value = parse_number(next);
+            if (!value || !std::isfinite(*value)) break;
+            values[count] = static_cast<float>(*value);
+        } else {
+            word = to_lower(next);
+        }
+        rest = ahead;
+    }
+    if (shape->name == "-s" && count > 0)
+        map.scale = Vec2(values[0], count > 1 ? values[1] : values[0]);
+    if (shape->name == "-o" && count > 0)
+        map.offset = Vec2(values[0], count > 1 ? values[1] : 0.0f);
+    if (shape->name == "-bm" && count > 0) map.bump_multiplier = values[0];
+    if (shape->name == "-clamp") map.clamp = word == "on";
+    if (shape->name == "-imfchan") map.channel = word.empty() ? '\0' : word[0];
+    text = trim(rest);
+    return true;
+}
+
+// Takes options off that some programs write behind the name.
+std::string_view without_trailing_options(std::string_view name, MtlMap& map) {
+    for (std::size_t at = name.find(" -"); at != std::string_view::npos;
+         at = name.find(" -", at + 1)) {
+        std::string_view rest = name.substr(at + 1);
+        MtlMap with = map;
+        while (take_option(rest, with)) {
+        }
+        if (!rest.empty()) continue;
+        map = with;
+        return trim(name.substr(0, at));
+    }
+    return name;
+}
+
+std::string_view without_quotes(std::string_view text) {
+    const bool is_quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+    return is_quoted ? text.substr(1, text.size() - 2) : text;
+}
+
 // Everything after the options is the name: it may hold blanks.
 std::optional<MtlMap> read_map(std::string_view text) {
     MtlMap map;
     text = trim(text);
-    while (text.starts_with('-')) {
-        std::string_view rest = text;
-        const std::string option = to_lower(take_word(rest));
-        const OptionShape* shape = nullptr;
-        for (const OptionShape& candidate : option_shapes) {
-            if (candidate.name == option) shape = &candidate;
-        }
-        if (!shape) break;
-        float values[3] = {0, 0, 0};
-        std::string word;
-        int count = 0;
-        for (; count < shape->most_words; ++count) {
-            std::string_view ahead = rest;
-            const std::string_view next = take_word(ahead);
-            if (shape->numeric) {
-                const auto value = parse_number(next);
-                if (!value || !std::isfinite(*value)) break;
-                values[count] = static_cast<float>(*value);
-            } else {
-                word = to_lower(next);
-            }
-            rest = ahead;
-        }
-        if (option == "-s" && count > 0)
-            map.scale = Vec2(values[0], count > 1 ? values[1] : values[0]);
-        if (option == "-o" && count > 0) map.offset = Vec2(values[0], count > 1 ? values[1] : 0.0f);
-        if (option == "-bm" && count > 0) map.bump_multiplier = values[0];
-        if (option == "-clamp") map.clamp = word == "on";
-        text = trim(rest);
+    while (take_option(text, map)) {
     }
-    if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
-        text = text.substr(1, text.size() - 2);
-    }
-    if (text.empty()) return std::nullopt;
+    const std::string_view whole = text;
+    text = without_quotes(without_trailing_options(without_remark(text), map));
+    if (text.empty() && whole.empty()) return std::nullopt;
     map.file = std::string(text);
+    if (without_remark(whole) != whole) map.file_and_comment = std::string(without_quotes(whole));
     return map;
 }
 
@@ -95,9 +127,11 @@ void read_statement(const std::string& key, std::string_view rest, MtlMaterial& 
     } else if (key == "ns") {
         material.specular_exponent = read_number(rest);
     } else if (key == "d") {
-        material.opacity = read_number(rest);
+        std::string_view number = rest;
+        if (to_lower(take_word(number)) != "-halo") number = rest;
+        material.opacity = read_number(number);
     } else if (key == "tr") {
-        if (const auto value = read_number(rest)) material.opacity = 1.0f - *value;
+        material.transparency = read_number(rest);
     } else if (key == "bsdf") {
         material.is_nvdiffrec = to_lower(trim(rest)) == "pbr";
     } else if (key == "map_kd") {
@@ -121,10 +155,34 @@ void read_statement(const std::string& key, std::string_view rest, MtlMaterial& 
     }
 }
 
+void set_folder(MtlMaterial& material, const std::filesystem::path& folder) {
+    for (auto* map : {&material.diffuse_map, &material.metallic_map, &material.roughness_map,
+                      &material.specular_map, &material.occlusion_map, &material.emission_map,
+                      &material.normal_map, &material.bump_map, &material.opacity_map}) {
+        if (*map) (*map)->folder = folder;
+    }
+}
+
 }  // namespace
 
-std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path) {
-    const std::string text = read_text(path);
+std::string_view without_remark(std::string_view text) {
+    text = trim(text);
+    for (std::size_t at = text.find('#'); at != std::string_view::npos;
+         at = text.find('#', at + 1)) {
+        if (at == 0 || text[at - 1] == ' ' || text[at - 1] == '\t') return trim(text.substr(0, at));
+    }
+    return text;
+}
+
+std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path,
+                                            std::vector<std::string> names) {
+    const std::filesystem::path folder = path.parent_path();
+    const std::string bytes = read_text(path);
+    if (!is_utf8(bytes)) {
+        for (std::string& name : names_below(folder))
+            names.push_back(std::move(name));
+    }
+    const std::string text = decode_text(bytes, names, path.string());
     std::map<std::string, MtlMaterial> materials;
     MtlMaterial* current = nullptr;
     LineReader lines(text);
@@ -138,6 +196,8 @@ std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path) {
             read_statement(key, line, *current);
         }
     }
+    for (auto& [name, material] : materials)
+        set_folder(material, folder);
     return materials;
 }
 

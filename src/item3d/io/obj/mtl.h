@@ -7,30 +7,43 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace item3d {
 
-/// A picture with the options that stood before its name.
+/// A picture with the options that stood before its name, or behind it.
 struct MtlMap {
-    std::string file;  ///< as written: bytes, any separators
+    std::string file;              ///< as written, any separators
+    std::string file_and_comment;  ///< the same, where a "#" might belong to the name; else empty
+    std::filesystem::path folder;  ///< of the MTL file
     Vec2 scale{1.0f};
     Vec2 offset{0.0f};
     bool clamp = false;
     float bump_multiplier = 1.0f;
+    char channel = 0;  ///< of -imfchan: r, g, b, m(atte), l(uminance); 0: not said
 };
 
 /// What a newmtl block says; members are empty where it says nothing.
 struct MtlMaterial {
     std::string name;
     std::optional<Vec3> diffuse, specular, emission;
-    std::optional<float> metallic, roughness, specular_exponent, opacity;
+    std::optional<float> metallic, roughness, specular_exponent;
+    std::optional<float> opacity;       ///< d
+    std::optional<float> transparency;  ///< Tr
     /// "bsdf pbr": nvdiffrec's dialect, in which Ks is (occlusion, roughness, metallic).
     bool is_nvdiffrec = false;
     std::optional<MtlMap> diffuse_map, metallic_map, roughness_map, specular_map, occlusion_map;
     std::optional<MtlMap> emission_map, normal_map, bump_map, opacity_map;
 };
 
-/// By name. Throws InputError when the file cannot be read; lines it does not know are skipped.
-std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path);
+/// By name, as written behind newmtl. `names`: files and materials that it may speak of, by which
+/// its encoding is told. Throws InputError when the file cannot be read; lines it does not know are
+/// skipped.
+std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path,
+                                            std::vector<std::string> names);
+
+/// The text up to a "#" that begins it or follows a blank, without blanks at its ends.
+std::string_view without_remark(std::string_view text);
 
 }  // namespace item3d

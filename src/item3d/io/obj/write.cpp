@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace item3d {
@@ -62,6 +63,11 @@ class ObjWriter {
 
     void write(const fs::path& path) {
         name_materials();
+        const auto box = model_.bounds();
+        const float side =
+            std::max({box[1].x - box[0].x, box[1].y - box[0].y, box[1].z - box[0].z});
+        // Two more than float32 tells apart within the model.
+        decimals_ = std::clamp(8 - static_cast<int>(std::floor(std::log10(side))), 0, 17);
         fmt::format_to(std::back_inserter(obj_), "# item3d\nmtllib {}.mtl\n", stem_);
         for (std::size_t i = 0; i < model_.primitives.size(); ++i)
             write_primitive(static_cast<int>(i));
@@ -108,13 +114,17 @@ class ObjWriter {
         line("\nnewmtl " + name);
         const Vec4& factor = material.base_color_factor;
         const Texture* base = texture(material.base_color_texture);
+        const bool has_alpha = material.alpha != Material::Alpha::opaque;
+        // map_d of the same picture says that its alpha counts.
+        const auto write_base = [&](const Image& image, int bits, const std::string& options) {
+            const std::string picture = options + save(image, bits, name, "base_color");
+            line("Kd 1 1 1\nmap_Kd " + picture);
+            if (has_alpha && image.channels % 2 == 0) line("map_d " + picture);
+        };
         if (edit.base_color) {
-            line("Kd 1 1 1\nmap_Kd " +
-                 save(*edit.base_color, edit.bits_per_channel, name, "base_color"));
+            write_base(*edit.base_color, edit.bits_per_channel, "");
         } else if (base) {
-            const Image image = tinted(base->image, factor);
-            line("Kd 1 1 1\nmap_Kd " + clamp_option(base) +
-                 save(image, base->bits_per_channel, name, "base_color"));
+            write_base(tinted(base->image, factor), base->bits_per_channel, clamp_option(base));
         } else {
             line(fmt::format("Kd {} {} {}", factor.x, factor.y, factor.z));
         }
@@ -172,6 +182,17 @@ class ObjWriter {
              save(image, occlusion->bits_per_channel, name, "occlusion"));
     }
 
+    void write_position(const Vec3& p) {
+        auto out = std::back_inserter(obj_);
+        if (model_.origin == glm::dvec3(0.0)) {
+            fmt::format_to(out, "v {} {} {}", p.x, p.y, p.z);
+            return;
+        }
+        const glm::dvec3 sum = glm::dvec3(p) + model_.origin;
+        fmt::format_to(out, "v {:.{}f} {:.{}f} {:.{}f}", sum.x, decimals_, sum.y, decimals_, sum.z,
+                       decimals_);
+    }
+
     void write_primitive(int index) {
         const Primitive& primitive = model_.primitives[static_cast<std::size_t>(index)];
         const auto found = edit_.primitives.find(index);
@@ -185,8 +206,7 @@ class ObjWriter {
         fmt::format_to(out, "o {}\nusemtl {}\n",
                        one_word(primitive.name.empty() ? name : primitive.name), name);
         for (std::size_t i = 0; i < primitive.positions.size(); ++i) {
-            const Vec3& p = primitive.positions[i];
-            fmt::format_to(out, "v {} {} {}", p.x, p.y, p.z);
+            write_position(primitive.positions[i]);
             if (!primitive.colors.empty() && !drops_colors) {
                 const Vec4 c = glm::clamp(primitive.colors[i], 0.0f, 1.0f);
                 fmt::format_to(out, " {} {} {}", linear_to_srgb(c.x), linear_to_srgb(c.y),
@@ -224,6 +244,7 @@ class ObjWriter {
     std::vector<std::string> names_;
     std::string obj_;
     std::string mtl_;
+    int decimals_ = 0;  ///< of positions far from the origin
     std::size_t vertices_ = 0;
     std::size_t normals_ = 0;
     std::size_t uvs_ = 0;

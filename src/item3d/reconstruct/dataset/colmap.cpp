@@ -242,6 +242,24 @@ void read_binary_images(const fs::path& path, ColmapReader& reader) {
 
 }  // namespace
 
+bool is_colmap_model(const fs::path& folder) {
+    return (fs::exists(folder / "cameras.txt") && fs::exists(folder / "images.txt")) ||
+           (fs::exists(folder / "cameras.bin") && fs::exists(folder / "images.bin"));
+}
+
+std::size_t count_colmap_images(const fs::path& model) {
+    if (fs::exists(model / "cameras.bin") && fs::exists(model / "images.bin"))
+        return BinaryFile(model / "images.bin").next<std::uint64_t>();
+    std::istringstream lines(read_text(model / "images.txt"));
+    std::size_t count = 0;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.empty() || line[0] == '#' || line == "\r") continue;
+        ++count;
+        std::getline(lines, line);  // the points that it sees
+    }
+    return count;
+}
+
 SourceDataset read_colmap(const fs::path& model, const fs::path& images) {
     ColmapReader reader;
     reader.images = images;

@@ -3,9 +3,16 @@
 
 #include "item3d/reconstruct/dataset/source.h"
 
+#include <cstddef>
 #include <filesystem>
 
 namespace item3d {
+
+/// Whether cameras and images of a model, text or binary, are in a folder.
+bool is_colmap_model(const std::filesystem::path& folder);
+
+/// How many pictures a model has, by a look at its list. Throws InputError.
+std::size_t count_colmap_images(const std::filesystem::path& model);
 
 /// COLMAP's cameras and images, text or binary, in `model`; picture names are relative to `images`.
 /// Models SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE,

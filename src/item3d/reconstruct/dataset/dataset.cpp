@@ -21,12 +21,32 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t fewest_views = 3;
 
+/// Of several models beside each other, which COLMAP leaves where pictures do not all connect, the
+/// one with the most pictures.
+fs::path largest_colmap_model(const fs::path& folder) {
+    std::vector<std::pair<std::size_t, fs::path>> models;
+    std::error_code code;
+    for (fs::directory_iterator i(folder, code), end; !code && i != end; i.increment(code)) {
+        if (is_colmap_model(i->path()))
+            models.emplace_back(count_colmap_images(i->path()), i->path());
+    }
+    if (models.empty()) return {};
+    std::sort(models.begin(), models.end(), [](const auto& a, const auto& b) {
+        return a.first != b.first ? a.first > b.first : a.second < b.second;
+    });
+    if (models.size() > 1) {
+        note(fmt::format("{} COLMAP models are in {}: the largest is taken, {} with {} pictures",
+                         models.size(), folder.string(), models[0].second.filename().string(),
+                         models[0].first));
+    }
+    return models[0].second;
+}
+
 fs::path colmap_model(const fs::path& folder) {
-    for (const char* place : {"sparse/0", "sparse", "colmap/sparse/0", "0", "."}) {
-        const fs::path model = folder / place;
-        if ((fs::exists(model / "cameras.txt") && fs::exists(model / "images.txt")) ||
-            (fs::exists(model / "cameras.bin") && fs::exists(model / "images.bin")))
-            return model;
+    for (const char* place : {"sparse", "colmap/sparse", "."}) {
+        const fs::path several = folder / place;
+        if (fs::path model = largest_colmap_model(several); !model.empty()) return model;
+        if (is_colmap_model(several)) return several;
     }
     return {};
 }
@@ -79,6 +99,20 @@ void choose_splits(SourceDataset& source, const DatasetOptions& options) {
     for (std::size_t i = 0; i < wanted; ++i)
         source.views[train[i * train.size() / wanted]].split = Split::train;
     std::erase_if(source.views, is_unknown);
+}
+
+/// Views that are held out and have no picture can test nothing: programs write cameras alone for a
+/// film that is to be drawn.
+void leave_out_unseen_tests(const fs::path& path, SourceDataset& source) {
+    const std::size_t before = source.views.size();
+    std::erase_if(source.views, [](const SourceView& view) {
+        std::error_code code;
+        return view.split == Split::test && !fs::is_regular_file(view.picture, code);
+    });
+    const std::size_t left_out = before - source.views.size();
+    if (left_out == 0) return;
+    warn(fmt::format("{}: {} views that are held out have no picture and are left out",
+                     path.string(), left_out));
 }
 
 std::string origin_words(const std::map<MaskOrigin, std::size_t>& origins) {
@@ -175,6 +209,7 @@ void check_cameras(const fs::path& path, const Dataset& dataset) {
 Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
     SourceDataset source = read_source(path, options);
     if (source.views.empty()) throw InputError(path.string(), "the dataset has no views");
+    leave_out_unseen_tests(path, source);
     choose_splits(source, options);
     if (!options.masks.empty() && !fs::is_directory(options.masks)) {
         throw InputError(options.masks.string(), "is not a folder of masks");

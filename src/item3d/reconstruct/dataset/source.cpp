@@ -22,6 +22,12 @@ bool has_picture_extension(const fs::path& path) {
            picture_extensions.end();
 }
 
+/// Names are written with the separators of the machine that wrote them.
+std::string with_slashes(std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    return name;
+}
+
 }  // namespace
 
 const char* dataset_kind_name(DatasetKind kind) {
@@ -39,7 +45,7 @@ const char* dataset_kind_name(DatasetKind kind) {
 }
 
 fs::path inside(const fs::path& folder, const std::string& name, const std::string& subject) {
-    const fs::path relative = fs::path(name).lexically_normal();
+    const fs::path relative = fs::path(with_slashes(name)).lexically_normal();
     if (name.empty() || relative.is_absolute() || *relative.begin() == "..") {
         throw InputError(subject, "'" + name + "' is not inside " + folder.string(),
                          "pictures and masks must lie below the dataset's folder");
@@ -59,7 +65,7 @@ fs::path find_picture(const fs::path& path) {
 }
 
 std::string without_picture_extension(const std::string& name) {
-    fs::path path = fs::path(name).lexically_normal();
+    fs::path path = fs::path(with_slashes(name)).lexically_normal();
     if (has_picture_extension(path)) path.replace_extension();
     return path.string();
 }

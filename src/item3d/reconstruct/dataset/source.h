@@ -34,7 +34,8 @@ struct SourceDataset {
     std::optional<Vec3> up;
 };
 
-/// folder / name. Throws InputError that begins with `subject` where that is outside the folder.
+/// folder / name, whose separators may be those of Windows. Throws InputError that begins with
+/// `subject` where that is outside the folder.
 std::filesystem::path inside(const std::filesystem::path& folder, const std::string& name,
                              const std::string& subject);
 

@@ -7,7 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 namespace item3d {
@@ -43,6 +45,12 @@ class Numbers {
         return finite_json_number(frame_.contains(key) ? frame_[key] : document_[key], subject_,
                                   key);
     }
+    /// True and false, or a number that is not 0: instant-ngp writes the one, others the other.
+    bool flag(const char* key) const {
+        if (!has(key)) return false;
+        const Json& value = frame_.contains(key) ? frame_[key] : document_[key];
+        return value.is_boolean() ? value.get<bool>() : get(key) != 0;
+    }
     std::string text(const char* key) const {
         const Json& holder = frame_.contains(key) ? frame_ : document_;
         return holder.contains(key) && holder[key].is_string() ? holder[key].get<std::string>()
@@ -73,7 +81,7 @@ void read_distortion(const Numbers& numbers, Lens& lens) {
         throw InputError(numbers.subject(), "camera_model '" + model + "' is not supported",
                          "undistort the pictures, or export them as OPENCV or PINHOLE");
     }
-    lens.fisheye = model == "OPENCV_FISHEYE" || numbers.get("is_fisheye") != 0;
+    lens.fisheye = model == "OPENCV_FISHEYE" || numbers.flag("is_fisheye");
     const std::array keys{"k1", "k2", "k3", "k4", "k5", "k6"};
     for (std::size_t i = 0; i < keys.size(); ++i)
         lens.radial[i] = numbers.get(keys[i]);
@@ -149,10 +157,28 @@ SourceDataset read_nerf_synthetic(const fs::path& folder) {
     dataset.kind = DatasetKind::nerf_synthetic;
     dataset.up = Vec3(0, 0, 1);
     read_frames(folder / "transforms_train.json", Split::train, dataset);
+    // Cameras alone, which some programs write as the path of a film, hold nothing out.
+    std::optional<SourceDataset> cameras_alone;
     for (const char* held_out : {"transforms_test.json", "transforms_val.json"}) {
         if (!fs::exists(folder / held_out)) continue;
-        read_frames(folder / held_out, Split::test, dataset);
+        SourceDataset views;
+        read_frames(folder / held_out, Split::test, views);
+        const bool any_picture =
+            std::any_of(views.views.begin(), views.views.end(), [](const SourceView& view) {
+                std::error_code code;
+                return fs::is_regular_file(view.picture, code);
+            });
+        if (!any_picture && !views.views.empty()) {
+            if (!cameras_alone) cameras_alone = std::move(views);
+            continue;
+        }
+        cameras_alone.reset();
+        dataset.views.insert(dataset.views.end(), views.views.begin(), views.views.end());
         break;
+    }
+    if (cameras_alone) {
+        dataset.views.insert(dataset.views.end(), cameras_alone->views.begin(),
+                             cameras_alone->views.end());
     }
     return dataset;
 }

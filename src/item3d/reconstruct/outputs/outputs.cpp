@@ -5,6 +5,7 @@
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
 #include "item3d/reconstruct/surface/plain_model.h"
+#include "item3d/scene/far_origin.h"
 
 #include <ATen/Parallel.h>
 
@@ -50,7 +51,9 @@ Model bake_and_save(const std::filesystem::path& file, const Model& model, Appea
     const ModelEdit edit =
         bake({neutral, geometry, materials, space, atlas}, fitted, appearance.field, options);
     save_model(file, neutral, edit);
-    return load_model(file);
+    Model written = load_model(file);
+    move_origin(written, glm::dvec3(0.0));  // the dataset's cameras see it
+    return written;
 }
 
 nlohmann::json summary_json(const Reconstruction& result) {

@@ -2,6 +2,7 @@
 
 #include "item3d/field/atlas/atlas.h"
 #include "item3d/io/load.h"
+#include "item3d/scene/far_origin.h"
 
 namespace item3d {
 
@@ -26,7 +27,8 @@ Model plain_model(const at::Tensor& positions_, const at::Tensor& triangles_) {
 }
 
 Model load_plain_model(const std::filesystem::path& path) {
-    const Model source = load_model(path);
+    Model source = load_model(path);
+    move_origin(source, glm::dvec3(0.0));  // the dataset's cameras see it
     Model model;
     model.name = "model";
     Primitive joined;
