@@ -112,8 +112,7 @@ void read_buffers(SourceDocument& document, std::optional<Bytes> binary) {
             const std::string place = subject + ": " + buffer.where();
             bytes = is_data_uri(uri)
                         ? decode_data_uri(uri, place)
-                        : read_bytes(resolve_in_folder(document.path.parent_path(),
-                                                       uri_to_relative_path(uri, place), place));
+                        : read_bytes(resolve_uri(document.path.parent_path(), uri, place));
         } else if (i == 0 && binary) {
             bytes = std::move(*binary);
             document.has_binary_chunk = true;
@@ -283,14 +282,13 @@ std::span<const std::uint8_t> buffer_view_bytes(const SourceDocument& document, 
     return byte_range(document, root_of(document).item("bufferViews", index));
 }
 
-Bytes read_image_bytes(const SourceDocument& document, std::size_t index) {
+Bytes read_image_bytes(const SourceDocument& document, std::size_t index, Forgiving forgiving) {
     const GltfObject image = root_of(document).item("images", index);
     const std::string place = document.path.string() + ": " + image.where();
     if (image.has("uri")) {
         const std::string uri = image.text("uri", "");
         if (is_data_uri(uri)) return decode_data_uri(uri, place);
-        return read_bytes(resolve_in_folder(document.path.parent_path(),
-                                            uri_to_relative_path(uri, place), place));
+        return read_bytes(resolve_uri(document.path.parent_path(), uri, place, forgiving));
     }
     const auto view = image.index("bufferView", root_of(document).list_size("bufferViews"));
     if (!view) image.fail("neither uri nor bufferView is there");

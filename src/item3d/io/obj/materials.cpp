@@ -70,20 +70,9 @@ const Texture* ObjMaterials::read(const MtlMap& map) {
     std::string name = map.file;
     std::replace(name.begin(), name.end(), '\\', '/');
     try {
-        // Exporters write paths of the machine that they ran on: the bare name is tried as well.
-        fs::path path;
-        try {
-            path = resolve_in_folder(folder_, name, subject_);
-        } catch (const InputError&) {
-            const fs::path bare = fs::path(name).filename();
-            if (bare.empty() || bare == fs::path(name)) throw;
-            std::error_code code;
-            if (!fs::is_regular_file(folder_ / bare, code)) throw;
-            path = resolve_in_folder(folder_, bare, subject_);
-        }
-        DecodedImage decoded = decode_image(read_bytes(path), path.string());
-        slot = Texture{to_utf8(fs::path(name).stem().string()), std::move(decoded.image),
-                       std::min(decoded.bits_per_channel, 16), Wrap::repeat, Wrap::repeat};
+        const fs::path path = resolve_in_folder(folder_, name, subject_);
+        slot = decode_texture(read_bytes(path), path.string());
+        slot->name = to_utf8(fs::path(name).stem().string());
     } catch (const InputError& error) {
         warn(std::string(error.what()) + "; the material's factors are used");
     }
