@@ -13,8 +13,8 @@ namespace item3d {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Reads a whole file. Throws InputError when it is missing, not a file, unreadable, or a pointer of
-/// Git LFS.
+/// Reads a whole file. Throws InputError when it is missing, not a file, unreadable, or a pointer
+/// of Git LFS.
 Bytes read_bytes(const std::filesystem::path& path);
 std::string read_text(const std::filesystem::path& path);
 

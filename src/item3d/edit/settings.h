@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/guidance/guidance.h"
+#include "item3d/io/texture_format.h"
 #include "item3d/networks/diffusion/pipeline_extras.h"
 
 #include <nlohmann/json.hpp>
@@ -62,6 +63,7 @@ struct EditSettings : PipelineExtras {
     LightAugment light_augment = LightAugment::all;
     std::string background = "vary";
     int texture_size = 0;
+    TextureFormat texture_format = TextureFormat::keep;
     std::vector<std::string> keep = {"occlusion", "normal"};
     Metallic metallic = Metallic::automatic;
     float metallic_start = 0.5f;

@@ -133,6 +133,11 @@ std::vector<Setting> texture_rows() {
         setting("texture_size", &S::texture_size,
                 between(0, 8192, "between 1 and 8192, or 0 for the input's own"), "--texture-size",
                 "Edge of the textures that are written; 0: as the input's"),
+        choice("texture_format", &S::texture_format, {"keep", "png", "jpeg", "webp"},
+               "--texture-format",
+               "Of the textures that are written: keep (each as the input's, the default), png, "
+               "jpeg or webp; images with alpha are never JPEG, and those of which a channel must "
+               "not change are written without losses"),
         kept_channels(),
         choice("metallic", &S::metallic, {"auto", "always"}, "--metallic",
                "auto: edit metallic where a sentence names a metal; always: in any case"),

@@ -96,7 +96,8 @@ fs::path resolve_uri(const fs::path& folder, std::string_view uri, const std::st
                              "', and nothing is read from other places than its folder",
                          "copy that file beside the model");
     }
-    // What a URI says comes first; a percent sign that belongs to the name, with the other spellings.
+    // What a URI says comes first; a percent sign that belongs to the name, with the other
+    // spellings.
     std::error_code code;
     const std::string decoded = percent_decode(uri);
     if (!fs::is_regular_file((folder.empty() ? fs::path(".") : folder) / decoded, code))

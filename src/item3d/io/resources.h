@@ -20,8 +20,9 @@ std::filesystem::path resolve_in_folder(const std::filesystem::path& folder,
                                         const std::string& subject,
                                         Forgiving forgiving = Forgiving::with_note);
 
-/// The same for a URI of a glTF. Other schemes than a plain relative reference ("http:", ...) are an
-/// InputError: nothing is fetched; of "file:" and drive letters the file's name alone is looked for.
+/// The same for a URI of a glTF. Other schemes than a plain relative reference ("http:", ...) are
+/// an InputError: nothing is fetched; of "file:" and drive letters the file's name alone is looked
+/// for.
 std::filesystem::path resolve_uri(const std::filesystem::path& folder, std::string_view uri,
                                   const std::string& subject,
                                   Forgiving forgiving = Forgiving::with_note);

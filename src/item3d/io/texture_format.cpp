@@ -57,8 +57,8 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
                                 ImageCoding& coding) {
             if (!image) return;
             const Texture* own = texture_of(model, slot);
-            coding = possible_coding(wanted_coding(format, own ? own : base), *image,
-                                     must_be_exact);
+            coding =
+                possible_coding(wanted_coding(format, own ? own : base), *image, must_be_exact);
             // Eight bits would be a loss to an image that has more.
             if (format == TextureFormat::keep && own && own->bits_per_channel > 8) coding = {};
         };

@@ -144,16 +144,15 @@ std::size_t GltfBuilder::add_texture(const Bytes& bytes, ImageEncoding encoding,
     if (!name.empty()) image["name"] = name;
     const bool is_webp = encoding == ImageEncoding::webp;
     if (images_in_files_) {
-        const std::string file =
-            unused_file_name(stem_ + "_" + plain_file_name(name.empty() ? "texture" : name),
-                             extension_of(encoding));
+        const std::string file = unused_file_name(
+            stem_ + "_" + plain_file_name(name.empty() ? "texture" : name), extension_of(encoding));
         image["uri"] = path_to_uri(file);
         files_[file] = bytes;
     } else {
         embed_image(image, bytes,
-                    is_webp                            ? "image/webp"
+                    is_webp                           ? "image/webp"
                     : encoding == ImageEncoding::jpeg ? "image/jpeg"
-                                                       : "image/png");
+                                                      : "image/png");
     }
     Json texture = Json::object();
     if (sampler >= 0) texture["sampler"] = sampler;

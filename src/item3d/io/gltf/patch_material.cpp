@@ -155,8 +155,8 @@ void patch_material(const SourceDocument& document, const Json& original, const 
     if (edit.metallic_roughness) {
         Json& pbr = material["pbrMetallicRoughness"];
         const Json* old_info = old_pbr ? find(*old_pbr, "metallicRoughnessTexture") : nullptr;
-        const std::size_t texture = add_texture(*edit.metallic_roughness, edit.metallic_roughness_coding,
-                                                "orm", old_info);
+        const std::size_t texture =
+            add_texture(*edit.metallic_roughness, edit.metallic_roughness_coding, "orm", old_info);
         infos.write(pbr, "metallicRoughnessTexture", texture);
         pbr["metallicFactor"] = 1.0;
         pbr["roughnessFactor"] = 1.0;

@@ -79,12 +79,21 @@ void for_each_index(Json& root, const OnIndex& f) {
 // Whether all extensions refer to textures and buffer views in the ways that for_each_index knows.
 bool has_known_references(const Json& value) {
     static const std::set<std::string_view> known = {
-        "EXT_texture_webp",         "EXT_texture_avif",      "EXT_meshopt_compression",
-        "EXT_mesh_gpu_instancing",  "EXT_mesh_features",     "EXT_structural_metadata",
-        "EXT_lights_image_based",   "EXT_instance_features", "EXT_mesh_manifold",
-        "EXT_lights_ies",           "MSFT_texture_dds",      "MSFT_lod",
+        "EXT_texture_webp",
+        "EXT_texture_avif",
+        "EXT_meshopt_compression",
+        "EXT_mesh_gpu_instancing",
+        "EXT_mesh_features",
+        "EXT_structural_metadata",
+        "EXT_lights_image_based",
+        "EXT_instance_features",
+        "EXT_mesh_manifold",
+        "EXT_lights_ies",
+        "MSFT_texture_dds",
+        "MSFT_lod",
         "MSFT_packing_normalRoughnessMetallic",
-        "MSFT_packing_occlusionRoughnessMetallic",           "VRM",
+        "MSFT_packing_occlusionRoughnessMetallic",
+        "VRM",
     };
     if (value.is_array()) return std::all_of(value.begin(), value.end(), has_known_references);
     if (!value.is_object()) return true;
@@ -164,8 +173,7 @@ void for_each_range(Json& root, std::size_t buffer, const std::function<void(Jso
 void cut_bytes(GltfBuilder& builder, const std::vector<ByteRange>& dead) {
     Json& root = builder.json();
     std::vector<ByteRange> live;
-    for_each_range(root, builder.buffer(),
-                   [&](Json& view) { live.push_back(range_of(view)); });
+    for_each_range(root, builder.buffer(), [&](Json& view) { live.push_back(range_of(view)); });
     std::vector<ByteRange> cuts;
     for (ByteRange range : dead) {
         const bool is_shared = std::any_of(live.begin(), live.end(), [&](const ByteRange& other) {
@@ -230,11 +238,10 @@ void remove_unused_textures(const SourceDocument& document, GltfBuilder& builder
     const std::map<std::size_t, int> used = count_indices(root, IndexKind::view);
     std::vector<ByteRange> ranges;
     for (auto view = views.begin(); view != views.end();) {
-        const bool is_used =
-            used.contains(*view) || !root.contains("bufferViews") ||
-            *view >= root["bufferViews"].size();
-        if (!is_used && root["bufferViews"][*view].value("buffer", std::size_t{0}) ==
-                            builder.buffer())
+        const bool is_used = used.contains(*view) || !root.contains("bufferViews") ||
+                             *view >= root["bufferViews"].size();
+        if (!is_used &&
+            root["bufferViews"][*view].value("buffer", std::size_t{0}) == builder.buffer())
             ranges.push_back(range_of(root["bufferViews"][*view]));
         view = is_used ? views.erase(view) : std::next(view);
     }

@@ -2,8 +2,8 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/io/gltf/make.h"
 #include "item3d/io/find_file.h"
+#include "item3d/io/gltf/make.h"
 #include "item3d/io/gltf/patch.h"
 #include "item3d/io/gltf/texture_source.h"
 #include "item3d/io/gltf/unused_textures.h"
@@ -96,7 +96,8 @@ void copy_files(const SourceDocument& document, const std::map<std::string, Byte
         if (!json.contains(list)) continue;
         for (Json& item : json[list]) {
             const std::string uri = item.value("uri", std::string());
-            if (uri.empty() || is_data_uri(uri) || new_files.contains(percent_decode(uri))) continue;
+            if (uri.empty() || is_data_uri(uri) || new_files.contains(percent_decode(uri)))
+                continue;
             try {
                 const fs::path from = resolve_uri(source, uri, subject, Forgiving::silently);
                 std::error_code code;
@@ -104,7 +105,8 @@ void copy_files(const SourceDocument& document, const std::map<std::string, Byte
                     fs::weakly_canonical(source.empty() ? fs::path(".") : source, code);
                 const fs::path relative = from.lexically_relative(root);
                 // A name that had to be forgiven is spelled as the file's.
-                if (!fs::exists(root / percent_decode(uri), code)) item["uri"] = path_to_uri(relative);
+                if (!fs::exists(root / percent_decode(uri), code))
+                    item["uri"] = path_to_uri(relative);
                 const fs::path to = folder / percent_decode(item["uri"].get<std::string>());
                 if (fs::equivalent(from, to, code)) continue;
                 const Bytes bytes = read_bytes(from);

@@ -33,7 +33,8 @@ ImageFormat detect_image_format(std::span<const std::uint8_t> bytes) {
         return ImageFormat::radiance;
     }
     if (starts_with(bytes, "\x76\x2f\x31\x01"sv)) return ImageFormat::openexr;
-    if (starts_with(bytes, "RIFF"sv) && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP"sv))
+    if (starts_with(bytes, "RIFF"sv) && bytes.size() >= 12 &&
+        starts_with(bytes.subspan(8), "WEBP"sv))
         return ImageFormat::webp;
     if (starts_with(bytes, "\xabKTX 20\xbb\r\n\x1a\n"sv)) return ImageFormat::ktx2;
     if (starts_with(bytes, "GIF87a"sv) || starts_with(bytes, "GIF89a"sv)) return ImageFormat::gif;
@@ -95,11 +96,11 @@ DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string
     }
     if (bytes.empty()) throw InputError(subject, "an image was expected, the file is empty");
     const char* foreign = foreign_format(bytes);
-    throw InputError(subject,
-                     foreign ? std::string("an image was expected, found ") + foreign +
-                                   ", which is not read"
-                             : "an image was expected, found an unknown format",
-                     "use PNG, JPEG, WebP or KTX2 (lights: Radiance HDR or OpenEXR)");
+    throw InputError(
+        subject,
+        foreign ? std::string("an image was expected, found ") + foreign + ", which is not read"
+                : "an image was expected, found an unknown format",
+        "use PNG, JPEG, WebP or KTX2 (lights: Radiance HDR or OpenEXR)");
 }
 
 Texture decode_texture(Bytes bytes, const std::string& subject) {

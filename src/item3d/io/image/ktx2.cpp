@@ -42,10 +42,10 @@ class Ktx2Header {
                              "convert it to PNG, JPEG or WebP");
         }
         if (supercompression() > 2) {
-            throw InputError(subject_,
-                             fmt::format("the KTX2 is compressed by the unknown scheme {}",
-                                         supercompression()),
-                             "use BasisLZ, Zstandard or none");
+            throw InputError(
+                subject_,
+                fmt::format("the KTX2 is compressed by the unknown scheme {}", supercompression()),
+                "use BasisLZ, Zstandard or none");
         }
         const std::uint64_t levels = number<std::uint32_t>(40);
         const std::uint64_t layers = std::max(number<std::uint32_t>(32), 1u);

@@ -1,4 +1,5 @@
-// KTX2 pictures of Basis Universal: ETC1S and UASTC, as KHR_texture_basisu has them. Internal to io.
+// KTX2 pictures of Basis Universal: ETC1S and UASTC, as KHR_texture_basisu has them. Internal to
+// io.
 #pragma once
 
 #include "item3d/io/image/decoded_image.h"

@@ -72,10 +72,9 @@ TiffPointer open_tiff(TiffSource& source) {
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore_tiff_warning, nullptr);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), tmsize_t{1} << 30);
     // m: read, and do not map; the file is in memory already.
-    return TiffPointer(
-        TIFFClientOpenExt("TIFF", "rm", &source, read_tiff, write_tiff, seek_tiff, close_tiff,
-                          size_of_tiff, nullptr, nullptr, options.get()),
-        &TIFFClose);
+    return TiffPointer(TIFFClientOpenExt("TIFF", "rm", &source, read_tiff, write_tiff, seek_tiff,
+                                         close_tiff, size_of_tiff, nullptr, nullptr, options.get()),
+                       &TIFFClose);
 }
 
 std::uint16_t tiff_value(TIFF* tiff, std::uint32_t tag) {
@@ -147,10 +146,10 @@ DecodedImage decode_tiff(std::span<const std::uint8_t> bytes, const std::string&
     TiffSource source{bytes, 0, {}};
     const TiffPointer tiff = open_tiff(source);
     const auto fail = [&](const std::string& otherwise) {
-        throw InputError(subject,
-                         "the TIFF cannot be decoded: " +
-                             (source.problem.empty() ? otherwise : source.problem),
-                         "export it again, as PNG for instance");
+        throw InputError(
+            subject,
+            "the TIFF cannot be decoded: " + (source.problem.empty() ? otherwise : source.problem),
+            "export it again, as PNG for instance");
     };
     if (!tiff) fail("its header is damaged");
     std::uint32_t width = 0;

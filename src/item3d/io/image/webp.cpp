@@ -28,8 +28,7 @@ const char* webp_problem(VP8StatusCode status) {
 }
 
 [[noreturn]] void throw_webp_error(VP8StatusCode status, const std::string& subject) {
-    throw InputError(subject,
-                     std::string("the WebP cannot be decoded: ") + webp_problem(status),
+    throw InputError(subject, std::string("the WebP cannot be decoded: ") + webp_problem(status),
                      "export it again");
 }
 
@@ -121,10 +120,10 @@ Bytes encode_webp_texture(const Image& image, bool is_lossless, int quality) {
     picture.writer = WebPMemoryWrite;
     picture.custom_ptr = &writer;
     const std::vector<std::uint8_t> rgba = to_rgba8(image);
-    const bool is_encoded = (image.channels % 2 == 0
-                                 ? WebPPictureImportRGBA(&picture, rgba.data(), 4 * image.width)
+    const bool is_encoded =
+        (image.channels % 2 == 0 ? WebPPictureImportRGBA(&picture, rgba.data(), 4 * image.width)
                                  : WebPPictureImportRGBX(&picture, rgba.data(), 4 * image.width)) &&
-                            WebPEncode(&config, &picture);
+        WebPEncode(&config, &picture);
     WebPPictureFree(&picture);
     Bytes bytes;
     if (is_encoded) bytes.assign(writer.mem, writer.mem + writer.size);

@@ -125,9 +125,8 @@ class ObjWriter {
         const Vec4& factor = material.base_color_factor;
         const Texture* base = texture(material.base_color_texture);
         if (edit.base_color) {
-            line("Kd 1 1 1\nmap_Kd " +
-                 save(*edit.base_color, edit.bits_per_channel, name, "base_color",
-                      edit.base_color_coding));
+            line("Kd 1 1 1\nmap_Kd " + save(*edit.base_color, edit.bits_per_channel, name,
+                                            "base_color", edit.base_color_coding));
         } else if (base) {
             line("Kd 1 1 1\nmap_Kd " + clamp_option(base) +
                  save(*base, Vec4(Vec3(factor), 1.0f), name, "base_color"));
@@ -139,8 +138,8 @@ class ObjWriter {
 
         const Texture* normal = texture(material.normal_texture);
         if (edit.normal) {
-            line("norm " + save(*edit.normal, edit.bits_per_channel, name, "normal",
-                                edit.normal_coding));
+            line("norm " +
+                 save(*edit.normal, edit.bits_per_channel, name, "normal", edit.normal_coding));
         } else if (normal) {
             const std::string scale =
                 material.normal_scale == 1.0f ? "" : fmt::format("-bm {} ", material.normal_scale);
