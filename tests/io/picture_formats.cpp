@@ -11,7 +11,7 @@ namespace {
 
 using namespace testing_support;
 
-void put(Bytes& bytes, std::uint64_t value, int count) {
+void put_number(Bytes& bytes, std::uint64_t value, int count) {
     for (int i = 0; i < count; ++i)
         bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i) & 255));
 }
@@ -24,20 +24,20 @@ std::uint8_t byte_of(float value) {
 Bytes make_bmp(const Image& image) {
     const int row = (image.width * 3 + 3) / 4 * 4;
     Bytes bytes{'B', 'M'};
-    put(bytes, 54 + static_cast<std::uint64_t>(row) * image.height, 4);
-    put(bytes, 0, 4);
-    put(bytes, 54, 4);
-    put(bytes, 40, 4);
-    put(bytes, image.width, 4);
-    put(bytes, image.height, 4);
-    put(bytes, 1, 2);
-    put(bytes, 24, 2);
-    put(bytes, 0, 24);
+    put_number(bytes, 54 + static_cast<std::uint64_t>(row) * image.height, 4);
+    put_number(bytes, 0, 4);
+    put_number(bytes, 54, 4);
+    put_number(bytes, 40, 4);
+    put_number(bytes, image.width, 4);
+    put_number(bytes, image.height, 4);
+    put_number(bytes, 1, 2);
+    put_number(bytes, 24, 2);
+    put_number(bytes, 0, 24);
     for (int y = image.height - 1; y >= 0; --y) {
         for (int x = 0; x < image.width; ++x)
             for (int c = 2; c >= 0; --c)
                 bytes.push_back(byte_of(image.at(x, y, c)));
-        put(bytes, 0, row - 3 * image.width);
+        put_number(bytes, 0, row - 3 * image.width);
     }
     return bytes;
 }
@@ -45,10 +45,10 @@ Bytes make_bmp(const Image& image) {
 // From top to bottom; with is_packed each pixel is a run of one.
 Bytes make_tga(const Image& image, bool is_packed) {
     Bytes bytes{0, 0, static_cast<std::uint8_t>(is_packed ? 10 : 2)};
-    put(bytes, 0, 5);
-    put(bytes, 0, 4);
-    put(bytes, image.width, 2);
-    put(bytes, image.height, 2);
+    put_number(bytes, 0, 5);
+    put_number(bytes, 0, 4);
+    put_number(bytes, image.width, 2);
+    put_number(bytes, image.height, 2);
     bytes.push_back(static_cast<std::uint8_t>(8 * image.channels));
     bytes.push_back(0x20);
     for (int y = 0; y < image.height; ++y) {
@@ -65,17 +65,17 @@ Bytes make_tga(const Image& image, bool is_packed) {
 // One strip without compression.
 Bytes make_tiff(const Image& image, int bits) {
     Bytes bytes{'I', 'I', 42, 0};
-    put(bytes, 8, 4);
+    put_number(bytes, 8, 4);
     const int entries = image.channels == 4 ? 9 : 8;
     const std::uint64_t bits_at = 8 + 2 + 12 * static_cast<std::uint64_t>(entries) + 4;
     const std::uint64_t data_at = bits_at + 8;
     const std::size_t size = image.pixels.size() * static_cast<std::size_t>(bits / 8);
-    put(bytes, static_cast<std::uint64_t>(entries), 2);
+    put_number(bytes, static_cast<std::uint64_t>(entries), 2);
     const auto entry = [&](int tag, int type, std::uint64_t count, std::uint64_t value) {
-        put(bytes, static_cast<std::uint64_t>(tag), 2);
-        put(bytes, static_cast<std::uint64_t>(type), 2);
-        put(bytes, count, 4);
-        put(bytes, value, 4);
+        put_number(bytes, static_cast<std::uint64_t>(tag), 2);
+        put_number(bytes, static_cast<std::uint64_t>(type), 2);
+        put_number(bytes, count, 4);
+        put_number(bytes, value, 4);
     };
     entry(256, 4, 1, image.width);
     entry(257, 4, 1, image.height);
@@ -86,11 +86,12 @@ Bytes make_tiff(const Image& image, int bits) {
     entry(277, 3, 1, image.channels);
     entry(279, 4, 1, size);
     if (image.channels == 4) entry(338, 3, 1, 2);
-    put(bytes, 0, 4);
+    put_number(bytes, 0, 4);
     for (int c = 0; c < 4; ++c)
-        put(bytes, bits, 2);
+        put_number(bytes, bits, 2);
     for (const float value : image.pixels) {
-        put(bytes,
+        put_number(
+            bytes,
             static_cast<std::uint64_t>(std::lround(value * (bits == 16 ? 65535.0f : 255.0f))),
             bits / 8);
     }
