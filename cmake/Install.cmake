@@ -21,7 +21,7 @@ endif()
 
 include(CMakePackageConfigHelpers)
 get_property(ROOMS GLOBAL PROPERTY ITEM3D_ROOMS)
-install(TARGETS ${ROOMS} item3d_xatlas EXPORT item3d
+install(TARGETS ${ROOMS} item3d_basis_universal item3d_xatlas EXPORT item3d
     ARCHIVE DESTINATION lib COMPONENT development
     FILE_SET HEADERS DESTINATION include COMPONENT development)
 install(EXPORT item3d NAMESPACE item3d:: FILE item3d-targets.cmake

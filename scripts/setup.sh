@@ -82,6 +82,40 @@ download() {
         fail "pip left no $stem in .deps/wheels"
 }
 
+# download_crate NAME: the same for a line that is a crate of crates.io.
+download_crate() {
+    local name=$1 pin python version
+    pin=$(grep "^$name==" scripts/wheels.txt) || fail "scripts/wheels.txt does not name $name"
+    say "downloading ${pin%% *}"
+    mkdir -p "$deps/wheels"
+    version=${pin%% *}
+    version=${version##*==}
+    archive=$deps/wheels/$name-$version.crate
+    python=$(find_pip)
+    "$python" - "https://static.crates.io/crates/$name/$name-$version.crate" "$archive" \
+        "${pin##*sha256:}" >"$deps/crate.log" 2>&1 <<'PYTHON' ||
+import hashlib, os, sys, time, urllib.request
+address, path, wanted = sys.argv[1:]
+request = urllib.request.Request(address, headers={"User-Agent": "item3d-setup"})
+for attempt in range(5):
+    try:
+        content = urllib.request.urlopen(request, timeout=60).read()
+        break
+    except OSError as error:
+        print(error)
+        time.sleep(2 ** attempt)
+else:
+    sys.exit("error: gave up")
+found = hashlib.sha256(content).hexdigest()
+if found != wanted:
+    sys.exit(f"error: SHA-256 is {found}")
+with open(path + ".part", "wb") as file:
+    file.write(content)
+os.rename(path + ".part", path)
+PYTHON
+        fail "downloading ${pin%% *} failed: $(tail -n 1 "$deps/crate.log") (all of it: .deps/crate.log)"
+}
+
 # The same files on every machine, whatever Python it has.
 wheel_options=(--only-binary=:all: --implementation cp --python-version 3.11 --abi cp311
     --platform manylinux_2_28_x86_64 --platform manylinux_2_25_x86_64
@@ -151,6 +185,18 @@ unpack_xatlas() {
         fail "unpacking $archive failed; is the disk full?"
 }
 
+# Its Zstandard is the system's.
+unpack_basis_universal() {
+    local into=$1 archive inner
+    download_crate basis-universal-sys
+    say "unpacking $(basename "$archive")"
+    inner=$(basename "$archive" .crate)/vendor/basis_universal
+    tar -xzf "$archive" -C "$into" --strip-components=3 "$inner/transcoder" "$inner/LICENSE" \
+        "$inner/LICENSES" || fail "unpacking $archive failed; is the disk full?"
+    mkdir "$into/zstd"
+    echo '#include <zstd.h>' >"$into/zstd/zstd.h"
+}
+
 mkdir -p "$deps" || fail "cannot write to $root"
 exec 9>"$deps/lock"
 flock 9 # a second `make` waits here and then finds all done
@@ -164,6 +210,7 @@ else
     component site 'torch|nvidia-cuda-runtime|nvidia-cuda-cupti' unpack_site
 fi
 component xatlas xatlas unpack_xatlas
+component basis_universal basis-universal-sys unpack_basis_universal
 if [[ ${1:-} == cuda ]]; then
     component cuda 'nvidia-cuda-nvcc|nvidia-cuda-crt|nvidia-nvvm|nvidia-cuda-runtime|nvidia-nvtx' \
         unpack_cuda

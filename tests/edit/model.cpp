@@ -39,6 +39,18 @@ TEST_F(EditTest, leaves_every_promised_file_and_a_full_summary) {
     EXPECT_EQ(nlohmann::json::parse(read_text(edit.output / "edit.json")), summary);
 }
 
+TEST_F(EditTest, textures_are_written_in_the_format_that_is_asked_for) {
+    const EditRequest edit = request("out", 1, {{"texture_format", "jpeg"}});
+    edit_model(edit);
+    EXPECT_TRUE(fs::is_regular_file(edit.output / "textures" / "paint_base_color.jpg"));
+    EXPECT_FALSE(fs::exists(edit.output / "textures" / "paint_base_color.png"));
+    const Model model = load_model(edit.output / "model.glb");
+    const int texture = model.materials.at(0).base_color_texture;
+    EXPECT_EQ(model.textures.at(static_cast<std::size_t>(texture)).coding.encoding,
+              ImageEncoding::jpeg);
+    EXPECT_THROW(request("out", 1, {{"texture_format", "ktx2"}}), InputError);
+}
+
 TEST_F(EditTest, zero_iterations_return_the_texture) {
     const EditRequest edit = request("out", 0);
     edit_model(edit);

@@ -258,6 +258,9 @@ TEST(Bake, KeptChannelsAreBitIdentical) {
         metallic_change += std::abs(edit.metallic_roughness->pixels[i + 2] - source.pixels[i + 2]);
     }
     EXPECT_GT(metallic_change / (64 * 64), 0.3);
+    EXPECT_TRUE(edit.keeps_orm_texels);
+    options.channels.occlusion = options.channels.roughness = true;
+    EXPECT_FALSE(sphere.bake_now(options).keeps_orm_texels);
     options.channels = {
         .base_color = false, .occlusion = false, .roughness = false, .metallic = false};
     const MaterialEdit nothing = sphere.bake_now(options);

@@ -87,8 +87,14 @@ TEST(Compressed, GeometryStaysCompressedUnderNewTextures) {
             const Model model = load_model(fixture(name));
             const fs::path path = folder / (fixture(name).stem().string() + extension);
             save_model(path, model, red_edit());
-            const OrderedJson before = read_gltf_file(fixture(name)).json;
-            const OrderedJson after = read_gltf_file(path).json;
+            OrderedJson before = read_gltf_file(fixture(name)).json;
+            OrderedJson after = read_gltf_file(path).json;
+            // Views of images that are gone leave a gap.
+            for (OrderedJson* json : {&before, &after}) {
+                OrderedJson& primitive = (*json)["meshes"][0]["primitives"][0];
+                if (primitive.contains("extensions"))
+                    primitive["extensions"][draco_extension].erase("bufferView");
+            }
             EXPECT_EQ(after["meshes"], before["meshes"]);
             EXPECT_EQ(after["extensionsUsed"], before["extensionsUsed"]);
             EXPECT_EQ(after["extensionsRequired"], before["extensionsRequired"]);

@@ -207,4 +207,50 @@ inline GltfFile read_gltf_file(const fs::path& path) {
     return file;
 }
 
+/// What a buffer view of a .glb covers, as it lies there.
+inline Bytes view_bytes(const GltfFile& file, std::size_t index) {
+    const nlohmann::ordered_json& plain = file.json["bufferViews"].at(index);
+    const bool is_compressed =
+        plain.contains("extensions") && plain["extensions"].contains(meshopt_extension);
+    const nlohmann::ordered_json& view =
+        is_compressed ? plain["extensions"][meshopt_extension] : plain;
+    const auto begin = file.binary.begin() + view.value("byteOffset", std::ptrdiff_t{0});
+    return Bytes(begin, begin + view["byteLength"].get<std::ptrdiff_t>());
+}
+
+/// Where an image was replaced, images and the views that they lie in move up.
+inline void expect_nothing_else_changed(const GltfFile& before, const GltfFile& after) {
+    for (const auto& [key, value] : before.json.items()) {
+        if (key == "materials" || key == "meshes" || key == "buffers" || key == "textures" ||
+            key == "images" || key == "bufferViews")
+            continue;
+        if (key == "asset") {
+            EXPECT_EQ(value["version"], after.json[key]["version"]);
+            continue;
+        }
+        if (!value.is_array()) {
+            EXPECT_EQ(value, after.json[key]) << key;
+            continue;
+        }
+        // Lists only grow at their ends.
+        for (std::size_t i = 0; i < value.size(); ++i) {
+            nlohmann::ordered_json old = value[i];
+            nlohmann::ordered_json now = after.json[key][i];
+            if (key == "accessors" && old.contains("bufferView")) {
+                EXPECT_EQ(view_bytes(before, old["bufferView"]),
+                          view_bytes(after, now["bufferView"]));
+                now["bufferView"] = old["bufferView"];
+            }
+            if (key == "accessors" && old.contains("sparse")) {
+                for (const char* part : {"indices", "values"}) {
+                    EXPECT_EQ(view_bytes(before, old["sparse"][part]["bufferView"]),
+                              view_bytes(after, now["sparse"][part]["bufferView"]));
+                    now["sparse"][part]["bufferView"] = old["sparse"][part]["bufferView"];
+                }
+            }
+            EXPECT_EQ(old, now) << key;
+        }
+    }
+}
+
 }  // namespace item3d::testing_support

@@ -64,9 +64,10 @@ void refuse_contradictions(const nlohmann::json& overrides) {
     if (optimize == Optimize::texture && given("light_model"))
         throw UsageError("--light-model is that of --optimize light or both");
     if (optimize == Optimize::light &&
-        (given("keep") || given("texture_size") || given("metallic")))
+        (given("keep") || given("texture_size") || given("texture_format") || given("metallic")))
         throw UsageError(
-            "--optimize light changes no texture: without --keep, --texture-size and --metallic");
+            "--optimize light changes no texture: without --keep, --texture-size, --texture-format "
+            "and --metallic");
 }
 
 void take_found_light(EditCommandOptions& options) {

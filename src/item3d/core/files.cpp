@@ -61,6 +61,15 @@ void sync_file(const fs::path& path, const fs::path& shown) {
 
 }  // namespace
 
+void check_no_lfs_pointer(const fs::path& path, std::span<const std::uint8_t> first_bytes) {
+    constexpr std::string_view magic = "version https://git-lfs.github.com/spec/";
+    if (first_bytes.size() < magic.size() ||
+        std::memcmp(first_bytes.data(), magic.data(), magic.size()) != 0)
+        return;
+    throw InputError(path.string(), "is a pointer of Git LFS in place of the file",
+                     "fetch the file with 'git lfs pull'");
+}
+
 Bytes read_bytes(const fs::path& path) {
     std::error_code code;
     const auto status = fs::status(path, code);
@@ -78,6 +87,7 @@ Bytes read_bytes(const fs::path& path) {
     file.seekg(0);
     file.read(reinterpret_cast<char*>(bytes.data()), size);
     if (!file) throw InputError(path.string(), "could not be read to its end");
+    check_no_lfs_pointer(path, bytes);
     return bytes;
 }
 

@@ -13,9 +13,14 @@ namespace item3d {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Reads a whole file. Throws InputError when it is missing, not a file, or unreadable.
+/// Reads a whole file. Throws InputError when it is missing, not a file, unreadable, or a pointer
+/// of Git LFS.
 Bytes read_bytes(const std::filesystem::path& path);
 std::string read_text(const std::filesystem::path& path);
+
+/// Throws InputError for a file that begins like a pointer of Git LFS.
+void check_no_lfs_pointer(const std::filesystem::path& path,
+                          std::span<const std::uint8_t> first_bytes);
 
 /// Writes to a temporary name beside `path`, flushes, and renames. Throws ResourceError (full disk)
 /// or InputError (unwritable folder); the old file, if any, is then untouched.

@@ -3,6 +3,7 @@
 
 #include "item3d/field/atlas/atlas.h"
 #include "item3d/guidance/guidance.h"
+#include "item3d/io/texture_format.h"
 #include "item3d/networks/diffusion/pipeline_extras.h"
 
 #include <nlohmann/json.hpp>
@@ -64,6 +65,7 @@ struct EditSettings : PipelineExtras {
     std::string background = "vary";
     int texture_size = 0;
     UvPolicy uv = UvPolicy::automatic;
+    TextureFormat texture_format = TextureFormat::keep;
     std::vector<std::string> keep = {"occlusion", "normal"};
     Metallic metallic = Metallic::automatic;
     float metallic_start = 0.5f;

@@ -20,7 +20,8 @@ struct LoadOptions {
 /// InputError, one of which nothing can be seen a warning.
 Model load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
-/// PNG, JPEG, Radiance HDR, OpenEXR, by content. Channels as in the file (palettes are expanded,
+/// PNG, JPEG, WebP, KTX2 (Basis Universal), BMP, TGA, GIF, TIFF, Radiance HDR, OpenEXR, by content.
+/// Channels as in the file (palettes are expanded,
 /// 1-bit and 16-bit scaled to [0, 1]).
 Image load_image(const std::filesystem::path& path);
 

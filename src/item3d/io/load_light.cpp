@@ -34,7 +34,7 @@ Image read_picture(const std::string& path) {
     const Bytes bytes = read_bytes(path);
     const Image source = decode_image(bytes, path).image;
     const ImageFormat format = detect_image_format(bytes);
-    const bool is_encoded = format == ImageFormat::png || format == ImageFormat::jpeg;
+    const bool is_encoded = format != ImageFormat::radiance && format != ImageFormat::openexr;
     if (is_encoded) {
         warn(path +
              ": is no HDR picture: read as sRGB, white becomes radiance 1 and suns are no brighter "

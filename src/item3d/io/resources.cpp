@@ -1,6 +1,8 @@
 #include "item3d/io/resources.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+#include "item3d/io/find_file.h"
 #include "item3d/io/text.h"
 
 #include <algorithm>
@@ -15,27 +17,6 @@ namespace {
 
 constexpr std::string_view base64_digits =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-int hexadecimal_digit(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    const int lower = std::tolower(static_cast<unsigned char>(c));
-    return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
-}
-
-std::string percent_decode(std::string_view text) {
-    std::string result;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] == '%' && i + 2 < text.size() && hexadecimal_digit(text[i + 1]) >= 0 &&
-            hexadecimal_digit(text[i + 2]) >= 0) {
-            result.push_back(static_cast<char>(hexadecimal_digit(text[i + 1]) * 16 +
-                                               hexadecimal_digit(text[i + 2])));
-            i += 2;
-        } else {
-            result.push_back(text[i]);
-        }
-    }
-    return result;
-}
 
 Bytes decode_base64(std::string_view text, const std::string& subject) {
     std::array<std::int8_t, 256> values;
@@ -71,7 +52,7 @@ Bytes decode_base64(std::string_view text, const std::string& subject) {
 }  // namespace
 
 fs::path resolve_in_folder(const fs::path& folder, const fs::path& relative,
-                           const std::string& subject) {
+                           const std::string& subject, Forgiving forgiving) {
     const std::string name = relative.string();
     if (name.empty() || name.find('\0') != std::string::npos) {
         throw InputError(subject, "refers to a file without a name");
@@ -80,19 +61,50 @@ fs::path resolve_in_folder(const fs::path& folder, const fs::path& relative,
     const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, code);
     const fs::path target = code ? fs::path() : fs::weakly_canonical(root / relative, code);
     const fs::path inside = target.lexically_relative(root);
-    if (code || relative.is_absolute() || inside.empty() || *inside.begin() == "..") {
-        throw InputError(subject, "refers to '" + name + "', which is outside of its folder",
-                         "copy that file beside the model");
-    }
+    const bool is_outside =
+        code || relative.is_absolute() || inside.empty() || *inside.begin() == "..";
     const fs::file_status status = fs::status(target, code);
-    if (!fs::exists(status)) {
-        throw InputError(subject, "refers to '" + name + "', which does not exist",
+    if (!is_outside && fs::is_regular_file(status)) return target;
+    if (is_outside || !fs::exists(status)) {
+        for (const std::string& spelling : other_spellings(name)) {
+            const auto found = find_file_below(root, spelling);
+            if (!found) continue;
+            if (forgiving == Forgiving::with_note) {
+                note(subject + ": refers to '" + to_utf8(name) + "', read as '" +
+                     to_utf8(found->lexically_relative(root).generic_string()) + "'");
+            }
+            return *found;
+        }
+    }
+    if (is_outside) {
+        throw InputError(subject,
+                         "refers to '" + to_utf8(name) + "', which is outside of its folder",
                          "copy that file beside the model");
     }
-    if (!fs::is_regular_file(status)) {
-        throw InputError(subject, "refers to '" + name + "', which is not a file");
+    throw InputError(subject,
+                     "refers to '" + to_utf8(name) + "', which " +
+                         (fs::exists(status) ? "is not a file" : "does not exist"),
+                     "copy that file beside the model");
+}
+
+fs::path resolve_uri(const fs::path& folder, std::string_view uri, const std::string& subject,
+                     Forgiving forgiving) {
+    const std::size_t colon = uri.find(':');
+    const bool has_scheme = colon != std::string_view::npos && uri.find('/') > colon;
+    const bool is_local = colon == 1 || to_lower(uri.substr(0, 5)) == "file:";
+    if (has_scheme && !is_local) {
+        throw InputError(subject,
+                         "refers to '" + to_utf8(uri.substr(0, 80)) +
+                             "', and nothing is read from other places than its folder",
+                         "copy that file beside the model");
     }
-    return target;
+    // What a URI says comes first; a percent sign that belongs to the name, with the other
+    // spellings.
+    std::error_code code;
+    const std::string decoded = percent_decode(uri);
+    if (!fs::is_regular_file((folder.empty() ? fs::path(".") : folder) / decoded, code))
+        return resolve_in_folder(folder, std::string(uri), subject, forgiving);
+    return resolve_in_folder(folder, decoded, subject, forgiving);
 }
 
 fs::path resolve_beside(const fs::path& root, const std::vector<fs::path>& folders,
@@ -167,17 +179,6 @@ Bytes decode_data_uri(std::string_view uri, const std::string& subject) {
     }
     const std::string text = percent_decode(data);
     return Bytes(text.begin(), text.end());
-}
-
-fs::path uri_to_relative_path(std::string_view uri, const std::string& subject) {
-    const std::size_t colon = uri.find(':');
-    if (colon != std::string_view::npos && uri.find('/') > colon) {
-        throw InputError(subject,
-                         "refers to '" + std::string(uri.substr(0, 80)) +
-                             "', and nothing is read from other places than its folder",
-                         "copy that file beside the model");
-    }
-    return percent_decode(uri);
 }
 
 std::string path_to_uri(const fs::path& relative) {

@@ -11,11 +11,23 @@
 
 namespace item3d {
 
-/// The regular file `relative` (native separators or '/') in `folder`. Absolute paths, "..", and
-/// links that lead out of the folder are an InputError that names `subject`, as is a missing file.
+/// Whether a file that was found by another spelling of its name is told of.
+enum class Forgiving { with_note, silently };
+
+/// The regular file `relative` (either separator) in `folder`: that very one, or what
+/// find_file_below() finds for it or for one of its other_spellings(). What lies outside of the
+/// folder (absolute, "..", links) is an InputError that names `subject`, as is a missing file.
 std::filesystem::path resolve_in_folder(const std::filesystem::path& folder,
                                         const std::filesystem::path& relative,
-                                        const std::string& subject);
+                                        const std::string& subject,
+                                        Forgiving forgiving = Forgiving::with_note);
+
+/// The same for a URI of a glTF. Other schemes than a plain relative reference ("http:", ...) are
+/// an InputError: nothing is fetched; of "file:" and drive letters the file's name alone is looked
+/// for.
+std::filesystem::path resolve_uri(const std::filesystem::path& folder, std::string_view uri,
+                                  const std::string& subject,
+                                  Forgiving forgiving = Forgiving::with_note);
 
 /// The regular file that a text format names, with '/' or '\\' as separators: relative to the first
 /// of `folders` that has it, else by its bare name (exporters write paths of the machine that they
@@ -38,9 +50,6 @@ bool is_data_uri(std::string_view uri);
 /// The bytes of "data:...;base64,..." or "data:,...". Throws InputError.
 Bytes decode_data_uri(std::string_view uri, const std::string& subject);
 
-/// The relative path that a URI of a glTF names (percent-decoded). Other schemes than a plain
-/// relative reference ("http:", "file:", ...) are an InputError: nothing is fetched.
-std::filesystem::path uri_to_relative_path(std::string_view uri, const std::string& subject);
 std::string path_to_uri(const std::filesystem::path& relative);
 
 std::string encode_base64(std::span<const std::uint8_t> bytes);

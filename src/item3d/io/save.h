@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/scene/image.h"
+#include "item3d/scene/image_coding.h"
 #include "item3d/scene/model.h"
 
 #include <filesystem>
@@ -25,6 +26,10 @@ struct MaterialEdit {
     /// stays a factor where base_color is RGB. Occlusion is used where the material had it, or
     /// where it is not 1 throughout. Bits per channel of the PNGs that are written.
     int bits_per_channel = 8;
+    /// How the images are written (texture_format.h chooses by the source); PNG otherwise.
+    ImageCoding base_color_coding, metallic_roughness_coding, normal_coding;
+    /// A channel of metallic_roughness has the source's texels, bit for bit.
+    bool keeps_orm_texels = false;
     /// base_color holds what vertex colours multiplied before, so primitives with it lose COLOR_0.
     bool includes_vertex_colors = true;
 };

@@ -3,6 +3,7 @@
 
 #include "item3d/core/math.h"
 #include "item3d/scene/image.h"
+#include "item3d/scene/image_coding.h"
 
 #include <array>
 #include <cstdint>
@@ -23,6 +24,11 @@ struct Texture {
     int bits_per_channel = 8;
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
+    /// How an edited copy is written where it is to be of the source's kind.
+    ImageCoding coding = {};
+    /// The file that the image came from, where it goes into a new document as it is (PNG, JPEG,
+    /// WebP, as `coding` says); null: none.
+    std::shared_ptr<const std::vector<std::uint8_t>> file = {};
 };
 
 /// glTF's metallic-roughness material. Texture members index Model::textures, -1: none.

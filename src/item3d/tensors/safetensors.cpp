@@ -92,6 +92,7 @@ SafeTensors SafeTensors::open(const std::filesystem::path& path) {
     result.path_ = path;
     result.map_ = std::make_shared<Map>(address, size);
 
+    check_no_lfs_pointer(path, {result.map_->bytes, static_cast<std::size_t>(size)});
     std::uint64_t header_length = 0;
     for (int i = 7; i >= 0; --i)
         header_length = header_length << 8 | result.map_->bytes[i];

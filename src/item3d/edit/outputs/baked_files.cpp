@@ -2,25 +2,19 @@
 
 #include "item3d/core/files.h"
 #include "item3d/field/bake/bake.h"
+#include "item3d/io/file_names.h"
 #include "item3d/io/gltf/light.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
+#include "item3d/io/texture_format.h"
 #include "item3d/scene/far_origin.h"
 
-#include <cctype>
 #include <optional>
+#include <span>
+#include <utility>
 
 namespace item3d {
 namespace {
-
-std::string file_name_of(const std::string& material, int index) {
-    std::string name;
-    for (const char c : material) {
-        const auto byte = static_cast<unsigned char>(c);
-        name += std::isalnum(byte) != 0 || c == '-' || c == '_' ? c : '_';
-    }
-    return name.empty() ? "material" + std::to_string(index) : name;
-}
 
 Bytes source_thumbnail(const Model& model, int texture, const std::filesystem::path& scratch) {
     if (texture < 0) return {};
@@ -35,15 +29,16 @@ Bytes source_thumbnail(const Model& model, int texture, const std::filesystem::p
 /// Writes one image into textures/ and remembers it beside the source's for the report.
 void save_texture(const EditRequest& request, const EditScene& scene, const std::string& material,
                   const std::string& suffix, const std::string& title,
-                  const std::optional<Image>& image, int source_texture, int bits,
-                  std::vector<TexturePair>& pairs) {
+                  const std::optional<Image>& image, const ImageCoding& coding, int source_texture,
+                  int bits, std::vector<TexturePair>& pairs) {
     if (!image) return;
     const auto folder = request.output / "textures";
-    const auto path = folder / (material + "_" + suffix + ".png");
-    save_image(path, *image, bits);
+    Bytes bytes = encode_texture(*image, coding, bits);
+    write_atomically(folder / (material + "_" + suffix + extension_of(coding.encoding)),
+                     std::span<const std::uint8_t>(bytes));
     pairs.push_back({title,
                      source_thumbnail(scene.model, source_texture, folder / "source.tmp.png"),
-                     read_bytes(path)});
+                     std::move(bytes)});
 }
 
 constexpr int light_height = 256;
@@ -59,23 +54,28 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
                         channels.metallic, channels.normal};
     const BakeScene bake_scene{scene.model, scene.geometry, *scene.textured, *scene.space,
                                scene.atlas};
-    const ModelEdit edit = bake(bake_scene, state.fitted, state.field, options);
+    ModelEdit edit = bake(bake_scene, state.fitted, state.field, options);
+    choose_codings(scene.model, request.plan.texture_format, edit);
 
     EditedModel edited;
     const auto path = request.output / "model.glb";
     save_model(path, scene.model, edit);
     make_output_folder(request.output / "textures");
+    FileNames names;
     for (const auto& [index, material_edit] : edit.materials) {
         const Material& source = scene.model.materials[static_cast<std::size_t>(index)];
-        const std::string name = file_name_of(source.name, index);
+        const std::string plain = plain_file_name(source.name);
+        const std::string name =
+            names.unused(plain.empty() ? "material" + std::to_string(index) : plain);
         const int bits = material_edit.bits_per_channel;
         save_texture(request, scene, name, "base_color", "Base colour", material_edit.base_color,
-                     source.base_color_texture, bits, edited.textures);
-        save_texture(request, scene, name, "orm", "Occlusion, roughness, metallic",
-                     material_edit.metallic_roughness, source.metallic_roughness_texture, bits,
+                     material_edit.base_color_coding, source.base_color_texture, bits,
                      edited.textures);
+        save_texture(request, scene, name, "orm", "Occlusion, roughness, metallic",
+                     material_edit.metallic_roughness, material_edit.metallic_roughness_coding,
+                     source.metallic_roughness_texture, bits, edited.textures);
         save_texture(request, scene, name, "normal", "Normal", material_edit.normal,
-                     source.normal_texture, bits, edited.textures);
+                     material_edit.normal_coding, source.normal_texture, bits, edited.textures);
     }
     edited.model = load_model(path);
     move_origin(edited.model, scene.model.origin);

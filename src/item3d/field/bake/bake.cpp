@@ -324,6 +324,9 @@ MaterialEdit MaterialBaker::run(NeuralTexture& fitted, NeuralTexture& now, Progr
     finish(wants_base_color_, base_color_, material_.base_color_texture, edit.base_color);
     finish(wants_orm_, orm_, material_.metallic_roughness_texture, edit.metallic_roughness);
     finish(wants_normal_ && normal_changed_, normal_, material_.normal_texture, edit.normal);
+    const BakedChannels& edited = options_.channels;
+    edit.keeps_orm_texels = (occlusion_texels_ != nullptr && !edited.occlusion) ||
+                            (orm_texels_ != nullptr && !(edited.roughness && edited.metallic));
     edit.includes_vertex_colors = has_vertex_colors_ || has_vertex_alpha_;
     edit.bits_per_channel = edit.bits_per_channel > 8 ? 16 : 8;
     return edit;

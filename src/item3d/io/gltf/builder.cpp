@@ -1,10 +1,12 @@
 #include "item3d/io/gltf/builder.h"
 
 #include "item3d/core/error.h"
+#include "item3d/io/file_names.h"
 #include "item3d/io/resources.h"
+#include "item3d/io/text.h"
+#include "item3d/io/texture_format.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 
 namespace item3d {
@@ -17,15 +19,6 @@ constexpr int element_array_buffer = 34963;
 Json to_json_number(const Accessor& accessor, double value) {
     if (accessor.component_type == ComponentType::f32) return Json(value);
     return Json(static_cast<std::int64_t>(value));
-}
-
-std::string plain_file_name(const std::string& name) {
-    std::string result;
-    for (const char c : name) {
-        const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_';
-        result.push_back(plain ? c : '_');
-    }
-    return result.substr(0, 80);
 }
 
 }  // namespace
@@ -130,32 +123,45 @@ std::string GltfBuilder::unused_file_name(const std::string& stem,
     for (int attempt = 0;; ++attempt) {
         const std::string name =
             stem + (attempt == 0 ? "" : "_" + std::to_string(attempt)) + extension;
-        bool used = files_.contains(name);
+        bool used = std::any_of(files_.begin(), files_.end(), [&](const auto& file) {
+            return to_lower(file.first) == to_lower(name);
+        });
         for (const char* list : {"images", "buffers"}) {
             if (!json_.contains(list)) continue;
             for (const Json& item : json_[list]) {
                 const auto uri = item.find("uri");
-                used = used || (uri != item.end() && *uri == path_to_uri(name));
+                used = used || (uri != item.end() && uri->is_string() &&
+                                to_lower(uri->get<std::string>()) == to_lower(path_to_uri(name)));
             }
         }
         if (!used) return name;
     }
 }
 
-std::size_t GltfBuilder::add_png_texture(const Bytes& png, const std::string& name, int sampler) {
+std::size_t GltfBuilder::add_texture(const Bytes& bytes, ImageEncoding encoding,
+                                     const std::string& name, int sampler) {
     Json image = Json::object();
     if (!name.empty()) image["name"] = name;
+    const bool is_webp = encoding == ImageEncoding::webp;
     if (images_in_files_) {
         const std::string file = unused_file_name(
-            stem_ + "_" + (name.empty() ? "texture" : plain_file_name(name)), ".png");
+            stem_ + "_" + plain_file_name(name.empty() ? "texture" : name), extension_of(encoding));
         image["uri"] = path_to_uri(file);
-        files_[file] = png;
+        files_[file] = bytes;
     } else {
-        embed_image(image, png, "image/png");
+        embed_image(image, bytes,
+                    is_webp                           ? "image/webp"
+                    : encoding == ImageEncoding::jpeg ? "image/jpeg"
+                                                      : "image/png");
     }
     Json texture = Json::object();
     if (sampler >= 0) texture["sampler"] = sampler;
-    texture["source"] = append(json_, "images", std::move(image));
+    const std::size_t source = append(json_, "images", std::move(image));
+    if (is_webp) {
+        texture["extensions"]["EXT_texture_webp"]["source"] = source;
+    } else {
+        texture["source"] = source;
+    }
     return append(json_, "textures", std::move(texture));
 }
 
@@ -165,8 +171,13 @@ void GltfBuilder::embed_image(Json& image, const Bytes& bytes, const std::string
     image["bufferView"] = add_view(bytes);
 }
 
+void GltfBuilder::replace_binary(Bytes binary) {
+    binary_ = std::move(binary);
+    is_cut_ = true;
+}
+
 void GltfBuilder::finish() {
-    if (binary_.size() == size_before_) return;
+    if (binary_.size() == size_before_ && !is_cut_) return;
     const bool is_new = !json_.contains("buffers") || json_["buffers"].size() <= buffer_;
     if (is_new) append(json_, "buffers", Json::object());
     json_["buffers"][buffer_]["byteLength"] = binary_.size();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/io/gltf/accessors.h"
+#include "item3d/scene/image_coding.h"
 
 #include <map>
 #include <span>
@@ -13,7 +14,7 @@ namespace item3d {
 class GltfBuilder {
   public:
     /// buffer: index of the buffer that grows, with `binary` in it already; images_in_files: give
-    /// new images a URI (stem_NAME.png) instead of a buffer view.
+    /// new images a URI (stem_NAME.EXTENSION) instead of a buffer view.
     GltfBuilder(Json& json, std::size_t buffer, Bytes binary, bool images_in_files,
                 std::string stem);
 
@@ -25,10 +26,15 @@ class GltfBuilder {
     std::size_t add_floats(std::span<const float> values, std::size_t components,
                            bool with_bounds = false);
     std::size_t add_indices(std::span<const std::uint32_t> indices, std::size_t vertex_count);
-    /// Adds a PNG as image and texture; sampler -1: none. Returns the texture's index.
-    std::size_t add_png_texture(const Bytes& png, const std::string& name, int sampler);
+    /// Adds a picture as image and texture; sampler -1: none. Returns the texture's index. Lists of
+    /// extensions are list_texture_extensions()' work.
+    std::size_t add_texture(const Bytes& bytes, ImageEncoding encoding, const std::string& name,
+                            int sampler);
     /// Turns an existing image into one that lies in the buffer.
     void embed_image(Json& image, const Bytes& bytes, const std::string& mime_type);
+
+    /// The buffer with less in it; whoever calls has moved the views.
+    void replace_binary(Bytes binary);
 
     /// Sets byteLength of the buffer (adding it when it is new and not empty).
     void finish();
@@ -46,6 +52,7 @@ class GltfBuilder {
     std::size_t buffer_;
     Bytes binary_;
     std::size_t size_before_;
+    bool is_cut_ = false;
     bool images_in_files_;
     std::string stem_;
     std::map<std::string, Bytes> files_;

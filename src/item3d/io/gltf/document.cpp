@@ -1,6 +1,7 @@
 #include "item3d/io/gltf/document.h"
 
 #include "item3d/core/error.h"
+#include "item3d/io/find_file.h"
 #include "item3d/io/gltf/meshopt.h"
 #include "item3d/io/resources.h"
 
@@ -120,8 +121,7 @@ void read_buffers(SourceDocument& document, std::optional<Bytes> binary) {
             const std::string place = subject + ": " + buffer.where();
             bytes = is_data_uri(uri)
                         ? decode_data_uri(uri, place)
-                        : read_bytes(resolve_in_folder(document.path.parent_path(),
-                                                       uri_to_relative_path(uri, place), place));
+                        : read_bytes(resolve_uri(document.path.parent_path(), uri, place));
         } else if (i == 0 && binary) {
             bytes = std::move(*binary);
             document.has_binary_chunk = true;
@@ -291,18 +291,18 @@ std::span<const std::uint8_t> buffer_view_bytes(const SourceDocument& document, 
     return byte_range(document, root_of(document).item("bufferViews", index));
 }
 
-Bytes read_image_bytes(const SourceDocument& document, std::size_t index) {
+Bytes read_image_bytes(const SourceDocument& document, std::size_t index, Forgiving forgiving) {
     const GltfObject image = root_of(document).item("images", index);
     const std::string place = document.path.string() + ": " + image.where();
     if (image.has("uri")) {
         const std::string uri = image.text("uri", "");
         if (is_data_uri(uri)) return decode_data_uri(uri, place);
         const fs::path folder = document.path.parent_path();
-        const fs::path relative = uri_to_relative_path(uri, place);
         try {
-            return read_bytes(resolve_in_folder(folder, relative, place));
+            return read_bytes(resolve_uri(folder, uri, place, forgiving));
         } catch (const InputError&) {
-            const auto found = find_allowed(document.texture_folders, folder, relative, place);
+            const auto found = find_allowed(document.texture_folders, folder,
+                                            fs::path(percent_decode(uri)), place);
             if (!found) throw;
             return read_bytes(*found);
         }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "item3d/core/files.h"
+#include "item3d/io/resources.h"
 
 #include <nlohmann/json.hpp>
 
@@ -96,7 +97,8 @@ class GltfObject {
 GltfObject root_of(const SourceDocument& document);
 
 /// The encoded bytes of an image (from its URI, data URI or buffer view). Throws InputError.
-Bytes read_image_bytes(const SourceDocument& document, std::size_t image);
+Bytes read_image_bytes(const SourceDocument& document, std::size_t image,
+                       Forgiving forgiving = Forgiving::with_note);
 
 /// The bytes of a buffer that an object with buffer, byteOffset and byteLength names. Throws
 /// InputError.

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/io/gltf/builder.h"
+#include "item3d/io/gltf/texture_source.h"
 #include "item3d/io/image/png.h"
 
 #include <algorithm>
@@ -40,6 +41,7 @@ class GltfMaker {
         for (std::size_t i = 0; i < model_.primitives.size(); ++i)
             add_primitive(static_cast<int>(i));
         if (!extensions_used_.empty()) json_["extensionsUsed"] = extensions_used_;
+        list_texture_extensions(json_);
         builder_.finish();
         auto document = std::make_shared<SourceDocument>();
         document->path = model_.name.empty() ? "model.glb" : model_.name + ".glb";
@@ -68,8 +70,10 @@ class GltfMaker {
                 append(json_, "samplers",
                        Json{{"wrapS", number(source.wrap_u)}, {"wrapT", number(source.wrap_v)}}));
         }
-        return textures_[index] = builder_.add_png_texture(
-                   encode_png(source.image, source.bits_per_channel), source.name, sampler);
+        const ImageEncoding encoding = source.file ? source.coding.encoding : ImageEncoding::png;
+        return textures_[index] = builder_.add_texture(
+                   source.file ? *source.file : encode_png(source.image, source.bits_per_channel),
+                   encoding, source.name, sampler);
     }
 
     // The texture goes in unless there is none, or the edit brings another.

@@ -2,7 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/io/image/formats.h"
+#include "item3d/io/gltf/texture_source.h"
 #include "item3d/io/resources.h"
 
 #include <algorithm>
@@ -156,18 +156,7 @@ class MaterialReader {
     }
 
     Texture load(const GltfObject& source) const {
-        const auto image = source.index("source", root_.list_size("images"));
-        if (!image) {
-            source.fail("has no image that can be read here (WebP or Basis textures perhaps)",
-                        "convert its images to PNG or JPEG");
-        }
-        const GltfObject image_object = root_.item("images", *image);
-        Texture texture;
-        texture.name = source.text("name", image_object.text("name", ""));
-        DecodedImage decoded = decode_image(read_image_bytes(document_, *image),
-                                            document_.path.string() + ": " + image_object.where());
-        texture.image = std::move(decoded.image);
-        texture.bits_per_channel = std::min(decoded.bits_per_channel, 16);
+        Texture texture = read_texture_source(document_, source);
         if (const auto index = source.index("sampler", root_.list_size("samplers"))) {
             const GltfObject sampler = root_.item("samplers", *index);
             texture.wrap_u = read_wrap(sampler, "wrapS");

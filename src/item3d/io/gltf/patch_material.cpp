@@ -1,7 +1,7 @@
 #include "item3d/io/gltf/patch_material.h"
 
 #include "item3d/io/gltf/materials.h"
-#include "item3d/io/image/png.h"
+#include "item3d/io/texture_format.h"
 
 #include <algorithm>
 
@@ -116,9 +116,11 @@ void patch_material(const SourceDocument& document, const Json& original, const 
                     GltfBuilder& builder) {
     const UvLayout layout = material_uv_layout(GltfObject(document, original, "material"));
     InfoWriter infos(plan, layout, builder.json());
-    const auto add_texture = [&](const Image& image, const char* what, const Json* old_info) {
-        return builder.add_png_texture(encode_png(image, edit.bits_per_channel), name + "_" + what,
-                                       sampler_of(document.json, old_info));
+    const auto add_texture = [&](const Image& image, const ImageCoding& coding, const char* what,
+                                 const Json* old_info) {
+        return builder.add_texture(encode_texture(image, coding, edit.bits_per_channel),
+                                   coding.encoding, name + "_" + what,
+                                   sampler_of(document.json, old_info));
     };
     const Json* old_pbr = find(original, "pbrMetallicRoughness");
     if (edit.base_color || edit.metallic_roughness) {
@@ -142,7 +144,7 @@ void patch_material(const SourceDocument& document, const Json& original, const 
     if (edit.base_color) {
         Json& pbr = material["pbrMetallicRoughness"];
         infos.write(pbr, "baseColorTexture",
-                    add_texture(*edit.base_color, "base_color",
+                    add_texture(*edit.base_color, edit.base_color_coding, "base_color",
                                 old_pbr ? find(*old_pbr, "baseColorTexture") : nullptr));
         double alpha = 1.0;
         if (edit.base_color->channels != 4 && pbr.contains("baseColorFactor")) {
@@ -153,7 +155,8 @@ void patch_material(const SourceDocument& document, const Json& original, const 
     if (edit.metallic_roughness) {
         Json& pbr = material["pbrMetallicRoughness"];
         const Json* old_info = old_pbr ? find(*old_pbr, "metallicRoughnessTexture") : nullptr;
-        const std::size_t texture = add_texture(*edit.metallic_roughness, "orm", old_info);
+        const std::size_t texture =
+            add_texture(*edit.metallic_roughness, edit.metallic_roughness_coding, "orm", old_info);
         infos.write(pbr, "metallicRoughnessTexture", texture);
         pbr["metallicFactor"] = 1.0;
         pbr["roughnessFactor"] = 1.0;
@@ -169,7 +172,8 @@ void patch_material(const SourceDocument& document, const Json& original, const 
     }
     if (edit.normal) {
         infos.write(material, "normalTexture",
-                    add_texture(*edit.normal, "normal", find(original, "normalTexture")));
+                    add_texture(*edit.normal, edit.normal_coding, "normal",
+                                find(original, "normalTexture")));
         material["normalTexture"].erase("scale");
     }
 }

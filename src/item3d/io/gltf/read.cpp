@@ -29,7 +29,7 @@ namespace {
 constexpr std::string_view known_extensions[] = {
     "KHR_mesh_quantization",      "KHR_texture_transform", "KHR_lights_punctual",
     "KHR_animation_pointer",      "KHR_xmp_json_ld",       "EXT_meshopt_compression",
-    "KHR_draco_mesh_compression",
+    "KHR_draco_mesh_compression", "KHR_texture_basisu",    "EXT_texture_webp",
 };
 
 void check_required_extensions(const SourceDocument& document) {
@@ -44,8 +44,8 @@ void check_required_extensions(const SourceDocument& document) {
             continue;
         }
         std::string hint = "export it without that extension";
-        if (name == "KHR_texture_basisu" || name == "EXT_texture_webp") {
-            hint = "convert its textures to PNG first, for instance with 'gltf-transform png'";
+        if (name == "EXT_texture_avif" || name == "MSFT_texture_dds") {
+            hint = "convert its textures to PNG, JPEG, WebP or KTX2 first";
         }
         root.fail("requires the glTF extension " + name + ", which cannot be read", hint);
     }

@@ -2,8 +2,11 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/io/find_file.h"
 #include "item3d/io/gltf/make.h"
 #include "item3d/io/gltf/patch.h"
+#include "item3d/io/gltf/texture_source.h"
+#include "item3d/io/gltf/unused_textures.h"
 #include "item3d/io/image/formats.h"
 #include "item3d/io/resources.h"
 #include "item3d/io/text.h"
@@ -62,19 +65,9 @@ Bytes pack_buffers(const SourceDocument& document, Json& json) {
 }
 
 std::string mime_type_of(const Bytes& bytes, const Json& image) {
-    switch (detect_image_format(bytes)) {
-        case ImageFormat::png:
-            return "image/png";
-        case ImageFormat::jpeg:
-            return "image/jpeg";
-        default:
-            break;
-    }
+    if (const char* type = mime_type(detect_image_format(bytes))) return type;
     if (image.contains("mimeType")) return image["mimeType"].get<std::string>();
-    const std::string uri = to_lower(image.value("uri", std::string()));
-    return uri.ends_with(".ktx2")   ? "image/ktx2"
-           : uri.ends_with(".webp") ? "image/webp"
-                                    : "image/png";
+    return "image/png";
 }
 
 // A .glb stands alone, so pictures in files and data URIs go into it.
@@ -85,7 +78,7 @@ void embed_images(const SourceDocument& document, GltfBuilder& builder) {
         Json image = document.json["images"][i];
         if (!image.contains("uri")) continue;
         try {
-            const Bytes bytes = read_image_bytes(document, i);
+            const Bytes bytes = read_image_bytes(document, i, Forgiving::silently);
             builder.embed_image(image, bytes, mime_type_of(bytes, image));
             builder.json()["images"][i] = std::move(image);
         } catch (const InputError& error) {
@@ -94,32 +87,49 @@ void embed_images(const SourceDocument& document, GltfBuilder& builder) {
     }
 }
 
-// Files that the document refers to, copied beside the new one under the same names.
-void copy_files(const SourceDocument& document, const fs::path& folder) {
-    const auto copy = [&](const Json& item, const auto& read) {
-        const std::string uri = item.value("uri", std::string());
-        if (uri.empty() || is_data_uri(uri)) return;
-        try {
-            const std::string subject = document.path.string();
-            const fs::path relative = uri_to_relative_path(uri, subject);
-            const fs::path from = resolve_in_folder(document.path.parent_path(), relative, subject);
-            const fs::path to = folder / relative;
-            std::error_code code;
-            if (fs::equivalent(from, to, code)) return;
-            const Bytes bytes = read();
-            fs::create_directories(to.parent_path(), code);
-            write_atomically(to, std::span<const std::uint8_t>(bytes));
-        } catch (const InputError& error) {
-            warn(std::string(error.what()) + "; the reference is kept as it is");
+// Files that `json` still refers to, copied beside the new one under the names that they have.
+void copy_files(const SourceDocument& document, const std::map<std::string, Bytes>& new_files,
+                Json& json, const fs::path& folder) {
+    const std::string subject = document.path.string();
+    const fs::path source = document.path.parent_path();
+    for (const char* list : {"buffers", "images"}) {
+        if (!json.contains(list)) continue;
+        for (Json& item : json[list]) {
+            const std::string uri = item.value("uri", std::string());
+            if (uri.empty() || is_data_uri(uri) || new_files.contains(percent_decode(uri)))
+                continue;
+            try {
+                const fs::path from = resolve_uri(source, uri, subject, Forgiving::silently);
+                std::error_code code;
+                const fs::path root =
+                    fs::weakly_canonical(source.empty() ? fs::path(".") : source, code);
+                const fs::path relative = from.lexically_relative(root);
+                // A name that had to be forgiven is spelled as the file's.
+                if (!fs::exists(root / percent_decode(uri), code))
+                    item["uri"] = path_to_uri(relative);
+                const fs::path to = folder / percent_decode(item["uri"].get<std::string>());
+                if (fs::equivalent(from, to, code)) continue;
+                const Bytes bytes = read_bytes(from);
+                fs::create_directories(to.parent_path(), code);
+                write_atomically(to, std::span<const std::uint8_t>(bytes));
+            } catch (const InputError& error) {
+                warn(std::string(error.what()) + "; the reference is kept as it is");
+            }
         }
-    };
-    for (std::size_t i = 0; i < document.buffers.size(); ++i) {
-        copy(document.json["buffers"][i], [&] { return document.buffers[i]; });
     }
-    const std::size_t images =
-        document.json.contains("images") ? document.json["images"].size() : 0;
-    for (std::size_t i = 0; i < images; ++i) {
-        copy(document.json["images"][i], [&] { return read_image_bytes(document, i); });
+}
+
+// What an edit leaves in the document as a whole: no picture twice, true lists, who wrote it.
+void tidy(const SourceDocument& document, GltfBuilder& builder) {
+    remove_unused_textures(document, builder);
+    list_texture_extensions(builder.json());
+    Json& asset = builder.json()["asset"];
+    const auto generator = asset.find("generator");
+    if (generator == asset.end() || !generator->is_string()) {
+        asset["generator"] = "item3d";
+    } else if (const auto text = generator->get<std::string>();
+               text.find("item3d") == std::string::npos) {
+        asset["generator"] = text + ", edited with item3d";
     }
 }
 
@@ -203,6 +213,7 @@ void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit)
     GltfBuilder builder(json, buffer, std::move(binary), !is_binary, path.stem().string());
     if (is_binary) embed_images(*document, builder);
     patch_gltf(*document, uses, edit, builder);
+    if (!edit.materials.empty()) tidy(*document, builder);
     builder.finish();
 
     if (is_binary) {
@@ -211,7 +222,8 @@ void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit)
         return;
     }
     const fs::path folder = path.parent_path();
-    copy_files(*document, folder);
+    // Before the new files, which no name in the document is that of.
+    copy_files(*document, builder.files(), json, folder);
     if (!builder.binary().empty()) {
         const std::string name = builder.unused_file_name(path.stem().string(), ".bin");
         json["buffers"][buffer]["uri"] = path_to_uri(name);

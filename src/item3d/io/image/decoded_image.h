@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/scene/image.h"
+#include "item3d/scene/image_coding.h"
 
 #include <cstdint>
 #include <string>
@@ -11,6 +12,9 @@ namespace item3d {
 struct DecodedImage {
     Image image;
     int bits_per_channel = 8;  ///< 8, 16 or 32
+    /// How a changed copy is written where it is to be of the same kind: PNG for kinds that are not
+    /// written, JPEG for those of them with losses.
+    ImageCoding coding = {};
 };
 
 /// Refuses pictures that are too large (2^28 values) or that `available` bytes cannot hold even

@@ -1,7 +1,9 @@
 // The picture formats, told apart by content. Internal to io.
 #pragma once
 
+#include "item3d/core/files.h"
 #include "item3d/io/image/decoded_image.h"
+#include "item3d/scene/model.h"
 
 #include <cstdint>
 #include <span>
@@ -9,12 +11,18 @@
 
 namespace item3d {
 
-enum class ImageFormat { unknown, png, jpeg, radiance, openexr };
+enum class ImageFormat { unknown, png, jpeg, webp, ktx2, bmp, tga, gif, tiff, radiance, openexr };
 
 /// By the first bytes of the file.
 ImageFormat detect_image_format(std::span<const std::uint8_t> bytes);
 
+/// "image/png" and the like; nullptr where there is none.
+const char* mime_type(ImageFormat format);
+
 /// Decodes by content. `subject` names the picture in errors and warnings. Throws InputError.
 DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string& subject);
+
+/// The same as a texture without a name, that keeps `bytes` where they can be written as they are.
+Texture decode_texture(Bytes bytes, const std::string& subject);
 
 }  // namespace item3d

@@ -14,6 +14,6 @@ namespace item3d {
 DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& subject);
 
 /// 4:4:4, quality 95; an alpha channel is dropped.
-Bytes encode_jpeg(const Image& image);
+Bytes encode_jpeg(const Image& image, int quality = 95);
 
 }  // namespace item3d

@@ -128,9 +128,8 @@ const Texture* ObjMaterials::read(const MtlMap& map) {
     std::optional<Texture>& slot = pictures_[picture_key(map)];
     try {
         const fs::path path = find_picture_file(map);
-        DecodedImage decoded = decode_image(read_bytes(path), path.string());
-        slot = Texture{to_utf8(path.stem().string()), std::move(decoded.image),
-                       std::min(decoded.bits_per_channel, 16), Wrap::repeat, Wrap::repeat};
+        slot = decode_texture(read_bytes(path), path.string());
+        slot->name = to_utf8(path.stem().string());
     } catch (const InputError& error) {
         warn(std::string(error.what()) + "; the material's factors are used");
     }

@@ -5,8 +5,9 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/io/image/png.h"
+#include "item3d/io/file_names.h"
 #include "item3d/io/text.h"
+#include "item3d/io/texture_format.h"
 
 #include <fmt/format.h>
 
@@ -87,11 +88,26 @@ class ObjWriter {
         }
     }
 
-    std::string save(const Image& image, int bits, const std::string& material, const char* what) {
-        std::string name = stem_ + "_" + material + "_" + what + ".png";
-        const Bytes png = encode_png(image, bits);
-        write_atomically(folder_ / name, std::span<const std::uint8_t>(png));
+    std::string save(const Image& image, int bits, const std::string& material, const char* what,
+                     const ImageCoding& coding = {}) {
+        return save(encode_texture(image, coding, bits), coding.encoding, material, what);
+    }
+
+    std::string save(const Bytes& bytes, ImageEncoding encoding, const std::string& material,
+                     const char* what) {
+        const std::string name =
+            file_names_.unused(shortened(stem_, 80) + "_" + shortened(material, 80) + "_" + what) +
+            extension_of(encoding);
+        write_atomically(folder_ / name, std::span<const std::uint8_t>(bytes));
         return name;
+    }
+
+    // The file that it came from, where the material shows it as it is.
+    std::string save(const Texture& texture, const Vec4& factor, const std::string& material,
+                     const char* what) {
+        if (texture.file && factor == Vec4(1.0f))
+            return save(*texture.file, texture.coding.encoding, material, what);
+        return save(tinted(texture.image, factor), texture.bits_per_channel, material, what);
     }
 
     const Texture* texture(int index) const {
@@ -116,15 +132,18 @@ class ObjWriter {
         const Texture* base = texture(material.base_color_texture);
         const bool has_alpha = material.alpha != Material::Alpha::opaque;
         // map_d of the same picture says that its alpha counts.
-        const auto write_base = [&](const Image& image, int bits, const std::string& options) {
-            const std::string picture = options + save(image, bits, name, "base_color");
+        const auto write_base = [&](const std::string& picture, int channels) {
             line("Kd 1 1 1\nmap_Kd " + picture);
-            if (has_alpha && image.channels % 2 == 0) line("map_d " + picture);
+            if (has_alpha && channels % 2 == 0) line("map_d " + picture);
         };
         if (edit.base_color) {
-            write_base(*edit.base_color, edit.bits_per_channel, "");
+            write_base(save(*edit.base_color, edit.bits_per_channel, name, "base_color",
+                            edit.base_color_coding),
+                       edit.base_color->channels);
         } else if (base) {
-            write_base(tinted(base->image, factor), base->bits_per_channel, clamp_option(base));
+            write_base(
+                clamp_option(base) + save(*base, Vec4(Vec3(factor), 1.0f), name, "base_color"),
+                base->image.channels);
         } else {
             line(fmt::format("Kd {} {} {}", factor.x, factor.y, factor.z));
         }
@@ -133,20 +152,20 @@ class ObjWriter {
 
         const Texture* normal = texture(material.normal_texture);
         if (edit.normal) {
-            line("norm " + save(*edit.normal, edit.bits_per_channel, name, "normal"));
+            line("norm " +
+                 save(*edit.normal, edit.bits_per_channel, name, "normal", edit.normal_coding));
         } else if (normal) {
             const std::string scale =
                 material.normal_scale == 1.0f ? "" : fmt::format("-bm {} ", material.normal_scale);
             line("norm " + scale + clamp_option(normal) +
-                 save(normal->image, normal->bits_per_channel, name, "normal"));
+                 save(*normal, Vec4(1.0f), name, "normal"));
         }
         const Vec3& emission = material.emissive_factor;
         if (emission == Vec3(0.0f)) return;
         line(fmt::format("Ke {} {} {}", emission.x, emission.y, emission.z));
         if (const Texture* emissive = texture(material.emissive_texture)) {
             line("map_Ke " + clamp_option(emissive) +
-                 save(tinted(emissive->image, Vec4(glm::min(emission, 1.0f), 1.0f)),
-                      emissive->bits_per_channel, name, "emissive"));
+                 save(*emissive, Vec4(glm::min(emission, 1.0f), 1.0f), name, "emissive"));
         }
     }
 
@@ -158,9 +177,10 @@ class ObjWriter {
             const Image& image = *edit.metallic_roughness;
             const int bits = edit.bits_per_channel;
             line("Pm 1\nPr 1");
-            line("map_AO " + save(channel_of(image, 0), bits, name, "occlusion"));
-            line("map_Pr " + save(channel_of(image, 1), bits, name, "roughness"));
-            line("map_Pm " + save(channel_of(image, 2), bits, name, "metallic"));
+            const ImageCoding& coding = edit.metallic_roughness_coding;
+            line("map_AO " + save(channel_of(image, 0), bits, name, "occlusion", coding));
+            line("map_Pr " + save(channel_of(image, 1), bits, name, "roughness", coding));
+            line("map_Pm " + save(channel_of(image, 2), bits, name, "metallic", coding));
             return;
         }
         line(fmt::format("Pm {}\nPr {}", material.metallic_factor, material.roughness_factor));
@@ -242,6 +262,7 @@ class ObjWriter {
     const Model& model_;
     const ModelEdit& edit_;
     std::vector<std::string> names_;
+    FileNames file_names_;
     std::string obj_;
     std::string mtl_;
     int decimals_ = 0;  ///< of positions far from the origin

@@ -1,0 +1,92 @@
+#include "item3d/io/texture_format.h"
+
+#include "item3d/io/image/jpeg.h"
+#include "item3d/io/image/png.h"
+#include "item3d/io/image/webp.h"
+
+#include <algorithm>
+
+namespace item3d {
+namespace {
+
+const Texture* texture_of(const Model& model, int index) {
+    return index >= 0 ? &model.textures[static_cast<std::size_t>(index)] : nullptr;
+}
+
+bool is_transparent(const Image& image) {
+    if (image.channels % 2 != 0) return false;
+    const auto channels = static_cast<std::size_t>(image.channels);
+    for (std::size_t i = channels - 1; i < image.pixels.size(); i += channels) {
+        if (image.pixels[i] < 1.0f - 0.5f / 255.0f) return true;
+    }
+    return false;
+}
+
+ImageCoding wanted_coding(TextureFormat format, const Texture* source) {
+    const ImageCoding own = source ? source->coding : ImageCoding{};
+    switch (format) {
+        case TextureFormat::png:
+            return {};
+        case TextureFormat::jpeg:
+            return {ImageEncoding::jpeg, false, own.is_lossless ? 95 : own.quality};
+        case TextureFormat::webp:
+            return {ImageEncoding::webp, own.is_lossless, own.is_lossless ? 95 : own.quality};
+        case TextureFormat::keep:
+            break;
+    }
+    return own;
+}
+
+ImageCoding possible_coding(ImageCoding coding, const Image& image, bool must_be_exact) {
+    if (must_be_exact && coding.encoding == ImageEncoding::webp) coding.is_lossless = true;
+    if (coding.encoding == ImageEncoding::jpeg && (must_be_exact || is_transparent(image)))
+        return {};
+    if (coding.encoding == ImageEncoding::webp &&
+        std::max(image.width, image.height) > largest_webp_edge)
+        return {};
+    return coding;
+}
+
+}  // namespace
+
+void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
+    for (auto& [index, material_edit] : edit.materials) {
+        const Material& material = model.materials[static_cast<std::size_t>(index)];
+        const Texture* base = texture_of(model, material.base_color_texture);
+        const auto choose = [&](const std::optional<Image>& image, int slot, bool must_be_exact,
+                                ImageCoding& coding) {
+            if (!image) return;
+            const Texture* own = texture_of(model, slot);
+            coding =
+                possible_coding(wanted_coding(format, own ? own : base), *image, must_be_exact);
+            // Eight bits would be a loss to an image that has more.
+            if (format == TextureFormat::keep && own && own->bits_per_channel > 8) coding = {};
+        };
+        choose(material_edit.base_color, material.base_color_texture, false,
+               material_edit.base_color_coding);
+        const int orm = material.metallic_roughness_texture;
+        choose(material_edit.metallic_roughness, orm >= 0 ? orm : material.occlusion_texture,
+               material_edit.keeps_orm_texels, material_edit.metallic_roughness_coding);
+        choose(material_edit.normal, material.normal_texture, false, material_edit.normal_coding);
+    }
+}
+
+Bytes encode_texture(const Image& image, const ImageCoding& coding, int bits_per_channel) {
+    switch (coding.encoding) {
+        case ImageEncoding::jpeg:
+            return encode_jpeg(image, coding.quality);
+        case ImageEncoding::webp:
+            return encode_webp_texture(image, coding.is_lossless, coding.quality);
+        case ImageEncoding::png:
+            break;
+    }
+    return encode_png(image, bits_per_channel);
+}
+
+const char* extension_of(ImageEncoding encoding) {
+    return encoding == ImageEncoding::jpeg   ? ".jpg"
+           : encoding == ImageEncoding::webp ? ".webp"
+                                             : ".png";
+}
+
+}  // namespace item3d

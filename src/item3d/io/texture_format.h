@@ -1,0 +1,24 @@
+// In which format edited textures are written.
+#pragma once
+
+#include "item3d/core/files.h"
+#include "item3d/io/save.h"
+#include "item3d/scene/image_coding.h"
+
+namespace item3d {
+
+/// keep: each as the texture that it replaces. webp: without losses where that texture had none.
+enum class TextureFormat { keep, png, jpeg, webp };
+
+/// Sets the codings of all images of the edit. Where a material had no texture in a slot, its base
+/// colour's is followed. Images that JPEG or a lossy WebP cannot hold get a coding without losses:
+/// those with alpha (JPEG), those that keep texels (MaterialEdit), and with 16 bits.
+void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit);
+
+/// bits_per_channel: 8, or 16, which PNG alone has.
+Bytes encode_texture(const Image& image, const ImageCoding& coding, int bits_per_channel);
+
+/// ".png", ".jpg", ".webp".
+const char* extension_of(ImageEncoding encoding);
+
+}  // namespace item3d
