@@ -3,6 +3,7 @@
 
 #include "item3d/edit/material_source.h"
 #include "item3d/edit/request.h"
+#include "item3d/edit/source_materials.h"
 #include "item3d/edit/views.h"
 #include "item3d/field/atlas/atlas.h"
 #include "item3d/networks/diffusion/diffusion_model.h"
@@ -12,6 +13,7 @@
 #include "item3d/scene/model.h"
 
 #include <future>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -22,8 +24,9 @@ struct EditScene {
     Model model;
     Geometry geometry;
     BoundingSphere sphere;
-    std::vector<int> materials;  ///< edited ones, indices into model.materials
-    Atlas atlas;                 ///< the UV maps that the result is baked into
+    std::vector<int> materials;            ///< edited ones, indices into model.materials
+    std::map<int, MaterialLosses> losses;  ///< of the edited materials in the file
+    Atlas atlas;                           ///< the UV maps that the result is baked into
     std::unique_ptr<FieldSpace> space;
     std::unique_ptr<TexturedMaterials> textured;
     std::unique_ptr<MaterialSource> source;

@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-Model load_model(const std::filesystem::path& path) {
+Model load_model(const std::filesystem::path& path, const std::string& variant) {
     const Bytes bytes = read_bytes(path);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const std::string extension = to_lower(path.extension().string());
@@ -16,7 +16,11 @@ Model load_model(const std::filesystem::path& path) {
         throw InputError(path.string(), "a model was expected, the file is empty",
                          "export it again");
     }
-    if (text.starts_with("glTF") || extension == ".gltf") return read_gltf(path, bytes);
+    if (text.starts_with("glTF") || extension == ".gltf") return read_gltf(path, bytes, variant);
+    if (extension == ".obj" && !variant.empty()) {
+        throw InputError(path.string(), "has no variant '" + variant + "', it is an OBJ",
+                         "variants are a glTF's");
+    }
     if (extension == ".obj") return read_obj(path, bytes);
     if (extension == ".glb") {
         throw InputError(path.string(),

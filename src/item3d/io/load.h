@@ -6,13 +6,15 @@
 #include "item3d/scene/model.h"
 
 #include <filesystem>
+#include <string>
 
 namespace item3d {
 
 /// glTF 2.0 (.glb, .gltf) or OBJ with MTL, by content and extension. A texture that cannot be read
 /// is a warning (the factor is used). A model without triangles or with non-finite positions is an
-/// InputError.
-Model load_model(const std::filesystem::path& path);
+/// InputError. variant: the name of one of Model::variants, which is shown instead of what the file
+/// shows by itself; an InputError lists those that there are.
+Model load_model(const std::filesystem::path& path, const std::string& variant = "");
 
 /// PNG, JPEG, Radiance HDR, OpenEXR, by content. Channels as in the file (palettes are expanded,
 /// 1-bit and 16-bit scaled to [0, 1]).

@@ -4,10 +4,15 @@
 #include "item3d/io/gltf/read.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/progress.h"
 #include "item3d/io/gltf/accessors.h"
 #include "item3d/io/gltf/draco.h"
+#include "item3d/io/gltf/instances.h"
 #include "item3d/io/gltf/materials.h"
 #include "item3d/io/gltf/nodes.h"
+#include "item3d/io/gltf/skin.h"
+#include "item3d/io/gltf/uv_layouts.h"
+#include "item3d/io/gltf/variants.h"
 #include "item3d/scene/normals.h"
 
 #include <fmt/format.h>
@@ -16,15 +21,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace item3d {
 namespace {
 
 // Extensions that a file may require and that are read, or that change nothing that is read here.
 constexpr std::string_view known_extensions[] = {
-    "KHR_mesh_quantization",      "KHR_texture_transform", "KHR_lights_punctual",
-    "KHR_animation_pointer",      "KHR_xmp_json_ld",       "EXT_meshopt_compression",
-    "KHR_draco_mesh_compression",
+    "KHR_mesh_quantization",      "KHR_texture_transform",   "KHR_lights_punctual",
+    "KHR_animation_pointer",      "KHR_xmp_json_ld",         "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression", "EXT_mesh_gpu_instancing",
 };
 
 void check_required_extensions(const SourceDocument& document) {
@@ -55,28 +61,33 @@ struct Vertices {
 
 class GltfReader {
   public:
-    explicit GltfReader(std::shared_ptr<SourceDocument> document)
-        : document_(std::move(document)), root_(root_of(*document_)) {}
+    GltfReader(std::shared_ptr<SourceDocument> document, const std::string& variant)
+        : document_(std::move(document)), root_(root_of(*document_)) {
+        if (!variant.empty()) variant_ = find_variant(*document_, variant);
+    }
 
     Model read();
 
   private:
-    void add_mesh(std::size_t mesh, std::optional<std::size_t> node);
+    /// world: of the mesh, where it has no skin.
+    void add_mesh(std::size_t mesh, std::optional<std::size_t> node, const glm::dmat4& world);
+    void add_node(std::size_t node);
     void add_primitive(const GltfObject& mesh, const GltfObject& source, Primitive primitive,
-                       std::optional<std::size_t> node);
+                       std::optional<std::size_t> node, const glm::dmat4& world);
+    void choose_material(const GltfObject& source, Primitive& primitive);
     Vertices read_vertices(const GltfObject& attributes) const;
     void apply_morph_targets(const GltfObject& source, const std::vector<double>& weights,
                              Vertices& vertices) const;
     std::vector<double> morph_weights(const GltfObject& mesh, const GltfObject& source,
                                       std::optional<std::size_t> node) const;
-    std::vector<glm::dmat4> joint_matrices(std::size_t skin) const;
-    std::vector<glm::dmat4> blend_joints(const GltfObject& attributes, std::size_t skin,
-                                         std::size_t count) const;
     void place(const Vertices& vertices, const std::vector<glm::dmat4>& matrices,
                Primitive& primitive) const;
-    void read_uvs(const GltfObject& attributes, Primitive& primitive) const;
+    std::vector<Vec2> read_uv_map(const GltfObject& attributes, const UvLayout& layout,
+                                  std::size_t count) const;
+    void read_uvs(const GltfObject& attributes, Primitive& primitive);
     void read_colors(const GltfObject& attributes, Primitive& primitive) const;
     void read_triangles(const GltfObject& source, std::size_t mode, Primitive& primitive) const;
+    std::size_t most_vertices() const;
     void count_vertices(const GltfObject& source, std::size_t count);
 
     std::optional<std::size_t> accessor_of(const GltfObject& object, const char* key) const {
@@ -87,28 +98,26 @@ class GltfReader {
     GltfObject root_;
     NodeTree nodes_;
     Model model_;
+    std::optional<std::size_t> variant_;
+    std::vector<std::set<int>> variant_materials_;
     std::size_t vertex_count_ = 0;
-    bool uses_default_material_ = false;
+    std::vector<MaterialUse> uses_;  ///< of each material, then of the default one
 };
-
-void check_count(const GltfObject& attributes, const char* name, std::size_t count,
-                 std::size_t expected) {
-    if (count != expected) {
-        attributes.fail(fmt::format("{} has {} elements, POSITION {}", name, count, expected));
-    }
-}
 
 glm::dvec3 to_dvec3(const Accessor& accessor, std::size_t i) {
     return {accessor.value(i, 0), accessor.value(i, 1), accessor.value(i, 2)};
 }
 
 // A few nodes can repeat a mesh without end; what the file holds bounds what is taken.
-void GltfReader::count_vertices(const GltfObject& source, std::size_t count) {
+std::size_t GltfReader::most_vertices() const {
     std::size_t size_of_file = 0;
     for (const Bytes& buffer : document_->buffers)
         size_of_file += buffer.size();
-    const std::size_t limit =
-        std::min<std::size_t>(1 << 26, std::max<std::size_t>(1 << 20, 64 * size_of_file));
+    return std::min<std::size_t>(1 << 26, std::max<std::size_t>(1 << 20, 64 * size_of_file));
+}
+
+void GltfReader::count_vertices(const GltfObject& source, std::size_t count) {
+    const std::size_t limit = most_vertices();
     vertex_count_ += count;
     if (count > limit || vertex_count_ > limit) {
         source.fail(fmt::format("more than {} vertices in all", limit), "split the model");
@@ -170,63 +179,6 @@ void GltfReader::apply_morph_targets(const GltfObject& source, const std::vector
     }
 }
 
-std::vector<glm::dmat4> GltfReader::joint_matrices(std::size_t index) const {
-    const GltfObject skin = root_.item("skins", index);
-    const std::size_t count = skin.list_size("joints");
-    std::vector<glm::dmat4> matrices;
-    for (std::size_t j = 0; j < count; ++j) {
-        matrices.push_back(nodes_.world[skin.index_item("joints", j, nodes_.world.size())]);
-    }
-    if (const auto accessor = accessor_of(skin, "inverseBindMatrices")) {
-        const Accessor inverse = read_accessor(*document_, *accessor);
-        if (inverse.type != "MAT4" || inverse.count < count) {
-            skin.fail("inverseBindMatrices must be a MAT4 for each joint");
-        }
-        for (std::size_t j = 0; j < count; ++j) {
-            glm::dmat4 matrix;
-            for (int c = 0; c < 16; ++c)
-                matrix[c / 4][c % 4] = inverse.value(j, c);
-            matrices[j] = matrices[j] * matrix;
-        }
-    }
-    return matrices;
-}
-
-// One matrix a vertex: the weighted mean of its joints'.
-std::vector<glm::dmat4> GltfReader::blend_joints(const GltfObject& attributes, std::size_t skin,
-                                                 std::size_t count) const {
-    const std::vector<glm::dmat4> joints = joint_matrices(skin);
-    std::vector<glm::dmat4> blended(count, glm::dmat4(0.0));
-    std::vector<double> sums(count, 0.0);
-    for (int set = 0; attributes.has(fmt::format("JOINTS_{}", set).c_str()); ++set) {
-        const std::string joints_name = fmt::format("JOINTS_{}", set);
-        const std::string weights_name = fmt::format("WEIGHTS_{}", set);
-        const auto joints_index = accessor_of(attributes, joints_name.c_str());
-        const auto weights_index = accessor_of(attributes, weights_name.c_str());
-        if (!weights_index) attributes.fail(weights_name + " is missing");
-        const Accessor indices = read_vectors(*document_, *joints_index, 4, 4);
-        const Accessor weights = read_vectors(*document_, *weights_index, 4, 4);
-        check_count(attributes, joints_name.c_str(), indices.count, count);
-        check_count(attributes, weights_name.c_str(), weights.count, count);
-        for (std::size_t i = 0; i < count; ++i) {
-            for (int c = 0; c < 4; ++c) {
-                const double weight = weights.value(i, c);
-                if (weight == 0.0) continue;
-                const double joint = indices.raw(i, c);
-                if (!(joint >= 0.0) || joint >= static_cast<double>(joints.size())) {
-                    attributes.fail(fmt::format("joint {} of {}", joint, joints.size()));
-                }
-                blended[i] += weight * joints[static_cast<std::size_t>(joint)];
-                sums[i] += weight;
-            }
-        }
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        blended[i] = sums[i] > 0.0 ? blended[i] / sums[i] : glm::dmat4(1.0);
-    }
-    return blended;
-}
-
 // matrices: one for all vertices, or one a vertex.
 void GltfReader::place(const Vertices& vertices, const std::vector<glm::dmat4>& matrices,
                        Primitive& primitive) const {
@@ -261,23 +213,39 @@ void GltfReader::place(const Vertices& vertices, const std::vector<glm::dmat4>& 
     if (!all_normals) primitive.normals.clear();
 }
 
-void GltfReader::read_uvs(const GltfObject& attributes, Primitive& primitive) const {
-    const std::size_t materials = root_.list_size("materials");
-    UvLayout layout;
-    if (static_cast<std::size_t>(primitive.material) < materials) {
-        layout = material_uv_layout(
-            root_.item("materials", static_cast<std::size_t>(primitive.material)));
-    }
+std::vector<Vec2> GltfReader::read_uv_map(const GltfObject& attributes, const UvLayout& layout,
+                                          std::size_t count) const {
+    std::vector<Vec2> map;
     const std::string name = fmt::format("TEXCOORD_{}", layout.tex_coord);
     const auto index = accessor_of(attributes, name.c_str());
-    if (!index) return;
+    if (!index) return map;
     const Accessor uvs = read_vectors(*document_, *index, 2, 2);
-    check_count(attributes, name.c_str(), uvs.count, primitive.positions.size());
+    check_count(attributes, name.c_str(), uvs.count, count);
     for (std::size_t i = 0; i < uvs.count; ++i) {
         Vec2 uv(uvs.value(i, 0), uvs.value(i, 1));
         if (layout.is_transformed()) uv = layout.apply(uv);
         if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = Vec2(0.0f);
-        primitive.uvs.push_back(uv);
+        map.push_back(uv);
+    }
+    return map;
+}
+
+void GltfReader::read_uvs(const GltfObject& attributes, Primitive& primitive) {
+    const auto material = static_cast<std::size_t>(primitive.material);
+    std::vector<UvLayout> layouts(1);
+    if (material < root_.list_size("materials"))
+        layouts = material_uv_layouts(root_.item("materials", material));
+    MaterialUse& use = uses_[material];
+    ++use.primitives;
+    std::set<std::size_t> sets;
+    for (std::size_t k = 0; k < layouts.size(); ++k) {
+        std::vector<Vec2> map = read_uv_map(attributes, layouts[k], primitive.positions.size());
+        if (!map.empty() && sets.insert(layouts[k].tex_coord).second)
+            ++use.with_uv_map[layouts[k].tex_coord];
+        if (k == 0)
+            primitive.uvs = std::move(map);
+        else
+            primitive.further_uvs.push_back(std::move(map));
     }
 }
 
@@ -330,8 +298,21 @@ void GltfReader::read_triangles(const GltfObject& source, std::size_t mode,
     }
 }
 
+void GltfReader::choose_material(const GltfObject& source, Primitive& primitive) {
+    const std::size_t materials = root_.list_size("materials");
+    const std::size_t own = source.index("material", materials).value_or(materials);
+    std::size_t chosen = own;
+    for (std::size_t v = 0; v < variant_materials_.size(); ++v) {
+        const std::size_t material = material_in_variant(*document_, source, v).value_or(own);
+        variant_materials_[v].insert(static_cast<int>(material));
+        if (variant_ == v) chosen = material;
+    }
+    primitive.material = static_cast<int>(chosen);
+}
+
 void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
-                               Primitive primitive, std::optional<std::size_t> node) {
+                               Primitive primitive, std::optional<std::size_t> node,
+                               const glm::dmat4& world) {
     const std::size_t mode = source.integer("mode", 4);
     if (mode > 6) source.fail(fmt::format("mode {} is unknown", mode));
     const auto attributes = source.object("attributes");
@@ -339,19 +320,17 @@ void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
     const GltfObject position = root_.item("accessors", *accessor_of(*attributes, "POSITION"));
     count_vertices(source, position.integer("count"));
     if (needs_draco(*document_, source)) decode_draco_primitive(*document_, source);
-    const std::size_t materials = root_.list_size("materials");
-    const auto material = source.index("material", materials);
-    uses_default_material_ = uses_default_material_ || !material;
-    primitive.material = static_cast<int>(material.value_or(materials));
+    choose_material(source, primitive);
 
     Vertices vertices = read_vertices(*attributes);
     apply_morph_targets(source, morph_weights(mesh, source, node), vertices);
-    std::vector<glm::dmat4> matrices{node ? nodes_.world[*node] : glm::dmat4(1.0)};
+    std::vector<glm::dmat4> matrices{world};
     if (node && attributes->has("JOINTS_0")) {
         // The node's own transform does not count for a skinned mesh.
         const auto skin = root_.item("nodes", *node).index("skin", root_.list_size("skins"));
         if (skin && !vertices.positions.empty()) {
-            matrices = blend_joints(*attributes, *skin, vertices.positions.size());
+            matrices =
+                blend_joints(*document_, nodes_, *attributes, *skin, vertices.positions.size());
         }
     }
     place(vertices, matrices, primitive);
@@ -376,7 +355,8 @@ void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
     model_.primitives.push_back(std::move(primitive));
 }
 
-void GltfReader::add_mesh(std::size_t index, std::optional<std::size_t> node) {
+void GltfReader::add_mesh(std::size_t index, std::optional<std::size_t> node,
+                          const glm::dmat4& world) {
     const GltfObject mesh = root_.item("meshes", index);
     std::string name = mesh.text("name", "");
     if (node) name = root_.item("nodes", *node).text("name", name);
@@ -388,7 +368,26 @@ void GltfReader::add_mesh(std::size_t index, std::optional<std::size_t> node) {
         primitive.source_mesh = static_cast<int>(index);
         primitive.source_primitive = static_cast<int>(i);
         primitive.source_node = node ? static_cast<int>(*node) : -1;
-        add_primitive(mesh, mesh.item("primitives", i), std::move(primitive), node);
+        add_primitive(mesh, mesh.item("primitives", i), std::move(primitive), node, world);
+    }
+}
+
+void GltfReader::add_node(std::size_t node) {
+    const auto mesh = root_.item("nodes", node).index("mesh", root_.list_size("meshes"));
+    if (!mesh) return;
+    const auto instances = read_instances(*document_, nodes_, node);
+    if (!instances) return add_mesh(*mesh, node, nodes_.world[node]);
+    const std::size_t before = vertex_count_;
+    for (std::size_t i = 0; i < instances->size(); ++i) {
+        const std::size_t of_one = i == 0 ? 0 : (vertex_count_ - before) / i;
+        if (vertex_count_ + of_one > most_vertices()) {
+            warn(
+                fmt::format("{}: nodes[{}]: {} of its {} instances are shown, more would be too "
+                            "many vertices",
+                            document_->path.string(), node, i, instances->size()));
+            return;
+        }
+        add_mesh(*mesh, node, (*instances)[i]);
     }
 }
 
@@ -396,14 +395,15 @@ Model GltfReader::read() {
     check_required_extensions(*document_);
     nodes_ = read_nodes(*document_);
     const std::size_t meshes = root_.list_size("meshes");
-    for (const std::size_t node : nodes_.scene) {
-        if (const auto mesh = root_.item("nodes", node).index("mesh", meshes))
-            add_mesh(*mesh, node);
-    }
+    uses_.resize(root_.list_size("materials") + 1);
+    const std::vector<std::string> variants = variant_names(*document_);
+    variant_materials_.resize(variants.size());
+    for (const std::size_t node : nodes_.scene)
+        add_node(node);
     if (nodes_.world.empty()) {
         // A library of meshes.
         for (std::size_t mesh = 0; mesh < meshes; ++mesh)
-            add_mesh(mesh, std::nullopt);
+            add_mesh(mesh, std::nullopt, glm::dmat4(1.0));
     }
     if (model_.primitives.empty()) {
         throw InputError(
@@ -411,11 +411,14 @@ Model GltfReader::read() {
             fmt::format("a mesh with triangles was expected, found none in {} meshes", meshes),
             "export a model with triangles in its default scene");
     }
-    std::vector<bool> used(root_.list_size("materials") + 1, false);
-    for (const Primitive& primitive : model_.primitives)
-        used[primitive.material] = true;
-    read_gltf_materials(*document_, used, model_);
-    if (uses_default_material_) model_.materials.push_back(default_gltf_material());
+    read_gltf_materials(*document_, uses_, model_);
+    if (uses_.back().primitives > 0) model_.materials.push_back(default_gltf_material());
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+        const std::set<int>& materials = variant_materials_[v];
+        model_.variants.push_back({variants[v],
+                                   {materials.begin(), materials.lower_bound(static_cast<int>(
+                                                           model_.materials.size()))}});
+    }
     model_.name = document_->path.stem().string();
     model_.source = document_;
     return std::move(model_);
@@ -423,8 +426,8 @@ Model GltfReader::read() {
 
 }  // namespace
 
-Model read_gltf(const std::filesystem::path& path, const Bytes& bytes) {
-    return GltfReader(parse_gltf(path, bytes)).read();
+Model read_gltf(const std::filesystem::path& path, const Bytes& bytes, const std::string& variant) {
+    return GltfReader(parse_gltf(path, bytes), variant).read();
 }
 
 }  // namespace item3d

@@ -4,6 +4,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/io/gltf/make.h"
 #include "item3d/io/gltf/patch.h"
+#include "item3d/io/gltf/references.h"
 #include "item3d/io/image/formats.h"
 #include "item3d/io/resources.h"
 #include "item3d/io/text.h"
@@ -185,7 +186,7 @@ Bytes to_glb(const Json& json, const Bytes& binary, const SourceDocument& docume
 }
 
 void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit) {
-    const bool is_binary = to_lower(path.extension().string()) == ".glb";
+    const bool is_binary = to_lower(path.extension().string()) != ".gltf";
     const std::shared_ptr<const SourceDocument> document =
         model.source ? model.source : make_gltf(model, edit);
     const std::vector<PrimitiveUse> uses = primitive_uses(model, !model.source);
@@ -204,6 +205,7 @@ void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit)
     if (is_binary) embed_images(*document, builder);
     patch_gltf(*document, uses, edit, builder);
     builder.finish();
+    forget_unused_extensions(document->json, json);
 
     if (is_binary) {
         write_atomically(path,
