@@ -74,6 +74,44 @@ TEST(SampleTexture, BilinearWithEachWrapMode) {
                              at::tensor({0.f, .5f, 0.f, 3.f, 3.f, 1.f, 2.f, 2.5f})));
 }
 
+TEST(SampleTexture, NearestTakesTheTexelItself) {
+    const at::Tensor texture = at::arange(4).to(at::kFloat).reshape({1, 4, 1});
+    const std::vector<float> u{0.01f, 0.24f, 0.26f, 0.6f, 0.99f, 1.3f, -0.3f, 7.6f};
+    const at::Tensor uv = at::stack({at::tensor(u), at::full({8}, 0.3f)}, 1);
+    const auto values = [&](Wrap wrap) {
+        return sample_texture(texture, uv, wrap, wrap, true).squeeze(1);
+    };
+    EXPECT_TRUE(
+        at::equal(values(Wrap::repeat), at::tensor({0.f, 0.f, 1.f, 2.f, 3.f, 1.f, 2.f, 2.f})));
+    EXPECT_TRUE(at::equal(values(Wrap::clamp_to_edge),
+                          at::tensor({0.f, 0.f, 1.f, 2.f, 3.f, 3.f, 0.f, 3.f})));
+    EXPECT_TRUE(at::equal(values(Wrap::mirrored_repeat),
+                          at::tensor({0.f, 0.f, 1.f, 2.f, 3.f, 2.f, 1.f, 1.f})));
+}
+
+TEST(SampleTexture, NearestIsForMagnifiedTexelsAlone) {
+    const std::vector<at::Tensor> levels = texture_pyramid(at::rand({8, 8, 1}));
+    const at::Tensor uv = at::tensor({0.3f, 0.7f}).reshape({1, 2});
+    const auto value = [&](float pixel, bool nearest) {
+        const at::Tensor footprint = at::tensor({pixel, 0.f, 0.f, pixel}).reshape({1, 4});
+        return sample_texture(levels, uv, footprint, Wrap::repeat, Wrap::repeat, nearest)
+            .item<float>();
+    };
+    EXPECT_EQ(value(0.05f, true), levels[0][5][2].item<float>());
+    EXPECT_NE(value(0.05f, false), value(0.05f, true));
+    EXPECT_EQ(value(0.5f, true), value(0.5f, false));
+}
+
+TEST(SampleTexture, GradientOfANearestTexture) {
+    at::manual_seed(1);
+    const at::Tensor uv = at::randn({50, 2});
+    testing::check_gradient(
+        [&](const at::Tensor& x) {
+            return sample_texture(x, uv, Wrap::repeat, Wrap::repeat, true);
+        },
+        at::rand({6, 7, 3}), 1e-2f, 1e-4);
+}
+
 TEST(SampleTexture, SurvivesAbsurdCoordinates) {
     const at::Tensor texture = at::rand({3, 5, 2});
     const float infinity = std::numeric_limits<float>::infinity();
@@ -148,6 +186,82 @@ TEST(TexturedMaterials, EachPointHasItsOwnMaterial) {
     EXPECT_TRUE(at::equal(sampled.material.base_color.select(1, 2) > 0.5f, right));
     EXPECT_TRUE(at::equal(sampled.material.base_color.select(1, 0) > 0.5f, ~right));
     expect_rows(sampled.material.normal, {0, 0, 1});
+}
+
+/// The columns 0, 1 look at the left half of the second map, the base colour at all of the first.
+Model model_of_two_maps() {
+    Model model = quad_model();
+    Image columns(2, 1, 3);
+    for (int c = 0; c < 3; ++c)
+        columns.at(1, 0, c) = 1;
+    Material& material = model.materials[0];
+    material.base_color_texture = add_texture(model, columns);
+    model.textures[0].nearest = true;
+    material.occlusion_texture = material.base_color_texture;
+    material.occlusion_uvs = 1;
+    material.emissive_texture = material.base_color_texture;
+    material.emissive_factor = Vec3(1.0f);
+    material.emissive_uvs = 2;
+    std::vector<Vec2> left = model.primitives[0].uvs, turned = left;
+    for (Vec2& uv : left)
+        uv.x *= 0.5f;
+    for (Vec2& uv : turned)
+        uv = Vec2(uv.y, uv.x);
+    model.primitives[0].further_uvs = {left, turned};
+    return model;
+}
+
+TEST(TexturedMaterials, EachTextureLooksAtItsOwnUvMap) {
+    const auto expect_maps = [](const Sampled& sampled, const at::Tensor& here) {
+        const at::Tensor uv = sampled.surface.uv.index_select(0, here);
+        const auto rows = [&](const at::Tensor& values) { return values.index_select(0, here); };
+        const at::Tensor right = (uv.select(1, 0) > 0.5f).to(at::kFloat);
+        const at::Tensor low = (uv.select(1, 1) > 0.5f).to(at::kFloat);
+        EXPECT_TRUE(at::equal(rows(sampled.material.base_color).select(1, 0), right));
+        EXPECT_EQ(rows(sampled.material.orm).select(1, 0).abs().max().item<float>(), 0);
+        EXPECT_TRUE(at::equal(rows(sampled.material.emissive).select(1, 0), low));
+    };
+    Model model = model_of_two_maps();
+    const Sampled sampled = sample(model);
+    EXPECT_EQ(sampled.geometry.further_uvs.size(), 2u);
+    expect_maps(sampled, at::arange(sampled.surface.count()));
+
+    // Beside a material and a primitive that have one map.
+    Primitive plain = model.primitives[0];
+    plain.further_uvs.clear();
+    plain.material = 1;
+    for (Vec3& position : plain.positions)
+        position.x += 2;
+    model.primitives.push_back(plain);
+    model.materials.emplace_back();
+    const Sampled both = sample(model);
+    expect_maps(both, (both.surface.material == 0).nonzero().squeeze(1));
+}
+
+TEST(TexturedMaterials, UvMapsHaveFootprintsOfTheirOwn) {
+    const Model model = model_of_two_maps();
+    Sampled sampled = sample(model);
+    const std::vector<Camera> cameras{front_camera(3, 0.6f)};
+    const Raster raster = rasterize(sampled.geometry, cameras, 16, 16);
+    add_uv_footprints(sampled.geometry, raster, sampled.surface);
+    ASSERT_EQ(sampled.surface.further_uv_footprints.size(), 2u);
+    const at::Tensor half = sampled.surface.uv_footprint * at::tensor({0.5f, 1.f, 0.5f, 1.f});
+    EXPECT_TRUE(at::allclose(sampled.surface.further_uv_footprints[0], half, 1e-4, 1e-6));
+}
+
+TEST(TexturedMaterials, TangentsFollowTheUvMapOfTheNormalTexture) {
+    Model model = model_of_two_maps();
+    model.materials[0].normal_texture = 0;
+    model.materials[0].normal_uvs = 2;
+    const Geometry turned = Geometry::from_model(model);
+    // u grows where v of the first map does: downwards.
+    EXPECT_LT((turned.tangents[0].narrow(0, 0, 3) - at::tensor({0.f, -1.f, 0.f}))
+                  .abs()
+                  .max()
+                  .item<float>(),
+              1e-5);
+    EXPECT_TRUE(at::equal(turned.uvs[1], at::tensor({1.f, 1.f})));
+    EXPECT_TRUE(at::equal(turned.further_uvs[1][3], at::tensor({0.f, 0.f})));
 }
 
 TEST(TexturedMaterials, TangentsFollowTheTextureAndGreenPointsUp) {

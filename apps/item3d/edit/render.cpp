@@ -38,6 +38,7 @@ namespace fs = std::filesystem;
 
 struct RenderCommand : CommonOptions {
     std::string model;
+    std::string variant;
     std::string output;
     int views = 0;  ///< 0: one picture from the default camera
     std::string cameras;
@@ -276,7 +277,8 @@ void run_render(const RenderCommand& options, at::Device device) {
         throw UsageError("--occlusion is of --channel shaded alone");
     }
     const PictureSize size = parse_size(options.size);
-    const Model model = load_model(options.model, {.texture_folders = options.texture_folders});
+    const Model model = load_model(
+        options.model, {.texture_folders = options.texture_folders, .variant = options.variant});
     const std::vector<Camera> cameras = choose_cameras(options, model, size);
     const Destination destination = choose_destination(options, cameras.size());
     const Painter painter(options, model, device);
@@ -326,6 +328,8 @@ void add_render_command(CLI::App& app) {
         ->add_option("-o,--output", options->output,
                      "A .png or .exr file, or a folder for several pictures")
         ->required();
+    command->add_option("--variant", options->variant,
+                        "The look of this name, of a glTF that offers several");
     command->add_option("--views", options->views, "So many views around the model")
         ->check(CLI::Range(1, 10000));
     command->add_option("--cameras", options->cameras,

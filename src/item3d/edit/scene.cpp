@@ -1,6 +1,7 @@
 #include "item3d/edit/scene.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/load_networks.h"
 #include "item3d/field/atlas/shared_texels.h"
@@ -34,6 +35,15 @@ void check_looks(const EditRequest& request, const Model& model,
     }
 }
 
+void note_variants(const Model& model, const std::vector<int>& materials) {
+    if (model.variants.empty()) return;
+    const std::vector<std::string> changed = variants_with(model, materials, true);
+    const std::vector<std::string> left = variants_with(model, materials, false);
+    note(fmt::format("variants that change: {}; that stay as they are: {}",
+                     changed.empty() ? "none" : fmt::format("{}", fmt::join(changed, ", ")),
+                     left.empty() ? "none" : fmt::format("{}", fmt::join(left, ", "))));
+}
+
 }  // namespace
 
 EditScene load_scene(const EditRequest& request) {
@@ -53,15 +63,12 @@ EditScene load_scene(const EditRequest& request) {
                                                 low_memory, scene.from, scene.to})
                               .share();
     scene.hashing_weights = std::async(std::launch::async, hash_of_weights, request.prior).share();
-    scene.model = load_model(request.model, {.texture_folders = request.texture_folders});
+    scene.model = load_model(request.model,
+                             {.texture_folders = request.texture_folders, .variant = plan.variant});
     scene.materials = select_materials(scene.model, plan.material);
     check_looks(request, scene.model, scene.materials);
-    for (const int index : scene.materials) {
-        Material& material = scene.model.materials[static_cast<std::size_t>(index)];
-        if (material.unlit)
-            note("material '" + material.name + "' is unlit; edited, it is a surface in light");
-        material.unlit = false;
-    }
+    scene.losses = prepare_materials(scene.model, scene.materials, plan);
+    if (plan.edits_texture) note_variants(scene.model, scene.materials);
     scene.start = choose_start(plan, vocabulary, scene.model, scene.materials);
     scene.geometry = Geometry::from_model(scene.model, device);
     scene.sphere = bounding_sphere(scene.model);

@@ -4,6 +4,7 @@
 #include "item3d/edit/material_source.h"
 #include "item3d/edit/material_start.h"
 #include "item3d/edit/request.h"
+#include "item3d/edit/source_materials.h"
 #include "item3d/edit/views.h"
 #include "item3d/field/atlas/atlas.h"
 #include "item3d/networks/diffusion/diffusion_model.h"
@@ -13,6 +14,7 @@
 #include "item3d/scene/model.h"
 
 #include <future>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -23,9 +25,10 @@ struct EditScene {
     Model model;
     Geometry geometry;
     BoundingSphere sphere;
-    std::vector<int> materials;  ///< edited ones, indices into model.materials
-    MaterialStart start;         ///< and which channels are edited
-    Atlas atlas;                 ///< the UV maps that the result is baked into
+    std::vector<int> materials;            ///< edited ones, indices into model.materials
+    std::map<int, MaterialLosses> losses;  ///< of the edited materials in the file
+    MaterialStart start;                   ///< and which channels are edited
+    Atlas atlas;                           ///< the UV maps that the result is baked into
     std::unique_ptr<FieldSpace> space;
     std::unique_ptr<TexturedMaterials> textured;
     std::unique_ptr<MaterialSource> source;

@@ -73,6 +73,7 @@ struct EditSettings : PipelineExtras {
     std::vector<std::string> detail_words;
     int detail_views = 20;
     std::vector<std::string> material;
+    std::string variant;
     std::uint64_t seed = 0;
 };
 

@@ -158,6 +158,9 @@ std::vector<Setting> texture_rows() {
         setting("detail_views", &S::detail_views, between(1, 1000), "",
                 "Views that the detail stage paints"),
         setting("material", &S::material, "--material", "Edit only the materials of these names"),
+        setting("variant", &S::variant, "--variant",
+                "Edit and show the look of this name, of a glTF that offers several "
+                "(KHR_materials_variants)"),
         setting("seed", &S::seed, "--seed", "Another seed, another result"),
     };
 }

@@ -48,6 +48,8 @@ Surface surface_at(const Geometry& geometry, const at::Tensor& triangle,
     surface.normal = unit(interpolate(geometry.normals));
     surface.tangent = interpolate(geometry.tangents);
     surface.uv = interpolate(geometry.uvs);
+    for (const at::Tensor& further : geometry.further_uvs)
+        surface.further_uvs.push_back(interpolate(further));
     surface.color = interpolate(geometry.colors);
     surface.view = surface.normal;
     surface.material = geometry.triangle_material.index_select(0, triangle).to(at::kLong);

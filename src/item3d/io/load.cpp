@@ -21,6 +21,10 @@ Model read_model(const std::filesystem::path& path, const LoadOptions& options) 
                          "export it again");
     }
     if (text.starts_with("glTF") || extension == ".gltf") return read_gltf(path, bytes, options);
+    if (extension == ".obj" && !options.variant.empty()) {
+        throw InputError(path.string(), "has no variant '" + options.variant + "', it is an OBJ",
+                         "variants are a glTF's");
+    }
     if (extension == ".obj") return read_obj(path, bytes, options);
     if (extension == ".glb") {
         throw InputError(path.string(),

@@ -6,13 +6,17 @@
 #include "item3d/scene/model.h"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace item3d {
 
 struct LoadOptions {
     /// Folders beside the model's own that textures may be read from.
-    std::vector<std::filesystem::path> texture_folders;
+    std::vector<std::filesystem::path> texture_folders = {};
+    /// The name of one of Model::variants, which is shown instead of what the file shows by itself;
+    /// an InputError lists those that there are.
+    std::string variant = {};
 };
 
 /// glTF 2.0 (.glb, .gltf) or OBJ with MTL, by content and extension. A texture that cannot be read

@@ -32,7 +32,7 @@ void save_image(const std::filesystem::path& path, const Image& image, int bits_
 
 void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit) {
     const std::string extension = to_lower(path.extension().string());
-    if (extension == ".glb" || extension == ".gltf") {
+    if (extension == ".glb" || extension == ".gltf" || extension == ".vrm") {
         write_gltf(path, model, edit);
     } else if (extension == ".obj") {
         write_obj(path, model, edit);

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -32,6 +34,14 @@ struct MaterialEdit {
     bool keeps_orm_texels = false;
     /// base_color holds what vertex colours multiplied before, so primitives with it lose COLOR_0.
     bool includes_vertex_colors = true;
+    /// The material's occlusion texture stays as it is, whatever metallic_roughness holds.
+    bool keeps_occlusion = false;
+    /// The material does not emit any more.
+    bool removes_emission = false;
+    /// Alpha mode and factor become opaque.
+    bool makes_opaque = false;
+    /// Extensions of the material that go, by name.
+    std::vector<std::string> removed_extensions;
 };
 
 /// New UVs of one primitive: seams split vertices, so every vertex of the new primitive names the

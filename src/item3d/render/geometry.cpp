@@ -3,6 +3,8 @@
 #include "item3d/render/tangents.h"
 #include "item3d/render/topology.h"
 
+#include <algorithm>
+
 namespace item3d {
 namespace {
 
@@ -16,19 +18,39 @@ at::Tensor to_rows(const std::vector<T>& values, std::int64_t channels) {
     return tensor;
 }
 
+/// MikkTSpace's, by the UV map that the normal texture looks at, where the primitive has all that
+/// they need.
+void add_missing_tangents(const Model& model, Primitive& primitive) {
+    if (!primitive.tangents.empty()) return;
+    const auto material = static_cast<std::size_t>(primitive.material);
+    const int map = material < model.materials.size() ? model.materials[material].normal_uvs : 0;
+    std::vector<Vec2>* further = nullptr;
+    if (map > 0) {
+        if (static_cast<std::size_t>(map) > primitive.further_uvs.size()) return;
+        further = &primitive.further_uvs[static_cast<std::size_t>(map) - 1];
+    }
+    const std::size_t count = primitive.positions.size();
+    if ((further ? *further : primitive.uvs).size() != count || primitive.normals.size() != count)
+        return;
+    if (further) further->swap(primitive.uvs);
+    add_tangents(primitive);
+    if (further) further->swap(primitive.uvs);
+}
+
 }  // namespace
 
 Geometry Geometry::from_model(const Model& model, at::Device device) {
     std::vector<Vec3> positions, normals;
     std::vector<Vec4> tangents, colors;
     std::vector<Vec2> uvs;
+    std::size_t map_count = 0;
+    for (const Primitive& primitive : model.primitives)
+        map_count = std::max(map_count, primitive.further_uvs.size());
+    std::vector<std::vector<Vec2>> further_uvs(map_count);
     std::vector<std::int32_t> triangles, materials, primitives;
     for (std::size_t index = 0; index < model.primitives.size(); ++index) {
         Primitive primitive = model.primitives[index];
-        if (primitive.tangents.empty() && primitive.uvs.size() == primitive.positions.size() &&
-            primitive.normals.size() == primitive.positions.size()) {
-            add_tangents(primitive);
-        }
+        add_missing_tangents(model, primitive);
         const std::size_t count = primitive.positions.size();
         const std::int32_t first = static_cast<std::int32_t>(positions.size());
         const auto append = [&](auto& all, const auto& part, auto value) {
@@ -40,6 +62,9 @@ Geometry Geometry::from_model(const Model& model, at::Device device) {
         append(positions, primitive.positions, Vec3(0.0f));
         append(normals, primitive.normals, Vec3(0.0f));
         append(uvs, primitive.uvs, Vec2(0.0f));
+        primitive.further_uvs.resize(map_count);
+        for (std::size_t k = 0; k < map_count; ++k)
+            append(further_uvs[k], primitive.further_uvs[k], Vec2(0.0f));
         append(colors, primitive.colors, Vec4(1.0f));
         append(tangents, primitive.tangents, Vec4(0.0f));
         for (const std::uint32_t vertex : primitive.indices)
@@ -56,6 +81,8 @@ Geometry Geometry::from_model(const Model& model, at::Device device) {
     geometry.normals = to_rows(normals, 3);
     geometry.tangents = to_rows(tangents, 4);
     geometry.uvs = to_rows(uvs, 2);
+    for (const std::vector<Vec2>& further : further_uvs)
+        geometry.further_uvs.push_back(to_rows(further, 2).to(device));
     geometry.colors = to_rows(colors, 4);
     geometry.triangles = to_indices(triangles).reshape({-1, 3});
     geometry.triangle_material = to_indices(materials);

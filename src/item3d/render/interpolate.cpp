@@ -205,6 +205,14 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
                                                  &cuda::RenderTable::interpolate_surface,
                                                  parameters, count, 8192);
 
+    for (const at::Tensor& further : geometry.further_uvs) {
+        const at::NoGradGuard no_grad;
+        const at::Tensor map = checked(op, "further_uvs", further, real, {vertices, 2}, device);
+        surface.further_uvs.push_back(
+            Interpolate::apply(map, raster.positions_clip,
+                               InterpolateInput{triangles, barycentrics, triangle, surface.pixel}));
+    }
+
     const bool moves = positions.requires_grad() || raster.positions_clip.requires_grad();
     if (at::GradMode::is_enabled() && (moves || normals.requires_grad())) {
         const at::Tensor attributes = at::cat({positions, normals}, 1);
@@ -224,7 +232,10 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
     return surface;
 }
 
-at::Tensor uv_footprints(const Geometry& geometry, const Raster& raster, const Surface& surface) {
+namespace {
+
+at::Tensor footprints_of(const at::Tensor& map, const Geometry& geometry, const Raster& raster,
+                         const Surface& surface) {
     constexpr const char* op = "uv_footprints";
     constexpr auto real = at::kFloat;
     const at::Device device = operation_device(op, geometry.positions);
@@ -233,7 +244,7 @@ at::Tensor uv_footprints(const Geometry& geometry, const Raster& raster, const S
                                               real, {raster.views(), vertices, 4}, device);
     const at::Tensor triangles =
         checked(op, "triangles", geometry.triangles, at::kInt, {-1, 3}, device);
-    const at::Tensor uvs = checked(op, "uvs", geometry.uvs, real, {vertices, 2}, device);
+    const at::Tensor uvs = checked(op, "uvs", map, real, {vertices, 2}, device);
     const at::Tensor triangle =
         checked(op, "raster.triangle", raster.triangle, at::kInt, {-1, -1, -1}, device);
     const at::Tensor pixel = checked(op, "surface.pixel", surface.pixel, at::kLong, {-1}, device);
@@ -250,6 +261,19 @@ at::Tensor uv_footprints(const Geometry& geometry, const Raster& raster, const S
     dispatch<kernels::uv_footprint>(device, "uv_footprints", &cuda::RenderTable::uv_footprints,
                                     parameters, surface.count(), 4096);
     return footprint;
+}
+
+}  // namespace
+
+at::Tensor uv_footprints(const Geometry& geometry, const Raster& raster, const Surface& surface) {
+    return footprints_of(geometry.uvs, geometry, raster, surface);
+}
+
+void add_uv_footprints(const Geometry& geometry, const Raster& raster, Surface& surface) {
+    surface.uv_footprint = uv_footprints(geometry, raster, surface);
+    surface.further_uv_footprints.clear();
+    for (const at::Tensor& map : geometry.further_uvs)
+        surface.further_uv_footprints.push_back(footprints_of(map, geometry, raster, surface));
 }
 
 }  // namespace item3d

@@ -18,10 +18,12 @@ struct Surface {
     /// [P, 4] d(u, v) by a pixel to the right, then by one down (uv_footprints); undefined:
     /// textures are looked up at full resolution
     at::Tensor uv_footprint;
-    at::Tensor color;      ///< [P, 4] vertex colour
-    at::Tensor view;       ///< [P, 3] unit, from the surface to the camera
-    at::Tensor material;   ///< [P] int64 index into Model::materials
-    at::Tensor primitive;  ///< [P] int64 index into Model::primitives
+    std::vector<at::Tensor> further_uvs;            ///< [P, 2] each, of Geometry::further_uvs
+    std::vector<at::Tensor> further_uv_footprints;  ///< [P, 4] each; empty as uv_footprint is
+    at::Tensor color;                               ///< [P, 4] vertex colour
+    at::Tensor view;                                ///< [P, 3] unit, from the surface to the camera
+    at::Tensor material;                            ///< [P] int64 index into Model::materials
+    at::Tensor primitive;                           ///< [P] int64 index into Model::primitives
     std::int64_t count() const { return pixel.size(0); }
 };
 
@@ -31,5 +33,8 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
 /// How far UV coordinates change between pixels, for Surface::uv_footprint: [P, 4], exact for the
 /// triangle's plane.
 at::Tensor uv_footprints(const Geometry& geometry, const Raster& raster, const Surface& surface);
+
+/// Sets the surface's footprints of all its UV maps.
+void add_uv_footprints(const Geometry& geometry, const Raster& raster, Surface& surface);
 
 }  // namespace item3d

@@ -16,7 +16,7 @@ at::Tensor shade_layer(const Raster& raster, const Geometry& geometry,
                        const TexturedMaterials& materials, const EnvironmentLight& light,
                        const std::vector<Camera>& camera, const RenderOptions& options) {
     Surface surface = interpolate_surface(geometry, raster, camera);
-    surface.uv_footprint = uv_footprints(geometry, raster, surface);
+    add_uv_footprints(geometry, raster, surface);
     MaterialSample material = materials.sample(surface);
     if (options.occlusion) material = options.occlusion->shadowed(material, raster, surface);
     const at::Tensor radiance = shade(surface, material, light, options.shade);

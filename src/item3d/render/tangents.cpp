@@ -268,6 +268,8 @@ void add_tangents(Primitive& primitive) {
             repeat(primitive.positions);
             repeat(primitive.normals);
             repeat(primitive.uvs);
+            for (std::vector<Vec2>& uvs : primitive.further_uvs)
+                repeat(uvs);
             repeat(primitive.colors);
             primitive.tangents.push_back(corners[corner]);
             vertex = copy;

@@ -31,6 +31,7 @@ TextureWrap kernel_wrap(Wrap wrap) {
 struct SampleSettings {
     at::Tensor footprint;  ///< [P, 4] or undefined
     TextureWrap wrap_u, wrap_v;
+    bool nearest;
 };
 
 /// inputs: UV, then the levels.
@@ -41,6 +42,7 @@ TextureParameters texture_parameters(const tensor_list& inputs, const SampleSett
         settings.footprint.defined() ? settings.footprint.const_data_ptr<float>() : nullptr;
     p.wrap_u = settings.wrap_u;
     p.wrap_v = settings.wrap_v;
+    p.nearest = settings.nearest;
     p.level_count = static_cast<int>(inputs.size()) - 1;
     p.channels = static_cast<int>(inputs[1].size(2));
     std::int64_t first = 0;
@@ -94,13 +96,15 @@ struct SampleTexture : torch::autograd::Function<SampleTexture> {
         context->save_for_backward(saved);
         context->saved_data["wrap_u"] = static_cast<std::int64_t>(settings.wrap_u);
         context->saved_data["wrap_v"] = static_cast<std::int64_t>(settings.wrap_v);
+        context->saved_data["nearest"] = settings.nearest;
         return values;
     }
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         tensor_list inputs = context->get_saved_variables();
         const SampleSettings settings{
             inputs.back(), static_cast<TextureWrap>(context->saved_data["wrap_u"].toInt()),
-            static_cast<TextureWrap>(context->saved_data["wrap_v"].toInt())};
+            static_cast<TextureWrap>(context->saved_data["wrap_v"].toInt()),
+            context->saved_data["nearest"].toBool()};
         inputs.pop_back();
         const TextureParameters p = texture_parameters(inputs, settings);
         const at::Tensor gradient = gradients[0].contiguous();
@@ -186,7 +190,7 @@ std::vector<at::Tensor> texture_pyramid(const at::Tensor& texture) {
 }
 
 at::Tensor sample_texture(const std::vector<at::Tensor>& levels, const at::Tensor& uv_,
-                          const at::Tensor& footprint, Wrap wrap_u, Wrap wrap_v) {
+                          const at::Tensor& footprint, Wrap wrap_u, Wrap wrap_v, bool nearest) {
     constexpr const char* op = "sample_texture";
     ITEM3D_CHECK(!levels.empty() && levels.size() <= kernels::max_texture_levels &&
                      levels[0].dim() == 3 && levels[0].numel() > 0,
@@ -196,16 +200,16 @@ at::Tensor sample_texture(const std::vector<at::Tensor>& levels, const at::Tenso
     for (const at::Tensor& level : levels)
         inputs.push_back(
             checked(op, "texture", level, at::kFloat, {-1, -1, levels[0].size(2)}, device));
-    SampleSettings settings{{}, kernel_wrap(wrap_u), kernel_wrap(wrap_v)};
+    SampleSettings settings{{}, kernel_wrap(wrap_u), kernel_wrap(wrap_v), nearest};
     if (footprint.defined())
         settings.footprint = checked(op, "footprint", footprint.detach(), at::kFloat,
                                      {inputs[0].size(0), 4}, device);
     return SampleTexture::apply(at::TensorList(inputs), settings);
 }
 
-at::Tensor sample_texture(const at::Tensor& texture, const at::Tensor& uv, Wrap wrap_u,
-                          Wrap wrap_v) {
-    return sample_texture(std::vector<at::Tensor>{texture}, uv, {}, wrap_u, wrap_v);
+at::Tensor sample_texture(const at::Tensor& texture, const at::Tensor& uv, Wrap wrap_u, Wrap wrap_v,
+                          bool nearest) {
+    return sample_texture(std::vector<at::Tensor>{texture}, uv, {}, wrap_u, wrap_v, nearest);
 }
 
 }  // namespace item3d

@@ -17,10 +17,20 @@ namespace {
 struct MaterialTexture {
     std::vector<at::Tensor> levels;  ///< [H, W, C] and its mip levels; empty: none
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    bool nearest = false;
+    std::size_t map = 0;  ///< as Material has it: 0 Surface::uv, k Surface::further_uvs[k - 1]
 
     bool defined() const { return !levels.empty(); }
     at::Tensor at(const Surface& surface) const {
-        return sample_texture(levels, surface.uv, surface.uv_footprint, wrap_u, wrap_v);
+        if (map == 0)
+            return sample_texture(levels, surface.uv, surface.uv_footprint, wrap_u, wrap_v,
+                                  nearest);
+        ITEM3D_CHECK(map <= surface.further_uvs.size(),
+                     "TexturedMaterials: a surface with the UV maps of its model");
+        const auto& footprints = surface.further_uv_footprints;
+        return sample_texture(levels, surface.further_uvs[map - 1],
+                              footprints.empty() ? at::Tensor() : footprints[map - 1], wrap_u,
+                              wrap_v, nearest);
     }
 };
 
@@ -69,15 +79,17 @@ at::Tensor linear_texels(const Image& image, int channels, bool srgb) {
     return texels;
 }
 
-MaterialTexture load_texture(const Model& model, int index, int channels, bool srgb,
+MaterialTexture load_texture(const Model& model, int index, int map, int channels, bool srgb,
                              at::Device device) {
     MaterialTexture texture;
+    texture.map = static_cast<std::size_t>(map);
     if (index < 0 || index >= static_cast<int>(model.textures.size())) return texture;
     const Texture& source = model.textures[static_cast<std::size_t>(index)];
     if (source.image.empty()) return texture;
     texture.levels = texture_pyramid(linear_texels(source.image, channels, srgb).to(device));
     texture.wrap_u = source.wrap_u;
     texture.wrap_v = source.wrap_v;
+    texture.nearest = source.nearest;
     return texture;
 }
 
@@ -133,12 +145,16 @@ TexturedMaterials::TexturedMaterials(const Model& model, at::Device device) {
     state->unlit_orm = row({0, 1, 1}, device);
     for (const Material& material : model.materials) {
         MaterialTextures textures{material, FactorRows(material, device), {}, {}, {}, {}, {}};
-        textures.base_color = load_texture(model, material.base_color_texture, 4, true, device);
+        textures.base_color = load_texture(model, material.base_color_texture, 0, 4, true, device);
         textures.metallic_roughness =
-            load_texture(model, material.metallic_roughness_texture, 3, false, device);
-        textures.occlusion = load_texture(model, material.occlusion_texture, 3, false, device);
-        textures.normal = load_texture(model, material.normal_texture, 3, false, device);
-        textures.emissive = load_texture(model, material.emissive_texture, 3, true, device);
+            load_texture(model, material.metallic_roughness_texture,
+                         material.metallic_roughness_uvs, 3, false, device);
+        textures.occlusion = load_texture(model, material.occlusion_texture, material.occlusion_uvs,
+                                          3, false, device);
+        textures.normal =
+            load_texture(model, material.normal_texture, material.normal_uvs, 3, false, device);
+        textures.emissive =
+            load_texture(model, material.emissive_texture, material.emissive_uvs, 3, true, device);
         state->any_normal = state->any_normal || textures.normal.defined();
         state->any_emissive = state->any_emissive || textures.emits();
         state->any_alpha = state->any_alpha || textures.transparent();
@@ -219,6 +235,10 @@ MaterialSample TexturedMaterials::sample(const Surface& surface) const {
         part.color = surface.color.index_select(0, place);
         if (surface.uv_footprint.defined())
             part.uv_footprint = surface.uv_footprint.index_select(0, place);
+        for (const at::Tensor& further : surface.further_uvs)
+            part.further_uvs.push_back(further.index_select(0, place));
+        for (const at::Tensor& further : surface.further_uv_footprints)
+            part.further_uv_footprints.push_back(further.index_select(0, place));
         parts.push_back(state_->sample_one(state_->materials[m], part));
     }
     const at::Tensor order = at::argsort(at::cat(places));

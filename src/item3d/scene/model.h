@@ -29,10 +29,14 @@ struct Texture {
     /// The file that the image came from, where it goes into a new document as it is (PNG, JPEG,
     /// WebP, as `coding` says); null: none.
     std::shared_ptr<const std::vector<std::uint8_t>> file = {};
+    /// Magnified, each texel is a square of one colour (glTF's NEAREST), not blended with others.
+    bool nearest = false;
 };
 
 /// glTF's metallic-roughness material. Texture members index Model::textures, -1: none.
 /// Texture values multiply the factors. Factors are linear; base colour textures are sRGB.
+/// The members ..._uvs say which UV map of a primitive a texture looks at: 0 Primitive::uvs,
+/// k Primitive::further_uvs[k - 1]. The base colour's is always 0.
 struct Material {
     std::string name;
     Vec4 base_color_factor{1.0f};
@@ -43,19 +47,26 @@ struct Material {
     float roughness_factor = 1.0f;
     /// Roughness in G and metallic in B, linear.
     int metallic_roughness_texture = -1;
+    int metallic_roughness_uvs = 0;
     /// Occlusion in R, linear; may be the same texture as metallic_roughness_texture.
     int occlusion_texture = -1;
+    int occlusion_uvs = 0;
     float occlusion_strength = 1.0f;
     /// Tangent space, +Y up (OpenGL), linear.
     int normal_texture = -1;
+    int normal_uvs = 0;
     float normal_scale = 1.0f;
     Vec3 emissive_factor{0.0f};
     int emissive_texture = -1;
+    int emissive_uvs = 0;
     enum class Alpha { opaque, mask, blend } alpha = Alpha::opaque;
     float alpha_cutoff = 0.5f;
     bool double_sided = false;
     /// The base colour is shown as it is, in any light (KHR_materials_unlit).
     bool unlit = false;
+    /// Names of the file's extensions of this material that viewers may show and that are not read
+    /// (KHR_materials_transmission, ...).
+    std::vector<std::string> other_extensions;
 };
 
 /// The triangles of one primitive of one node, in world space (node transforms applied).
@@ -67,7 +78,11 @@ struct Primitive {
     std::vector<Vec3> normals;
     /// Empty when the file has none. glTF's convention: (0, 0) is the top left corner of the image.
     std::vector<Vec2> uvs;
-    /// Unit tangent and handedness in w; empty when the file has none.
+    /// Other UV maps that textures of its material look at, each as long as positions, or empty
+    /// where the file has none.
+    std::vector<std::vector<Vec2>> further_uvs;
+    /// Unit tangent and handedness in w; empty when the file has none. They follow the UV map of
+    /// the normal texture.
     std::vector<Vec4> tangents;
     /// Linear RGBA that multiplies the base colour; empty when the file has none.
     std::vector<Vec4> colors;
@@ -83,6 +98,12 @@ struct Primitive {
     bool is_mirrored = false;
 };
 
+/// One of the looks that a file offers (KHR_materials_variants).
+struct MaterialVariant {
+    std::string name;
+    std::vector<int> materials;  ///< that primitives have in it, rising; into Model::materials
+};
+
 class SourceDocument;
 
 struct Model {
@@ -93,6 +114,9 @@ struct Model {
     /// What was taken off the positions of the file (far_origin.h); zero for all but models far
     /// from their origin. Writers add it again, in double precision.
     glm::dvec3 origin{0.0};
+    /// Empty where the file has none. Primitives have the materials of the one that was chosen,
+    /// else those that they have without a variant.
+    std::vector<MaterialVariant> variants;
     /// What was loaded, for writing an edited copy that keeps all else. Null for made models.
     std::shared_ptr<const SourceDocument> source;
 

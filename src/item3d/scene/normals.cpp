@@ -115,6 +115,8 @@ std::vector<std::uint32_t> make_flat(Primitive& primitive) {
     };
     gather(primitive.positions);
     gather(primitive.uvs);
+    for (std::vector<Vec2>& uvs : primitive.further_uvs)
+        gather(uvs);
     gather(primitive.colors);
     primitive.tangents.clear();
     primitive.normals.clear();

@@ -55,10 +55,11 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
     const BakeScene bake_scene{scene.model, scene.geometry, *scene.textured, *scene.space,
                                scene.atlas};
     ModelEdit edit = bake(bake_scene, state.fitted, state.field, options);
+    apply_losses(scene.losses, edit);
     choose_codings(scene.model, request.plan.texture_format, edit);
 
     EditedModel edited;
-    const auto path = request.output / "model.glb";
+    const auto path = request.output / model_file_name(request);
     save_model(path, scene.model, edit);
     make_output_folder(request.output / "textures");
     FileNames names;
@@ -77,12 +78,19 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
         save_texture(request, scene, name, "normal", "Normal", material_edit.normal,
                      material_edit.normal_coding, source.normal_texture, bits, edited.textures);
     }
-    edited.model = load_model(path);
+    edited.model = load_model(path, {.variant = request.plan.variant});
     move_origin(edited.model, scene.model.origin);
     return edited;
 }
 
 }  // namespace
+
+std::string model_file_name(const EditRequest& request) {
+    std::string extension = request.model.extension().string();
+    for (char& c : extension)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".vrm" ? "model.vrm" : "model.glb";
+}
 
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state) {
     const at::NoGradGuard no_grad;
@@ -90,7 +98,7 @@ EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, Ed
     if (request.plan.edits_texture) {
         edited = bake_textures(request, scene, state);
     } else {
-        save_lit_model(request.output / "model.glb", scene.model);
+        save_lit_model(request.output / model_file_name(request), scene.model);
         edited.model = scene.model;
     }
     if (state.light) {

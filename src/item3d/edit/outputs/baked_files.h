@@ -9,6 +9,7 @@
 #include "item3d/scene/model.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace item3d {
@@ -19,6 +20,9 @@ struct EditedModel {
     std::vector<TexturePair> textures;
     std::optional<Image> light;  ///< the new one, where the light was optimised
 };
+
+/// "model.glb", or "model.vrm" for an avatar.
+std::string model_file_name(const EditRequest& request);
 
 /// Writes model.glb and textures/; where the texture is not edited, model.glb alone, with all its
 /// bytes. Where the light is, light.hdr and light.exr.

@@ -93,6 +93,10 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
                     {"seconds", seconds_json(times)},
                     {"seconds_per_iteration", iteration_json(iteration_times)},
                     {"peak_memory_bytes", peak_memory_bytes()}};
+    if (!scene.model.variants.empty() && plan.edits_texture) {
+        summary["variants"] = {{"changed", variants_with(scene.model, scene.materials, true)},
+                               {"left", variants_with(scene.model, scene.materials, false)}};
+    }
     if (pictures.clip) {
         json clip = pictures.clip->mean;
         clip["model"] = request.clip.string();
@@ -232,7 +236,8 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     if (!state.adjustment.failure.empty())
         report.warnings.push_back("The captioner was not asked to the end: " +
                                   state.adjustment.failure);
-    report.files = {{"model.glb", "model.glb"},
+    const std::string model_file = model_file_name(request);
+    report.files = {{model_file, model_file},
                     {"edit.json", "edit.json"},
                     {"turntable.webp", "turntable.webp"},
                     {"before.png", "before.png"},

@@ -251,6 +251,8 @@ Primitive apply(const PrimitiveEdit& edit, const Primitive& primitive) {
     gather(result.positions, primitive.positions);
     gather(result.normals, primitive.normals);
     gather(result.colors, primitive.colors);
+    for (std::size_t k = 0; k < result.further_uvs.size(); ++k)
+        gather(result.further_uvs[k], primitive.further_uvs[k]);
     result.tangents.clear();
     result.uvs = edit.uvs;
     result.indices = edit.indices;

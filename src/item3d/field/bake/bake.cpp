@@ -81,9 +81,9 @@ class MaterialBaker {
                 std::max(1, static_cast<int>(std::lround(own->image.height * scale)))};
     }
     /// The source image if its texels are the baked image's texels.
-    const Image* texels_of(int texture_index, Size size) const {
+    const Image* texels_of(int texture_index, int uvs, Size size) const {
         const Texture* own = texture(texture_index);
-        const bool same = own != nullptr && is_own_ && own->image.width == size.first &&
+        const bool same = own != nullptr && is_own_ && uvs == 0 && own->image.width == size.first &&
                           own->image.height == size.second;
         return same ? &own->image : nullptr;
     }
@@ -117,6 +117,7 @@ class MaterialBaker {
     bool has_vertex_colors_ = false, has_vertex_alpha_ = false;
     bool wants_base_color_ = false, wants_orm_ = false, wants_normal_ = false;
     bool normal_changed_ = false;
+    bool keeps_occlusion_ = false;
     Size base_color_size_, orm_size_, normal_size_;
     Slot base_color_, orm_, normal_;
     /// Source texels to copy; null: samples are used.
@@ -133,10 +134,14 @@ void MaterialBaker::plan() {
     // Tangent space needs a UV map in the source: without one the field's normals mean nothing.
     wants_normal_ = edited.normal && has_uvs_;
     base_color_size_ = slot_size(material_.base_color_texture);
+    // Occlusion with a UV map of its own stays in its own picture: the others may repeat.
+    keeps_occlusion_ =
+        material_.occlusion_texture >= 0 && material_.occlusion_uvs != 0 && !edited.occlusion;
     // One image takes two slots' channels; it has the texels of one that must not change.
-    const bool occlusion_rules = material_.metallic_roughness_texture < 0 ||
-                                 (material_.occlusion_texture >= 0 && !edited.occlusion &&
-                                  edited.roughness && edited.metallic);
+    const bool occlusion_rules =
+        !keeps_occlusion_ && (material_.metallic_roughness_texture < 0 ||
+                              (material_.occlusion_texture >= 0 && !edited.occlusion &&
+                               edited.roughness && edited.metallic));
     orm_size_ = slot_size(occlusion_rules ? material_.occlusion_texture
                                           : material_.metallic_roughness_texture);
     normal_size_ = slot_size(material_.normal_texture);
@@ -146,7 +151,7 @@ void MaterialBaker::plan() {
 }
 
 void MaterialBaker::start_base_color() {
-    base_color_texels_ = texels_of(material_.base_color_texture, base_color_size_);
+    base_color_texels_ = texels_of(material_.base_color_texture, 0, base_color_size_);
     if (has_vertex_colors_ || has_vertex_alpha_) base_color_texels_ = nullptr;
     const Texture* source = texture(material_.base_color_texture);
     // Without, the alpha factor stays a factor.
@@ -175,13 +180,15 @@ void MaterialBaker::start_base_color() {
 void MaterialBaker::start_orm() {
     const auto [width, height] = orm_size_;
     orm_.open(width, height, 3);
-    orm_texels_ = texels_of(material_.metallic_roughness_texture, orm_size_);
-    occlusion_texels_ = texels_of(material_.occlusion_texture, orm_size_);
+    orm_texels_ = texels_of(material_.metallic_roughness_texture, material_.metallic_roughness_uvs,
+                            orm_size_);
+    occlusion_texels_ = texels_of(material_.occlusion_texture, material_.occlusion_uvs, orm_size_);
     if (orm_texels_ != nullptr && orm_texels_->channels < 3) orm_texels_ = nullptr;
     // Where the material has no occlusion red is 1: other values would switch it on.
-    const bool fills_occlusion = occlusion_texels_ == nullptr && material_.occlusion_texture >= 0;
+    const bool fills_occlusion =
+        occlusion_texels_ == nullptr && material_.occlusion_texture >= 0 && !keeps_occlusion_;
     orm_.filled_channels = (fills_occlusion ? 1u : 0u) | (orm_texels_ != nullptr ? 0u : 6u);
-    const float strength = material_.occlusion_strength;
+    const float strength = keeps_occlusion_ ? 1.0f : material_.occlusion_strength;
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             float& occlusion = orm_.image.at(x, y, 0);
@@ -197,7 +204,7 @@ void MaterialBaker::start_orm() {
 void MaterialBaker::start_normal() {
     const auto [width, height] = normal_size_;
     normal_.open(width, height, 3);
-    normal_texels_ = texels_of(material_.normal_texture, normal_size_);
+    normal_texels_ = texels_of(material_.normal_texture, material_.normal_uvs, normal_size_);
     if (normal_texels_ != nullptr &&
         (normal_texels_->channels < 3 || material_.normal_scale != 1.0f)) {
         normal_texels_ = nullptr;
@@ -248,6 +255,7 @@ void MaterialBaker::write_orm(const TexelValue& texel) {
     for (int c = 0; c < 3; ++c) {
         float& value = orm_.image.at(texel.x, texel.y, c);
         const bool copied = c == 0 ? occlusion_texels_ != nullptr : orm_texels_ != nullptr;
+        if (c == 0 && keeps_occlusion_) continue;
         if (!copied) value = texel.source.orm[c];
         const float change = texel.now.orm[c] - texel.fitted.orm[c];
         if (!edited[c] || change == 0.0f) continue;
@@ -327,6 +335,7 @@ MaterialEdit MaterialBaker::run(NeuralTexture& fitted, NeuralTexture& now, Progr
     const BakedChannels& edited = options_.channels;
     edit.keeps_orm_texels = (occlusion_texels_ != nullptr && !edited.occlusion) ||
                             (orm_texels_ != nullptr && !(edited.roughness && edited.metallic));
+    edit.keeps_occlusion = keeps_occlusion_;
     edit.includes_vertex_colors = has_vertex_colors_ || has_vertex_alpha_;
     edit.bits_per_channel = edit.bits_per_channel > 8 ? 16 : 8;
     return edit;

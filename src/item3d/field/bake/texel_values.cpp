@@ -40,13 +40,17 @@ TexelEvaluator::TexelEvaluator(const BakeScene& scene, int material, int width, 
                            wrap_of(scene.model, material));
     if (scene.atlas.shared.count(material) != 0) claim_texels(raster_, triangles_);
     if (samples_ == 1) widen(raster_);
-    if (needs_normals && !scene.atlas.is_own(material)) {
+    // The source's normals may be in the tangent space of another UV map than the atlas's.
+    const bool moves = !scene.atlas.is_own(material) ||
+                       scene.model.materials[static_cast<std::size_t>(material)].normal_uvs != 0;
+    if (needs_normals && moves) {
         Model remade;
         for (std::size_t i = 0; i < scene.model.primitives.size(); ++i) {
             const auto edit = scene.atlas.primitives.find(static_cast<int>(i));
             const Primitive& primitive = scene.model.primitives[i];
             remade.primitives.push_back(
                 edit == scene.atlas.primitives.end() ? primitive : apply(edit->second, primitive));
+            if (primitive.material == material) remade.primitives.back().tangents.clear();
         }
         atlas_geometry_ = Geometry::from_model(remade, scene.geometry.positions.device());
     }

@@ -327,24 +327,4 @@ void match_draco(const Json& original, Json& primitive) {
 }
 
 // A viewer without Draco may show the model then.
-void forget_unused_draco(Json& json) {
-    for (const Json& mesh : json["meshes"]) {
-        for (const Json& primitive : mesh["primitives"]) {
-            if (has_draco(primitive)) return;
-        }
-    }
-    for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
-        if (!json.contains(key)) continue;
-        Json kept = Json::array();
-        for (const Json& name : json[key]) {
-            if (name != draco_extension) kept.push_back(name);
-        }
-        if (kept.empty()) {
-            json.erase(key);
-        } else {
-            json[key] = std::move(kept);
-        }
-    }
-}
-
 }  // namespace item3d

@@ -21,7 +21,4 @@ void decode_draco_primitive(SourceDocument& document, const GltfObject& primitiv
 /// the extension agree with those of the primitive, which was `original` before.
 void match_draco(const Json& original, Json& primitive);
 
-/// Takes the Draco extension off the document's lists when no primitive has it any more.
-void forget_unused_draco(Json& json);
-
 }  // namespace item3d

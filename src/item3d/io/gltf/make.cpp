@@ -62,18 +62,24 @@ class GltfMaker {
         if (found != textures_.end()) return found->second;
         const Texture& source = model_.textures[static_cast<std::size_t>(index)];
         int sampler = -1;
-        if (source.wrap_u != Wrap::repeat || source.wrap_v != Wrap::repeat) {
+        if (source.wrap_u != Wrap::repeat || source.wrap_v != Wrap::repeat || source.nearest) {
             const auto number = [](Wrap wrap) {
                 return wrap == Wrap::repeat ? 10497 : wrap == Wrap::mirrored_repeat ? 33648 : 33071;
             };
-            sampler = static_cast<int>(
-                append(json_, "samplers",
-                       Json{{"wrapS", number(source.wrap_u)}, {"wrapT", number(source.wrap_v)}}));
+            Json modes{{"wrapS", number(source.wrap_u)}, {"wrapT", number(source.wrap_v)}};
+            if (source.nearest) modes["magFilter"] = 9728;
+            sampler = static_cast<int>(append(json_, "samplers", std::move(modes)));
         }
         const ImageEncoding encoding = source.file ? source.coding.encoding : ImageEncoding::png;
         return textures_[index] = builder_.add_texture(
                    source.file ? *source.file : encode_png(source.image, source.bits_per_channel),
                    encoding, source.name, sampler);
+    }
+
+    Json texture_info(int index, int uvs) {
+        Json info{{"index", texture(index)}};
+        if (uvs > 0) info["texCoord"] = uvs;
+        return info;
     }
 
     // The texture goes in unless there is none, or the edit brings another.
@@ -94,24 +100,26 @@ class GltfMaker {
         pbr["roughnessFactor"] = material.roughness_factor;
         if (wants(material.metallic_roughness_texture, new_orm)) {
             pbr["metallicRoughnessTexture"] =
-                Json{{"index", texture(material.metallic_roughness_texture)}};
+                texture_info(material.metallic_roughness_texture, material.metallic_roughness_uvs);
         }
         Json json = Json::object();
         if (!material.name.empty()) json["name"] = material.name;
         json["pbrMetallicRoughness"] = std::move(pbr);
         if (wants(material.normal_texture, edit && edit->normal)) {
-            json["normalTexture"] = Json{{"index", texture(material.normal_texture)}};
+            json["normalTexture"] = texture_info(material.normal_texture, material.normal_uvs);
             if (material.normal_scale != 1.0f)
                 json["normalTexture"]["scale"] = material.normal_scale;
         }
         if (wants(material.occlusion_texture, new_orm)) {
-            json["occlusionTexture"] = Json{{"index", texture(material.occlusion_texture)}};
+            json["occlusionTexture"] =
+                texture_info(material.occlusion_texture, material.occlusion_uvs);
             if (material.occlusion_strength != 1.0f) {
                 json["occlusionTexture"]["strength"] = material.occlusion_strength;
             }
         }
         if (wants(material.emissive_texture, false)) {
-            json["emissiveTexture"] = Json{{"index", texture(material.emissive_texture)}};
+            json["emissiveTexture"] =
+                texture_info(material.emissive_texture, material.emissive_uvs);
         }
         if (material.emissive_factor != Vec3(0.0f)) {
             const float strength =
@@ -151,8 +159,9 @@ class GltfMaker {
     // Texture coordinates that an edit replaces stay only where a texture still looks at them.
     std::vector<Vec2> uvs_of(int index, const Primitive& primitive) const {
         const bool is_needed = has_textures_left(primitive.material);
-        if (edit_.primitives.contains(index) && !is_needed) return {};
-        if (primitive.uvs.empty() && is_needed)
+        const bool is_first_of_many = !primitive.further_uvs.empty();
+        if (edit_.primitives.contains(index) && !is_needed && !is_first_of_many) return {};
+        if (primitive.uvs.empty() && (is_needed || is_first_of_many))
             return std::vector<Vec2>(primitive.positions.size());
         return primitive.uvs;
     }
@@ -171,6 +180,12 @@ class GltfMaker {
         }
         if (const std::vector<Vec2> uvs = uvs_of(index, primitive); !uvs.empty()) {
             attributes["TEXCOORD_0"] = builder_.add_floats(floats_of(uvs), 2);
+        }
+        for (std::size_t k = 0; k < primitive.further_uvs.size(); ++k) {
+            std::vector<Vec2> uvs = primitive.further_uvs[k];
+            uvs.resize(primitive.positions.size(), Vec2(0.0f));
+            attributes["TEXCOORD_" + std::to_string(k + 1)] =
+                builder_.add_floats(floats_of(uvs), 2);
         }
         if (!primitive.colors.empty()) {
             std::vector<Vec4> colors = primitive.colors;

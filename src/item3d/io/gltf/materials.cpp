@@ -2,8 +2,12 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/io/gltf/specular_glossiness.h"
 #include "item3d/io/gltf/texture_source.h"
+#include "item3d/io/gltf/uv_layouts.h"
 #include "item3d/io/resources.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,32 +16,9 @@ namespace item3d {
 namespace {
 
 constexpr const char* specular_glossiness = "KHR_materials_pbrSpecularGlossiness";
-
-std::optional<GltfObject> extension(const GltfObject& object, const char* name) {
-    const auto extensions = object.object("extensions");
-    return extensions ? extensions->object(name) : std::nullopt;
-}
-
-std::optional<GltfObject> child(const std::optional<GltfObject>& object, const char* name) {
-    return object ? object->object(name) : std::nullopt;
-}
-
-/// The texture infos of a material by what they are for.
-struct TextureSlots {
-    std::optional<GltfObject> base_color, metallic_roughness, normal, occlusion, emissive;
-
-    explicit TextureSlots(const GltfObject& material)
-        : base_color(child(material.object("pbrMetallicRoughness"), "baseColorTexture")),
-          metallic_roughness(
-              child(material.object("pbrMetallicRoughness"), "metallicRoughnessTexture")),
-          normal(material.object("normalTexture")),
-          occlusion(material.object("occlusionTexture")),
-          emissive(material.object("emissiveTexture")) {
-        if (!material.has("pbrMetallicRoughness")) {
-            base_color = child(extension(material, specular_glossiness), "diffuseTexture");
-        }
-    }
-};
+constexpr std::string_view read_extensions[] = {"KHR_materials_unlit",
+                                                "KHR_materials_emissive_strength",
+                                                "KHR_materials_pbrSpecularGlossiness"};
 
 Vec4 to_vec4(const std::vector<double>& v) {
     return Vec4(v[0], v[1], v[2], v[3]);
@@ -62,7 +43,8 @@ class MaterialReader {
     MaterialReader(const SourceDocument& document, Model& model)
         : document_(document), root_(root_of(document)), model_(model) {}
 
-    Material read(const GltfObject& source, bool with_textures) {
+    /// use: without primitives, textures are left out.
+    Material read(const GltfObject& source, const MaterialUse& use) {
         Material material;
         material.name = source.text("name", "");
         read_factors(source, material);
@@ -71,8 +53,19 @@ class MaterialReader {
         if (alpha == "BLEND") material.alpha = Material::Alpha::blend;
         material.alpha_cutoff = static_cast<float>(source.number("alphaCutoff", 0.5));
         material.double_sided = source.boolean("doubleSided", false);
-        material.unlit = extension(source, "KHR_materials_unlit").has_value();
-        if (with_textures) read_textures(source, material);
+        material.unlit = find_extension(source, "KHR_materials_unlit").has_value();
+        if (use.primitives > 0) read_textures(source, use, material);
+        if (!source.has("pbrMetallicRoughness")) {
+            if (const auto old = find_extension(source, specular_glossiness))
+                convert_glossiness(source, *old, use, material);
+        }
+        if (const auto extensions = source.object("extensions")) {
+            for (const auto& [name, value] : extensions->json().items()) {
+                if (std::find(std::begin(read_extensions), std::end(read_extensions), name) ==
+                    std::end(read_extensions))
+                    material.other_extensions.push_back(name);
+            }
+        }
         return material;
     }
 
@@ -84,7 +77,7 @@ class MaterialReader {
             }
             material.metallic_factor = unit(pbr->number("metallicFactor", 1.0));
             material.roughness_factor = unit(pbr->number("roughnessFactor", 1.0));
-        } else if (const auto old = extension(source, specular_glossiness)) {
+        } else if (const auto old = find_extension(source, specular_glossiness)) {
             if (const auto factor = old->numbers("diffuseFactor", 4); !factor.empty()) {
                 material.base_color_factor = to_vec4(factor);
             }
@@ -94,32 +87,34 @@ class MaterialReader {
         if (const auto factor = source.numbers("emissiveFactor", 3); !factor.empty()) {
             material.emissive_factor = Vec3(factor[0], factor[1], factor[2]);
         }
-        if (const auto strength = extension(source, "KHR_materials_emissive_strength")) {
+        if (const auto strength = find_extension(source, "KHR_materials_emissive_strength")) {
             material.emissive_factor *=
                 static_cast<float>(strength->number("emissiveStrength", 1.0));
         }
     }
 
-    void read_textures(const GltfObject& source, Material& material) {
+    void read_textures(const GltfObject& source, const MaterialUse& use, Material& material) {
         const TextureSlots slots(source);
-        const UvLayout layout = material_uv_layout(source);
-        const auto read_slot = [&](const std::optional<GltfObject>& info) {
-            if (!info) return -1;
-            if (read_uv_layout(*info) != layout) {
-                warn(document_.path.string() + ": " + info->where() +
-                     " uses other texture coordinates than the material's first texture and is not "
-                     "shown");
-                return -1;
-            }
-            return read_texture(*info);
+        const std::vector<UvLayout> layouts = material_uv_layouts(source);
+        const auto read_slot = [&](const std::optional<GltfObject>& info, int& texture, int& uvs) {
+            if (!info) return;
+            const UvLayout layout = read_uv_layout(*info);
+            if (!has_uv_map(*info, layout, use)) return;
+            texture = read_texture(*info);
+            uvs = static_cast<int>(std::find(layouts.begin(), layouts.end(), layout) -
+                                   layouts.begin());
         };
-        material.base_color_texture = read_slot(slots.base_color);
+        int base_color_uvs = 0;
+        read_slot(slots.base_color, material.base_color_texture, base_color_uvs);
         if (slots.base_color && material.base_color_texture < 0)
             material.missing_base_color = picture_name(*slots.base_color);
-        material.metallic_roughness_texture = read_slot(slots.metallic_roughness);
-        material.normal_texture = read_slot(slots.normal);
-        material.occlusion_texture = read_slot(slots.occlusion);
-        material.emissive_texture = read_slot(slots.emissive);
+        if (source.has("pbrMetallicRoughness")) {
+            read_slot(slots.metallic_roughness, material.metallic_roughness_texture,
+                      material.metallic_roughness_uvs);
+        }
+        read_slot(slots.normal, material.normal_texture, material.normal_uvs);
+        read_slot(slots.occlusion, material.occlusion_texture, material.occlusion_uvs);
+        read_slot(slots.emissive, material.emissive_texture, material.emissive_uvs);
         if (slots.normal) {
             material.normal_scale = static_cast<float>(slots.normal->number("scale", 1.0));
         }
@@ -137,6 +132,64 @@ class MaterialReader {
         const GltfObject object = root_.item("images", *image);
         const std::string uri = object.text("uri", "");
         return uri.empty() || is_data_uri(uri) ? object.text("name", object.where()) : uri;
+    }
+
+    // Replaces base colour, metallic and roughness by what the older model's specular colour makes
+    // of them. Files without one mean a dielectric, though its default is white.
+    void convert_glossiness(const GltfObject& source, const GltfObject& old, const MaterialUse& use,
+                            Material& material) {
+        const auto info = old.object("specularGlossinessTexture");
+        const auto factor = old.numbers("specularFactor", 3);
+        if (factor.empty() && !info) return;
+        SpecularGlossiness values;
+        values.diffuse_factor = material.base_color_factor;
+        values.glossiness_factor = unit(old.number("glossinessFactor", 1.0));
+        if (!factor.empty()) values.specular_factor = Vec3(factor[0], factor[1], factor[2]);
+        int texture = -1;
+        if (info && use.primitives > 0) {
+            if (read_uv_layout(*info) != material_uv_layout(source) &&
+                material.base_color_texture >= 0) {
+                warn(document_.path.string() + ": " + info->where() +
+                     " looks at other texture coordinates than the diffuse texture; its factors "
+                     "are used");
+            } else if (has_uv_map(*info, read_uv_layout(*info), use)) {
+                texture = read_texture(*info);
+            }
+        }
+        const auto picture = [&](int index) {
+            return index < 0 ? nullptr : &model_.textures[static_cast<std::size_t>(index)].image;
+        };
+        values.diffuse = picture(material.base_color_texture);
+        values.specular_glossiness = picture(texture);
+        MetallicRoughness converted = to_metallic_roughness(values);
+        material.base_color_factor = converted.base_color_factor;
+        material.metallic_factor = converted.metallic_factor;
+        material.roughness_factor = converted.roughness_factor;
+        const int like = material.base_color_texture >= 0 ? material.base_color_texture : texture;
+        const auto add = [&](std::optional<Image>& image, int& slot) {
+            if (!image) return;
+            Texture made = model_.textures[static_cast<std::size_t>(like)];
+            made.image = std::move(*image);
+            model_.textures.push_back(std::move(made));
+            slot = static_cast<int>(model_.textures.size()) - 1;
+        };
+        add(converted.base_color, material.base_color_texture);
+        add(converted.metallic_roughness, material.metallic_roughness_texture);
+    }
+
+    // Warns of texture coordinates that a texture looks at and meshes do not have.
+    bool has_uv_map(const GltfObject& info, const UvLayout& layout, const MaterialUse& use) const {
+        const auto found = use.with_uv_map.find(layout.tex_coord);
+        const std::size_t count = found == use.with_uv_map.end() ? 0 : found->second;
+        if (count == use.primitives) return true;
+        const std::string place = fmt::format(
+            "{}: {} looks at TEXCOORD_{}", document_.path.string(), info.where(), layout.tex_coord);
+        if (count == 0)
+            warn(place + ", which its meshes do not have; the material's factor is used");
+        else
+            warn(fmt::format("{}, which {} of its {} meshes do not have; they show its first texel",
+                             place, use.primitives - count, use.primitives));
+        return count > 0;
     }
 
     // -1 when the picture cannot be read.
@@ -161,6 +214,7 @@ class MaterialReader {
             const GltfObject sampler = root_.item("samplers", *index);
             texture.wrap_u = read_wrap(sampler, "wrapS");
             texture.wrap_v = read_wrap(sampler, "wrapT");
+            texture.nearest = sampler.integer("magFilter", 0) == 9728;
         }
         return texture;
     }
@@ -173,51 +227,17 @@ class MaterialReader {
 
 }  // namespace
 
-bool UvLayout::is_transformed() const {
-    return offset != Vec2(0.0f) || rotation != 0.0f || scale != Vec2(1.0f);
-}
-
-Vec2 UvLayout::apply(Vec2 uv) const {
-    const Vec2 scaled = uv * scale;
-    const float c = std::cos(rotation);
-    const float s = std::sin(rotation);
-    return offset + Vec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x);
-}
-
-UvLayout read_uv_layout(const GltfObject& info) {
-    UvLayout layout;
-    layout.tex_coord = info.integer("texCoord", 0);
-    if (const auto transform = extension(info, "KHR_texture_transform")) {
-        if (const auto v = transform->numbers("offset", 2); !v.empty())
-            layout.offset = Vec2(v[0], v[1]);
-        if (const auto v = transform->numbers("scale", 2); !v.empty())
-            layout.scale = Vec2(v[0], v[1]);
-        layout.rotation = static_cast<float>(transform->number("rotation", 0.0));
-        layout.tex_coord = transform->integer("texCoord", layout.tex_coord);
-    }
-    return layout;
-}
-
-UvLayout material_uv_layout(const GltfObject& material) {
-    const TextureSlots slots(material);
-    for (const auto* slot : {&slots.base_color, &slots.metallic_roughness, &slots.normal,
-                             &slots.occlusion, &slots.emissive}) {
-        if (*slot) return read_uv_layout(**slot);
-    }
-    return {};
-}
-
 Material default_gltf_material() {
     return Material{};
 }
 
-void read_gltf_materials(const SourceDocument& document, const std::vector<bool>& used,
+void read_gltf_materials(const SourceDocument& document, const std::vector<MaterialUse>& uses,
                          Model& model) {
     MaterialReader reader(document, model);
     const GltfObject root = root_of(document);
     for (std::size_t i = 0; i < root.list_size("materials"); ++i) {
         model.materials.push_back(
-            reader.read(root.item("materials", i), i < used.size() && used[i]));
+            reader.read(root.item("materials", i), i < uses.size() ? uses[i] : MaterialUse{}));
     }
 }
 

@@ -1,14 +1,17 @@
 #include "item3d/io/gltf/patch.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/progress.h"
 #include "item3d/io/gltf/draco.h"
-#include "item3d/io/gltf/materials.h"
 #include "item3d/io/gltf/patch_material.h"
+#include "item3d/io/gltf/uv_layouts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <set>
 
 namespace item3d {
 namespace {
@@ -40,11 +43,16 @@ class GltfPatch {
     GltfPatch(const SourceDocument& document, std::span<const PrimitiveUse> uses,
               const ModelEdit& edit, GltfBuilder& builder)
         : document_(document),
-          uses_(uses),
           edit_(edit),
           builder_(builder),
           default_material_(static_cast<int>(
-              document.json.contains("materials") ? document.json["materials"].size() : 0)) {}
+              document.json.contains("materials") ? document.json["materials"].size() : 0)) {
+        // Instances of a node are one primitive of the document.
+        std::set<std::array<int, 3>> seen;
+        for (const PrimitiveUse& use : uses) {
+            if (seen.insert({use.mesh, use.primitive, use.node}).second) uses_.push_back(use);
+        }
+    }
 
     void run() {
         for (const PrimitiveUse& use : uses_)
@@ -55,7 +63,13 @@ class GltfPatch {
             if (!edit_.materials.contains(material)) change_material(material);
         }
         change_meshes();
-        if (dropped_draco_) forget_unused_draco(builder_.json());
+        std::set<std::pair<int, int>> shown;
+        for (const PrimitiveUse& use : uses_)
+            shown.insert({use.mesh, use.primitive});
+        std::set<int> changed = moved_lods_;
+        for (const auto& [material, plan] : plans_)
+            changed.insert(material);
+        keep_unseen_meshes(document_, shown, changed, builder_.json());
     }
 
   private:
@@ -75,20 +89,43 @@ class GltfPatch {
         UvPlan& plan = plans_[material];
         plan.has_new_uvs = true;
         std::size_t sets = 0;
-        bool has_variants = false;
+        bool stays = false;
         for (const PrimitiveUse& other : uses_) {
             if (material_of(other) != material) continue;
             const Json& primitive = source_primitive(other.mesh, other.primitive);
             while (primitive["attributes"].contains(uv_name(sets)))
                 ++sets;
-            has_variants =
-                has_variants || (primitive.contains("extensions") &&
-                                 primitive["extensions"].contains("KHR_materials_variants"));
+            stays = stays || has_extension(primitive, "KHR_materials_variants") ||
+                    has_extension(primitive, "EXT_structural_metadata");
         }
-        // Viewers know set 0 best. Where other materials may look at the old set 0, it stays.
-        plan.new_set = has_variants ? sets : 0;
+        for (const std::size_t lod : own_lod_materials(material))
+            stays = stays || is_shown_elsewhere(static_cast<int>(lod), material);
+        // Viewers know set 0 best. Where others may look at the old set 0, it stays.
+        plan.new_set = stays ? sets : 0;
         plan.moved_set.reset();
-        if (!has_variants && sets > 0) plan.moved_set = sets;
+        if (!stays && sets > 0) plan.moved_set = sets;
+    }
+
+    static bool has_extension(const Json& object, const char* name) {
+        return object.contains("extensions") && object["extensions"].contains(name);
+    }
+
+    std::vector<std::size_t> own_lod_materials(int material) const {
+        if (material == default_material_) return {};
+        return lod_materials(document_, static_cast<std::size_t>(material));
+    }
+
+    /// Whether a material is shown by itself, or instead of another one than `owner`.
+    bool is_shown_elsewhere(int material, int owner) const {
+        if (std::any_of(uses_.begin(), uses_.end(),
+                        [&](const PrimitiveUse& use) { return material_of(use) == material; }))
+            return true;
+        for (int other = 0; other < default_material_; ++other) {
+            const auto lods = own_lod_materials(other);
+            if (other != owner && std::find(lods.begin(), lods.end(), material) != lods.end())
+                return true;
+        }
+        return edit_.materials.contains(material);
     }
 
     UvPlan plan_of(int material) const {
@@ -105,7 +142,13 @@ class GltfPatch {
         Json& material = builder_.json()["materials"][static_cast<std::size_t>(index)];
         const UvPlan plan = plan_of(index);
         const auto edit = edit_.materials.find(index);
-        if (plan.moved_set) move_texture_coordinates(material, *plan.moved_set);
+        if (plan.moved_set) {
+            move_texture_coordinates(material, *plan.moved_set);
+            for (const std::size_t lod : own_lod_materials(index)) {
+                if (moved_lods_.insert(static_cast<int>(lod)).second)
+                    move_texture_coordinates(builder_.json()["materials"][lod], *plan.moved_set);
+            }
+        }
         if (edit == edit_.materials.end()) return;
         std::string name = material.value("name", std::string());
         if (name.empty()) name = fmt::format("material_{}", index);
@@ -114,8 +157,13 @@ class GltfPatch {
         const Json original = is_default
                                   ? Json::object()
                                   : document_.json["materials"][static_cast<std::size_t>(index)];
-        patch_material(document_, original, edit->second, plan, name, copy, builder_);
+        const std::vector<ReplacedTexture> replaced =
+            patch_material(document_, original, edit->second, plan, name, copy, builder_);
         builder_.json()["materials"][static_cast<std::size_t>(index)] = std::move(copy);
+        if (is_default) return;
+        const auto number = static_cast<std::size_t>(index);
+        follow_vrm(document_, number, replaced, plan.has_new_uvs, builder_.json());
+        warn_of_animations(document_, number);
     }
 
     bool drops_colors(int material) const {
@@ -129,6 +177,18 @@ class GltfPatch {
         return material_uv_layout(
                    root_of(document_).item("materials", static_cast<std::size_t>(material)))
             .tex_coord;
+    }
+
+    /// A new normal texture looks at other coordinates than the old one did.
+    bool moves_normal(int material) const {
+        const auto edit = edit_.materials.find(material);
+        if (edit == edit_.materials.end() || !edit->second.normal || material == default_material_)
+            return false;
+        const GltfObject source =
+            root_of(document_).item("materials", static_cast<std::size_t>(material));
+        const auto normal = source.object("normalTexture");
+        return plan_of(material).has_new_uvs ||
+               (normal && read_uv_layout(*normal) != material_uv_layout(source));
     }
 
     // A texture must have coordinates to look at, and be they all the same.
@@ -148,7 +208,7 @@ class GltfPatch {
         const bool has_colors =
             source_primitive(use.mesh, use.primitive)["attributes"].contains("COLOR_0");
         if (!plan_of(material).has_new_uvs && !is_new_default && !lacks_uvs(use) &&
-            !(drops_colors(material) && has_colors)) {
+            !(drops_colors(material) && has_colors) && !moves_normal(material)) {
             return std::nullopt;
         }
         PrimitiveChange change{use.primitive, material, nullptr, use.uvs, use.vertex_count};
@@ -249,10 +309,11 @@ class GltfPatch {
         }
         if (plan.has_new_uvs) {
             set_uvs(change, mesh_index, plan, primitive["attributes"]);
-            // A tangent frame follows the coordinates of its normal map.
-            if (edit != edit_.materials.end() && edit->second.normal)
-                drop_attribute("TANGENT", primitive);
+            if (plan.moved_set && primitive.contains("extensions"))
+                move_texture_coordinates(primitive["extensions"], *plan.moved_set);
         }
+        // A tangent frame follows the coordinates of its normal map.
+        if (moves_normal(change.material)) drop_attribute("TANGENT", primitive);
         if (drops_colors(change.material)) drop_colors(primitive);
         match_draco(source_primitive(mesh_index, change.primitive), primitive);
     }
@@ -339,18 +400,17 @@ class GltfPatch {
         // The plain vertices are new, the compressed copy of the old ones goes.
         const std::string draco = draco_extension;
         if (!primitive.contains("extensions") || !primitive["extensions"].contains(draco)) return;
-        dropped_draco_ = true;
         primitive["extensions"].erase(draco);
         if (primitive["extensions"].empty()) primitive.erase("extensions");
     }
 
     const SourceDocument& document_;
-    std::span<const PrimitiveUse> uses_;
+    std::vector<PrimitiveUse> uses_;
     const ModelEdit& edit_;
     GltfBuilder& builder_;
     int default_material_;
     std::map<int, UvPlan> plans_;
-    bool dropped_draco_ = false;
+    std::set<int> moved_lods_;
 };
 
 }  // namespace

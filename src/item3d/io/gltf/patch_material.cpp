@@ -1,19 +1,13 @@
 #include "item3d/io/gltf/patch_material.h"
 
-#include "item3d/io/gltf/materials.h"
+#include "item3d/core/progress.h"
+#include "item3d/io/gltf/uv_layouts.h"
 #include "item3d/io/texture_format.h"
 
 #include <algorithm>
 
 namespace item3d {
 namespace {
-
-constexpr const char* transform_name = "KHR_texture_transform";
-
-bool is_texture_info(const std::string& key, const Json& value) {
-    return value.is_object() && value.contains("index") && key.size() >= 7 &&
-           (key.ends_with("Texture") || key.ends_with("texture"));
-}
 
 int sampler_of(const Json& json, const Json* info) {
     if (!info || !info->is_object() || !info->contains("index")) return -1;
@@ -86,6 +80,11 @@ class InfoWriter {
     Json& json_;
 };
 
+std::optional<std::size_t> texture_of(const Json* info) {
+    if (!info || !info->is_object() || !info->contains("index")) return std::nullopt;
+    return (*info)["index"].get<std::size_t>();
+}
+
 void drop_extension(Json& object, const char* name) {
     const auto extensions = object.find("extensions");
     if (extensions == object.end()) return;
@@ -93,27 +92,65 @@ void drop_extension(Json& object, const char* name) {
     if (extensions->empty()) object.erase("extensions");
 }
 
-}  // namespace
-
-void move_texture_coordinates(Json& material, std::size_t set) {
-    for (auto& [key, value] : material.items()) {
-        if (!value.is_object()) continue;
-        if (is_texture_info(key, value)) {
-            if (value.value("texCoord", std::size_t{0}) == 0) value["texCoord"] = set;
-            const auto extensions = value.find("extensions");
-            if (extensions == value.end() || !extensions->contains(transform_name)) continue;
-            Json& transform = (*extensions)[transform_name];
-            if (transform.contains("texCoord") && transform["texCoord"] == 0)
-                transform["texCoord"] = set;
-        } else {
-            move_texture_coordinates(value, set);
-        }
-    }
+void drop_emission(Json& material) {
+    material.erase("emissiveTexture");
+    material.erase("emissiveFactor");
+    drop_extension(material, "KHR_materials_emissive_strength");
 }
 
-void patch_material(const SourceDocument& document, const Json& original, const MaterialEdit& edit,
-                    const UvPlan& plan, const std::string& name, Json& material,
-                    GltfBuilder& builder) {
+/// Points texture infos of a material's extensions, and its emission, at the new texture where they
+/// show the picture that it replaced in the same place.
+class Follower {
+  public:
+    Follower(const SourceDocument& document, const UvLayout& layout,
+             const std::vector<ReplacedTexture>& replaced, InfoWriter& infos)
+        : document_(document), layout_(layout), replaced_(replaced), infos_(infos) {}
+
+    void follow(const Json& original, Json& material) {
+        if (const auto found = original.find("extensions");
+            found != original.end() && material.contains("extensions"))
+            follow_within(*found, material["extensions"], 0);
+        if (const auto found = original.find("emissiveTexture"); found != original.end())
+            follow_info("emissiveTexture", *found, material);
+    }
+
+  private:
+    void follow_within(const Json& original, Json& value, int depth) {
+        if (!original.is_object() || !value.is_object() || depth > 8) return;
+        for (const auto& [key, child] : original.items()) {
+            if (!value.contains(key)) continue;
+            if (is_texture_info(key, child))
+                follow_info(key, child, value);
+            else
+                follow_within(child, value[key], depth + 1);
+        }
+    }
+
+    void follow_info(const std::string& key, const Json& info, Json& owner) {
+        if (!owner.contains(key) || !texture_of(&info)) return;
+        const ReplacedTexture* found = find_replaced(document_, replaced_, *texture_of(&info));
+        if (!found) return;
+        if (read_uv_layout(GltfObject(document_, info, key)) == layout_) {
+            infos_.write(owner, key.c_str(), found->new_texture);
+        } else {
+            warn(document_.path.string() + ": a material's " + key +
+                 " shows the old picture in another place and was not edited");
+        }
+    }
+
+    const SourceDocument& document_;
+    const UvLayout& layout_;
+    const std::vector<ReplacedTexture>& replaced_;
+    InfoWriter& infos_;
+};
+
+}  // namespace
+
+std::vector<ReplacedTexture> patch_material(const SourceDocument& document, const Json& original,
+                                            const MaterialEdit& edit, const UvPlan& plan,
+                                            const std::string& name, Json& material,
+                                            GltfBuilder& builder) {
+    std::vector<ReplacedTexture> replaced;
     const UvLayout layout = material_uv_layout(GltfObject(document, original, "material"));
     InfoWriter infos(plan, layout, builder.json());
     const auto add_texture = [&](const Image& image, const ImageCoding& coding, const char* what,
@@ -135,7 +172,9 @@ void patch_material(const SourceDocument& document, const Json& original, const 
             pbr["roughnessFactor"] = 1.0 - old.value("glossinessFactor", 1.0);
         }
         drop_extension(material, "KHR_materials_pbrSpecularGlossiness");
-        // What was edited is a surface in light.
+        // What was edited is a surface in light, and what was never seen does not begin to glow.
+        const Json* extensions = find(original, "extensions");
+        if (extensions && extensions->contains("KHR_materials_unlit")) drop_emission(material);
         drop_extension(material, "KHR_materials_unlit");
         if (!material.contains("pbrMetallicRoughness")) {
             material["pbrMetallicRoughness"] = Json::object();
@@ -143,9 +182,11 @@ void patch_material(const SourceDocument& document, const Json& original, const 
     }
     if (edit.base_color) {
         Json& pbr = material["pbrMetallicRoughness"];
-        infos.write(pbr, "baseColorTexture",
-                    add_texture(*edit.base_color, edit.base_color_coding, "base_color",
-                                old_pbr ? find(*old_pbr, "baseColorTexture") : nullptr));
+        const Json* old_info = old_pbr ? find(*old_pbr, "baseColorTexture") : nullptr;
+        const std::size_t texture =
+            add_texture(*edit.base_color, edit.base_color_coding, "base_color", old_info);
+        infos.write(pbr, "baseColorTexture", texture);
+        if (const auto old = texture_of(old_info)) replaced.push_back({*old, texture, true});
         double alpha = 1.0;
         if (edit.base_color->channels != 4 && pbr.contains("baseColorFactor")) {
             alpha = pbr["baseColorFactor"][3].get<double>();
@@ -160,22 +201,32 @@ void patch_material(const SourceDocument& document, const Json& original, const 
         infos.write(pbr, "metallicRoughnessTexture", texture);
         pbr["metallicFactor"] = 1.0;
         pbr["roughnessFactor"] = 1.0;
-        // Occlusion that looks at other coordinates was not loaded, so it is not in the image.
         const Json* old_occlusion = find(original, "occlusionTexture");
-        const bool was_loaded =
-            old_occlusion &&
-            read_uv_layout(GltfObject(document, *old_occlusion, "occlusionTexture")) == layout;
-        if (was_loaded || (!old_occlusion && has_occlusion(*edit.metallic_roughness))) {
+        if (!edit.keeps_occlusion && (old_occlusion || has_occlusion(*edit.metallic_roughness))) {
             infos.write(material, "occlusionTexture", texture);
             material["occlusionTexture"].erase("strength");
         }
     }
     if (edit.normal) {
-        infos.write(material, "normalTexture",
-                    add_texture(*edit.normal, edit.normal_coding, "normal",
-                                find(original, "normalTexture")));
+        const Json* old_info = find(original, "normalTexture");
+        const std::size_t texture =
+            add_texture(*edit.normal, edit.normal_coding, "normal", old_info);
+        infos.write(material, "normalTexture", texture);
         material["normalTexture"].erase("scale");
+        if (const auto old = texture_of(old_info)) replaced.push_back({*old, texture});
     }
+    if (edit.removes_emission) drop_emission(material);
+    if (edit.makes_opaque) {
+        material.erase("alphaMode");
+        material.erase("alphaCutoff");
+        if (material.contains("pbrMetallicRoughness") &&
+            material["pbrMetallicRoughness"].contains("baseColorFactor"))
+            material["pbrMetallicRoughness"]["baseColorFactor"][3] = 1.0;
+    }
+    for (const std::string& extension : edit.removed_extensions)
+        drop_extension(material, extension.c_str());
+    Follower(document, layout, replaced, infos).follow(original, material);
+    return replaced;
 }
 
 }  // namespace item3d

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "item3d/io/gltf/builder.h"
+#include "item3d/io/gltf/references.h"
 #include "item3d/io/save.h"
 
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -20,12 +22,11 @@ struct UvPlan {
 };
 
 /// Writes the textures of one edit into `material`, which was `original` before its texture
-/// coordinates moved.
-void patch_material(const SourceDocument& document, const Json& original, const MaterialEdit& edit,
-                    const UvPlan& plan, const std::string& name, Json& material,
-                    GltfBuilder& builder);
-
-/// Makes every texture of a material that looks at set 0 look at `set`.
-void move_texture_coordinates(Json& material, std::size_t set);
+/// coordinates moved. What else in the material shows the replaced pictures follows. Returns what
+/// was replaced.
+std::vector<ReplacedTexture> patch_material(const SourceDocument& document, const Json& original,
+                                            const MaterialEdit& edit, const UvPlan& plan,
+                                            const std::string& name, Json& material,
+                                            GltfBuilder& builder);
 
 }  // namespace item3d

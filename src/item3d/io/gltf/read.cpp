@@ -7,9 +7,13 @@
 #include "item3d/core/progress.h"
 #include "item3d/io/gltf/accessors.h"
 #include "item3d/io/gltf/draco.h"
+#include "item3d/io/gltf/instances.h"
 #include "item3d/io/gltf/materials.h"
 #include "item3d/io/gltf/nodes.h"
-#include "item3d/io/gltf/skins.h"
+#include "item3d/io/gltf/skin.h"
+#include "item3d/io/gltf/uv_layouts.h"
+#include "item3d/io/gltf/variants.h"
+#include "item3d/io/gltf/vertices.h"
 #include "item3d/scene/far_origin.h"
 #include "item3d/scene/normals.h"
 
@@ -30,6 +34,7 @@ constexpr std::string_view known_extensions[] = {
     "KHR_mesh_quantization",      "KHR_texture_transform", "KHR_lights_punctual",
     "KHR_animation_pointer",      "KHR_xmp_json_ld",       "EXT_meshopt_compression",
     "KHR_draco_mesh_compression", "KHR_texture_basisu",    "EXT_texture_webp",
+    "EXT_mesh_gpu_instancing",
 };
 
 void check_required_extensions(const SourceDocument& document) {
@@ -51,35 +56,33 @@ void check_required_extensions(const SourceDocument& document) {
     }
 }
 
-/// Vertex attributes in the space of the mesh.
-struct Vertices {
-    std::vector<glm::dvec3> positions;
-    std::vector<glm::dvec3> normals;
-    std::vector<glm::dvec4> tangents;
-};
-
 class GltfReader {
   public:
-    explicit GltfReader(std::shared_ptr<SourceDocument> document)
-        : document_(std::move(document)), root_(root_of(*document_)) {}
+    GltfReader(std::shared_ptr<SourceDocument> document, const std::string& variant)
+        : document_(std::move(document)), root_(root_of(*document_)) {
+        if (!variant.empty()) variant_ = find_variant(*document_, variant);
+    }
 
     Model read();
 
   private:
     void add_meshes();
-    void add_mesh(std::size_t mesh, std::optional<std::size_t> node);
+    /// world: of the mesh, where it has no skin.
+    void add_mesh(std::size_t mesh, std::optional<std::size_t> node, const glm::dmat4& world);
+    void add_node(std::size_t node);
     void add_primitive(const GltfObject& mesh, const GltfObject& source, Primitive primitive,
-                       std::optional<std::size_t> node);
-    Vertices read_vertices(const GltfObject& attributes) const;
-    void apply_morph_targets(const GltfObject& source, const std::vector<double>& weights,
-                             Vertices& vertices) const;
+                       std::optional<std::size_t> node, const glm::dmat4& world);
+    void choose_material(const GltfObject& source, Primitive& primitive);
     std::vector<double> morph_weights(const GltfObject& mesh, const GltfObject& source,
                                       std::optional<std::size_t> node) const;
     void place(const Vertices& vertices, const std::vector<glm::dmat4>& matrices,
                Primitive& primitive);
+    std::vector<Vec2> read_uv_map(const GltfObject& attributes, const UvLayout& layout,
+                                  const Primitive& primitive);
     void read_uvs(const GltfObject& attributes, Primitive& primitive);
     void read_colors(const GltfObject& attributes, Primitive& primitive) const;
     void read_triangles(const GltfObject& source, std::size_t mode, Primitive& primitive) const;
+    std::size_t most_vertices() const;
     void count_vertices(const GltfObject& source, std::size_t count);
 
     std::optional<std::size_t> accessor_of(const GltfObject& object, const char* key) const {
@@ -93,56 +96,26 @@ class GltfReader {
     glm::dvec3 low_{std::numeric_limits<double>::max()};  ///< of all positions, in the world
     glm::dvec3 high_{std::numeric_limits<double>::lowest()};
     std::set<std::string> warnings_;
+    std::optional<std::size_t> variant_;
+    std::vector<std::set<int>> variant_materials_;
     std::size_t vertex_count_ = 0;
-    bool uses_default_material_ = false;
+    std::vector<MaterialUse> uses_;  ///< of each material, then of the default one
 };
 
-void check_count(const GltfObject& attributes, const char* name, std::size_t count,
-                 std::size_t expected) {
-    if (count != expected) {
-        attributes.fail(fmt::format("{} has {} elements, POSITION {}", name, count, expected));
-    }
-}
-
-glm::dvec3 to_dvec3(const Accessor& accessor, std::size_t i) {
-    return {accessor.value(i, 0), accessor.value(i, 1), accessor.value(i, 2)};
-}
-
 // A few nodes can repeat a mesh without end; what the file holds bounds what is taken.
-void GltfReader::count_vertices(const GltfObject& source, std::size_t count) {
+std::size_t GltfReader::most_vertices() const {
     std::size_t size_of_file = 0;
     for (const Bytes& buffer : document_->buffers)
         size_of_file += buffer.size();
-    const std::size_t limit =
-        std::min<std::size_t>(1 << 26, std::max<std::size_t>(1 << 20, 64 * size_of_file));
+    return std::min<std::size_t>(1 << 26, std::max<std::size_t>(1 << 20, 64 * size_of_file));
+}
+
+void GltfReader::count_vertices(const GltfObject& source, std::size_t count) {
+    const std::size_t limit = most_vertices();
     vertex_count_ += count;
     if (count > limit || vertex_count_ > limit) {
         source.fail(fmt::format("more than {} vertices in all", limit), "split the model");
     }
-}
-
-Vertices GltfReader::read_vertices(const GltfObject& attributes) const {
-    Vertices vertices;
-    const Accessor positions = read_vectors(*document_, *accessor_of(attributes, "POSITION"), 3, 3);
-    vertices.positions.resize(positions.count);
-    for (std::size_t i = 0; i < positions.count; ++i)
-        vertices.positions[i] = to_dvec3(positions, i);
-    if (const auto index = accessor_of(attributes, "NORMAL")) {
-        const Accessor normals = read_vectors(*document_, *index, 3, 3);
-        check_count(attributes, "NORMAL", normals.count, positions.count);
-        vertices.normals.resize(normals.count);
-        for (std::size_t i = 0; i < normals.count; ++i)
-            vertices.normals[i] = to_dvec3(normals, i);
-    }
-    if (const auto index = accessor_of(attributes, "TANGENT")) {
-        const Accessor tangents = read_vectors(*document_, *index, 4, 4);
-        check_count(attributes, "TANGENT", tangents.count, positions.count);
-        vertices.tangents.resize(tangents.count);
-        for (std::size_t i = 0; i < tangents.count; ++i) {
-            vertices.tangents[i] = glm::dvec4(to_dvec3(tangents, i), tangents.value(i, 3));
-        }
-    }
-    return vertices;
 }
 
 std::vector<double> GltfReader::morph_weights(const GltfObject& mesh, const GltfObject& source,
@@ -153,27 +126,6 @@ std::vector<double> GltfReader::morph_weights(const GltfObject& mesh, const Gltf
     if (node) weights = root_.item("nodes", *node).numbers("weights", count);
     if (weights.empty()) weights = mesh.numbers("weights", count);
     return weights;
-}
-
-void GltfReader::apply_morph_targets(const GltfObject& source, const std::vector<double>& weights,
-                                     Vertices& vertices) const {
-    for (std::size_t t = 0; t < weights.size(); ++t) {
-        if (weights[t] == 0.0) continue;
-        const GltfObject target = source.item("targets", t);
-        const auto add = [&](const char* name, auto& values) {
-            const auto index = accessor_of(target, name);
-            if (!index || values.empty()) return;
-            const Accessor offsets = read_vectors(*document_, *index, 3, 3);
-            check_count(target, name, offsets.count, values.size());
-            for (std::size_t i = 0; i < offsets.count; ++i) {
-                for (int c = 0; c < 3; ++c)
-                    values[i][c] += weights[t] * offsets.value(i, c);
-            }
-        };
-        add("POSITION", vertices.positions);
-        add("NORMAL", vertices.normals);
-        add("TANGENT", vertices.tangents);
-    }
 }
 
 // matrices: one for all vertices, or one a vertex.
@@ -213,16 +165,12 @@ void GltfReader::place(const Vertices& vertices, const std::vector<glm::dmat4>& 
     if (!all_normals) primitive.normals.clear();
 }
 
-void GltfReader::read_uvs(const GltfObject& attributes, Primitive& primitive) {
-    const std::size_t materials = root_.list_size("materials");
-    UvLayout layout;
-    if (static_cast<std::size_t>(primitive.material) < materials) {
-        layout = material_uv_layout(
-            root_.item("materials", static_cast<std::size_t>(primitive.material)));
-    }
+std::vector<Vec2> GltfReader::read_uv_map(const GltfObject& attributes, const UvLayout& layout,
+                                          const Primitive& primitive) {
+    std::vector<Vec2> map;
     const std::string name = fmt::format("TEXCOORD_{}", layout.tex_coord);
     const auto index = accessor_of(attributes, name.c_str());
-    if (!index) return;
+    if (!index) return map;
     const Accessor uvs = read_vectors(*document_, *index, 2, 2);
     check_count(attributes, name.c_str(), uvs.count, primitive.positions.size());
     std::size_t not_finite = 0;
@@ -233,12 +181,32 @@ void GltfReader::read_uvs(const GltfObject& attributes, Primitive& primitive) {
             uv = Vec2(0.0f);
             ++not_finite;
         }
-        primitive.uvs.push_back(uv);
+        map.push_back(uv);
     }
     if (not_finite > 0) {
         warnings_.insert(fmt::format(
             "{}: mesh '{}': {} of {} texture coordinates ({}) are not finite numbers; 0 is used",
             document_->path.string(), primitive.name, not_finite, uvs.count, name));
+    }
+    return map;
+}
+
+void GltfReader::read_uvs(const GltfObject& attributes, Primitive& primitive) {
+    const auto material = static_cast<std::size_t>(primitive.material);
+    std::vector<UvLayout> layouts(1);
+    if (material < root_.list_size("materials"))
+        layouts = material_uv_layouts(root_.item("materials", material));
+    MaterialUse& use = uses_[material];
+    ++use.primitives;
+    std::set<std::size_t> sets;
+    for (std::size_t k = 0; k < layouts.size(); ++k) {
+        std::vector<Vec2> map = read_uv_map(attributes, layouts[k], primitive);
+        if (!map.empty() && sets.insert(layouts[k].tex_coord).second)
+            ++use.with_uv_map[layouts[k].tex_coord];
+        if (k == 0)
+            primitive.uvs = std::move(map);
+        else
+            primitive.further_uvs.push_back(std::move(map));
     }
 }
 
@@ -291,8 +259,21 @@ void GltfReader::read_triangles(const GltfObject& source, std::size_t mode,
     }
 }
 
+void GltfReader::choose_material(const GltfObject& source, Primitive& primitive) {
+    const std::size_t materials = root_.list_size("materials");
+    const std::size_t own = source.index("material", materials).value_or(materials);
+    std::size_t chosen = own;
+    for (std::size_t v = 0; v < variant_materials_.size(); ++v) {
+        const std::size_t material = material_in_variant(*document_, source, v).value_or(own);
+        variant_materials_[v].insert(static_cast<int>(material));
+        if (variant_ == v) chosen = material;
+    }
+    primitive.material = static_cast<int>(chosen);
+}
+
 void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
-                               Primitive primitive, std::optional<std::size_t> node) {
+                               Primitive primitive, std::optional<std::size_t> node,
+                               const glm::dmat4& world) {
     const std::size_t mode = source.integer("mode", 4);
     if (mode > 6) source.fail(fmt::format("mode {} is unknown", mode));
     const auto attributes = source.object("attributes");
@@ -300,20 +281,17 @@ void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
     const GltfObject position = root_.item("accessors", *accessor_of(*attributes, "POSITION"));
     count_vertices(source, position.integer("count"));
     if (needs_draco(*document_, source)) decode_draco_primitive(*document_, source);
-    const std::size_t materials = root_.list_size("materials");
-    const auto material = source.index("material", materials);
-    uses_default_material_ = uses_default_material_ || !material;
-    primitive.material = static_cast<int>(material.value_or(materials));
+    choose_material(source, primitive);
 
-    Vertices vertices = read_vertices(*attributes);
+    Vertices vertices = read_vertices(*document_, *attributes);
     if (const double part = float32_step(vertices.positions); part > 1e-4) {
         warnings_.insert(fmt::format(
             "{}: mesh '{}' lies so far from its origin that its positions, 32-bit numbers, go in "
             "steps of {:.1g} of its size; export it nearer to the origin",
             document_->path.string(), primitive.name, part));
     }
-    apply_morph_targets(source, morph_weights(mesh, source, node), vertices);
-    std::vector<glm::dmat4> matrices{node ? nodes_.world[*node] : glm::dmat4(1.0)};
+    apply_morph_targets(*document_, source, morph_weights(mesh, source, node), vertices);
+    std::vector<glm::dmat4> matrices{world};
     if (node && attributes->has("JOINTS_0")) {
         // The node's own transform does not count for a skinned mesh.
         const auto skin = root_.item("nodes", *node).index("skin", root_.list_size("skins"));
@@ -344,7 +322,8 @@ void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
     model_.primitives.push_back(std::move(primitive));
 }
 
-void GltfReader::add_mesh(std::size_t index, std::optional<std::size_t> node) {
+void GltfReader::add_mesh(std::size_t index, std::optional<std::size_t> node,
+                          const glm::dmat4& world) {
     const GltfObject mesh = root_.item("meshes", index);
     std::string name = mesh.text("name", "");
     if (node) name = root_.item("nodes", *node).text("name", name);
@@ -356,7 +335,26 @@ void GltfReader::add_mesh(std::size_t index, std::optional<std::size_t> node) {
         primitive.source_mesh = static_cast<int>(index);
         primitive.source_primitive = static_cast<int>(i);
         primitive.source_node = node ? static_cast<int>(*node) : -1;
-        add_primitive(mesh, mesh.item("primitives", i), std::move(primitive), node);
+        add_primitive(mesh, mesh.item("primitives", i), std::move(primitive), node, world);
+    }
+}
+
+void GltfReader::add_node(std::size_t node) {
+    const auto mesh = root_.item("nodes", node).index("mesh", root_.list_size("meshes"));
+    if (!mesh) return;
+    const auto instances = read_instances(*document_, nodes_, node);
+    if (!instances) return add_mesh(*mesh, node, nodes_.world[node]);
+    const std::size_t before = vertex_count_;
+    for (std::size_t i = 0; i < instances->size(); ++i) {
+        const std::size_t of_one = i == 0 ? 0 : (vertex_count_ - before) / i;
+        if (vertex_count_ + of_one > most_vertices()) {
+            warn(
+                fmt::format("{}: nodes[{}]: {} of its {} instances are shown, more would be too "
+                            "many vertices",
+                            document_->path.string(), node, i, instances->size()));
+            return;
+        }
+        add_mesh(*mesh, node, (*instances)[i]);
     }
 }
 
@@ -364,14 +362,14 @@ void GltfReader::add_meshes() {
     const std::size_t meshes = root_.list_size("meshes");
     model_.primitives.clear();
     vertex_count_ = 0;
-    for (const std::size_t node : nodes_.scene) {
-        if (const auto mesh = root_.item("nodes", node).index("mesh", meshes))
-            add_mesh(*mesh, node);
-    }
+    uses_.assign(root_.list_size("materials") + 1, {});
+    variant_materials_.assign(variant_names(*document_).size(), {});
+    for (const std::size_t node : nodes_.scene)
+        add_node(node);
     if (nodes_.world.empty()) {
         // A library of meshes.
         for (std::size_t mesh = 0; mesh < meshes; ++mesh)
-            add_mesh(mesh, std::nullopt);
+            add_mesh(mesh, std::nullopt, glm::dmat4(1.0));
     }
 }
 
@@ -391,11 +389,15 @@ Model GltfReader::read() {
             fmt::format("a mesh with triangles was expected, found none in {} meshes", meshes),
             "export a model with triangles in its default scene");
     }
-    std::vector<bool> used(root_.list_size("materials") + 1, false);
-    for (const Primitive& primitive : model_.primitives)
-        used[primitive.material] = true;
-    read_gltf_materials(*document_, used, model_);
-    if (uses_default_material_) model_.materials.push_back(default_gltf_material());
+    read_gltf_materials(*document_, uses_, model_);
+    if (uses_.back().primitives > 0) model_.materials.push_back(default_gltf_material());
+    const std::vector<std::string> variants = variant_names(*document_);
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+        const std::set<int>& materials = variant_materials_[v];
+        model_.variants.push_back({variants[v],
+                                   {materials.begin(), materials.lower_bound(static_cast<int>(
+                                                           model_.materials.size()))}});
+    }
     model_.name = document_->path.stem().string();
     model_.source = document_;
     return std::move(model_);
@@ -406,7 +408,7 @@ Model GltfReader::read() {
 Model read_gltf(const std::filesystem::path& path, const Bytes& bytes, const LoadOptions& options) {
     const auto document = parse_gltf(path, bytes);
     document->texture_folders = options.texture_folders;
-    return GltfReader(document).read();
+    return GltfReader(document, options.variant).read();
 }
 
 }  // namespace item3d

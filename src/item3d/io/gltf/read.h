@@ -6,6 +6,7 @@
 #include "item3d/scene/model.h"
 
 #include <filesystem>
+#include <string>
 
 namespace item3d {
 

@@ -5,6 +5,7 @@
 #include "item3d/io/find_file.h"
 #include "item3d/io/gltf/make.h"
 #include "item3d/io/gltf/patch.h"
+#include "item3d/io/gltf/references.h"
 #include "item3d/io/gltf/texture_source.h"
 #include "item3d/io/gltf/unused_textures.h"
 #include "item3d/io/image/formats.h"
@@ -195,7 +196,7 @@ Bytes to_glb(const Json& json, const Bytes& binary, const SourceDocument& docume
 }
 
 void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit) {
-    const bool is_binary = to_lower(path.extension().string()) == ".glb";
+    const bool is_binary = to_lower(path.extension().string()) != ".gltf";
     const std::shared_ptr<const SourceDocument> document =
         model.source ? model.source : make_gltf(model, edit);
     const std::vector<PrimitiveUse> uses = primitive_uses(model, !model.source);
@@ -215,6 +216,7 @@ void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit)
     patch_gltf(*document, uses, edit, builder);
     if (!edit.materials.empty()) tidy(*document, builder);
     builder.finish();
+    forget_unused_extensions(document->json, json);
 
     if (is_binary) {
         write_atomically(path,

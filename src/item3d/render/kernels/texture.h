@@ -1,5 +1,5 @@
-// Texture lookups with glTF's wrap modes: bilinear, or trilinear along the longer axis of a pixel's
-// footprint (anisotropic).
+// Texture lookups with glTF's wrap modes: bilinear or nearest, or trilinear along the longer axis
+// of a pixel's footprint (anisotropic).
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -30,6 +30,7 @@ struct TextureParameters {
     const float* footprint;  ///< [P, 4] d(u, v) by a pixel in x, then in y; null: level 0 alone
     TextureWrap wrap_u;
     TextureWrap wrap_v;
+    bool nearest;  ///< of level 0 the texel itself where no pixel is larger than it
 };
 
 ITEM3D_HOST_DEVICE inline int wrap_texel(int i, int size, TextureWrap wrap) {
@@ -133,11 +134,28 @@ ITEM3D_HOST_DEVICE inline TextureFilter texture_filter(const TextureParameters& 
     return filter;
 }
 
+/// The one texel that the point lies in.
+ITEM3D_HOST_DEVICE inline TextureTaps nearest_taps(const TextureParameters& p, std::int64_t index) {
+    TextureTaps taps =
+        texture_taps(p.levels[0], p.uv[2 * index], p.uv[2 * index + 1], p.wrap_u, p.wrap_v);
+    const int k = (taps.x >= 0.5f ? 1 : 0) + (taps.y >= 0.5f ? 2 : 0);
+    const std::int64_t texel = taps.texel[k];
+    for (int i = 0; i < 4; ++i) {
+        taps.texel[i] = texel;
+        taps.weight[i] = i == 0 ? 1.0f : 0.0f;
+    }
+    return taps;
+}
+
 /// Calls f(level, taps, weight) for each bilinear lookup whose weighted sum is the value.
 template <typename F>
 ITEM3D_HOST_DEVICE inline void for_each_lookup(const TextureParameters& p, std::int64_t index,
                                                const F& f) {
     const TextureFilter filter = texture_filter(p, index);
+    if (p.nearest && filter.level == 0 && filter.fraction == 0 && filter.probes == 1) {
+        f(p.levels[0], nearest_taps(p, index), 1.0f);
+        return;
+    }
     const float share = 1 / static_cast<float>(filter.probes);
     for (int probe = 0; probe < filter.probes; ++probe) {
         const float along =

@@ -22,6 +22,7 @@ struct Transparency {
     float factor = 1, cutoff = 0.5f;
     int width = 0, height = 0;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    bool nearest = false;
     std::vector<float> alpha;  ///< [height, width]; empty: 1
 
     float texel(int x, int y) const {
@@ -38,7 +39,7 @@ int wrapped(int i, int size, Wrap wrap) {
     return k < size ? k : period - 1 - k;
 }
 
-/// Bilinear, as the renderer's own look-up.
+/// Bilinear or nearest, as the renderer's own look-up.
 float Transparency::at(Vec2 uv) const {
     if (alpha.empty()) return factor;
     // Far outside the picture a float has no fraction left, and an int no room.
@@ -51,6 +52,7 @@ float Transparency::at(Vec2 uv) const {
     const int y0 = wrapped(static_cast<int>(top), height, wrap_v);
     const int y1 = wrapped(static_cast<int>(top) + 1, height, wrap_v);
     const float fx = x - left, fy = y - top;
+    if (nearest) return factor * texel(fx < 0.5f ? x0 : x1, fy < 0.5f ? y0 : y1);
     return factor * ((1 - fy) * ((1 - fx) * texel(x0, y0) + fx * texel(x1, y0)) +
                      fy * ((1 - fx) * texel(x0, y1) + fx * texel(x1, y1)));
 }
@@ -74,6 +76,7 @@ std::vector<Transparency> read_transparency(const Model& model) {
         one.height = image.height;
         one.wrap_u = texture.wrap_u;
         one.wrap_v = texture.wrap_v;
+        one.nearest = texture.nearest;
         one.alpha.resize(image.pixels.size() / channels);
         for (std::size_t i = 0; i < one.alpha.size(); ++i)
             one.alpha[i] = image.pixels[i * channels + (channels == 2 ? 1 : 3)];

@@ -1,15 +1,12 @@
-#include "item3d/io/gltf/skins.h"
+#include "item3d/io/gltf/skin.h"
 
 #include "item3d/io/gltf/accessors.h"
 
 #include <fmt/format.h>
 
-#include <utility>
-
 namespace item3d {
 namespace {
 
-// One matrix a joint: from the mesh's space at rest to the world.
 std::vector<glm::dmat4> joint_matrices(const SourceDocument& document, const NodeTree& nodes,
                                        std::size_t index) {
     const GltfObject root = root_of(document);
@@ -36,6 +33,13 @@ std::vector<glm::dmat4> joint_matrices(const SourceDocument& document, const Nod
 
 }  // namespace
 
+void check_count(const GltfObject& attributes, const char* name, std::size_t count,
+                 std::size_t expected) {
+    if (count != expected) {
+        attributes.fail(fmt::format("{} has {} elements, POSITION {}", name, count, expected));
+    }
+}
+
 std::vector<glm::dmat4> blend_joints(const SourceDocument& document, const NodeTree& nodes,
                                      const GltfObject& attributes, std::size_t skin,
                                      std::size_t count) {
@@ -51,11 +55,8 @@ std::vector<glm::dmat4> blend_joints(const SourceDocument& document, const NodeT
         if (!weights_index) attributes.fail(weights_name + " is missing");
         const Accessor indices = read_vectors(document, *joints_index, 4, 4);
         const Accessor weights = read_vectors(document, *weights_index, 4, 4);
-        for (const auto& [name, found] :
-             {std::pair(joints_name, indices.count), std::pair(weights_name, weights.count)}) {
-            if (found != count)
-                attributes.fail(fmt::format("{} has {} elements, POSITION {}", name, found, count));
-        }
+        check_count(attributes, joints_name.c_str(), indices.count, count);
+        check_count(attributes, weights_name.c_str(), weights.count, count);
         for (std::size_t i = 0; i < count; ++i) {
             for (int c = 0; c < 4; ++c) {
                 const double weight = weights.value(i, c);

@@ -1,0 +1,47 @@
+// Which texture coordinates the textures of a glTF material look at. Internal to io.
+#pragma once
+
+#include "item3d/core/math.h"
+#include "item3d/io/gltf/document.h"
+
+#include <optional>
+#include <vector>
+
+namespace item3d {
+
+/// A UV map and how it is transformed before a texture looks at it (KHR_texture_transform):
+/// uv = offset + rotate(rotation) * (scale * TEXCOORD_n).
+struct UvLayout {
+    std::size_t tex_coord = 0;
+    Vec2 offset{0.0f};
+    float rotation = 0.0f;
+    Vec2 scale{1.0f};
+
+    bool operator==(const UvLayout&) const = default;
+    bool is_transformed() const;
+    Vec2 apply(Vec2 uv) const;
+};
+
+UvLayout read_uv_layout(const GltfObject& texture_info);
+
+/// The texture infos of a material by what they are for; of KHR_materials_pbrSpecularGlossiness
+/// without metallic-roughness beside it, diffuse as base colour and specular-glossiness as
+/// metallic-roughness.
+struct TextureSlots {
+    std::optional<GltfObject> base_color, metallic_roughness, normal, occlusion, emissive;
+
+    explicit TextureSlots(const GltfObject& material);
+};
+
+/// An extension of an object, if it has it.
+std::optional<GltfObject> find_extension(const GltfObject& object, const char* name);
+
+/// The different layouts of a material's textures, in the order base colour, metallic-roughness,
+/// normal, occlusion, emissive; at least one. Primitive::uvs are in the first, further_uvs in the
+/// others.
+std::vector<UvLayout> material_uv_layouts(const GltfObject& material);
+
+/// The first of them: edited textures are in it.
+UvLayout material_uv_layout(const GltfObject& material);
+
+}  // namespace item3d
