@@ -197,6 +197,16 @@ TEST(Obj, OldEncodingsAreToldByTheFilesThatAreThere) {
     EXPECT_TRUE(load_and_listen(folder / "q.obj").is_red());
 }
 
+TEST(Obj, OldEncodingsInRemarksDoNotMatter) {
+    const fs::path folder = fresh_folder("obj_old_remark");
+    put(folder / "m.mtl", red_mtl);
+    put_red(folder / "t.png");
+    put(folder / "q.obj", "# gr\xfcn\nmtllib m.mtl\n" + cube_text({}, 1, "usemtl a\n"));
+    const Loaded loaded = load_and_listen(folder / "q.obj");
+    EXPECT_TRUE(loaded.is_red());
+    EXPECT_EQ(loaded.said, "");
+}
+
 TEST(Obj, Utf16IsRead) {
     const auto wide = [](const std::string& text, bool is_little, bool has_mark) {
         std::string result = has_mark ? (is_little ? "\xff\xfe" : "\xfe\xff") : "";

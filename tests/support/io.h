@@ -79,7 +79,7 @@ inline void expect_box(const Model& model, const nlohmann::json& expected) {
             const double want = expected[side][c].get<double>();
             const double extent =
                 expected[1][c].get<double>() - expected[0][c].get<double>() + std::abs(want);
-            EXPECT_NEAR(box[side][c], want, 1e-5 * extent + 1e-12)
+            EXPECT_NEAR(box[side][c] + model.origin[c], want, 1e-5 * extent + 1e-12)
                 << "side " << side << " axis " << c;
         }
     }

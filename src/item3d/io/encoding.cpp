@@ -86,6 +86,17 @@ const char* wide_encoding(std::string_view text) {
     return nullptr;
 }
 
+/// Whether UTF-8 is left in lines alone that begin with "#".
+bool is_utf8_but_for_remarks(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find_first_of("\r\n"), text.size() - 1) + 1;
+        const std::string_view line = trim(text.substr(0, end));
+        if (!line.starts_with('#') && !is_utf8(line)) return false;
+        text.remove_prefix(end);
+    }
+    return true;
+}
+
 }  // namespace
 
 bool is_utf8(std::string_view text) {
@@ -123,6 +134,7 @@ std::string decode_text(std::string_view bytes, const std::vector<std::string>& 
         return utf8_of(*text);
     }
     if (is_utf8(bytes)) return std::string(bytes);
+    if (is_utf8_but_for_remarks(bytes)) return to_utf8(bytes);
 
     std::vector<icu::UnicodeString> wanted;
     for (const std::string& name : names) {

@@ -11,6 +11,7 @@
 namespace item3d {
 
 /// glTF 2.0, binary or JSON. Throws InputError.
-Model read_gltf(const std::filesystem::path& path, const Bytes& bytes, const LoadOptions& options);
+Model read_gltf(const std::filesystem::path& path, const Bytes& bytes,
+                const LoadOptions& options = {});
 
 }  // namespace item3d

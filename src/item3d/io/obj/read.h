@@ -10,6 +10,7 @@
 namespace item3d {
 
 /// Wavefront OBJ with its MTL files, one primitive a material. Throws InputError.
-Model read_obj(const std::filesystem::path& path, const Bytes& bytes, const LoadOptions& options);
+Model read_obj(const std::filesystem::path& path, const Bytes& bytes,
+               const LoadOptions& options = {});
 
 }  // namespace item3d
