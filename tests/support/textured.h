@@ -4,6 +4,7 @@
 #include "item3d/io/resources.h"
 #include "tests/support/io.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -19,7 +20,7 @@ inline Image test_picture(int channels, int width = 30, int height = 22) {
             const float values[] = {static_cast<float>(8 * x) / 255.0f,
                                     static_cast<float>(255 - 10 * y) / 255.0f,
                                     (x / 8 + y / 8) % 2 ? 60.0f / 255.0f : 180.0f / 255.0f,
-                                    static_cast<float>(255 - 8 * x) / 255.0f};
+                                    static_cast<float>(std::max(255 - 8 * x, 0)) / 255.0f};
             for (int c = 0; c < channels; ++c)
                 image.at(x, y, c) = values[c];
         }
