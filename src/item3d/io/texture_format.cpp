@@ -38,7 +38,8 @@ ImageCoding wanted_coding(TextureFormat format, const Texture* source) {
 }
 
 ImageCoding possible_coding(ImageCoding coding, const Image& image, bool must_be_exact) {
-    if (must_be_exact && coding.encoding == ImageEncoding::webp) coding.is_lossless = true;
+    if (must_be_exact && coding.encoding == ImageEncoding::webp)
+        coding = {ImageEncoding::webp, true, 95};
     if (coding.encoding == ImageEncoding::jpeg && (must_be_exact || is_transparent(image)))
         return {};
     if (coding.encoding == ImageEncoding::webp &&

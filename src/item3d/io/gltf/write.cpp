@@ -128,8 +128,7 @@ void tidy(const SourceDocument& document, GltfBuilder& builder) {
     const auto generator = asset.find("generator");
     if (generator == asset.end() || !generator->is_string()) {
         asset["generator"] = "item3d";
-    } else if (const auto text = generator->get<std::string>();
-               text.find("item3d") == std::string::npos) {
+    } else if (const auto text = generator->get<std::string>(); !text.ends_with("item3d")) {
         asset["generator"] = text + ", edited with item3d";
     }
 }

@@ -26,6 +26,10 @@
 namespace item3d {
 namespace {
 
+/// stb_image fills its buffer by 128 bytes, which a file need not have; other sizes are what it
+/// needs.
+constexpr int stb_buffer_size = 128;
+
 /// What is left to read. Where a file ends early stb_image goes on with zeros, so that is noted.
 struct StbSource {
     std::span<const std::uint8_t> bytes;
@@ -36,7 +40,8 @@ struct StbSource {
 int read_stb(void* user, char* data, int size) {
     auto& source = *static_cast<StbSource*>(user);
     const std::size_t left = source.bytes.size() - source.position;
-    source.was_short = source.was_short || (left == 0 && size > 0);
+    const std::size_t needed = size == stb_buffer_size ? 1 : static_cast<std::size_t>(size);
+    source.was_short = source.was_short || left < needed;
     const std::size_t count = std::min(left, static_cast<std::size_t>(std::max(size, 0)));
     if (count > 0) std::memcpy(data, source.bytes.data() + source.position, count);
     source.position += count;
