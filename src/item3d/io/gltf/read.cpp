@@ -30,7 +30,7 @@ namespace {
 constexpr std::string_view known_extensions[] = {
     "KHR_mesh_quantization",      "KHR_texture_transform",   "KHR_lights_punctual",
     "KHR_animation_pointer",      "KHR_xmp_json_ld",         "EXT_meshopt_compression",
-    "KHR_draco_mesh_compression", "EXT_mesh_gpu_instancing",
+    "KHR_draco_mesh_compression", "EXT_mesh_gpu_instancing", "KHR_node_visibility",
 };
 
 void check_required_extensions(const SourceDocument& document) {
