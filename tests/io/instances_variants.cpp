@@ -60,6 +60,19 @@ TEST(Instancing, CountsThatDifferAreRefused) {
     EXPECT_THROW(load_model(quad.write(fresh_folder("instancing_bad"))), InputError);
 }
 
+TEST(NodeVisibility, HiddenNodesAndWhatHangsOnThemAreNotDrawn) {
+    GltfQuad quad;
+    quad.json["nodes"] =
+        GltfJson::array({GltfJson{{"mesh", 0}, {"children", {1}}},
+                         GltfJson{{"mesh", 0}, {"children", {2}}}, GltfJson{{"mesh", 0}}});
+    quad.use("KHR_node_visibility", true);
+    const fs::path folder = fresh_folder("visibility");
+    quad.json["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = true;
+    EXPECT_EQ(load_model(quad.write(folder)).primitives.size(), 3u);
+    quad.json["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = false;
+    EXPECT_EQ(load_model(quad.write(folder)).primitives.size(), 1u);
+}
+
 /// Look "one" has material 0, "two" material 1; the file itself shows material 0. A second
 /// primitive has material 2 in all looks.
 GltfQuad quad_of_variants() {

@@ -108,7 +108,7 @@ TEST(UvMaps, OfTheSourceStayShownBesideANewOne) {
     EXPECT_GE(back.materials[0].normal_texture, 0);
     EXPECT_NE(back.materials[0].normal_uvs, 0);
     EXPECT_NE(back.materials[0].occlusion_uvs, back.materials[0].normal_uvs);
-    const PrimitiveEdit& edit = edit_with_new_uvs(model).primitives.at(0);
+    const PrimitiveEdit edit = edit_with_new_uvs(model).primitives.at(0);
     const auto& normal_map =
         back.primitives[0].further_uvs[static_cast<std::size_t>(back.materials[0].normal_uvs - 1)];
     for (std::size_t i = 0; i < edit.uvs.size(); ++i) {

@@ -27,6 +27,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -114,6 +115,18 @@ int choose_samples(const RenderCommand& options, PictureSize size) {
             fmt::format("--samples {}: with this --size at most {}", options.samples, most));
     }
     return options.samples;
+}
+
+/// Names the extensions of the shown materials that viewers may show and this renderer does not.
+void warn_of_what_is_not_shown(const std::string& file, const Model& model) {
+    std::set<std::string> names;
+    for (const Primitive& primitive : model.primitives) {
+        for (const std::string& name :
+             model.materials[static_cast<std::size_t>(primitive.material)].other_extensions) {
+            if (name.starts_with("KHR_materials_")) names.insert(name);
+        }
+    }
+    if (!names.empty()) warn(fmt::format("{}: not shown: {}", file, fmt::join(names, ", ")));
 }
 
 /// World-space normal with the material's normal map applied, [P, 3].
@@ -279,6 +292,7 @@ void run_render(const RenderCommand& options, at::Device device) {
     const PictureSize size = parse_size(options.size);
     const Model model = load_model(
         options.model, {.texture_folders = options.texture_folders, .variant = options.variant});
+    warn_of_what_is_not_shown(options.model, model);
     const std::vector<Camera> cameras = choose_cameras(options, model, size);
     const Destination destination = choose_destination(options, cameras.size());
     const Painter painter(options, model, device);

@@ -1,5 +1,7 @@
 #include "item3d/io/gltf/nodes.h"
 
+#include "item3d/io/gltf/uv_layouts.h"
+
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
 
@@ -30,6 +32,12 @@ glm::dmat4 local_matrix(const GltfObject& node) {
     }
     if (!t.empty()) matrix[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
     return matrix;
+}
+
+/// A hidden node hides what hangs on it.
+bool is_hidden(const GltfObject& node) {
+    const auto visibility = find_extension(node, "KHR_node_visibility");
+    return visibility && !visibility->boolean("visible", true);
 }
 
 }  // namespace
@@ -85,6 +93,7 @@ NodeTree read_nodes(const SourceDocument& document) {
         stack.pop_back();
         if (seen[i]) continue;
         seen[i] = true;
+        if (is_hidden(root.item("nodes", i))) continue;
         tree.scene.push_back(i);
         stack.insert(stack.end(), children[i].rbegin(), children[i].rend());
     }

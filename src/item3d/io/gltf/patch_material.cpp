@@ -170,6 +170,13 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
             if (old.contains("diffuseTexture")) pbr["baseColorTexture"] = old["diffuseTexture"];
             pbr["metallicFactor"] = 0.0;
             pbr["roughnessFactor"] = 1.0 - old.value("glossinessFactor", 1.0);
+            const bool has_specular =
+                old.contains("specularFactor") || old.contains("specularGlossinessTexture");
+            if (has_specular && !(edit.base_color && edit.metallic_roughness)) {
+                warn(document.path.string() + ": material '" + name +
+                     "' becomes metallic-roughness; what was not edited of it is taken as that of "
+                     "no metal");
+            }
         }
         drop_extension(material, "KHR_materials_pbrSpecularGlossiness");
         // What was edited is a surface in light, and what was never seen does not begin to glow.

@@ -34,7 +34,7 @@ constexpr std::string_view known_extensions[] = {
     "KHR_mesh_quantization",      "KHR_texture_transform", "KHR_lights_punctual",
     "KHR_animation_pointer",      "KHR_xmp_json_ld",       "EXT_meshopt_compression",
     "KHR_draco_mesh_compression", "KHR_texture_basisu",    "EXT_texture_webp",
-    "EXT_mesh_gpu_instancing",
+    "EXT_mesh_gpu_instancing",    "KHR_node_visibility",
 };
 
 void check_required_extensions(const SourceDocument& document) {
