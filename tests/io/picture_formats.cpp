@@ -13,7 +13,7 @@ using namespace testing_support;
 
 void put_number(Bytes& bytes, std::uint64_t value, int count) {
     for (int i = 0; i < count; ++i)
-        bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i) & 255));
+        bytes.push_back(static_cast<std::uint8_t>(i < 8 ? value >> (8 * i) & 255 : 0));
 }
 
 std::uint8_t byte_of(float value) {
