@@ -124,7 +124,7 @@ DecodedImage decode_ktx2(std::span<const std::uint8_t> bytes, const std::string&
     const int channels = channels_of(transcoder);
     DecodedImage result{Image(width, height, channels), 8, {}};
     // Not written here: what every viewer reads takes its place.
-    result.coding = {ImageEncoding::jpeg, false, 95};
+    result.coding = {ImageEncoding::jpeg, false, 85};
     for (std::size_t i = 0; i < pixels; ++i) {
         for (int c = 0; c < channels; ++c) {
             result.image.pixels[i * static_cast<std::size_t>(channels) + c] =
