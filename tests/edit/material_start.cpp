@@ -60,6 +60,7 @@ TEST(MaterialStart, roughness_is_that_of_the_metal_that_is_new) {
     EXPECT_FALSE(start_of(metal, "a golden mug", "a golden mug with a dent").roughness);
     EXPECT_TRUE(start_of(paint, "a red mug", "a pewter mug").roughness);
     EXPECT_FALSE(start_of(paint, "a red mug", "a wooden mug").roughness);
+    EXPECT_FALSE(start_of(paint, "a red mug", "a red mug with a golden handle").roughness);
 }
 
 TEST(MaterialStart, metal_that_nobody_chose_ends_where_no_metal_is_named) {

@@ -27,10 +27,17 @@ bool names_other_material(const PriorVocabulary& vocabulary, const std::string& 
                        [](const KnownWord& word) { return !is_metal(word); });
 }
 
-/// Roughness of the metal that the target names and the source does not.
+/// "a red mug" of "a red mug with a golden handle".
+std::string without_parts(const std::string& prompt) {
+    return prompt.substr(0, prompt.find(" with "));
+}
+
+/// Roughness of the metal that the target names for the whole and the source does not.
 std::optional<float> new_metal_roughness(const PriorVocabulary& vocabulary, const EditPlan& plan) {
+    const std::string whole = without_parts(plan.to);
+    if (!names_metal(whole)) return std::nullopt;
     const std::vector<KnownWord> before = vocabulary.named("materials", plan.from);
-    for (const KnownWord& word : vocabulary.named("materials", plan.to)) {
+    for (const KnownWord& word : vocabulary.named("materials", whole)) {
         const bool is_new = std::none_of(before.begin(), before.end(),
                                          [&](const KnownWord& w) { return w.word == word.word; });
         if (is_metal(word)) return is_new ? word.roughness : std::nullopt;

@@ -15,7 +15,7 @@ struct MaterialStart {
     ChannelMask channels;
     /// Means that the field begins with; none: the model's own.
     std::optional<float> metallic;
-    std::optional<float> roughness;
+    std::optional<float> roughness;  ///< there: the whole becomes a metal
 };
 
 /// Whether the metallic and roughness of a material are what nobody chose: glTF's defaults, both 1
@@ -24,7 +24,8 @@ bool has_default_metal(const Material& material);
 
 /// materials: those that are edited.
 ///  - Towards a metal, metallic begins at `metallic_start`, unless the source is that metallic
-///    already, and roughness at the metal's own.
+///    already, and roughness at the metal's own, unless only a part is of it ("with a golden
+///    handle").
 ///  - Away from metal, and where nobody chose to be metal, metallic begins as far from 1. A model
 ///    that is metal counts where the target names a material that is none, whatever the source's
 ///    sentence says.

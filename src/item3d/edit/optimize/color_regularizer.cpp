@@ -14,6 +14,7 @@ constexpr std::int64_t draws = 16;     ///< iteration i takes those of i modulo 
 constexpr float blotch = 0.25f;
 constexpr int refits = 3;
 constexpr std::int64_t roughness_output = 4;  ///< of NeuralTexture::encoded()
+constexpr std::int64_t metallic_output = 5;
 /// Keeps the slopes of a surface without contrast at nothing; that of spots is 0.1 and more.
 constexpr float min_variance = 0.01f;
 
@@ -57,7 +58,8 @@ ColorRegularizer::ColorRegularizer(const EditScene& scene, const EditPlan& plan,
                             scene.start.channels.roughness ? 1.0f : 0.0f,
                             scene.start.channels.metallic ? 1.0f : 0.0f, 0.0f, 0.0f})
                     .to(scene.device);
-    roughness_ = scene.start.roughness;
+    metal_roughness_ = scene.start.roughness;
+    holds_metallic_ = scene.start.channels.metallic;
 }
 
 void ColorRegularizer::backward(EditState& state) const {
@@ -71,10 +73,14 @@ void ColorRegularizer::backward(EditState& state) const {
         const Departures found =
             departures((now - before) * channels_, before.narrow(1, 0, 3), blotch);
         gradient = found.values * found.weights * (weight_ / points);
-        if (roughness_)
-            gradient.select(1, roughness_output)
-                .copy_((now.detach().select(1, roughness_output) - *roughness_) *
-                       (weight_ / points));
+        const auto hold = [&](std::int64_t output, float value) {
+            gradient.select(1, output).copy_((now.detach().select(1, output) - value) *
+                                             (weight_ / points));
+        };
+        if (metal_roughness_) {
+            hold(roughness_output, *metal_roughness_);
+            if (holds_metallic_) hold(metallic_output, 1);
+        }
     }
     now.backward(gradient);
 }

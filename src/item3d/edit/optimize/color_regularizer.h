@@ -28,7 +28,8 @@ class ColorRegularizer {
     float weight_ = 0;
     at::Tensor positions_;  ///< [draws, P, 3] of the surface
     at::Tensor fitted_;     ///< [draws, P, 8] as NeuralTexture::encoded(), before the edit
-    std::optional<float> roughness_;  ///< of the metal that the surface becomes
+    std::optional<float> metal_roughness_;  ///< of the metal that the surface becomes
+    bool holds_metallic_ = false;
     at::Tensor channels_;  ///< [8] 1 for those of base colour, roughness and metallic that change
 };
 
