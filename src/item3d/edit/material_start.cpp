@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-/// Of metals that the vocabulary does not know.
+/// Roughness of metals that the vocabulary does not know.
 constexpr float usual_metal_roughness = 0.25f;
 /// Mean metallic from which a model counts as metal.
 constexpr float half_metal = 0.5f;

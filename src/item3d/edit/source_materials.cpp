@@ -41,7 +41,7 @@ bool is_among(const std::array<std::string_view, N>& names, const std::string& n
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// What the target sentence says of the material that it names.
+/// Properties of the material that the target sentence names.
 struct TargetWords {
     bool metal, cloth, opaque, clear;
 

@@ -1,5 +1,5 @@
-// What of a model's materials does not go with an edit: emission that repeats or hides the base
-// colour, glass that is to become gold.
+// Properties of a model's materials that contradict an edit: emission that repeats or hides the
+// base colour, glass that is to become gold.
 #pragma once
 
 #include "item3d/edit/plan.h"
@@ -12,7 +12,7 @@
 
 namespace item3d {
 
-/// What the file of an edited material loses besides its textures.
+/// Properties that an edited material loses in the file besides its textures.
 struct MaterialLosses {
     bool emission = false;
     bool transparency = false;

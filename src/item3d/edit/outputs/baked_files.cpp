@@ -6,6 +6,7 @@
 #include "item3d/io/gltf/light.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
+#include "item3d/io/text.h"
 #include "item3d/io/texture_format.h"
 #include "item3d/scene/far_origin.h"
 
@@ -86,10 +87,7 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
 }  // namespace
 
 std::string model_file_name(const EditRequest& request) {
-    std::string extension = request.model.extension().string();
-    for (char& c : extension)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".vrm" ? "model.vrm" : "model.glb";
+    return to_lower(request.model.extension().string()) == ".vrm" ? "model.vrm" : "model.glb";
 }
 
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state) {

@@ -28,7 +28,7 @@ class SharedTexels {
     at::Tensor representatives(const Surface& surface, const at::Tensor& positions) const;
 
   private:
-    /// Of one material.
+    /// The texels of one material.
     struct Grid {
         int material = 0;
         int width = 0, height = 0;

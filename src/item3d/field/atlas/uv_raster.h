@@ -15,7 +15,7 @@ namespace item3d {
 /// The UVs of a triangle's corners; (0, 0) is the top left corner of the image.
 using UvTriangle = std::array<Vec2, 3>;
 
-/// What a texture shows beyond [0, 1].
+/// How a texture continues beyond [0, 1].
 struct UvWrap {
     Wrap u = Wrap::repeat;
     Wrap v = Wrap::repeat;

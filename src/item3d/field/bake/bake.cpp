@@ -294,7 +294,7 @@ MaterialEdit MaterialBaker::run(NeuralTexture& fitted, NeuralTexture& now, Progr
     want(wants_normal_, normal_size_);
     for (std::size_t i = 0; i < sizes.size(); ++i) {
         const auto [width, height] = sizes[i];
-        // Of texels that are copied only the change is sampled, which is smooth.
+        // Copied texels take only the sampled change, which is smooth.
         const int supersampling = copies_texels(sizes[i]) ? 1 : options_.supersampling;
         const TexelEvaluator evaluator(scene_, index_, width, height, supersampling, wants_normal_);
         std::optional<RemainderGain> gain;

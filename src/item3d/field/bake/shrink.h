@@ -7,8 +7,8 @@
 namespace item3d {
 
 /// The image halved while bilinear lookups still give all of its texels: 1 x 1 for a plain colour.
-/// Of the difference, the root mean square stays below `tolerance` in each channel and the largest
-/// below four times as much; values in [0, 1].
+/// The root mean square of the difference stays below `tolerance` in each channel and the largest
+/// difference below four times as much; values in [0, 1].
 Image shrink(Image image, UvWrap wrap, float tolerance = 1.0f / 255);
 
 }  // namespace item3d
