@@ -3,8 +3,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
-#include "item3d/prior/data/workers.h"
 #include "item3d/tensors/safetensors.h"
+#include "item3d/tensors/workers.h"
 
 #include <atomic>
 #include <mutex>

@@ -6,11 +6,11 @@
 #include "item3d/prior/data/shapes/polygonize.h"
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/prior/data/sky_visibility.h"
-#include "item3d/prior/data/workers.h"
 #include "item3d/render/interpolate.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/render/scatter.h"
 #include "item3d/scene/camera.h"
+#include "item3d/tensors/workers.h"
 
 #include <algorithm>
 #include <atomic>

@@ -8,7 +8,7 @@
 #include "item3d/prior/data/captions.h"
 #include "item3d/prior/data/materials/colors.h"
 #include "item3d/prior/data/shapes/shapes.h"
-#include "item3d/prior/data/workers.h"
+#include "item3d/tensors/workers.h"
 
 #include <algorithm>
 #include <cmath>

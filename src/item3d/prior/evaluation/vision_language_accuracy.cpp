@@ -3,7 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/prior/data/shapes/shapes.h"
-#include "item3d/prior/data/workers.h"
+#include "item3d/tensors/workers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,6 @@
 #include "item3d/networks/diffusion/shape_condition.h"
 #include "item3d/prior/data/dataset.h"
 #include "item3d/prior/data/prior_folder.h"
-#include "item3d/prior/data/workers.h"
 #include "item3d/prior/evaluation/classifier.h"
 #include "item3d/prior/training/export.h"
 #include "item3d/prior/training/init_from.h"
@@ -17,6 +16,7 @@
 #include "item3d/prior/training/train_autoencoder.h"
 #include "item3d/prior/training/train_diffusion.h"
 #include "item3d/tensors/safetensors.h"
+#include "item3d/tensors/workers.h"
 
 #include <algorithm>
 #include <atomic>

@@ -6,10 +6,10 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/networks/layers/load_parameters.h"
-#include "item3d/prior/data/workers.h"
 #include "item3d/prior/training/replicas.h"
 #include "item3d/tensors/safetensors.h"
 #include "item3d/tensors/weights.h"
+#include "item3d/tensors/workers.h"
 
 #include <cmath>
 

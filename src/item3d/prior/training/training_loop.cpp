@@ -4,9 +4,9 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
-#include "item3d/prior/data/workers.h"
 #include "item3d/prior/training/settings.h"
 #include "item3d/tensors/safetensors.h"
+#include "item3d/tensors/workers.h"
 
 #include <algorithm>
 #include <chrono>

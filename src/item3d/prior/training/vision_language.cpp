@@ -5,13 +5,13 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/prior/data/prior_folder.h"
-#include "item3d/prior/data/workers.h"
 #include "item3d/prior/evaluation/vision_language_accuracy.h"
 #include "item3d/prior/training/init_from.h"
 #include "item3d/prior/training/tokenizer_training.h"
 #include "item3d/prior/training/train.h"
 #include "item3d/prior/training/train_captioner.h"
 #include "item3d/prior/training/train_clip.h"
+#include "item3d/tensors/workers.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "item3d/prior/data/workers.h"
+#include "item3d/tensors/workers.h"
 
 #include "item3d/core/progress.h"
 #include "item3d/tensors/tensor.h"
