@@ -144,6 +144,46 @@ TEST(Lora, TakesAlphaFromTheRecordOfDiffusers) {
     EXPECT_THROW(change("no JSON"), InputError);
 }
 
+/// By which number the query's weights grow where the file says ones.
+double mean_change(const std::filesystem::path& file) {
+    LoraTargets targets;
+    targets.unet = lora_unet();
+    const at::Tensor before = weight_of(targets.unet, query).clone();
+    fuse_loras({{file, 1}}, targets);
+    return (weight_of(targets.unet, query) - before).mean().item<double>();
+}
+
+TEST(Lora, TakesAlphaFromTheConfigurationBesideIt) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "adapter_model.safetensors";
+    const std::string base = "base_model.model." + query;
+    save_safetensors(path, {{base + ".lora_A.weight", at::ones({4, 8})},
+                            {base + ".lora_B.weight", at::ones({8, 4})}});
+    EXPECT_NEAR(mean_change(path), 4, 1e-5);
+    const auto config = folder.path() / "adapter_config.json";
+    testing::write_file(config, R"({"peft_type": "LORA", "r": 4, "lora_alpha": 2})");
+    EXPECT_NEAR(mean_change(path), 2, 1e-5);
+    testing::write_file(config, R"({"peft_type": "LORA", "lora_alpha": 2, "use_rslora": true})");
+    EXPECT_NEAR(mean_change(path), 4, 1e-5);
+    testing::write_file(config, R"({"peft_type": "LOHA", "lora_alpha": 2})");
+    EXPECT_THROW(mean_change(path), InputError);
+}
+
+TEST(Lora, KnowsOriginalNamesWithDotsAndLeavesEmbeddingsOut) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "lora.safetensors";
+    const std::string module = "input_blocks.1.1.transformer_blocks.0.attn1.to_q";
+    for (const char* network : {"unet.", "diffusion_model.", "model.diffusion_model."}) {
+        save_safetensors(path, {{network + module + ".lora_down.weight", at::ones({4, 8})},
+                                {network + module + ".lora_up.weight", at::ones({8, 4})},
+                                {"bundle_emb.word.clip_l", at::ones({2, 32})}});
+        ::testing::internal::CaptureStderr();
+        EXPECT_NEAR(mean_change(path), 4, 1e-5) << network;
+        const std::string said = ::testing::internal::GetCapturedStderr();
+        EXPECT_NE(said.find("embedding 'word' is left out"), std::string::npos) << said;
+    }
+}
+
 TEST(Lora, NamesFileAndTensorOfWhatItRefuses) {
     const at::Tensor down = at::ones({2, 8}), up = at::ones({8, 2});
     const std::string base = "lora_unet_conv_nowhere", q = "unet." + query;

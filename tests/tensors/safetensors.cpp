@@ -188,7 +188,8 @@ TEST(Weights, ALinkThatLeadsNowhereIsNamed) {
 TEST(Weights, EveryFloatingPointTypeIsConverted) {
     const TemporaryFolder folder;
     const at::Tensor weight = at::arange(6.0f).reshape({2, 3}) / 4;
-    for (const auto stored : {at::kFloat, at::kHalf, at::kBFloat16, at::kDouble})
+    for (const auto stored :
+         {at::kFloat, at::kHalf, at::kBFloat16, at::kDouble, at::kFloat8_e4m3fn, at::kFloat8_e5m2})
         for (const auto wanted : {at::kFloat, at::kHalf, at::kBFloat16}) {
             save_safetensors(folder.path() / "m.fp16.safetensors",
                              {{"weight", weight.to(stored)}, {"bias", at::ones(2)}});

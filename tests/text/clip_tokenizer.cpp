@@ -5,7 +5,11 @@
 #include "item3d/text/normalization.h"
 #include "tests/support/networks.h"
 
+#include <nlohmann/json.hpp>
+
 #include <chrono>
+#include <filesystem>
+#include <sstream>
 
 namespace item3d {
 namespace {
@@ -120,6 +124,60 @@ TEST(ClipTokenizer, SurvivesSavingAndLoading) {
     EXPECT_EQ(again.size(), tokenizer.size());
     for (const char* text : {"a red mug", "red<|STARTOFTEXT|>red", "\u00e9\u4e2d'll 12"})
         EXPECT_EQ(again.encode(text), tokenizer.encode(text)) << text;
+}
+
+/// One tokenizer.json in place of vocab.json and merges.txt.
+void join_files(const std::filesystem::path& folder, bool merges_are_pairs) {
+    nlohmann::json merges = nlohmann::json::array();
+    std::istringstream lines(read_text(folder / "merges.txt"));
+    std::string left, right;
+    std::getline(lines, left);  // the version
+    while (lines >> left >> right) {
+        if (merges_are_pairs)
+            merges.push_back({left, right});
+        else
+            merges.push_back(left + " " + right);
+    }
+    nlohmann::json vocabulary = nlohmann::json::parse(read_text(folder / "vocab.json"));
+    nlohmann::json added = nlohmann::json::array();
+    for (const char* token : {"<|startoftext|>", "<|endoftext|>"}) {
+        const bool begins = std::string(token) == "<|startoftext|>";
+        added.push_back({{"id", vocabulary.at(token)}, {"content", token}, {"normalized", begins}});
+        vocabulary.erase(token);
+    }
+    const nlohmann::json model{{"type", "BPE"}, {"vocab", vocabulary}, {"merges", merges}};
+    testing::write_file(folder / "tokenizer.json",
+                        nlohmann::json{{"added_tokens", added}, {"model", model}}.dump());
+    std::filesystem::remove(folder / "vocab.json");
+    std::filesystem::remove(folder / "merges.txt");
+}
+
+TEST(ClipTokenizer, ReadsTheOneFileOfNewerPrograms) {
+    ClipTokenizer::Options options;
+    options.bos.normalized = true;
+    const ClipTokenizer tokenizer = small_tokenizer(options);
+    for (const bool merges_are_pairs : {false, true}) {
+        const TemporaryFolder folder;
+        tokenizer.save(folder.path());
+        std::filesystem::remove(folder.path() / "special_tokens_map.json");
+        join_files(folder.path(), merges_are_pairs);
+        const ClipTokenizer again = ClipTokenizer::load(folder.path());
+        EXPECT_EQ(again.size(), tokenizer.size());
+        for (const char* text : {"a red mug", "red<|STARTOFTEXT|>red<|endoftext|>", "\u00e9'll 12"})
+            EXPECT_EQ(again.encode(text), tokenizer.encode(text)) << text;
+        const auto damaged = [&](const std::string& text, const char* wanted) {
+            testing::write_file(folder.path() / "tokenizer.json", text);
+            const std::string message =
+                message_of<InputError>([&] { ClipTokenizer::load(folder.path()); });
+            EXPECT_NE(message.find("tokenizer.json"), std::string::npos) << message;
+            EXPECT_NE(message.find(wanted), std::string::npos) << message;
+        };
+        damaged("{}", "model");
+        damaged(R"({"model": {"type": "Unigram", "vocab": {}}})", "type");
+        damaged(R"({"model": {"type": "BPE", "vocab": {"a": -1}, "merges": []}})", "an id");
+        damaged(R"({"model": {"type": "BPE", "vocab": {"a": 0}}})", "merges");
+        damaged(R"({"model": {"type": "BPE", "vocab": {"a": 0}, "merges": [3]}})", "merges");
+    }
 }
 
 TEST(ClipTokenizer, RejectsVocabulariesThatDoNotFit) {

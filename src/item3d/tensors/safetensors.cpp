@@ -25,9 +25,18 @@ struct NamedDtype {
     at::ScalarType dtype;
 };
 constexpr NamedDtype dtypes[] = {
-    {"F64", at::kDouble}, {"F32", at::kFloat}, {"F16", at::kHalf},  {"BF16", at::kBFloat16},
-    {"I64", at::kLong},   {"I32", at::kInt},   {"I16", at::kShort}, {"I8", at::kChar},
-    {"U8", at::kByte},    {"BOOL", at::kBool},
+    {"F64", at::kDouble},
+    {"F32", at::kFloat},
+    {"F16", at::kHalf},
+    {"BF16", at::kBFloat16},
+    {"I64", at::kLong},
+    {"I32", at::kInt},
+    {"I16", at::kShort},
+    {"I8", at::kChar},
+    {"U8", at::kByte},
+    {"BOOL", at::kBool},
+    {"F8_E4M3", at::kFloat8_e4m3fn},
+    {"F8_E5M2", at::kFloat8_e5m2},
 };
 
 std::optional<at::ScalarType> dtype_of_name(const std::string& name) {
@@ -133,7 +142,10 @@ void SafeTensors::read_header(const std::string& header, std::uint64_t data_size
             fail(name, "expected dtype, shape and data_offsets");
         const auto dtype = dtype_of_name(value["dtype"].get<std::string>());
         if (!dtype)
-            fail(name, fmt::format("type {} is not supported", value["dtype"].get<std::string>()));
+            throw InputError(file,
+                             fmt::format("tensor '{}' is of type {}, which is not supported", name,
+                                         value["dtype"].get<std::string>()),
+                             "use a copy of it in F16, BF16 or F32");
 
         Entry entry{*dtype, {}, 0, 0};
         std::uint64_t bytes = at::elementSize(*dtype);

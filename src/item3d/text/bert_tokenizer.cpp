@@ -4,6 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/text/special_tokens.h"
+#include "item3d/text/tokenizer_json.h"
 
 #include <algorithm>
 #include <sstream>
@@ -17,13 +18,23 @@ const std::string continuation = "##";
 }  // namespace
 
 BertTokenizer BertTokenizer::load(const std::filesystem::path& folder) {
-    const std::filesystem::path path = folder / "vocab.txt";
+    std::filesystem::path path = folder / "vocab.txt";
     BertTokenizer tokenizer;
-    std::istringstream lines(read_text(path));
-    for (std::string line; std::getline(lines, line);) {
-        if (!line.empty() && line.back() == '\r') line.pop_back();
-        tokenizer.id_of_[line] = static_cast<int>(tokenizer.tokens_.size());
-        tokenizer.tokens_.push_back(line);
+    if (const auto file = TokenizerJson::read(folder, "vocab.txt", "WordPiece")) {
+        path = folder / "tokenizer.json";
+        for (const auto& [token, id] : file->vocabulary()) {
+            tokenizer.id_of_[token] = id;
+            if (static_cast<std::size_t>(id) >= tokenizer.tokens_.size())
+                tokenizer.tokens_.resize(static_cast<std::size_t>(id) + 1);
+            tokenizer.tokens_[static_cast<std::size_t>(id)] = token;
+        }
+    } else {
+        std::istringstream lines(read_text(path));
+        for (std::string line; std::getline(lines, line);) {
+            if (!line.empty() && line.back() == '\r') line.pop_back();
+            tokenizer.id_of_[line] = static_cast<int>(tokenizer.tokens_.size());
+            tokenizer.tokens_.push_back(line);
+        }
     }
 
     const std::filesystem::path config_path = folder / "tokenizer_config.json";

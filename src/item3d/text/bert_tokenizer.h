@@ -16,7 +16,8 @@ namespace item3d {
 /// [SEP]".
 class BertTokenizer : public CaptionTokenizer {
   public:
-    /// Reads vocab.txt and tokenizer_config.json (the latter may be missing). Throws InputError.
+    /// Reads vocab.txt, or tokenizer.json in its place, and tokenizer_config.json (which may be
+    /// missing). Throws InputError.
     static BertTokenizer load(const std::filesystem::path& folder);
 
     std::vector<int> encode(const std::string& text) const override;

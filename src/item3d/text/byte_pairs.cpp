@@ -1,10 +1,10 @@
 #include "item3d/text/byte_pairs.h"
 
-#include "item3d/core/config.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/text/normalization.h"
+#include "item3d/text/tokenizer_json.h"
 
 #include <algorithm>
 #include <queue>
@@ -16,18 +16,6 @@ namespace {
 std::uint64_t pair_key(int left, int right) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(left)) << 32 |
            static_cast<std::uint32_t>(right);
-}
-
-BytePairs::Vocabulary read_vocabulary(const std::filesystem::path& path) {
-    const Config config = Config::read(path);
-    BytePairs::Vocabulary vocabulary;
-    for (const auto& [token, id] : config.json().items()) {
-        if (!id.is_number_integer() || id.get<double>() < 0 ||
-            id.get<double>() > Config::max_integer)
-            config.fail(token, "an id");
-        vocabulary[token] = id.get<int>();
-    }
-    return vocabulary;
 }
 
 BytePairs::Merges read_merges(const std::filesystem::path& path) {
@@ -74,9 +62,14 @@ BytePairs::BytePairs(Vocabulary vocabulary, Merges merges, std::string word_end,
 }
 
 BytePairs BytePairs::load(const std::filesystem::path& folder, const std::string& word_end) {
-    Vocabulary vocabulary = read_vocabulary(folder / "vocab.json");
-    return BytePairs(std::move(vocabulary), read_merges(folder / "merges.txt"), word_end,
-                     (folder / "vocab.json").string());
+    const auto ids = [](const std::vector<std::pair<std::string, int>>& tokens) {
+        return Vocabulary(tokens.begin(), tokens.end());
+    };
+    if (const auto file = TokenizerJson::read(folder, "vocab.json", "BPE"))
+        return BytePairs(ids(file->vocabulary()), file->merges(), word_end, file->subject());
+    const std::filesystem::path path = folder / "vocab.json";
+    return BytePairs(ids(read_ids(Config::read(path))), read_merges(folder / "merges.txt"),
+                     word_end, path.string());
 }
 
 void BytePairs::save(const std::filesystem::path& folder) const {

@@ -21,7 +21,8 @@ class BytePairs {
     /// InputError (calling the vocabulary `subject`) otherwise.
     BytePairs(Vocabulary vocabulary, Merges merges, std::string word_end,
               const std::string& subject);
-    /// Reads vocab.json and merges.txt. Throws InputError.
+    /// Reads vocab.json and merges.txt; where the former is missing, tokenizer.json, in which
+    /// transformers keeps both since its fifth version. Throws InputError.
     static BytePairs load(const std::filesystem::path& folder, const std::string& word_end);
     /// Writes the same two files.
     void save(const std::filesystem::path& folder) const;

@@ -5,6 +5,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/text/normalization.h"
+#include "item3d/text/tokenizer_json.h"
 
 #include <algorithm>
 
@@ -66,6 +67,10 @@ ClipTokenizer ClipTokenizer::load(const std::filesystem::path& folder,
         if (config.has("model_max_length") && config.number("model_max_length", 0) < 1e5)
             options.model_max_length = config.size("model_max_length", 77);
         for (const auto& [id, token] : read_added_tokens(config))
+            options.additional.push_back(token);
+    }
+    if (const auto file = TokenizerJson::read(vocabulary_folder, "vocab.json", "BPE")) {
+        for (const auto& [id, token] : file->added_tokens())
             options.additional.push_back(token);
     }
     return ClipTokenizer(BytePairs::load(vocabulary_folder, word_end), options,

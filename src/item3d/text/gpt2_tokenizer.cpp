@@ -4,6 +4,7 @@
 #include "item3d/core/format.h"
 #include "item3d/text/normalization.h"
 #include "item3d/text/special_tokens.h"
+#include "item3d/text/tokenizer_json.h"
 
 #include <algorithm>
 
@@ -30,6 +31,10 @@ Gpt2Tokenizer Gpt2Tokenizer::load(const std::filesystem::path& folder) {
             if (config.has(key)) others.push_back(read_special_token(config, key, {}));
         adds_begin = config.boolean("add_bos_token", adds_begin);
         for (const auto& [id, token] : read_added_tokens(config))
+            if (!token.content.empty()) tokenizer.specials_.emplace_back(token.content, id);
+    }
+    if (const auto file = TokenizerJson::read(folder, "vocab.json", "BPE")) {
+        for (const auto& [id, token] : file->added_tokens())
             if (!token.content.empty()) tokenizer.specials_.emplace_back(token.content, id);
     }
     others.insert(others.end(), {begin, unknown});

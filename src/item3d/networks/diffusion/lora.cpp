@@ -1,13 +1,16 @@
 #include "item3d/networks/diffusion/lora.h"
 
+#include "item3d/core/config.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/core/progress.h"
 #include "item3d/networks/diffusion/adapter_file.h"
 #include "item3d/networks/diffusion/lora_names.h"
 
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -58,7 +61,12 @@ struct Update {
 /// Finds each tensor's place; throws for those that have none.
 std::map<Place, LayerTensors> layers_of(const SafeTensors& file, const Networks& networks) {
     std::map<Place, LayerTensors> layers;
+    std::set<std::string> embeddings;
     for (const std::string& name : file.names()) {
+        if (const std::string word = bundled_embedding(name); !word.empty()) {
+            embeddings.insert(word);
+            continue;
+        }
         const auto reject = [&](const std::string& problem, const std::string& hint) {
             throw InputError(file.path().string(), fmt::format("tensor '{}' {}", name, problem),
                              hint);
@@ -71,24 +79,37 @@ std::map<Place, LayerTensors> layers_of(const SafeTensors& file, const Networks&
         const Network& network = networks.at(parsed->network);
         if (network.parameters.is_empty())
             reject(fmt::format("is for {}, which this model has not", network.name), another_model);
-        const auto found = network.spellings.find(parsed->module);
-        if (found == network.spellings.end())
+        const std::optional<std::string> module = find_module(network.spellings, parsed->module);
+        if (!module)
             reject(fmt::format("fits nothing in this model's {}", network.name), another_model);
-        LayerTensors& layer = layers[{parsed->network, found->second}];
+        LayerTensors& layer = layers[{parsed->network, *module}];
         if (const auto [other, fresh] = layer.emplace(parsed->role, name); !fresh)
             reject(fmt::format("and '{}' mean the same layer", other->second),
                    "write the file again");
     }
+    for (const std::string& word : embeddings)
+        note(fmt::format(
+            "{}: its embedding '{}' is left out (--embedding takes one in a file of its "
+            "own)",
+            file.path().string(), word));
     if (layers.empty()) throw InputError(file.path().string(), "holds no tensor");
     return layers;
 }
 
-/// How diffusers records PEFT's configuration beside the weights; alpha tensors go first.
+/// PEFT's configuration: a file beside the weights, or what diffusers records in them; alpha
+/// tensors go first.
 class RecordedAlpha {
   public:
     explicit RecordedAlpha(const SafeTensors& file) : file_(file) {
         const auto found = file.metadata().find("lora_adapter_metadata");
-        if (found == file.metadata().end()) return;
+        if (found == file.metadata().end()) {
+            const std::filesystem::path beside = file.path().parent_path() / "adapter_config.json";
+            if (file.path().stem() != "adapter_model" || !std::filesystem::exists(beside)) return;
+            const Config config = Config::read(beside);
+            config.expect("peft_type", "LORA");
+            record_ = config.json();
+            return;
+        }
         record_ = nlohmann::json::parse(found->second, nullptr, false);
         if (!record_.is_object())
             throw InputError(file.path().string(), "its lora_adapter_metadata is not JSON");
@@ -115,7 +136,8 @@ class RecordedAlpha {
 
   private:
     nlohmann::json value(const std::string& network, const std::string& key) const {
-        return record_.is_object() ? record_.value(network + "." + key, nlohmann::json()) : nullptr;
+        if (!record_.is_object()) return nullptr;
+        return record_.value(network + "." + key, record_.value(key, nlohmann::json()));
     }
     const SafeTensors& file_;
     nlohmann::json record_;

@@ -23,9 +23,11 @@ struct LoraTargets {
 
 /// For every layer of every file W += scale * alpha / rank * up x down, summed in float32 and cast
 /// once to the type of the weights. alpha is the file's tensor, else that of diffusers'
-/// "lora_adapter_metadata", else the rank. Names as lora_names.h says, linear layers and
-/// convolutions. Throws InputError that names file and tensor, before any weight is changed, for a
-/// tensor that fits nothing, ranks or shapes that do not agree, and adapters of other kinds.
+/// "lora_adapter_metadata" or of PEFT's adapter_config.json beside an adapter_model.safetensors,
+/// else the rank. Embeddings that come bundled with it are left out, with a note. Names as
+/// lora_names.h says, linear layers and convolutions. Throws InputError that names file and tensor,
+/// before any weight is changed, for a tensor that fits nothing, ranks or shapes that do not agree,
+/// and adapters of other kinds.
 void fuse_loras(const std::vector<LoraFile>& files, const LoraTargets& targets);
 
 }  // namespace item3d

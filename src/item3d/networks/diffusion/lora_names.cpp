@@ -28,7 +28,9 @@ constexpr std::array<std::pair<const char*, LoraRole>, 13> endings = {{
     {".alpha", LoraRole::alpha},
 }};
 
-constexpr std::array<std::pair<const char*, LoraNetwork>, 7> beginnings = {{
+constexpr std::array<std::pair<const char*, LoraNetwork>, 9> beginnings = {{
+    {"model.diffusion_model.", LoraNetwork::unet},
+    {"diffusion_model.", LoraNetwork::unet},
     {"unet.", LoraNetwork::unet},
     {"text_encoder.", LoraNetwork::text_encoder},
     {"text_encoder_2.", LoraNetwork::text_encoder_2},
@@ -176,6 +178,20 @@ std::optional<LoraTensorName> parse_lora_name(const std::string& name) {
         return result;
     }
     return std::nullopt;
+}
+
+std::optional<std::string> find_module(const LoraSpellings& spellings, const std::string& name) {
+    for (const std::string& spelling : {name, flat(name)}) {
+        const auto found = spellings.find(spelling);
+        if (found != spellings.end()) return found->second;
+    }
+    return std::nullopt;
+}
+
+std::string bundled_embedding(const std::string& name) {
+    std::string rest = name;
+    if (!cut_beginning(rest, "bundle_emb.")) return "";
+    return rest.substr(0, rest.find('.'));
 }
 
 std::string other_adapter_kind(const std::string& name) {

@@ -34,7 +34,15 @@ std::string other_adapter_kind(const std::string& name);
 /// convolution count. For the U-Net these are diffusers' names, the same with underscores, and
 /// those of the original Stable Diffusion code ("input_blocks_1_1_proj_in").
 using LoraSpellings = std::map<std::string, std::string>;
+
 LoraSpellings unet_spellings(const UNet2DConditionImpl& unet);
 LoraSpellings text_encoder_spellings(const ClipTextModelImpl& text_encoder);
+
+/// The module of a name with dots or underscores, if any.
+std::optional<std::string> find_module(const LoraSpellings& spellings, const std::string& name);
+
+/// The word of an embedding that some trainers put beside a LoRA's tensors
+/// ("bundle_emb.WORD.clip_l"), or "".
+std::string bundled_embedding(const std::string& name);
 
 }  // namespace item3d

@@ -16,9 +16,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A folder of PEFT's or diffusers' stands for the weights in it.
+fs::path lora_in(const fs::path& path) {
+    if (!fs::is_directory(path)) return path;
+    for (const char* name : {"adapter_model.safetensors", "pytorch_lora_weights.safetensors"})
+        if (fs::exists(path / name)) return path / name;
+    throw InputError(path.string(),
+                     "holds neither adapter_model.safetensors nor pytorch_lora_weights.safetensors",
+                     "name the LoRA's .safetensors file");
+}
+
 LoraFile parse_lora(const std::string& argument) {
     const AdapterArgument parts = split_adapter_argument(argument);
-    LoraFile result{parts.file, 1};
+    LoraFile result{lora_in(parts.file), 1};
     if (parts.rest.empty()) return result;
     const char* end = parts.rest.data() + parts.rest.size();
     const auto read = std::from_chars(parts.rest.data(), end, result.scale);

@@ -1,0 +1,41 @@
+// tokenizer.json, the one file in which newer programs keep what older ones keep in several.
+#pragma once
+
+#include "item3d/core/config.h"
+#include "item3d/text/special_tokens.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace item3d {
+
+/// What a folder's tokenizer.json says.
+class TokenizerJson {
+  public:
+    /// Nothing where `instead` is there (vocab.json, vocab.txt), or tokenizer.json is not. Throws
+    /// InputError for a file that is damaged, or whose model is not of `type` ("BPE", "WordPiece").
+    static std::optional<TokenizerJson> read(const std::filesystem::path& folder,
+                                             const std::string& instead, const std::string& type);
+
+    const std::string& subject() const { return file_.subject(); }
+    /// Tokens and their ids, added ones too.
+    const std::vector<std::pair<std::string, int>>& vocabulary() const { return vocabulary_; }
+    /// In order of priority.
+    std::vector<std::pair<std::string, std::string>> merges() const;
+    const std::vector<std::pair<int, SpecialToken>>& added_tokens() const { return added_; }
+
+  private:
+    explicit TokenizerJson(Config file);
+
+    Config file_;
+    std::vector<std::pair<std::string, int>> vocabulary_;
+    std::vector<std::pair<int, SpecialToken>> added_;
+};
+
+/// Ids by token, of an object. Throws InputError for what is no id.
+std::vector<std::pair<std::string, int>> read_ids(const Config& object);
+
+}  // namespace item3d
