@@ -107,24 +107,6 @@ TEST_F(Program, MalformedFilesAreRefusedOrWarnedAbout) {
     }
 }
 
-/// item3d edit with a prior of random weights that is small enough to run in a test.
-class EditProgram : public Program {
-  protected:
-    static std::string prior() { return ITEM3D_TEST_DATA "/models/pipeline_sd"; }
-    std::string edit(const std::string& rest, const std::string& prior_folder = prior()) const {
-        return "edit " + quoted(cube_) + " --prior '" + prior_folder +
-               "' --resolution 32 --batch 1 --iterations 3 --texture-size 64 " + rest;
-    }
-    std::string to(const std::string& name) const {
-        return " --from 'a red cube' --to 'a blue cube' -o " + quoted(folder_ / name);
-    }
-    /// A copy of the prior, to be broken.
-    fs::path copy_of_prior(const std::string& name) const {
-        fs::copy(prior(), folder_ / name, fs::copy_options::recursive);
-        return folder_ / name;
-    }
-};
-
 TEST_F(EditProgram, WhatItCannotUseIsThreeAndNothingIsLeft) {
     expect_error(edit("--from '' --to 'a blue cube' -o " + quoted(folder_ / "out")), 3, "--from");
     expect_error(edit("--from 'a red cube' --to ' ' -o " + quoted(folder_ / "out")), 3, "--to");

@@ -1,6 +1,7 @@
 // item3d caption: a sentence for a picture, or for a model seen from all around.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/model_options.h"
 #include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
@@ -29,6 +30,7 @@ struct CaptionCommand : CommonOptions {
     std::string precision = "auto";
     std::string light = "studio";
     int views = 4;
+    std::vector<std::filesystem::path> texture_folders;
     CaptionOptions caption{.prefix = {}, .beams = caption_beams};
 };
 
@@ -52,7 +54,7 @@ std::vector<at::Tensor> load_pictures(const CaptionCommand& options, at::Device 
         const bool linear = extension == ".exr" || extension == ".hdr";
         return {to_bytes(to_tensor(linear ? to_display(image) : image))};
     }
-    const Model model = load_model(options.input);
+    const Model model = load_model(options.input, {.texture_folders = options.texture_folders});
     const EnvironmentLight light = prefilter(load_light(options.light), 256, device);
     const at::Tensor views = over_white(
         draw_pictures(model, light, picture_cameras(model, options.views), caption_view_pixels));
@@ -100,6 +102,7 @@ void add_caption_command(CLI::App& app) {
         ->add_option("IMAGE|MODEL", options->input,
                      "A .png, .jpg, .hdr or .exr picture, or a .glb, .gltf or .obj model")
         ->required();
+    add_texture_folders(*command, options->texture_folders);
     command->add_option(
         "--captioner", options->captioner,
         "A folder with BLIP or BLIP-2 (OPT) in the transformers layout; without it, "

@@ -3,6 +3,7 @@
 
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/model_options.h"
 #include "apps/item3d/edit/relight_words.h"
 #include "apps/item3d/edit/setting_options.h"
 #include "item3d/core/error.h"
@@ -140,13 +141,7 @@ void add_edit_command(CLI::App& app) {
                         "BLIP or BLIP-2 in the transformers layout, for --adjust caption; without "
                         "it, the one that the prior brings along");
     command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
-    command
-        ->add_option("--textures", request.texture_folders,
-                     "A folder that textures may be read from beside the model's own; may be given "
-                     "several times")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->check(CLI::ExistingDirectory);
+    add_texture_folders(*command, request.texture_folders);
     command->add_flag(
         "--allow-missing-textures", request.allow_missing_textures,
         "Edit materials whose base colour texture cannot be read as if they had none");

@@ -2,6 +2,7 @@
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/light_options.h"
+#include "apps/item3d/edit/model_options.h"
 #include "apps/item3d/edit/picture_options.h"
 #include "apps/item3d/edit/relight_words.h"
 #include "item3d/core/error.h"
@@ -44,6 +45,7 @@ const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
 
 struct RelightCommand : CommonOptions {
     std::string model;
+    std::vector<std::filesystem::path> texture_folders;
     std::string output;
     std::string light = "studio";
     std::optional<float> sky;  ///< hour; instead of light
@@ -210,7 +212,7 @@ ModelLights lights_for_model(const RelightCommand& options, const Image& light,
 
 void run_relight(const RelightCommand& options, at::Device device) {
     const std::optional<SunSetting> placed_sun = chosen_sun(options.change);
-    const Model model = load_model(options.model);
+    const Model model = load_model(options.model, {.texture_folders = options.texture_folders});
     const Image old_light = load_light(options.from_light);
     const fs::path folder = options.output;
     nlohmann::json by_words = nullptr;
@@ -269,6 +271,7 @@ void add_relight_command(CLI::App& app) {
     CLI::App* command = add_command(app, "relight", *options);
     command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
     command->add_option("-o,--output", options->output, "A folder")->required();
+    add_texture_folders(*command, options->texture_folders);
     CLI::Option* light =
         command
             ->add_option(

@@ -4,6 +4,7 @@
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/light_options.h"
+#include "apps/item3d/edit/model_options.h"
 #include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
@@ -349,13 +350,7 @@ void add_render_command(CLI::App& app) {
     command->add_option("--cameras", options->cameras,
                         "A NeRF-synthetic transforms.json in the model's own axes: one picture for "
                         "each frame, named after it");
-    command
-        ->add_option("--textures", options->texture_folders,
-                     "A folder that textures may be read from beside the model's own; may be given "
-                     "several times")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->check(CLI::ExistingDirectory);
+    add_texture_folders(*command, options->texture_folders);
     command->add_option("--format", options->format, "Of pictures that go into a folder")
         ->check(CLI::IsMember({"png", "exr"}))
         ->capture_default_str();

@@ -1,6 +1,7 @@
 // item3d score: how well an edited model follows its two sentences, and what it kept of the source.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/model_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/io/load.h"
@@ -29,6 +30,7 @@ struct ScoreCommand : CommonOptions {
     std::string light = "studio";
     std::string precision = "fp32";
     int views = 6;
+    std::vector<std::filesystem::path> texture_folders;
 };
 
 constexpr int score_view_pixels = 384;
@@ -53,8 +55,9 @@ void check_sentence(const std::string& option, const std::string& sentence) {
 void run_score(const ScoreCommand& options, at::Device device) {
     check_sentence("--from", options.from);
     check_sentence("--to", options.to);
-    const Model before = load_model(options.before);
-    Model after = load_model(options.after);
+    const LoadOptions load{.texture_folders = options.texture_folders};
+    const Model before = load_model(options.before, load);
+    Model after = load_model(options.after, load);
     move_origin(after, before.origin);
     const Clip clip =
         Clip::load_to_run(options.clip, device, choose_precision(options.precision, device));
@@ -101,6 +104,7 @@ void add_score_command(CLI::App& app) {
     CLI::App* command = add_command(app, "score", *options);
     command->add_option("BEFORE", options->before, "The model as it was")->required();
     command->add_option("AFTER", options->after, "The edited model")->required();
+    add_texture_folders(*command, options->texture_folders);
     command->add_option("--from", options->from, "What the model looked like")->required();
     command->add_option("--to", options->to, "What it should look like")->required();
     command->add_option("--clip", options->clip,

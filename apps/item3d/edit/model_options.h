@@ -1,0 +1,22 @@
+// Options that several commands read a model by.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <vector>
+
+namespace item3d {
+
+/// Adds --textures.
+inline void add_texture_folders(CLI::App& command, std::vector<std::filesystem::path>& folders) {
+    command
+        .add_option("--textures", folders,
+                    "A folder that textures may be read from beside the model's own; may be given "
+                    "several times")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(CLI::ExistingDirectory);
+}
+
+}  // namespace item3d
