@@ -3,6 +3,7 @@
 
 #include "item3d/core/progress.h"
 #include "item3d/field/atlas/unwrap.h"
+#include "item3d/field/atlas/uv_problem.h"
 #include "item3d/field/bake/fill.h"
 #include "tests/support/field_models.h"
 
@@ -118,9 +119,9 @@ TEST_F(AtlasTest, KeepsAUvMapThatCanBeUsed) {
     const Model model = make_model(make_sphere());
     EXPECT_EQ(find_uv_problem(model, {0}), "");
     const Atlas atlas = make_atlas(model, FieldSpace(model, {0}), {0});
-    EXPECT_TRUE(atlas.is_own(0));
+    EXPECT_TRUE(atlas.sets.at(0).is_own());
     EXPECT_TRUE(atlas.primitives.empty());
-    EXPECT_EQ(atlas.material_triangles.at(0).size(), model.triangle_count());
+    EXPECT_EQ(atlas.sets.at(0).triangles.size(), model.triangle_count());
 }
 
 TEST_F(AtlasTest, NamesTheProblemOfOneThatCannot) {
@@ -189,7 +190,7 @@ TEST_F(AtlasTest, NewUvMapsAreValidAndShareOneAtlas) {
     for (Primitive& primitive : model.primitives)
         primitive.uvs.clear();
     const Atlas atlas = make_atlas(model, FieldSpace(model, {0}), {0}, 256);
-    ASSERT_FALSE(atlas.is_own(0));
+    ASSERT_FALSE(atlas.sets.at(0).is_own());
     ASSERT_EQ(atlas.primitives.size(), 2u);
     Model remade = model;
     for (const auto& [index, edit] : atlas.primitives) {
@@ -242,7 +243,7 @@ TEST_F(AtlasTest, InstancesAreUnwrappedOnceAndLieInTheFirstOnesPlace) {
     EXPECT_LT((space.positions(first) - space.positions(second)).abs().max().item<float>(), 1e-4f);
 
     const Atlas atlas = make_atlas(model, space, {0}, 128);
-    EXPECT_EQ(atlas.material_triangles.at(0).size(), static_cast<std::size_t>(triangles));
+    EXPECT_EQ(atlas.sets.at(0).triangles.size(), static_cast<std::size_t>(triangles));
     ASSERT_EQ(atlas.primitives.size(), 2u);
     EXPECT_EQ(atlas.primitives.at(0).uvs, atlas.primitives.at(1).uvs);
 }

@@ -395,7 +395,7 @@ TEST(Bake, NewUvMapShowsTheSourceWithoutSeams) {
     for (Vec2& uv : model.primitives[0].uvs)
         uv.x *= 2.0f;
     Fitted sphere(model, 60);
-    ASSERT_FALSE(sphere.atlas.is_own(0));
+    ASSERT_FALSE(sphere.atlas.sets.at(0).is_own());
     BakeOptions options = quiet_bake();
     options.texture_size = 256;
     sphere.atlas = make_atlas(model, sphere.space, {0}, 256);

@@ -21,7 +21,7 @@ MaterialEdit moved_and_baked(const Model& model, BakeOptions options) {
     const TexturedMaterials materials(model);
     const FieldSpace space(model, {0});
     const Atlas atlas = make_atlas(model, space, {0}, 64);
-    EXPECT_TRUE(atlas.is_own(0));
+    EXPECT_TRUE(atlas.sets.at(0).is_own());
     NeuralTextureOptions field_options;
     field_options.levels = 4;
     field_options.log2_table_size = 12;

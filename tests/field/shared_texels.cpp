@@ -47,12 +47,12 @@ Model make_palette() {
 }
 
 struct SharedScene {
-    explicit SharedScene(Model source)
+    explicit SharedScene(Model source, const std::vector<int>& edited = {0})
         : model((set_verbosity(Verbosity::quiet), std::move(source))),
           geometry(Geometry::from_model(model)),
           materials(model),
-          space(model, {0}),
-          atlas(make_atlas(model, space, {0}, 0, UvPolicy::automatic)) {
+          space(model, edited),
+          atlas(make_atlas(model, space, edited, 0, UvPolicy::automatic)) {
         space.share(std::make_shared<SharedTexels>(model, atlas, 0, at::kCPU));
     }
     ~SharedScene() { set_verbosity(Verbosity::normal); }
@@ -105,14 +105,17 @@ struct Edited {
     NeuralTexture now{nullptr}, fitted{nullptr};
 };
 
+ModelEdit baked_edit(const SharedScene& scene, Edited& edited) {
+    BakeOptions options;
+    options.show_progress = false;
+    return bake({scene.model, scene.geometry, scene.materials, scene.space, scene.atlas},
+                edited.fitted, edited.now, options);
+}
+
 /// Of the baked model beside the field, both as sRGB, at points of the surface.
 double psnr_of_bake(const SharedScene& scene, Edited& edited) {
     const at::NoGradGuard no_grad;
-    BakeOptions options;
-    options.show_progress = false;
-    const BakeScene bake_scene{scene.model, scene.geometry, scene.materials, scene.space,
-                               scene.atlas};
-    const ModelEdit edit = bake(bake_scene, edited.fitted, edited.now, options);
+    const ModelEdit edit = baked_edit(scene, edited);
     Model baked = scene.model;
     baked.textures[0].image = *edit.materials.at(0).base_color;
     const Surface surface = scene.points(7);
@@ -125,8 +128,8 @@ double psnr_of_bake(const SharedScene& scene, Edited& edited) {
 
 TEST(SharedTexels, MirroredHalvesAreOnePlace) {
     const SharedScene scene(make_mirrored_halves());
-    ASSERT_TRUE(scene.atlas.is_own(0));
-    ASSERT_EQ(scene.atlas.shared.count(0), 1u);
+    ASSERT_TRUE(scene.atlas.sets.at(0).is_own());
+    ASSERT_TRUE(scene.atlas.has_shared_texels());
     const Surface surface = scene.points(3);
     const at::Tensor place = scene.space.positions(surface);
     const at::Tensor x = surface.position.select(1, 0);
@@ -142,7 +145,7 @@ TEST(SharedTexels, MirroredHalvesAreOnePlace) {
 TEST(SharedTexels, ATextureThatRepeatsIsOnePlace) {
     for (const Wrap wrap : {Wrap::repeat, Wrap::mirrored_repeat}) {
         const SharedScene scene(make_plain({make_quad(Vec2(0.0f), Vec2(3.0f))}, 32, 32, wrap));
-        ASSERT_TRUE(scene.atlas.is_own(0));
+        ASSERT_TRUE(scene.atlas.sets.at(0).is_own());
         const Surface surface = scene.points(3);
         const at::Tensor place = scene.space.positions(surface);
         // A third of the quad is 2 / 3 long, in both directions: all points come to lie in one.
@@ -163,10 +166,30 @@ TEST(SharedTexels, BakedIsWhatWasSeen) {
          {make_mirrored_halves(), make_palette(),
           make_plain({make_quad(Vec2(0.0f), Vec2(3.0f))}, 32, 32, Wrap::mirrored_repeat)}) {
         const SharedScene scene(model);
-        ASSERT_TRUE(scene.atlas.is_own(0));
+        ASSERT_TRUE(scene.atlas.sets.at(0).is_own());
         Edited edited(scene);
         EXPECT_GT(psnr_of_bake(scene, edited), 40);
     }
+}
+
+TEST(SharedTexels, MaterialsOfOneTextureAreBakedOnce) {
+    Model model = make_mirrored_halves();
+    model.materials.push_back(model.materials[0]);
+    model.primitives[1].material = 1;
+    const SharedScene scene(model, {0, 1});
+    ASSERT_EQ(scene.atlas.sets.size(), 1u);
+    ASSERT_TRUE(scene.atlas.has_shared_texels());
+    Edited edited(scene);
+    EXPECT_GT(psnr_of_bake(scene, edited), 40);
+    const ModelEdit edit = baked_edit(scene, edited);
+    EXPECT_EQ(edit.materials.at(0).base_color.identity(),
+              edit.materials.at(1).base_color.identity());
+
+    Model other = scene.model;
+    other.materials[1].base_color_factor = Vec4(0.5f, 1, 1, 1);
+    const SharedScene apart(other, {0, 1});
+    EXPECT_EQ(apart.atlas.sets.size(), 2u);
+    EXPECT_FALSE(apart.atlas.has_shared_texels());
 }
 
 TEST(SharedTexels, FacesOfOneTexelAreOnePlace) {
@@ -182,7 +205,7 @@ TEST(SharedTexels, FacesOfOneTexelAreOnePlace) {
 
 TEST(SharedTexels, MapsWithoutSharedTexelsAreNotTouched) {
     const SharedScene scene(make_plain({make_quad()}, 16, 16, Wrap::repeat));
-    EXPECT_TRUE(scene.atlas.shared.empty());
+    EXPECT_FALSE(scene.atlas.has_shared_texels());
     const Surface surface = scene.points(3, 64);
     EXPECT_TRUE(at::equal(scene.space.positions(surface), surface.position));
 }

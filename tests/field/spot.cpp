@@ -45,7 +45,7 @@ TEST(Spot, TheFieldLooksLikeTheModelAndBakesBackToItsTexture) {
     const TexturedMaterials materials(model);
     const FieldSpace space(model, edited);
     const Atlas atlas = make_atlas(model, space, edited);
-    EXPECT_TRUE(atlas.is_own(edited[0])) << atlas.remade.begin()->second;
+    EXPECT_TRUE(atlas.sets.at(0).is_own()) << atlas.sets.at(0).remade;
     NeuralTexture field(
         suggest_field_options(geometry, space, atlas_size(model, edited[0], 0).first));
     FitOptions fit;

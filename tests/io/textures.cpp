@@ -176,7 +176,7 @@ TEST(Textures, OfJpegStayJpegOfLikeQuality) {
         ModelEdit edit;
         edit.materials[0].base_color = edited(base_color_of(model, 0).image);
         choose_codings(model, TextureFormat::keep, edit);
-        ASSERT_EQ(edit.materials[0].base_color_coding.encoding, ImageEncoding::jpeg);
+        ASSERT_EQ(edit.materials[0].base_color.coding().encoding, ImageEncoding::jpeg);
         save_model(folder / "b.glb", model, edit);
         const GltfFile file = read_gltf_file(folder / "b.glb");
         EXPECT_EQ(file.json["images"].size(), 1u);
@@ -202,7 +202,7 @@ TEST(Textures, OfLossyWebpStayWebpOfLikeQuality) {
     ModelEdit edit;
     edit.materials[0].base_color = base_color_of(model, 0).image;
     choose_codings(model, TextureFormat::keep, edit);
-    EXPECT_FALSE(edit.materials[0].base_color_coding.is_lossless);
+    EXPECT_FALSE(edit.materials[0].base_color.coding().is_lossless);
     save_model(folder / "b.glb", model, edit);
     const double loss =
         10 *
@@ -223,23 +223,47 @@ TEST(Textures, ThatMustNotLoseAreWrittenWithoutLosses) {
     ModelEdit edit;
     MaterialEdit& changed = edit.materials[0];
     changed.base_color = test_picture(4);
-    changed.metallic_roughness = changed.normal = test_picture(3);
+    changed.metallic_roughness = test_picture(3);
+    changed.normal = test_picture(3);
     choose_codings(model, TextureFormat::keep, edit);
-    EXPECT_EQ(changed.base_color_coding, ImageCoding{});  // has alpha
-    EXPECT_EQ(changed.metallic_roughness_coding.encoding, ImageEncoding::jpeg);
-    EXPECT_EQ(changed.normal_coding.encoding, ImageEncoding::jpeg);  // as the base colour
+    EXPECT_EQ(changed.base_color.coding(), ImageCoding{});  // has alpha
+    EXPECT_EQ(changed.metallic_roughness.coding().encoding, ImageEncoding::jpeg);
+    EXPECT_EQ(changed.normal.coding().encoding, ImageEncoding::jpeg);  // as the base colour
     changed.keeps_orm_texels = true;
     choose_codings(model, TextureFormat::keep, edit);
-    EXPECT_EQ(changed.metallic_roughness_coding, ImageCoding{});
+    EXPECT_EQ(changed.metallic_roughness.coding(), ImageCoding{});
     choose_codings(model, TextureFormat::webp, edit);
-    EXPECT_EQ(changed.metallic_roughness_coding, lossless_webp);
-    EXPECT_FALSE(changed.base_color_coding.is_lossless);
+    EXPECT_EQ(changed.metallic_roughness.coding(), lossless_webp);
+    EXPECT_FALSE(changed.base_color.coding().is_lossless);
     model.textures[0].coding = {};
     choose_codings(model, TextureFormat::webp, edit);
-    EXPECT_EQ(changed.normal_coding, lossless_webp);
+    EXPECT_EQ(changed.normal.coding(), lossless_webp);
     choose_codings(model, TextureFormat::jpeg, edit);
-    EXPECT_EQ(changed.normal_coding.encoding, ImageEncoding::jpeg);
-    EXPECT_EQ(changed.base_color_coding, ImageCoding{});
+    EXPECT_EQ(changed.normal.coding().encoding, ImageEncoding::jpeg);
+    EXPECT_EQ(changed.base_color.coding(), ImageCoding{});
+}
+
+TEST(Textures, ThatMaterialsShareAreWrittenOnce) {
+    const fs::path folder = fresh_folder("texture_shared");
+    OrderedJson materials = textured_materials(1);
+    materials.push_back(materials[0]);
+    write_textured(folder / "a.gltf", {{"a.png", encode_texture(test_picture(3), {}, 8)}},
+                   {{{"source", 0}}}, materials);
+    const Model model = load_model(folder / "a.gltf");
+    ModelEdit edit;
+    edit.materials[0].base_color = edit.materials[1].base_color = test_picture(3, 40, 30);
+    save_model(folder / "b.glb", model, edit);
+    const GltfFile file = read_gltf_file(folder / "b.glb");
+    EXPECT_EQ(file.json["images"].size(), 1u);
+    EXPECT_EQ(file.json["textures"].size(), 1u);
+    EXPECT_EQ(base_color_of(load_model(folder / "b.glb"), 1).image.width, 40);
+
+    fs::create_directories(folder / "obj");
+    save_model(folder / "obj" / "b.obj", model, edit);
+    const auto pictures = std::count_if(
+        fs::directory_iterator(folder / "obj"), fs::directory_iterator(),
+        [](const fs::directory_entry& file_) { return file_.path().extension() == ".png"; });
+    EXPECT_EQ(pictures, 1);
 }
 
 // Three textures; the edit replaces the first. The second is the third material's emission too.

@@ -1,8 +1,8 @@
 // Steps of whole matrices, and how the replicas take them.
 #include "item3d/prior/training/muon.h"
 
-#include "item3d/prior/data/workers.h"
 #include "item3d/prior/training/replicas.h"
+#include "item3d/tensors/workers.h"
 
 #include <gtest/gtest.h>
 #include <torch/nn/modules/conv.h>

@@ -1,8 +1,8 @@
 // Replicas that train together, on a network small enough for a test.
 #include "item3d/prior/training/replicas.h"
 
-#include "item3d/prior/data/workers.h"
 #include "item3d/prior/training/training_loop.h"
+#include "item3d/tensors/workers.h"
 
 #include <gtest/gtest.h>
 #include <torch/nn/modules/conv.h>

@@ -21,7 +21,9 @@ nlohmann::json edit_model(const EditRequest& request) {
     if (!request.clip.empty()) clip = Clip::load(request.clip);
     times.end_stage("load");
 
+    std::future<Atlas> atlas = unwrap_meanwhile(request, scene);
     EditState state = begin_or_resume(request, scene);
+    scene.atlas = atlas.get();
     times.end_stage("fit");
 
     const IterationTimes iteration_times = optimize(request, scene, state);

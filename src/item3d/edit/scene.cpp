@@ -76,9 +76,9 @@ EditScene load_scene(const EditRequest& request) {
     if (plan.edits_texture) {
         // A recoloured surface without textures looks the same whatever its UVs share.
         const bool keeps = plan.uv == UvPolicy::automatic && plan.regularizes_color;
-        scene.atlas = make_atlas(scene.model, *scene.space, scene.materials, plan.texture_size,
+        scene.atlas = choose_uvs(scene.model, *scene.space, scene.materials,
                                  keeps ? UvPolicy::keep : plan.uv);
-        if (!scene.atlas.shared.empty())
+        if (scene.atlas.has_shared_texels())
             scene.space->share(std::make_shared<SharedTexels>(scene.model, scene.atlas,
                                                               plan.texture_size, device));
     }
@@ -88,6 +88,13 @@ EditScene load_scene(const EditRequest& request) {
     scene.lights =
         std::make_unique<LightRig>(plan.light, plan.light_variation, plan.light_cube_size, device);
     return scene;
+}
+
+std::future<Atlas> unwrap_meanwhile(const EditRequest& request, const EditScene& scene) {
+    return std::async(std::launch::async, [&request, &scene, atlas = scene.atlas]() mutable {
+        add_new_uvs(scene.model, *scene.space, request.plan.texture_size, atlas);
+        return std::move(atlas);
+    });
 }
 
 }  // namespace item3d

@@ -28,7 +28,8 @@ struct EditScene {
     std::vector<int> materials;            ///< edited ones, indices into model.materials
     std::map<int, MaterialLosses> losses;  ///< of the edited materials in the file
     MaterialStart start;                   ///< and which channels are edited
-    Atlas atlas;                           ///< the UV maps that the result is baked into
+    Atlas
+        atlas;  ///< the UV maps that the result is baked into; new ones come by unwrap_meanwhile()
     std::unique_ptr<FieldSpace> space;
     std::unique_ptr<TexturedMaterials> textured;
     std::unique_ptr<MaterialSource> source;
@@ -45,5 +46,9 @@ struct EditScene {
 /// Returns while the prior is still being loaded. Throws InputError for what cannot be read of the
 /// rest, ResourceError where memory will not do.
 EditScene load_scene(const EditRequest& request);
+
+/// scene.atlas with its new UVs, made in the background; both must live until it is there.
+/// get() throws InputError where xatlas cannot make them.
+std::future<Atlas> unwrap_meanwhile(const EditRequest& request, const EditScene& scene);
 
 }  // namespace item3d

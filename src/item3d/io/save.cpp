@@ -32,6 +32,11 @@ void save_image(const std::filesystem::path& path, const Image& image, int bits_
 
 void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit) {
     const std::string extension = to_lower(path.extension().string());
+    std::vector<EditedTexture> textures;
+    for (const auto& [index, material] : edit.materials)
+        textures.insert(textures.end(),
+                        {material.base_color, material.metallic_roughness, material.normal});
+    encode_all(textures);
     if (extension == ".glb" || extension == ".gltf" || extension == ".vrm") {
         write_gltf(path, model, edit);
     } else if (extension == ".obj") {

@@ -1,13 +1,11 @@
 // Models and images to files; every write is atomic.
 #pragma once
 
-#include "item3d/scene/image.h"
-#include "item3d/scene/image_coding.h"
+#include "item3d/io/edited_texture.h"
 #include "item3d/scene/model.h"
 
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,19 +15,14 @@ namespace item3d {
 /// half). PNG and JPEG store the values as they are: give sRGB-encoded ones.
 void save_image(const std::filesystem::path& path, const Image& image, int bits_per_channel = 8);
 
-/// What an edit changed in one material. Images as they go into files: base colour sRGB-encoded,
-/// the others linear. An image that is not set leaves that slot of the material as it was.
+/// What an edit changed in one material. With a texture, the factors of that slot are reset (base
+/// colour, metallic, roughness and occlusion strength, normal scale to 1) so that texture values
+/// are the material's; alpha stays a factor where base_color is RGB. Occlusion is used where the
+/// material had it, or where it is not 1 throughout.
 struct MaterialEdit {
-    std::optional<Image> base_color;          ///< RGB or RGBA
-    std::optional<Image> metallic_roughness;  ///< occlusion, roughness, metallic
-    std::optional<Image> normal;
-    /// With an image, the factors of that slot are reset (base colour, metallic, roughness and
-    /// occlusion strength, normal scale to 1) so that texture values are the material's; alpha
-    /// stays a factor where base_color is RGB. Occlusion is used where the material had it, or
-    /// where it is not 1 throughout. Bits per channel of the PNGs that are written.
-    int bits_per_channel = 8;
-    /// How the images are written (texture_format.h chooses by the source); PNG otherwise.
-    ImageCoding base_color_coding, metallic_roughness_coding, normal_coding;
+    EditedTexture base_color;          ///< RGB or RGBA
+    EditedTexture metallic_roughness;  ///< occlusion, roughness, metallic
+    EditedTexture normal;
     /// A channel of metallic_roughness has the source's texels, bit for bit.
     bool keeps_orm_texels = false;
     /// base_color holds what vertex colours multiplied before, so primitives with it lose COLOR_0.

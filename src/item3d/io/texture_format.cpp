@@ -54,21 +54,20 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
     for (auto& [index, material_edit] : edit.materials) {
         const Material& material = model.materials[static_cast<std::size_t>(index)];
         const Texture* base = texture_of(model, material.base_color_texture);
-        const auto choose = [&](const std::optional<Image>& image, int slot, bool must_be_exact,
-                                ImageCoding& coding) {
-            if (!image) return;
+        const auto choose = [&](EditedTexture& texture, int slot, bool must_be_exact) {
+            if (!texture) return;
             const Texture* own = texture_of(model, slot);
-            coding =
-                possible_coding(wanted_coding(format, own ? own : base), *image, must_be_exact);
+            ImageCoding coding =
+                possible_coding(wanted_coding(format, own ? own : base), *texture, must_be_exact);
             // Eight bits would be a loss to an image that has more.
             if (format == TextureFormat::keep && own && own->bits_per_channel > 8) coding = {};
+            texture.set_coding(coding);
         };
-        choose(material_edit.base_color, material.base_color_texture, false,
-               material_edit.base_color_coding);
+        choose(material_edit.base_color, material.base_color_texture, false);
         const int orm = material.metallic_roughness_texture;
         choose(material_edit.metallic_roughness, orm >= 0 ? orm : material.occlusion_texture,
-               material_edit.keeps_orm_texels, material_edit.metallic_roughness_coding);
-        choose(material_edit.normal, material.normal_texture, false, material_edit.normal_coding);
+               material_edit.keeps_orm_texels);
+        choose(material_edit.normal, material.normal_texture, false);
     }
 }
 

@@ -8,39 +8,51 @@
 #include "item3d/io/save.h"
 #include "item3d/io/text.h"
 #include "item3d/io/texture_format.h"
+#include "item3d/report/animation.h"
+#include "item3d/report/picture.h"
 #include "item3d/scene/far_origin.h"
 
+#include <algorithm>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
 namespace item3d {
 namespace {
 
-Bytes source_thumbnail(const Model& model, int texture, const std::filesystem::path& scratch) {
+/// Pixels of the report's pictures of textures, along the longest edge.
+constexpr int thumbnail_edge = 512;
+
+Bytes source_thumbnail(const Model& model, int texture) {
     if (texture < 0) return {};
     const Image& image = model.textures[static_cast<std::size_t>(texture)].image;
-    if (image.empty()) return {};
-    save_image(scratch, image);
-    Bytes bytes = read_bytes(scratch);
-    std::filesystem::remove(scratch);
-    return bytes;
+    return image.empty() ? Bytes() : encode_webp(thumbnail(image, thumbnail_edge));
 }
 
-/// Writes one image into textures/ and remembers it beside the source's for the report.
-void save_texture(const EditRequest& request, const EditScene& scene, const std::string& material,
-                  const std::string& suffix, const std::string& title,
-                  const std::optional<Image>& image, const ImageCoding& coding, int source_texture,
-                  int bits, std::vector<TexturePair>& pairs) {
-    if (!image) return;
-    const auto folder = request.output / "textures";
-    Bytes bytes = encode_texture(*image, coding, bits);
-    write_atomically(folder / (material + "_" + suffix + extension_of(coding.encoding)),
-                     std::span<const std::uint8_t>(bytes));
-    pairs.push_back({title,
-                     source_thumbnail(scene.model, source_texture, folder / "source.tmp.png"),
-                     std::move(bytes)});
-}
+/// Writes what was baked into textures/, a picture once, beside the source's for the report.
+class TextureFolder {
+  public:
+    TextureFolder(std::filesystem::path folder, const Model& source,
+                  std::vector<TexturePair>& pairs)
+        : folder_(std::move(folder)), source_(source), pairs_(pairs) {}
+
+    void save(const EditedTexture& texture, const std::string& material, const char* suffix,
+              const char* title, int source_texture) {
+        if (!texture || !seen_.insert(texture.identity()).second) return;
+        write_atomically(
+            folder_ / (material + "_" + suffix + extension_of(texture.coding().encoding)),
+            std::span<const std::uint8_t>(texture.encoded()));
+        pairs_.push_back({title, source_thumbnail(source_, source_texture),
+                          encode_webp(thumbnail(*texture, thumbnail_edge))});
+    }
+
+  private:
+    std::filesystem::path folder_;
+    const Model& source_;
+    std::vector<TexturePair>& pairs_;
+    std::set<const void*> seen_;
+};
 
 constexpr int light_height = 256;
 /// See BakeOptions::blotch: of an edit that changes the same thing everywhere.
@@ -63,21 +75,18 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
     const auto path = request.output / model_file_name(request);
     save_model(path, scene.model, edit);
     make_output_folder(request.output / "textures");
+    TextureFolder folder(request.output / "textures", scene.model, edited.textures);
     FileNames names;
     for (const auto& [index, material_edit] : edit.materials) {
         const Material& source = scene.model.materials[static_cast<std::size_t>(index)];
         const std::string plain = plain_file_name(source.name);
         const std::string name =
             names.unused(plain.empty() ? "material" + std::to_string(index) : plain);
-        const int bits = material_edit.bits_per_channel;
-        save_texture(request, scene, name, "base_color", "Base colour", material_edit.base_color,
-                     material_edit.base_color_coding, source.base_color_texture, bits,
-                     edited.textures);
-        save_texture(request, scene, name, "orm", "Occlusion, roughness, metallic",
-                     material_edit.metallic_roughness, material_edit.metallic_roughness_coding,
-                     source.metallic_roughness_texture, bits, edited.textures);
-        save_texture(request, scene, name, "normal", "Normal", material_edit.normal,
-                     material_edit.normal_coding, source.normal_texture, bits, edited.textures);
+        folder.save(material_edit.base_color, name, "base_color", "Base colour",
+                    source.base_color_texture);
+        folder.save(material_edit.metallic_roughness, name, "orm", "Occlusion, roughness, metallic",
+                    source.metallic_roughness_texture);
+        folder.save(material_edit.normal, name, "normal", "Normal", source.normal_texture);
     }
     edited.model = load_model(path, {.variant = request.plan.variant});
     move_origin(edited.model, scene.model.origin);

@@ -66,8 +66,11 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
                   const Pictures& pictures) {
     const EditPlan& plan = request.plan;
     json remade = json::object();
-    for (const auto& [material, reason] : scene.atlas.remade) {
-        remade[scene.model.materials[static_cast<std::size_t>(material)].name] = reason;
+    for (const TextureSet& set : scene.atlas.sets) {
+        for (const int material : set.materials) {
+            if (!set.is_own())
+                remade[scene.model.materials[static_cast<std::size_t>(material)].name] = set.remade;
+        }
     }
     json summary = {{"version", version()},
                     {"command", request.command},
@@ -228,11 +231,9 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     report.charts = charts_of(request.plan, state);
     report.settings = settings_rows(summary);
     report.seconds = times.stages();
-    for (const auto& [material, reason] : scene.atlas.remade) {
-        report.warnings.push_back("Material " +
-                                  scene.model.materials[static_cast<std::size_t>(material)].name +
-                                  " has a new UV map: " + reason);
-    }
+    for (const auto& [name, reason] : summary["new_uv_maps"].items())
+        report.warnings.push_back("Material " + name +
+                                  " has a new UV map: " + reason.get<std::string>());
     if (!state.adjustment.failure.empty())
         report.warnings.push_back("The captioner was not asked to the end: " +
                                   state.adjustment.failure);

@@ -1,8 +1,8 @@
 #include "item3d/field/atlas/atlas.h"
 
-#include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/field/atlas/unwrap.h"
+#include "item3d/field/atlas/uv_problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,138 +13,23 @@ namespace {
 
 constexpr int largest_texture = 4096;
 constexpr int default_texture = 1024;
-constexpr int overlap_resolution = 1024;
-/// Below these shares of the surface a flaw costs less than the UV map's loss would.
-constexpr double tolerated_overlap = 0.005;
-constexpr double tolerated_collapse = 0.01;
-/// How far beyond [0, 1] a UV may lie: rounding, or half a texel of a small texture.
-constexpr float tolerated_margin = 1e-3f;
-/// Farther out floats no longer tell texels apart.
-constexpr float farthest_repetition = 16.0f;
 
-std::string percent(double share) {
-    const long whole = std::lround(100.0 * share);
-    return (whole == 0 ? std::string("less than 1") : std::to_string(whole)) + " %";
-}
-
-UvTriangle corners_of(const std::vector<Vec2>& uvs, const std::vector<std::uint32_t>& indices,
-                      std::size_t first) {
-    return {uvs[indices[first]], uvs[indices[first + 1]], uvs[indices[first + 2]]};
-}
-
-/// Indices into Model::textures, the base colour's first.
-std::vector<int> textures_of(const Material& material) {
-    std::vector<int> textures;
-    for (const int index : {material.base_color_texture, material.metallic_roughness_texture,
-                            material.occlusion_texture, material.normal_texture})
-        if (index >= 0) textures.push_back(index);
-    return textures;
-}
-
-bool has_textures(const Model& model, int material) {
-    return !textures_of(model.materials[static_cast<std::size_t>(material)]).empty();
-}
-
-/// Whether all textures of the material repeat along an axis; those that an edit adds do.
-struct Repetition {
-    bool u = true, v = true;
-};
-
-Repetition repetition_of(const Model& model, const Material& material) {
-    Repetition repeats;
-    for (const int index : textures_of(material)) {
-        const Texture& texture = model.textures[static_cast<std::size_t>(index)];
-        repeats.u = repeats.u && texture.wrap_u == Wrap::repeat;
-        repeats.v = repeats.v && texture.wrap_v == Wrap::repeat;
+/// Of each primitive, in Geometry.
+std::vector<std::size_t> first_triangles(const Model& model) {
+    std::vector<std::size_t> first;
+    std::size_t count = 0;
+    for (const Primitive& primitive : model.primitives) {
+        first.push_back(count);
+        count += primitive.indices.size() / 3;
     }
-    return repeats;
-}
-
-/// A triangle that shows each of its texels once: inside the unit square, or across the border of
-/// one that repeats.
-bool is_placed(const UvTriangle& uv, Repetition repeats) {
-    const Vec2 low = glm::min(uv[0], glm::min(uv[1], uv[2]));
-    const Vec2 high = glm::max(uv[0], glm::max(uv[1], uv[2]));
-    const auto is_good = [](float first, float last, bool repeating) {
-        const bool inside = first >= -tolerated_margin && last <= 1.0f + tolerated_margin;
-        const bool wraps = repeating && last - first <= 1.0f && first > -farthest_repetition &&
-                           last < farthest_repetition;
-        return inside || wraps;
-    };
-    bool finite = true;
-    for (const Vec2& corner : uv) {
-        finite = finite && std::isfinite(corner.x) && std::isfinite(corner.y);
-    }
-    return finite && is_good(low.x, high.x, repeats.u) && is_good(low.y, high.y, repeats.v);
-}
-
-bool have_uvs(const Model& model, const std::vector<int>& primitives) {
-    return std::all_of(primitives.begin(), primitives.end(), [&](int index) {
-        const Primitive& primitive = model.primitives[static_cast<std::size_t>(index)];
-        return primitive.uvs.size() == primitive.positions.size();
-    });
+    return first;
 }
 
 }  // namespace
 
-std::string find_uv_problem(const Model& model, const std::vector<int>& primitives) {
-    std::vector<UvTriangle> triangles;
-    std::vector<std::array<Vec3, 3>> places;
-    double area = 0.0, collapsed = 0.0;
-    Vec3 low(1e30f), high(-1e30f);
-    for (const int index : primitives) {
-        const Primitive& primitive = model.primitives[static_cast<std::size_t>(index)];
-        if (primitive.uvs.size() != primitive.positions.size()) return "it has no UV map";
-        const Repetition repeats =
-            repetition_of(model, model.materials[static_cast<std::size_t>(primitive.material)]);
-        for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-            const UvTriangle uv = corners_of(primitive.uvs, primitive.indices, i);
-            std::array<Vec3, 3> place;
-            for (std::size_t c = 0; c < 3; ++c) {
-                place[c] = primitive.positions[primitive.indices[i + c]];
-                low = glm::min(low, place[c]);
-                high = glm::max(high, place[c]);
-            }
-            if (!is_placed(uv, repeats)) return "its UV map leaves the unit square";
-            const double face =
-                0.5 * glm::length(glm::cross(place[1] - place[0], place[2] - place[0]));
-            const Vec2 u = uv[1] - uv[0], v = uv[2] - uv[0];
-            area += face;
-            // Less than a thousandth of a texel of the largest texture.
-            if (std::abs(u.x * v.y - u.y * v.x) < 1e-10f) collapsed += face;
-            triangles.push_back(uv);
-            places.push_back(place);
-        }
-    }
-    if (collapsed > tolerated_collapse * area) {
-        return "its UV map gives no texels to " + percent(collapsed / area) + " of the surface";
-    }
-    std::size_t overlaps = 0;
-    constexpr std::size_t texel_count = std::size_t{overlap_resolution} * overlap_resolution;
-    const float same_place = 1e-3f * glm::length(high - low);
-    const auto on_overlap = [&](std::size_t texel, const UvOwner& first, const UvOwner& second) {
-        const auto coordinate = [](std::size_t at, int tile) {
-            return (static_cast<float>(at) + 0.5f) / overlap_resolution + static_cast<float>(tile);
-        };
-        const auto place = [&](const UvOwner& owner) {
-            const auto i = static_cast<std::size_t>(owner.triangle);
-            const Vec2 uv(coordinate(texel % overlap_resolution, owner.tile_u),
-                          coordinate(texel / overlap_resolution, owner.tile_v));
-            const Vec2 b = uv_barycentrics(triangles[i], uv);
-            return places[i][0] * b.x + places[i][1] * b.y + places[i][2] * (1.0f - b.x - b.y);
-        };
-        if (glm::length(place(first) - place(second)) > same_place) ++overlaps;
-        // Enough is enough: a thousand faces may each show the whole texture.
-        return static_cast<double>(overlaps) <= tolerated_overlap * texel_count;
-    };
-    const UvRaster raster =
-        rasterize_uv(triangles, overlap_resolution, overlap_resolution, {}, on_overlap);
-    const auto used = std::count_if(raster.owners.begin(), raster.owners.end(),
-                                    [](const UvOwner& owner) { return owner.triangle >= 0; });
-    if (used == 0) return "its UV map is smaller than a texel";
-    const double share = static_cast<double>(overlaps) / static_cast<double>(used);
-    if (share > tolerated_overlap) return "its UV map overlaps itself";
-    return "";
+bool Atlas::has_shared_texels() const {
+    return std::any_of(sets.begin(), sets.end(),
+                       [](const TextureSet& set) { return !set.shared.empty(); });
 }
 
 std::pair<int, int> atlas_size(const Model& model, int material, int texture_size,
@@ -173,70 +58,70 @@ UvWrap wrap_of(const Model& model, int material) {
     return {first.wrap_u, first.wrap_v};
 }
 
-Atlas make_atlas(const Model& model, const FieldSpace& space, const std::vector<int>& materials,
-                 int texture_size, UvPolicy policy) {
+Atlas choose_uvs(const Model& model, const FieldSpace& space, const std::vector<int>& materials,
+                 UvPolicy policy) {
     Atlas atlas;
-    std::vector<std::size_t> first_triangle(model.primitives.size() + 1, 0);
-    for (std::size_t i = 0; i < model.primitives.size(); ++i) {
-        first_triangle[i + 1] = first_triangle[i] + model.primitives[i].indices.size() / 3;
-    }
-    atlas.triangles.assign(first_triangle.back(), UvTriangle{Vec2(0.0f), Vec2(0.0f), Vec2(0.0f)});
-    for (const int material : materials) {
-        std::vector<int> firsts;
-        for (std::size_t i = 0; i < model.primitives.size(); ++i) {
-            const int index = static_cast<int>(i);
-            if (model.primitives[i].material == material && space.first_instance()[i] == index) {
-                firsts.push_back(index);
-            }
-        }
-        if (firsts.empty()) continue;
-        std::string problem = find_uv_problem(model, firsts);
-        const std::string& name = model.materials[static_cast<std::size_t>(material)].name;
+    atlas.sets = texture_sets(model, space, materials);
+    atlas.triangles.assign(model.triangle_count(), UvTriangle{Vec2(0.0f), Vec2(0.0f), Vec2(0.0f)});
+    const std::vector<std::size_t> first_triangle = first_triangles(model);
+    for (TextureSet& set : atlas.sets) {
+        const Material& material = model.materials[static_cast<std::size_t>(set.materials.front())];
+        const std::string problem = find_uv_problem(model, set.primitives);
         const bool keeps = policy == UvPolicy::keep ||
-                           (policy == UvPolicy::automatic && has_textures(model, material));
-        if (keeps && !problem.empty() && have_uvs(model, firsts)) {
-            note("material '" + name + "': " + problem +
+                           (policy == UvPolicy::automatic && !textures_of(material).empty());
+        if (keeps && !problem.empty() && have_uvs(model, set.primitives)) {
+            note(names_of(model, set) + ": " + problem +
                  ", and is kept: places that share texels change alike (--uv new gives each its "
                  "own, in a new UV map)");
-            atlas.shared[material] = std::exchange(problem, "");
-        } else if (policy == UvPolicy::make_new && problem.empty()) {
-            problem = "a new UV map is asked for";
+            set.shared = problem;
+        } else if (!problem.empty() || policy == UvPolicy::make_new) {
+            set.remade = problem.empty() ? "a new UV map is asked for" : problem;
+            note(names_of(model, set) + ": " + set.remade + ", so xatlas makes a new one");
         }
-        std::vector<PrimitiveEdit> edits;
-        if (!problem.empty()) {
-            note("material '" + name + "': " + problem + ", so xatlas made a new one");
-            atlas.remade[material] = problem;
-            std::vector<const Primitive*> parts;
-            for (const int index : firsts) {
-                parts.push_back(&model.primitives[static_cast<std::size_t>(index)]);
+        for (const int index : set.primitives) {
+            const Primitive& primitive = model.primitives[static_cast<std::size_t>(index)];
+            std::size_t triangle = first_triangle[static_cast<std::size_t>(index)];
+            for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3, ++triangle) {
+                set.triangles.push_back(static_cast<std::int32_t>(triangle));
+                if (set.is_own())
+                    atlas.triangles[triangle] = uv_corners(primitive.uvs, primitive.indices, i);
             }
-            const auto [width, height] = atlas_size(model, material, texture_size, true);
-            edits = unwrap(parts, std::max(width, height));
         }
-        for (std::size_t k = 0; k < firsts.size(); ++k) {
-            const Primitive& primitive = model.primitives[static_cast<std::size_t>(firsts[k])];
-            const std::vector<Vec2>& uvs = problem.empty() ? primitive.uvs : edits[k].uvs;
-            const auto& indices = problem.empty() ? primitive.indices : edits[k].indices;
-            const std::size_t first = first_triangle[static_cast<std::size_t>(firsts[k])];
-            for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-                atlas.triangles[first + i / 3] = corners_of(uvs, indices, i);
-                atlas.material_triangles[material].push_back(
-                    static_cast<std::int32_t>(first + i / 3));
-            }
-            if (problem.empty()) continue;
+    }
+    return atlas;
+}
+
+void add_new_uvs(const Model& model, const FieldSpace& space, int texture_size, Atlas& atlas) {
+    const std::vector<std::size_t> first_triangle = first_triangles(model);
+    for (const TextureSet& set : atlas.sets) {
+        if (set.is_own()) continue;
+        std::vector<const Primitive*> parts;
+        for (const int index : set.primitives)
+            parts.push_back(&model.primitives[static_cast<std::size_t>(index)]);
+        const auto [width, height] = atlas_size(model, set.materials.front(), texture_size, true);
+        const std::vector<PrimitiveEdit> edits = unwrap(parts, std::max(width, height));
+        for (std::size_t k = 0; k < edits.size(); ++k) {
+            const std::size_t first = first_triangle[static_cast<std::size_t>(set.primitives[k])];
+            for (std::size_t i = 0; i + 2 < edits[k].indices.size(); i += 3)
+                atlas.triangles[first + i / 3] = uv_corners(edits[k].uvs, edits[k].indices, i);
             for (std::size_t i = 0; i < model.primitives.size(); ++i) {
-                if (space.first_instance()[i] != firsts[k]) continue;
+                if (space.first_instance()[i] != set.primitives[k]) continue;
                 PrimitiveEdit edit = edits[k];
                 // A mirrored copy lists its triangles' corners in the other order.
-                if (model.primitives[i].is_mirrored != primitive.is_mirrored) {
-                    for (std::size_t t = 0; t + 2 < edit.indices.size(); t += 3) {
+                if (model.primitives[i].is_mirrored != parts[k]->is_mirrored) {
+                    for (std::size_t t = 0; t + 2 < edit.indices.size(); t += 3)
                         std::swap(edit.indices[t + 1], edit.indices[t + 2]);
-                    }
                 }
                 atlas.primitives[static_cast<int>(i)] = std::move(edit);
             }
         }
     }
+}
+
+Atlas make_atlas(const Model& model, const FieldSpace& space, const std::vector<int>& materials,
+                 int texture_size, UvPolicy policy) {
+    Atlas atlas = choose_uvs(model, space, materials, policy);
+    add_new_uvs(model, space, texture_size, atlas);
     return atlas;
 }
 

@@ -1,6 +1,7 @@
 // Which UVs an edited material is baked into: the input's own wherever there are any.
 #pragma once
 
+#include "item3d/field/atlas/texture_set.h"
 #include "item3d/field/atlas/uv_raster.h"
 #include "item3d/field/surface_points.h"
 #include "item3d/io/save.h"
@@ -22,23 +23,12 @@ struct Atlas {
     /// One a triangle of Geometry. Zeros for triangles that are not baked: those of materials that
     /// are not edited, and of all instances of a primitive but the first.
     std::vector<UvTriangle> triangles;
-    /// Triangles (indices into `triangles`) that are baked, by edited material.
-    std::map<int, std::vector<std::int32_t>> material_triangles;
-    /// Materials whose own UVs show a texel in several places, or give some no texels, in words.
-    std::map<int, std::string> shared;
-    /// Materials whose UVs are new, and why.
-    std::map<int, std::string> remade;
-    /// New UVs of all primitives of remade materials (instances all have the same).
+    std::vector<TextureSet> sets;
+    /// New UVs of all primitives of remade sets (instances all have the same).
     std::map<int, PrimitiveEdit> primitives;
 
-    bool is_own(int material) const { return remade.count(material) == 0; }
+    bool has_shared_texels() const;
 };
-
-/// Why the UVs of primitives that share a texture can't be baked into, in words ("it has no UV
-/// map", "its UV map overlaps itself", ...); empty when they can. UVs beyond [0, 1] are no problem
-/// by themselves where the texture repeats: what counts is whether each texel shows one place. Nor
-/// do triangles overlap that lie on each other in space as well, such as both sides of a leaf.
-std::string find_uv_problem(const Model& model, const std::vector<int>& primitives);
 
 /// Width and height of the picture that a material is baked to: longest edge `texture_size`, or as
 /// its base colour texture for 0; 1024 x 1024 without one; at most 4096. With a new UV map it is
@@ -50,7 +40,15 @@ std::pair<int, int> atlas_size(const Model& model, int material, int texture_siz
 /// How the material's textures show what lies beyond [0, 1]; repeating for a material without.
 UvWrap wrap_of(const Model& model, int material);
 
-/// Decides for each material, has xatlas make new UVs where needed, and says so in a note.
+/// Decides for each texture set, and says in a note what is not as usual. Sets that are to have new
+/// UVs have none yet.
+Atlas choose_uvs(const Model& model, const FieldSpace& space, const std::vector<int>& materials,
+                 UvPolicy policy);
+
+/// Has xatlas make the new UVs that were decided for. Throws InputError where it cannot.
+void add_new_uvs(const Model& model, const FieldSpace& space, int texture_size, Atlas& atlas);
+
+/// Both.
 Atlas make_atlas(const Model& model, const FieldSpace& space, const std::vector<int>& materials,
                  int texture_size = 0, UvPolicy policy = UvPolicy::own_texels);
 

@@ -105,8 +105,9 @@ SharedTexels::SharedTexels(const Model& model, const Atlas& atlas, int texture_s
                                primitive.positions[primitive.indices[i + 2]]});
     }
     std::vector<float> places(place_width, 0.0f);  // row 0: nobody's
-    for (const auto& shared : atlas.shared)
-        add_material(model, atlas, shared.first, texture_size, corners, places);
+    for (const TextureSet& set : atlas.sets) {
+        if (!set.shared.empty()) add(model, atlas, set, texture_size, corners, places);
+    }
     if (grids_.empty()) return;
     places_ = at::tensor(places, at::kFloat)
                   .view({-1, static_cast<std::int64_t>(place_width)})
@@ -115,16 +116,17 @@ SharedTexels::SharedTexels(const Model& model, const Atlas& atlas, int texture_s
         grid.owner = grid.owner.to(device);
 }
 
-void SharedTexels::add_material(const Model& model, const Atlas& atlas, int material,
-                                int texture_size, const std::vector<std::array<Vec3, 3>>& corners,
-                                std::vector<float>& places) {
+void SharedTexels::add(const Model& model, const Atlas& atlas, const TextureSet& set,
+                       int texture_size, const std::vector<std::array<Vec3, 3>>& corners,
+                       std::vector<float>& places) {
     Grid grid;
-    grid.material = material;
+    grid.materials = set.materials;
+    const int material = set.materials.front();
     const auto [width, height] = atlas_size(model, material, texture_size);
     grid.width = std::min(width, largest_grid);
     grid.height = std::min(height, largest_grid);
     grid.wrap = wrap_of(model, material);
-    const std::vector<std::int32_t>& indices = atlas.material_triangles.at(material);
+    const std::vector<std::int32_t>& indices = set.triangles;
     std::vector<UvTriangle> triangles;
     for (const std::int32_t index : indices)
         triangles.push_back(atlas.triangles[static_cast<std::size_t>(index)]);
@@ -164,7 +166,9 @@ at::Tensor SharedTexels::representatives(const Surface& surface,
         const at::Tensor v = wrapped(surface.uv.select(1, 1), grid.wrap.v);
         const at::Tensor texel = texel_of(v, grid.height) * static_cast<std::int64_t>(grid.width) +
                                  texel_of(u, grid.width);
-        const at::Tensor here = surface.material.eq(static_cast<std::int64_t>(grid.material));
+        at::Tensor here = surface.material.eq(static_cast<std::int64_t>(grid.materials.front()));
+        for (std::size_t i = 1; i < grid.materials.size(); ++i)
+            here = here | surface.material.eq(static_cast<std::int64_t>(grid.materials[i]));
         row = at::where(here, grid.owner.index_select(0, texel), row);
         uv = at::where(here.unsqueeze(1), at::stack({u, v}, 1), uv);
     }

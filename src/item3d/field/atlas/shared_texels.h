@@ -13,7 +13,7 @@
 
 namespace item3d {
 
-/// Moves points of the materials in Atlas::shared to the place that represents their texel: the
+/// Moves points of the texture sets that share texels to the place that represents their texel: the
 /// point of the first triangle of the atlas that shows it.
 class SharedTexels {
   public:
@@ -28,16 +28,16 @@ class SharedTexels {
     at::Tensor representatives(const Surface& surface, const at::Tensor& positions) const;
 
   private:
-    /// The texels of one material.
+    /// The texels of one texture set.
     struct Grid {
-        int material = 0;
+        std::vector<int> materials;
         int width = 0, height = 0;
         UvWrap wrap;
         at::Tensor owner;  ///< [height * width] int64, a row of `places`; 0: nobody's
     };
 
-    void add_material(const Model& model, const Atlas& atlas, int material, int texture_size,
-                      const std::vector<std::array<Vec3, 3>>& corners, std::vector<float>& places);
+    void add(const Model& model, const Atlas& atlas, const TextureSet& set, int texture_size,
+             const std::vector<std::array<Vec3, 3>>& corners, std::vector<float>& places);
 
     std::vector<Grid> grids_;
     at::Tensor places_;  ///< [rows, 16] float32, see shared_texels.cpp

@@ -27,32 +27,31 @@ at::Tensor window_mean(const at::Tensor& cells) {
 }
 
 /// Encoded base colours of both fields and coverage, [1, 7, height, width].
-at::Tensor sample_cells(const BakeScene& scene, int material, int width, int height,
+at::Tensor sample_cells(const BakeScene& scene, const TextureSet& set, int width, int height,
                         NeuralTexture& fitted, NeuralTexture& now) {
     at::Tensor cells = at::zeros({1, 7, height, width});
     auto cell = cells.accessor<float, 4>();
-    const TexelEvaluator evaluator(scene, material, width, height, 1, false);
-    for (int first = 0; first < height; first += evaluator.rows_at_once()) {
-        const int last = std::min(height, first + evaluator.rows_at_once());
-        for (const TexelValue& texel : evaluator.rows(first, last, fitted, now)) {
+    const TexelEvaluator evaluator(scene, set, width, height, 1, {});
+    evaluator.for_rows(fitted, now, [&](const std::vector<TexelValue>& texels) {
+        for (const TexelValue& texel : texels) {
             for (int c = 0; c < 3; ++c) {
                 cell[0][c][texel.y][texel.x] = linear_to_srgb(texel.fitted.base_color[c]);
                 cell[0][3 + c][texel.y][texel.x] = linear_to_srgb(texel.now.base_color[c]);
             }
             cell[0][6][texel.y][texel.x] = 1;
         }
-    }
+    });
     return cells;
 }
 
 }  // namespace
 
-RemainderGain::RemainderGain(const BakeScene& scene, int material, int width, int height,
+RemainderGain::RemainderGain(const BakeScene& scene, const TextureSet& set, int width, int height,
                              NeuralTexture& fitted, NeuralTexture& now)
     : width_(width), height_(height) {
     const auto [columns, rows] = grid_size(width, height);
     const at::NoGradGuard no_grad;
-    const at::Tensor cells = sample_cells(scene, material, columns, rows, fitted, now);
+    const at::Tensor cells = sample_cells(scene, set, columns, rows, fitted, now);
     const at::Tensor covered = cells.narrow(1, 6, 1);
     const at::Tensor share = window_mean(covered).clamp_min(1e-6);
     const auto mean = [&](const at::Tensor& values) {

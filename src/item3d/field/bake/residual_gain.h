@@ -15,7 +15,7 @@ namespace item3d {
 class RemainderGain {
   public:
     /// width, height: of the texture that is baked.
-    RemainderGain(const BakeScene& scene, int material, int width, int height,
+    RemainderGain(const BakeScene& scene, const TextureSet& set, int width, int height,
                   NeuralTexture& fitted, NeuralTexture& now);
 
     /// At the texel's centre.

@@ -1,14 +1,19 @@
 #include "item3d/field/bake/texel_values.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+#include "item3d/tensors/workers.h"
+
+#include <ATen/Parallel.h>
 
 #include <algorithm>
+#include <mutex>
 
 namespace item3d {
 namespace {
 
 constexpr int packed_width = 10;
-constexpr int samples_at_once = 65536;
+constexpr int samples_at_once = 16384;
 
 /// [P, 3, 3] with rows tangent, bitangent, normal of glTF's tangent space.
 at::Tensor tangent_frame(const at::Tensor& normal, const at::Tensor& tangent) {
@@ -23,13 +28,15 @@ at::Tensor tangent_frame(const at::Tensor& normal, const at::Tensor& tangent) {
 
 }  // namespace
 
-TexelEvaluator::TexelEvaluator(const BakeScene& scene, int material, int width, int height,
-                               int supersampling, bool needs_normals)
+TexelEvaluator::TexelEvaluator(const BakeScene& scene, const TextureSet& set, int width, int height,
+                               int supersampling, TexelNeeds needs)
     : scene_(scene),
       width_(width),
       height_(height),
       samples_(std::max(width, height) > 2048 ? 1 : std::max(1, supersampling)),
-      model_triangles_(scene.atlas.material_triangles.at(material)) {
+      needs_(needs),
+      model_triangles_(set.triangles) {
+    const int material = set.materials.front();
     ITEM3D_CHECK(
         static_cast<std::int64_t>(scene.atlas.triangles.size()) == scene.geometry.triangles.size(0),
         "atlas and geometry are of different models");
@@ -38,19 +45,19 @@ TexelEvaluator::TexelEvaluator(const BakeScene& scene, int material, int width, 
     }
     raster_ = rasterize_uv(triangles_, width * samples_, height * samples_,
                            wrap_of(scene.model, material));
-    if (scene.atlas.shared.count(material) != 0) claim_texels(raster_, triangles_);
+    if (!set.shared.empty()) claim_texels(raster_, triangles_);
     if (samples_ == 1) widen(raster_);
     // The source's normals may be in the tangent space of another UV map than the atlas's.
-    const bool moves = !scene.atlas.is_own(material) ||
-                       scene.model.materials[static_cast<std::size_t>(material)].normal_uvs != 0;
-    if (needs_normals && moves) {
+    const bool moves =
+        !set.is_own() || scene.model.materials[static_cast<std::size_t>(material)].normal_uvs != 0;
+    if (needs.normals && moves) {
         Model remade;
         for (std::size_t i = 0; i < scene.model.primitives.size(); ++i) {
             const auto edit = scene.atlas.primitives.find(static_cast<int>(i));
             const Primitive& primitive = scene.model.primitives[i];
             remade.primitives.push_back(
                 edit == scene.atlas.primitives.end() ? primitive : apply(edit->second, primitive));
-            if (primitive.material == material) remade.primitives.back().tangents.clear();
+            if (set.has(primitive.material)) remade.primitives.back().tangents.clear();
         }
         atlas_geometry_ = Geometry::from_model(remade, scene.geometry.positions.device());
     }
@@ -91,6 +98,23 @@ TexelMaterial TexelEvaluator::read(const float* row) const {
             Vec3(row[6], row[7], row[8]), row[9]};
 }
 
+void TexelEvaluator::for_rows(NeuralTexture& fitted, NeuralTexture& now,
+                              const std::function<void(const std::vector<TexelValue>&)>& take,
+                              const std::function<void(double)>& on_progress) const {
+    const int step = rows_at_once();
+    const std::int64_t batches = (height_ + step - 1) / step;
+    const bool on_cpu = scene_.geometry.positions.device().is_cpu();
+    std::mutex mutex;
+    std::int64_t done = 0;
+    run_workers(batches, on_cpu ? at::get_num_threads() : 1, [&](std::int64_t batch) {
+        const int first = static_cast<int>(batch) * step;
+        take(rows(first, std::min(height_, first + step), fitted, now));
+        const std::lock_guard lock(mutex);
+        if (on_progress) on_progress(static_cast<double>(++done) / static_cast<double>(batches));
+    });
+    if (interrupted()) throw Interrupted("interrupted while the textures were baked");
+}
+
 std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture& fitted,
                                              NeuralTexture& now) const {
     std::vector<TexelValue> texels;
@@ -121,20 +145,19 @@ std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture&
     if (texels.empty()) return texels;
     first_sample.push_back(triangle.size());
 
-    const at::NoGradGuard no_grad;
     const at::Device device = scene_.geometry.positions.device();
     const at::Tensor triangles = at::tensor(triangle, at::kLong).to(device);
     const at::Tensor weights = at::tensor(barycentrics, at::kFloat).view({-1, 2}).to(device);
     const Surface surface = surface_at(scene_.geometry, triangles, weights);
     const at::Tensor rotation = frame_change(surface, triangles, weights);
     const at::Tensor positions = scene_.space.positions(surface);
-    const at::Tensor values[3] = {pack(scene_.materials.sample(surface), rotation),
-                                  pack(fitted->forward(positions), rotation),
-                                  pack(now->forward(positions), rotation)};
+    const at::Tensor values[3] = {
+        needs_.source ? pack(scene_.materials.sample(surface), rotation) : at::Tensor(),
+        pack(fitted->forward(positions), rotation), pack(now->forward(positions), rotation)};
     for (std::size_t i = 0; i < texels.size(); ++i) {
         const float share = 1.0f / static_cast<float>(first_sample[i + 1] - first_sample[i]);
         TexelMaterial* targets[3] = {&texels[i].source, &texels[i].fitted, &texels[i].now};
-        for (int k = 0; k < 3; ++k) {
+        for (int k = needs_.source ? 0 : 1; k < 3; ++k) {
             float mean[packed_width] = {};
             for (std::size_t s = first_sample[i]; s < first_sample[i + 1]; ++s) {
                 const float* row = values[k].data_ptr<float>() + s * packed_width;

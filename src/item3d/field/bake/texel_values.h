@@ -4,6 +4,7 @@
 
 #include "item3d/field/bake/bake.h"
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -23,20 +24,29 @@ struct TexelValue {
     TexelMaterial source, fitted, now;
 };
 
-/// Samples of one material's triangles on a grid of width x height texels.
+/// What a bake asks of each texel besides the base colour and orm of both fields.
+struct TexelNeeds {
+    bool source = false;
+    bool normals = false;  ///< in the tangent space of the atlas
+};
+
+/// Samples of one texture set's triangles on a grid of width x height texels.
 class TexelEvaluator {
   public:
-    /// needs_normals: normals are to be in the tangent space of the atlas.
-    TexelEvaluator(const BakeScene& scene, int material, int width, int height, int supersampling,
-                   bool needs_normals);
+    TexelEvaluator(const BakeScene& scene, const TextureSet& set, int width, int height,
+                   int supersampling, TexelNeeds needs);
 
-    /// The covered texels of rows [first, last).
-    std::vector<TexelValue> rows(int first, int last, NeuralTexture& fitted,
-                                 NeuralTexture& now) const;
-    /// Rows that make a batch of reasonable size.
-    int rows_at_once() const;
+    /// Calls take(texels) with the covered texels of some rows at a time, on several threads where
+    /// the scene is on the CPU. on_progress(share), if any, is called on one thread at a time.
+    /// Throws Interrupted after Ctrl-C.
+    void for_rows(NeuralTexture& fitted, NeuralTexture& now,
+                  const std::function<void(const std::vector<TexelValue>&)>& take,
+                  const std::function<void(double)>& on_progress = {}) const;
 
   private:
+    std::vector<TexelValue> rows(int first, int last, NeuralTexture& fitted,
+                                 NeuralTexture& now) const;
+    int rows_at_once() const;
     TexelMaterial read(const float* row) const;
     /// [P, 10] on the CPU, of a sample at `surface`; rotation [P, 3, 3] or undefined goes to the
     /// normals.
@@ -46,6 +56,7 @@ class TexelEvaluator {
 
     const BakeScene& scene_;
     int width_, height_, samples_;
+    TexelNeeds needs_;
     std::vector<UvTriangle> triangles_;
     const std::vector<std::int32_t>& model_triangles_;  ///< of each of triangles_
     UvRaster raster_;

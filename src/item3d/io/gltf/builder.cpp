@@ -165,6 +165,14 @@ std::size_t GltfBuilder::add_texture(const Bytes& bytes, ImageEncoding encoding,
     return append(json_, "textures", std::move(texture));
 }
 
+std::size_t GltfBuilder::add_texture(const EditedTexture& picture, const std::string& name,
+                                     int sampler) {
+    const std::pair key(picture.identity(), sampler);
+    const auto found = edited_.find(key);
+    if (found != edited_.end()) return found->second;
+    return edited_[key] = add_texture(picture.encoded(), picture.coding().encoding, name, sampler);
+}
+
 void GltfBuilder::embed_image(Json& image, const Bytes& bytes, const std::string& mime_type) {
     image.erase("uri");
     image["mimeType"] = mime_type;

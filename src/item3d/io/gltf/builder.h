@@ -1,11 +1,13 @@
 // Appends buffer views, accessors and images to a glTF's JSON. Internal to io.
 #pragma once
 
+#include "item3d/io/edited_texture.h"
 #include "item3d/io/gltf/accessors.h"
 #include "item3d/scene/image_coding.h"
 
 #include <map>
 #include <span>
+#include <utility>
 
 namespace item3d {
 
@@ -30,6 +32,8 @@ class GltfBuilder {
     /// extensions are list_texture_extensions()' work.
     std::size_t add_texture(const Bytes& bytes, ImageEncoding encoding, const std::string& name,
                             int sampler);
+    /// Adds a picture once for each sampler: further calls return the texture of the first.
+    std::size_t add_texture(const EditedTexture& picture, const std::string& name, int sampler);
     /// Turns an existing image into one that lies in the buffer.
     void embed_image(Json& image, const Bytes& bytes, const std::string& mime_type);
 
@@ -56,6 +60,7 @@ class GltfBuilder {
     bool images_in_files_;
     std::string stem_;
     std::map<std::string, Bytes> files_;
+    std::map<std::pair<const void*, int>, std::size_t> edited_;  ///< by identity and sampler
 };
 
 /// Adds `value` to the list `key`, which is made when it is missing; returns its index.

@@ -153,11 +153,9 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
     std::vector<ReplacedTexture> replaced;
     const UvLayout layout = material_uv_layout(GltfObject(document, original, "material"));
     InfoWriter infos(plan, layout, builder.json());
-    const auto add_texture = [&](const Image& image, const ImageCoding& coding, const char* what,
+    const auto add_texture = [&](const EditedTexture& texture, const char* what,
                                  const Json* old_info) {
-        return builder.add_texture(encode_texture(image, coding, edit.bits_per_channel),
-                                   coding.encoding, name + "_" + what,
-                                   sampler_of(document.json, old_info));
+        return builder.add_texture(texture, name + "_" + what, sampler_of(document.json, old_info));
     };
     const Json* old_pbr = find(original, "pbrMetallicRoughness");
     if (edit.base_color || edit.metallic_roughness) {
@@ -190,8 +188,7 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
     if (edit.base_color) {
         Json& pbr = material["pbrMetallicRoughness"];
         const Json* old_info = old_pbr ? find(*old_pbr, "baseColorTexture") : nullptr;
-        const std::size_t texture =
-            add_texture(*edit.base_color, edit.base_color_coding, "base_color", old_info);
+        const std::size_t texture = add_texture(edit.base_color, "base_color", old_info);
         infos.write(pbr, "baseColorTexture", texture);
         if (const auto old = texture_of(old_info)) replaced.push_back({*old, texture, true});
         double alpha = 1.0;
@@ -203,8 +200,7 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
     if (edit.metallic_roughness) {
         Json& pbr = material["pbrMetallicRoughness"];
         const Json* old_info = old_pbr ? find(*old_pbr, "metallicRoughnessTexture") : nullptr;
-        const std::size_t texture =
-            add_texture(*edit.metallic_roughness, edit.metallic_roughness_coding, "orm", old_info);
+        const std::size_t texture = add_texture(edit.metallic_roughness, "orm", old_info);
         infos.write(pbr, "metallicRoughnessTexture", texture);
         pbr["metallicFactor"] = 1.0;
         pbr["roughnessFactor"] = 1.0;
@@ -216,8 +212,7 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
     }
     if (edit.normal) {
         const Json* old_info = find(original, "normalTexture");
-        const std::size_t texture =
-            add_texture(*edit.normal, edit.normal_coding, "normal", old_info);
+        const std::size_t texture = add_texture(edit.normal, "normal", old_info);
         infos.write(material, "normalTexture", texture);
         material["normalTexture"].erase("scale");
         if (const auto old = texture_of(old_info)) replaced.push_back({*old, texture});

@@ -102,6 +102,13 @@ class ObjWriter {
         return name;
     }
 
+    // Materials that share a picture share its file.
+    std::string save(const EditedTexture& picture, const std::string& material, const char* what) {
+        std::string& file = edited_files_[picture.identity()];
+        if (file.empty()) file = save(picture.encoded(), picture.coding().encoding, material, what);
+        return file;
+    }
+
     // The file that it came from, where the material shows it as it is.
     std::string save(const Texture& texture, const Vec4& factor, const std::string& material,
                      const char* what) {
@@ -137,9 +144,7 @@ class ObjWriter {
             if (has_alpha && channels % 2 == 0) line("map_d " + picture);
         };
         if (edit.base_color) {
-            write_base(save(*edit.base_color, edit.bits_per_channel, name, "base_color",
-                            edit.base_color_coding),
-                       edit.base_color->channels);
+            write_base(save(edit.base_color, name, "base_color"), edit.base_color->channels);
         } else if (base) {
             write_base(
                 clamp_option(base) + save(*base, Vec4(Vec3(factor), 1.0f), name, "base_color"),
@@ -152,8 +157,7 @@ class ObjWriter {
 
         const Texture* normal = texture(material.normal_texture);
         if (edit.normal) {
-            line("norm " +
-                 save(*edit.normal, edit.bits_per_channel, name, "normal", edit.normal_coding));
+            line("norm " + save(edit.normal, name, "normal"));
         } else if (normal) {
             const std::string scale =
                 material.normal_scale == 1.0f ? "" : fmt::format("-bm {} ", material.normal_scale);
@@ -175,9 +179,9 @@ class ObjWriter {
         const Texture* occlusion = texture(material.occlusion_texture);
         if (edit.metallic_roughness) {
             const Image& image = *edit.metallic_roughness;
-            const int bits = edit.bits_per_channel;
+            const int bits = edit.metallic_roughness.bits_per_channel();
             line("Pm 1\nPr 1");
-            const ImageCoding& coding = edit.metallic_roughness_coding;
+            const ImageCoding& coding = edit.metallic_roughness.coding();
             line("map_AO " + save(channel_of(image, 0), bits, name, "occlusion", coding));
             line("map_Pr " + save(channel_of(image, 1), bits, name, "roughness", coding));
             line("map_Pm " + save(channel_of(image, 2), bits, name, "metallic", coding));
@@ -263,6 +267,7 @@ class ObjWriter {
     const ModelEdit& edit_;
     std::vector<std::string> names_;
     FileNames file_names_;
+    std::map<const void*, std::string> edited_files_;  ///< by EditedTexture::identity
     std::string obj_;
     std::string mtl_;
     int decimals_ = 0;  ///< of positions far from the origin

@@ -54,7 +54,8 @@ Model load_plain_model(const std::filesystem::path& path) {
 Model unwrapped(Model model, int texture_size) {
     const FieldSpace space(model, {0});
     const Atlas atlas = make_atlas(model, space, {0}, texture_size);
-    if (!atlas.is_own(0)) model.primitives[0] = apply(atlas.primitives.at(0), model.primitives[0]);
+    if (!atlas.sets.front().is_own())
+        model.primitives[0] = apply(atlas.primitives.at(0), model.primitives[0]);
     return model;
 }
 
