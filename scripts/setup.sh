@@ -122,10 +122,10 @@ wheel_options=(--only-binary=:all: --implementation cp --python-version 3.11 --a
     --platform manylinux2014_x86_64)
 
 # component NAME PINS UNPACK: runs UNPACK in an empty folder and renames that folder to .deps/NAME,
-# unless .deps/NAME came from the same pins.
+# unless .deps/NAME came from the same pins by the same UNPACK.
 component() {
     local name=$1 pins=$2 unpack=$3 wanted temporary
-    wanted=$(grep -E "^($pins)==" scripts/wheels.txt | sha256sum | cut -d ' ' -f 1)
+    wanted=$({ grep -E "^($pins)==" scripts/wheels.txt; declare -f "$unpack"; } | sha256sum | cut -d ' ' -f 1)
     [[ -f $deps/$name/.pins && $(<"$deps/$name/.pins") == "$wanted" ]] && return
     temporary=$deps/$name.unpacking
     rm -rf "$temporary"
@@ -191,8 +191,8 @@ unpack_basis_universal() {
     download_crate basis-universal-sys
     say "unpacking $(basename "$archive")"
     inner=$(basename "$archive" .crate)/vendor/basis_universal
-    tar -xzf "$archive" -C "$into" --strip-components=3 "$inner/transcoder" "$inner/LICENSE" \
-        "$inner/LICENSES" || fail "unpacking $archive failed; is the disk full?"
+    tar -xzf "$archive" -C "$into" --strip-components=3 "$inner/encoder" "$inner/transcoder" \
+        "$inner/LICENSE" "$inner/LICENSES" || fail "unpacking $archive failed; is the disk full?"
     mkdir "$into/zstd"
     echo '#include <zstd.h>' >"$into/zstd/zstd.h"
 }

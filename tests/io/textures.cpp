@@ -266,6 +266,42 @@ TEST(Textures, ThatMaterialsShareAreWrittenOnce) {
     EXPECT_EQ(pictures, 1);
 }
 
+#ifdef ITEM3D_WRITES_KTX2  // the loaders' own build has no encoder
+TEST(Textures, AreWrittenAsKtx2) {
+    const fs::path folder = fresh_folder("texture_ktx2");
+    write_textured(folder / "a.gltf", {{"a.png", encode_texture(test_picture(3), {}, 8)}},
+                   {{{"source", 0}}}, textured_materials(1));
+    const Model model = load_model(folder / "a.gltf");
+    ModelEdit edit;
+    MaterialEdit& changed = edit.materials[0];
+    Image smooth(64, 32, 3);
+    for (int y = 0; y < smooth.height; ++y) {
+        for (int x = 0; x < smooth.width; ++x) {
+            smooth.at(x, y, 0) = 0.3f + 0.4f * static_cast<float>(x) / 64;
+            smooth.at(x, y, 1) = 0.2f + 0.5f * static_cast<float>(y) / 32;
+            smooth.at(x, y, 2) = 0.5f;
+        }
+    }
+    changed.base_color = smooth;
+    changed.normal = smooth;
+    changed.metallic_roughness = test_picture(3, 30, 30);  // no multiple of four
+    choose_codings(model, TextureFormat::ktx2, edit);
+    EXPECT_EQ(changed.metallic_roughness.coding(), ImageCoding{});
+    save_model(folder / "b.glb", model, edit);
+    const GltfFile file = read_gltf_file(folder / "b.glb");
+    EXPECT_EQ(file.json["extensionsRequired"], OrderedJson::array({"KHR_texture_basisu"}));
+    EXPECT_EQ(file.json["images"].size(), 3u);
+
+    const Model read = load_model(folder / "b.glb");
+    const Material& material = read.materials[0];
+    const auto error = [&](int texture) {
+        return mean_squared_error(read.textures[static_cast<std::size_t>(texture)].image, smooth);
+    };
+    EXPECT_LT(error(material.base_color_texture), 1e-3);
+    EXPECT_LT(error(material.normal_texture), 1e-4);
+}
+#endif
+
 // Three textures; the edit replaces the first. The second is the third material's emission too.
 TEST(Textures, ThatAreReplacedLeaveTheFileAndIndicesFollow) {
     const fs::path folder = fresh_folder("texture_unused");

@@ -4,6 +4,7 @@
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"
+#include "apps/item3d/edit/picture_options.h"
 #include "apps/item3d/edit/relight_words.h"
 #include "apps/item3d/edit/setting_options.h"
 #include "item3d/core/error.h"
@@ -48,9 +49,11 @@ void add_guidance(CLI::App& command, nlohmann::json& overrides) {
 
 void warn_of_words(const EditRequest& request) {
     const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
+    std::string before;  // a word of both sentences is said once
     for (const std::string& prompt : {request.plan.from, request.plan.to}) {
         const std::string warning = vocabulary.warning(prompt, /*shape_is_given=*/true);
-        if (!warning.empty()) warn(warning);
+        if (!warning.empty() && warning != before) warn(warning);
+        before = warning;
     }
 }
 
@@ -90,6 +93,8 @@ void warn_of_options(const EditPlan& plan, const nlohmann::json& overrides) {
             "--negative-prompt has no effect: it cancels in rdl's direction, and no detail stage "
             "follows");
     }
+    if (plan.from == plan.to)
+        warn("--from and --to say the same: there is nothing that could change");
     if (overrides.contains("adjust") && plan.adjust != Adjustment::off && plan.guidance != "rdl")
         warn("--adjust has no effect: only rdl has a source to adjust");
 }
@@ -98,6 +103,10 @@ void run_edit(EditCommandOptions& options) {
     refuse_contradictions(options.overrides);
 
     EditRequest& request = options.request;
+    if (is_file_name(lower_extension(request.output)))
+        throw UsageError("-o " + request.output.string() +
+                         ": is the name of a file, expected one of a folder, in which model.glb "
+                         "and the report will be");
     nlohmann::json& overrides = options.overrides;
     request.device = start_command(options);
     request.prior = find_prior(options.prior);

@@ -37,6 +37,14 @@ inline std::string lower_extension(const std::filesystem::path& path) {
     return extension;
 }
 
+/// Whether an extension is that of a model or a picture, which nobody calls a folder by.
+inline bool is_file_name(const std::string& extension) {
+    for (const char* file : {".glb", ".gltf", ".obj", ".vrm", ".jpg", ".jpeg", ".webp", ".hdr",
+                             ".png", ".exr", ".html", ".json"})
+        if (extension == file) return true;
+    return false;
+}
+
 struct PictureSize {
     int width = 0;
     int height = 0;

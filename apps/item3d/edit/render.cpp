@@ -73,6 +73,11 @@ Destination choose_destination(const RenderCommand& options, std::size_t picture
     const std::string extension = lower_extension(destination.path);
     destination.folder = extension != ".png" && extension != ".exr";
     destination.extension = destination.folder ? "." + options.format : extension;
+    if (destination.folder && is_file_name(extension))
+        throw UsageError(
+            fmt::format("-o {}: pictures are written as .png or .exr; expected such a "
+                        "name, or a folder",
+                        options.output));
     if (!destination.folder && pictures > 1) {
         throw UsageError(fmt::format("-o {}: {} pictures need a folder, not one file",
                                      options.output, pictures));

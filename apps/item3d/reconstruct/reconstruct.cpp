@@ -7,8 +7,10 @@
 #include "item3d/core/format.h"
 #include "item3d/metrics/color.h"
 
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -23,7 +25,23 @@ struct ReconstructCommand : CommonOptions {
     int cells = 96;
     double demodulation = 0;
     std::uint64_t seed = 0;
+    std::vector<std::filesystem::path> relit;
+    std::vector<std::string> relit_lights;
+    std::vector<float> relit_exposures;
 };
+
+/// One light, and one exposure if any, for each folder.
+std::vector<RelitViews> relit_views(const ReconstructCommand& options) {
+    if (options.relit_lights.size() != options.relit.size())
+        throw UsageError("--relit: name the light of each folder by --relit-light");
+    if (options.relit_exposures.size() > options.relit.size())
+        throw UsageError("--relit-exposure: more than there are folders of --relit");
+    std::vector<RelitViews> views;
+    for (std::size_t i = 0; i < options.relit.size(); ++i)
+        views.push_back({options.relit[i], options.relit_lights[i],
+                         i < options.relit_exposures.size() ? options.relit_exposures[i] : 0.0f});
+    return views;
+}
 
 ReconstructRequest make_request(const ReconstructCommand& options) {
     ReconstructRequest request = options.request;
@@ -35,6 +53,7 @@ ReconstructRequest make_request(const ReconstructCommand& options) {
     request.shape.cells = {options.cells / 2, options.cells};
     request.shape.demodulation_weight = request.refine.weights.demodulation = options.demodulation;
     request.shape.seed = request.refine.seed = options.seed;
+    request.relit = relit_views(options);
     request.command = command_line();
     return request;
 }
@@ -72,6 +91,22 @@ void add_dataset_options(CLI::App& command, ReconstructCommand& options) {
         ->check(CLI::Range(3, 100000));
     command.add_option("--up", dataset.up, "Up in the dataset's world: x, y, z, -x, ... or auto")
         ->capture_default_str();
+}
+
+void add_several(CLI::Option* option) {
+    option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_comparisons(CLI::App& command, ReconstructCommand& options) {
+    add_several(command.add_option("--relit", options.relit,
+                                   "Pictures of the test views in another light, to compare with; "
+                                   "may be given several times, and so --relit-light"));
+    add_several(command.add_option("--relit-light", options.relit_lights,
+                                   "That light: a preset or a file"));
+    add_several(command.add_option("--relit-exposure", options.relit_exposures, "Of it, stops"));
+    command.add_option("--truth", options.request.truth,
+                       "Pictures of the test views' materials, to compare with: NAME_albedo.png, "
+                       "NAME_orm.png");
 }
 
 }  // namespace
@@ -125,11 +160,7 @@ void add_reconstruct_command(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--reference", request.reference,
                         "The true mesh, to measure a distance to");
-    command->add_option("--relit", request.relit.folder,
-                        "Pictures of the test views in another light, to compare with");
-    command->add_option("--relit-light", request.relit.light, "That light: a preset or a file")
-        ->capture_default_str();
-    command->add_option("--relit-exposure", request.relit.exposure, "Stops")->capture_default_str();
+    add_comparisons(*command, *options);
     command->add_option("--seed", options->seed)->capture_default_str();
     command->callback([options] {
         start_command(*options);

@@ -134,6 +134,18 @@ void make_output_folder(const fs::path& folder) {
     fs::remove(probe, code);
 }
 
+OutputFolder::OutputFolder(const fs::path& folder) {
+    std::error_code code;
+    const bool was_there = fs::exists(folder, code);
+    make_output_folder(folder);
+    if (!was_there) made_ = folder;
+}
+
+OutputFolder::~OutputFolder() {
+    std::error_code code;
+    if (!made_.empty() && fs::is_empty(made_, code) && !code) fs::remove(made_, code);
+}
+
 fs::path assets_folder() {
     if (const char* set = std::getenv("ITEM3D_ASSETS"); set && *set) return set;
     std::error_code code;

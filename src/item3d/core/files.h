@@ -36,6 +36,19 @@ void write_atomically(const std::filesystem::path& path,
 /// Throws InputError that says why not.
 void make_output_folder(const std::filesystem::path& folder);
 
+/// make_output_folder(), and where it was not there before, away with it again when nothing is in
+/// it in the end.
+class OutputFolder {
+  public:
+    explicit OutputFolder(const std::filesystem::path& folder);
+    ~OutputFolder();
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+  private:
+    std::filesystem::path made_;  ///< empty: it was there
+};
+
 /// The folder of shipped data (prior, demo model): $ITEM3D_ASSETS, else ../assets or
 /// ../share/item3d beside the running program. Throws InputError when none exists.
 std::filesystem::path assets_folder();

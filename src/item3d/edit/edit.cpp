@@ -14,7 +14,7 @@ namespace item3d {
 
 nlohmann::json edit_model(const EditRequest& request) {
     StageTimes times;
-    make_output_folder(request.output);
+    const OutputFolder folder(request.output);
 
     EditScene scene = load_scene(request);
     std::optional<Clip> clip;  // needed at the end, but a folder without one is told at once

@@ -27,7 +27,11 @@ std::vector<int> select_materials(const Model& model, const std::vector<std::str
         std::vector<std::string> known;
         for (const Material& material : model.materials)
             known.push_back(material.name);
-        throw InputError("--material", fmt::format("'{}' is not a material of this model", name),
+        const bool is_there = std::find(known.begin(), known.end(), name) != known.end();
+        throw InputError("--material",
+                         fmt::format("'{}' is not {}", name,
+                                     is_there ? "seen: nothing that is shown has this material"
+                                              : "a material of this model"),
                          fmt::format("it has {}", fmt::join(known, ", ")));
     }
     return selected;

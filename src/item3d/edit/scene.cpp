@@ -30,8 +30,9 @@ void check_looks(const EditRequest& request, const Model& model,
         if (material.missing_base_color.empty()) continue;
         throw InputError(request.model.string(),
                          "the base colour '" + material.missing_base_color + "' of material '" +
-                             material.name + "' cannot be read (see the warning)",
-                         "bring it there, or edit without it by --allow-missing-textures");
+                             material.name + "' cannot be used (see the warning)",
+                         "mend that, or name its folder by --textures, or edit without it by "
+                         "--allow-missing-textures");
     }
 }
 

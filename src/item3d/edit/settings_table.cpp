@@ -137,10 +137,11 @@ std::vector<Setting> texture_rows() {
                "The UV map: auto (the input's own, but for detail on a material without textures "
                "whose "
                "UVs overlap), keep, or new (each place gets texels of its own)"),
-        choice("texture_format", &S::texture_format, {"keep", "png", "jpeg", "webp"},
+        choice("texture_format", &S::texture_format, {"keep", "png", "jpeg", "webp", "ktx2"},
                "--texture-format",
                "Of the textures that are written: keep (each as the input's, the default), png, "
-               "jpeg or webp; images with alpha are never JPEG, and those of which a channel must "
+               "jpeg, webp or ktx2; images with alpha are never JPEG, and those of which a channel "
+               "must "
                "not change are written without losses"),
         kept_channels(),
         choice("metallic", &S::metallic, {"auto", "always"}, "--metallic",

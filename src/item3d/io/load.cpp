@@ -39,6 +39,10 @@ Model read_model(const std::filesystem::path& path, const LoadOptions& options) 
 }  // namespace
 
 Model load_model(const std::filesystem::path& path, const LoadOptions& options) {
+    for (const std::filesystem::path& folder : options.texture_folders) {
+        if (!std::filesystem::is_directory(folder))
+            throw InputError("--textures " + folder.string(), "is no folder", "check the path");
+    }
     Model model = read_model(path, options);
     if (!is_visible(model)) {
         warn(path.string() +

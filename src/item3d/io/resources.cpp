@@ -49,6 +49,14 @@ Bytes decode_base64(std::string_view text, const std::string& subject) {
     return bytes;
 }
 
+/// Pictures alone are looked for in other folders.
+std::string cure_of(std::string_view name) {
+    const std::string cure = "copy that file beside the model";
+    const std::string extension = to_lower(fs::path(name).extension().string());
+    return extension == ".bin" || extension == ".mtl" ? cure
+                                                      : cure + ", or name its folder by --textures";
+}
+
 }  // namespace
 
 fs::path resolve_in_folder(const fs::path& folder, const fs::path& relative,
@@ -79,12 +87,12 @@ fs::path resolve_in_folder(const fs::path& folder, const fs::path& relative,
     if (is_outside) {
         throw InputError(subject,
                          "refers to '" + to_utf8(name) + "', which is outside of its folder",
-                         "copy that file beside the model");
+                         cure_of(name));
     }
     throw InputError(subject,
                      "refers to '" + to_utf8(name) + "', which " +
                          (fs::exists(status) ? "is not a file" : "does not exist"),
-                     "copy that file beside the model");
+                     cure_of(name));
 }
 
 fs::path resolve_uri(const fs::path& folder, std::string_view uri, const std::string& subject,
@@ -96,7 +104,7 @@ fs::path resolve_uri(const fs::path& folder, std::string_view uri, const std::st
         throw InputError(subject,
                          "refers to '" + to_utf8(uri.substr(0, 80)) +
                              "', and nothing is read from other places than its folder",
-                         "copy that file beside the model");
+                         cure_of(uri));
     }
     // What a URI says comes first; a percent sign that belongs to the name, with the other
     // spellings.
@@ -136,6 +144,27 @@ fs::path resolve_beside(const fs::path& root, const std::vector<fs::path>& folde
     throw *first;
 }
 
+namespace {
+
+constexpr std::size_t most_folders = 1000;
+constexpr int deepest_folder = 4;
+
+/// Of a folder that pictures may be read from, relative to it, in order of their names.
+std::vector<fs::path> folders_below(const fs::path& root) {
+    std::vector<fs::path> folders;
+    std::error_code code;
+    for (fs::recursive_directory_iterator entry(root, code), end; !code && entry != end;
+         entry.increment(code)) {
+        if (entry.depth() >= deepest_folder) entry.disable_recursion_pending();
+        if (entry->is_directory(code)) folders.push_back(entry->path().lexically_relative(root));
+        if (folders.size() >= most_folders) break;
+    }
+    std::sort(folders.begin(), folders.end());
+    return folders;
+}
+
+}  // namespace
+
 std::optional<fs::path> find_allowed(const std::vector<fs::path>& allowed, const fs::path& folder,
                                      const fs::path& name, const std::string& subject) {
     std::error_code code;
@@ -143,12 +172,16 @@ std::optional<fs::path> find_allowed(const std::vector<fs::path>& allowed, const
         fs::weakly_canonical((folder.empty() ? fs::path(".") : folder) / name, code);
     for (const fs::path& root : allowed) {
         std::vector<fs::path> tries{target.lexically_relative(fs::weakly_canonical(root, code))};
+        // By its own name in the folders below, last.
+        const auto below = folders_below(root);
         for (auto from = name.begin(); from != name.end(); ++from) {
             fs::path end;
             for (auto part = from; part != name.end(); ++part)
                 end /= *part;
             tries.push_back(end);
         }
+        for (const fs::path& path : below)
+            tries.push_back(path / name.filename());
         for (const fs::path& wanted : tries) {
             if (wanted.empty() || wanted.is_absolute() || *wanted.begin() == "..") continue;
             if (!fs::is_regular_file(root / wanted, code)) continue;

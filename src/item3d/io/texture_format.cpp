@@ -1,6 +1,7 @@
 #include "item3d/io/texture_format.h"
 
 #include "item3d/io/image/jpeg.h"
+#include "item3d/io/image/ktx2_encode.h"
 #include "item3d/io/image/png.h"
 #include "item3d/io/image/webp.h"
 
@@ -8,6 +9,9 @@
 
 namespace item3d {
 namespace {
+
+/// Of pictures that are smallest as PNG.
+constexpr int tiny_edge = 8;
 
 const Texture* texture_of(const Model& model, int index) {
     return index >= 0 ? &model.textures[static_cast<std::size_t>(index)] : nullptr;
@@ -31,6 +35,8 @@ ImageCoding wanted_coding(TextureFormat format, const Texture* source) {
             return {ImageEncoding::jpeg, false, own.is_lossless ? 95 : own.quality};
         case TextureFormat::webp:
             return {ImageEncoding::webp, own.is_lossless, own.is_lossless ? 95 : own.quality};
+        case TextureFormat::ktx2:
+            return {ImageEncoding::ktx2, false, 75};
         case TextureFormat::keep:
             break;
     }
@@ -38,8 +44,10 @@ ImageCoding wanted_coding(TextureFormat format, const Texture* source) {
 }
 
 ImageCoding possible_coding(ImageCoding coding, const Image& image, bool must_be_exact) {
+    if (std::max(image.width, image.height) <= tiny_edge) return {};
     if (must_be_exact && coding.encoding == ImageEncoding::webp)
         coding = {ImageEncoding::webp, true, 95};
+    if (coding.encoding == ImageEncoding::ktx2 && (must_be_exact || !fits_ktx2(image))) return {};
     if (coding.encoding == ImageEncoding::jpeg && (must_be_exact || is_transparent(image)))
         return {};
     if (coding.encoding == ImageEncoding::webp &&
@@ -61,6 +69,10 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
                 possible_coding(wanted_coding(format, own ? own : base), *texture, must_be_exact);
             // Eight bits would be a loss to an image that has more.
             if (format == TextureFormat::keep && own && own->bits_per_channel > 8) coding = {};
+            if (coding.encoding == ImageEncoding::ktx2) {
+                coding.is_srgb = &texture == &material_edit.base_color;
+                coding.is_precise = &texture == &material_edit.normal;
+            }
             texture.set_coding(coding);
         };
         choose(material_edit.base_color, material.base_color_texture, false);
@@ -77,6 +89,9 @@ Bytes encode_texture(const Image& image, const ImageCoding& coding, int bits_per
             return encode_jpeg(image, coding.quality);
         case ImageEncoding::webp:
             return encode_webp_texture(image, coding.is_lossless, coding.quality);
+        case ImageEncoding::ktx2:
+            return encode_ktx2(image, coding.is_srgb, coding.is_precise,
+                               coding.quality * 255 / 100);
         case ImageEncoding::png:
             break;
     }
@@ -86,6 +101,7 @@ Bytes encode_texture(const Image& image, const ImageCoding& coding, int bits_per
 const char* extension_of(ImageEncoding encoding) {
     return encoding == ImageEncoding::jpeg   ? ".jpg"
            : encoding == ImageEncoding::webp ? ".webp"
+           : encoding == ImageEncoding::ktx2 ? ".ktx2"
                                              : ".png";
 }
 

@@ -8,7 +8,8 @@
 namespace item3d {
 
 /// keep: each as the texture that it replaces. webp: without losses where that texture had none.
-enum class TextureFormat { keep, png, jpeg, webp };
+/// ktx2: ETC1S, normals UASTC; PNG where edges are no multiples of four.
+enum class TextureFormat { keep, png, jpeg, webp, ktx2 };
 
 /// Sets the codings of all images of the edit. Where a material had no texture in a slot, its base
 /// colour's is followed. Images that JPEG or a lossy WebP cannot hold get a coding without losses:
@@ -18,7 +19,7 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit);
 /// bits_per_channel: 8, or 16, which PNG alone has.
 Bytes encode_texture(const Image& image, const ImageCoding& coding, int bits_per_channel);
 
-/// ".png", ".jpg", ".webp".
+/// ".png", ".jpg", ".webp", ".ktx2".
 const char* extension_of(ImageEncoding encoding);
 
 }  // namespace item3d

@@ -34,8 +34,8 @@ std::string describe(const Dataset& dataset) {
 }
 
 /// The test views for which the folder has a picture, with that picture.
-std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructRequest& request) {
-    const RelitViews& relit = request.relit;
+std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructRequest& request,
+                                    const RelitViews& relit) {
     std::vector<Photograph> views;
     for (Photograph view : dataset.test) {
         SourceView source;
@@ -74,15 +74,16 @@ void score(Reconstruction& result) {
     result.train =
         renderer.score(make_targets(some_views(result.dataset.train, train_views_scored), bounds));
     result.test_without_shadows = ModelRenderer(result.model, result.light, false).score(test);
-    if (!request.relit.folder.empty()) {
-        const auto targets = make_targets(relit_views(result.dataset, request), bounds);
-        const ModelRenderer relit(
-            result.model, adjust_light(load_light(request.relit.light), 0, request.relit.exposure),
-            request.refine.shadows);
-        result.relit = relit.score(targets);
-        result.relit_gain = relit.best_gain(targets);
-        result.relit_scaled = relit.score(targets, result.relit_gain);
+    for (const RelitViews& views : request.relit) {
+        const auto targets = make_targets(relit_views(result.dataset, request, views), bounds);
+        const ModelRenderer relit(result.model,
+                                  adjust_light(load_light(views.light), 0, views.exposure),
+                                  request.refine.shadows);
+        const Vec3 gain = relit.best_gain(targets);
+        result.relit.push_back({relit.score(targets), relit.score(targets, gain), gain});
     }
+    if (!request.truth.empty())
+        result.materials = compare_materials(result.model, test, request.truth);
     if (!request.reference.empty()) {
         Model reference = load_model(request.reference);
         move_origin(reference, glm::dvec3(0.0));
@@ -133,7 +134,7 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
 }  // namespace
 
 nlohmann::json reconstruct(const ReconstructRequest& request) {
-    make_output_folder(request.output);
+    const OutputFolder folder(request.output);
     StageTimes times;
     const Dataset dataset = load_dataset(request.dataset, request.dataset_options);
     note(describe(dataset));

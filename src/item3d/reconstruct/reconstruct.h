@@ -11,12 +11,13 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
 /// Photographs in a known light, to see whether materials and light were told apart.
 struct RelitViews {
-    std::filesystem::path folder;  ///< pictures named as test views; empty: none
+    std::filesystem::path folder;  ///< pictures named as test views
     std::string light = "studio";  ///< preset or file
     float exposure = 0;            ///< stops
 };
@@ -31,7 +32,9 @@ struct ReconstructRequest {
     RefineOptions refine;
     bool move_vertices = true;  ///< of a shape that was looked for; of a given mesh only if asked
     int texture_size = 1024;
-    RelitViews relit;
+    std::vector<RelitViews> relit;
+    /// Pictures of the materials of test views, see compare_materials(); empty: none.
+    std::filesystem::path truth;
     bool resume = false;
     /// Stop as an interrupt would when this many iterations of both stages are done; 0: run to the
     /// end.

@@ -3,7 +3,7 @@
 
 namespace item3d {
 
-enum class ImageEncoding { png, jpeg, webp };
+enum class ImageEncoding { png, jpeg, webp, ktx2 };
 
 struct ImageCoding {
     ImageEncoding encoding = ImageEncoding::png;
@@ -11,6 +11,10 @@ struct ImageCoding {
     bool is_lossless = true;
     /// 1 to 100, of a picture with losses.
     int quality = 95;
+    /// Of KTX2: colours, rather than other values.
+    bool is_srgb = false;
+    /// Of KTX2: UASTC, rather than ETC1S.
+    bool is_precise = false;
 
     bool operator==(const ImageCoding&) const = default;
 };

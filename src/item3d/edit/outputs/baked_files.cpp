@@ -1,6 +1,7 @@
 #include "item3d/edit/outputs/baked_files.h"
 
 #include "item3d/core/files.h"
+#include "item3d/core/progress.h"
 #include "item3d/field/bake/bake.h"
 #include "item3d/io/file_names.h"
 #include "item3d/io/gltf/light.h"
@@ -54,6 +55,14 @@ class TextureFolder {
     std::set<const void*> seen_;
 };
 
+void note_vertex_colors(const Model& model, const ModelEdit& edit) {
+    for (const auto& [index, material] : edit.materials) {
+        if (!material.base_color || !material.includes_vertex_colors) continue;
+        note("material '" + model.materials[static_cast<std::size_t>(index)].name +
+             "': its vertex colours became part of its base colour's texture");
+    }
+}
+
 constexpr int light_height = 256;
 /// See BakeOptions::blotch: of an edit that changes the same thing everywhere.
 constexpr float recoloured_blotch = 10.0f / 255;
@@ -69,6 +78,7 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
                                scene.atlas};
     ModelEdit edit = bake(bake_scene, state.fitted, state.field, options);
     apply_losses(scene.losses, edit);
+    note_vertex_colors(scene.model, edit);
     choose_codings(scene.model, request.plan.texture_format, edit);
 
     EditedModel edited;

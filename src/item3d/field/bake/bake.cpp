@@ -201,8 +201,8 @@ void SetBaker::start_base_color() {
     if (has_vertex_colors_ || has_vertex_alpha_) base_color_texels_ = nullptr;
     const Texture* source = texture(material_.base_color_texture);
     // Without, the alpha factor stays a factor.
-    const bool has_alpha =
-        has_vertex_alpha_ || (source != nullptr && source->image.channels % 2 == 0);
+    const bool has_alpha = (has_vertex_alpha_ && material_.alpha != Material::Alpha::opaque) ||
+                           (source != nullptr && source->image.channels % 2 == 0);
     base_color_.open(has_alpha ? 4 : 3);
     base_color_.filled_channels = set_.is_own() && base_color_texels_ != nullptr ? 0u : ~0u;
     if (base_color_texels_ == nullptr) return;
@@ -399,8 +399,9 @@ MaterialEdit SetBaker::run(NeuralTexture& fitted, NeuralTexture& now,
         take(normal_, edit.normal);
     }
     const BakedChannels& edited = options_.channels;
-    edit.keeps_orm_texels = (occlusion_texels_ != nullptr && !edited.occlusion) ||
-                            (orm_texels_ != nullptr && !(edited.roughness && edited.metallic));
+    edit.keeps_orm_texels =
+        (material_.occlusion_texture >= 0 && !keeps_occlusion_ && !edited.occlusion) ||
+        (material_.metallic_roughness_texture >= 0 && !(edited.roughness && edited.metallic));
     edit.keeps_occlusion = keeps_occlusion_;
     edit.includes_vertex_colors = has_vertex_colors_ || has_vertex_alpha_;
     return edit;

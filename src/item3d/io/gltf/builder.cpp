@@ -142,7 +142,9 @@ std::size_t GltfBuilder::add_texture(const Bytes& bytes, ImageEncoding encoding,
                                      const std::string& name, int sampler) {
     Json image = Json::object();
     if (!name.empty()) image["name"] = name;
-    const bool is_webp = encoding == ImageEncoding::webp;
+    const char* extension = encoding == ImageEncoding::webp   ? "EXT_texture_webp"
+                            : encoding == ImageEncoding::ktx2 ? "KHR_texture_basisu"
+                                                              : nullptr;
     if (images_in_files_) {
         const std::string file = unused_file_name(
             stem_ + "_" + plain_file_name(name.empty() ? "texture" : name), extension_of(encoding));
@@ -150,15 +152,16 @@ std::size_t GltfBuilder::add_texture(const Bytes& bytes, ImageEncoding encoding,
         files_[file] = bytes;
     } else {
         embed_image(image, bytes,
-                    is_webp                           ? "image/webp"
+                    encoding == ImageEncoding::webp   ? "image/webp"
+                    : encoding == ImageEncoding::ktx2 ? "image/ktx2"
                     : encoding == ImageEncoding::jpeg ? "image/jpeg"
                                                       : "image/png");
     }
     Json texture = Json::object();
     if (sampler >= 0) texture["sampler"] = sampler;
     const std::size_t source = append(json_, "images", std::move(image));
-    if (is_webp) {
-        texture["extensions"]["EXT_texture_webp"]["source"] = source;
+    if (extension != nullptr) {
+        texture["extensions"][extension]["source"] = source;
     } else {
         texture["source"] = source;
     }

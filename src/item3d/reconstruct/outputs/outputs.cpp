@@ -102,11 +102,22 @@ nlohmann::json summary_json(const Reconstruction& result) {
                            {"peak_memory_bytes", peak_memory_bytes()}};
     if (result.shape) summary["scores"]["hull_overlap"] = result.shape->hull_overlap;
     if (result.chamfer) summary["scores"]["chamfer"] = *result.chamfer;
-    if (!result.relit.empty()) {
-        const Vec3 gain = result.relit_gain;
-        summary["scores"]["relit_gain"] = {gain.x, gain.y, gain.z};
-        summary["scores"]["relit"] = score_json(result.relit);
-        summary["scores"]["relit_scaled"] = score_json(result.relit_scaled);
+    for (std::size_t i = 0; i < result.relit.size(); ++i) {
+        const RelitScores& relit = result.relit[i];
+        summary["scores"]["relit"].push_back(
+            {{"folder", request.relit[i].folder.string()},
+             {"light", request.relit[i].light},
+             {"as_it_is", score_json(relit.as_it_is)},
+             {"scaled", score_json(relit.scaled)},
+             {"gain", {relit.gain.x, relit.gain.y, relit.gain.z}}});
+    }
+    if (result.materials) {
+        const MaterialTruth& truth = *result.materials;
+        const Vec3 gain = truth.base_color_gain;
+        summary["scores"]["materials"] = {{"base_color_psnr", truth.base_color_psnr},
+                                          {"base_color_gain", {gain.x, gain.y, gain.z}},
+                                          {"metallic_right", truth.metallic_right},
+                                          {"roughness_error", truth.roughness_error}};
     }
     return summary;
 }

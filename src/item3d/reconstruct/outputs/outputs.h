@@ -3,6 +3,7 @@
 
 #include "item3d/core/stage_times.h"
 #include "item3d/reconstruct/outputs/scores.h"
+#include "item3d/reconstruct/outputs/truth.h"
 #include "item3d/reconstruct/reconstruct.h"
 
 #include <optional>
@@ -14,6 +15,12 @@ namespace item3d {
 /// are of what was written.
 Model bake_and_save(const std::filesystem::path& file, const Model& model, Appearance& appearance,
                     const ReconstructRequest& request);
+
+/// Of one of RelitViews.
+struct RelitScores {
+    std::vector<ScoredView> as_it_is, scaled;
+    Vec3 gain{1.0f};  ///< of the scaled ones
+};
 
 /// All that is known in the end.
 struct Reconstruction {
@@ -29,8 +36,8 @@ struct Reconstruction {
     RefineCurves refine;
     std::vector<ScoredView> train, test;  ///< a few of the former
     std::vector<ScoredView> test_without_shadows;
-    std::vector<ScoredView> relit, relit_scaled;
-    Vec3 relit_gain{1.0f};          ///< of the scaled ones
+    std::vector<RelitScores> relit;
+    std::optional<MaterialTruth> materials;
     std::optional<double> chamfer;  ///< part of the reference's diagonal
     StageTimes times;
     std::vector<std::string> warnings;

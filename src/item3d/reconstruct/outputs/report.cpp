@@ -52,6 +52,21 @@ std::string view_figures(const std::vector<ScoredView>& views) {
     return html_gallery(figures, 230);
 }
 
+std::string material_figures(const MaterialTruth& truth) {
+    std::vector<std::string> figures;
+    for (std::size_t i = 0; i < std::min(views_shown / 2, truth.views.size()); ++i) {
+        const MaterialMaps& maps = truth.views[i];
+        figures.push_back(html_comparison({"true", encode_webp(maps.true_base_color)},
+                                          {"found", encode_webp(maps.base_color)},
+                                          maps.name + ": base colour"));
+        if (maps.material.empty()) continue;
+        figures.push_back(html_comparison({"true", encode_webp(maps.true_material)},
+                                          {"found", encode_webp(maps.material)},
+                                          maps.name + ": roughness green, metallic blue"));
+    }
+    return html_gallery(figures, 230);
+}
+
 Image light_display(const Image& light) {
     Image picture(light.width, light.height, 3);
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
@@ -87,8 +102,18 @@ std::string scores_table(const Reconstruction& result) {
     if (result.request.refine.shadows)
         add("Held-out views, no shadows traced", result.test_without_shadows);
     add("Training views", result.train);
-    add("In another light", result.relit);
-    add("In another light, one gain a channel", result.relit_scaled);
+    for (std::size_t i = 0; i < result.relit.size(); ++i) {
+        const std::string light = result.request.relit[i].light;
+        add("In another light, " + light, result.relit[i].as_it_is);
+        add("In another light, " + light + ", one gain a channel", result.relit[i].scaled);
+    }
+    if (result.materials)
+        rows.emplace_back(
+            "Materials",
+            fmt::format("base colour {:.2f} dB (one gain a channel), metallic right "
+                        "on {:.1f} %, roughness off by {:.3f}",
+                        result.materials->base_color_psnr, 100 * result.materials->metallic_right,
+                        result.materials->roughness_error));
     if (result.chamfer)
         rows.emplace_back("Chamfer distance",
                           fmt::format("{:.3f} % of the diagonal", 100 * *result.chamfer));
@@ -137,7 +162,11 @@ std::string report_html(const Reconstruction& result) {
     body += html_section("Scores", scores_table(result));
     body += html_section("Held-out views", view_figures(result.test));
     body += html_section("Training views", view_figures(result.train));
-    body += html_section("In another light", view_figures(result.relit));
+    for (std::size_t i = 0; i < result.relit.size(); ++i)
+        body += html_section("In another light: " + result.request.relit[i].light,
+                             view_figures(result.relit[i].as_it_is));
+    if (result.materials)
+        body += html_section("Materials beside the truth", material_figures(*result.materials));
     body += html_section("Model and light", model_figures(result));
     body +=
         html_section("Photographs and cameras",

@@ -1,14 +1,13 @@
 #include "item3d/render/cuda/module.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/module.h"
 
 #include <ATen/Context.h>
 #include <c10/core/impl/VirtualGuardImpl.h>
 #include <c10/util/StringUtil.h>
 #include <dlfcn.h>
 #include <torch/cuda.h>
-
-#include <filesystem>
 
 namespace item3d::cuda {
 namespace {
@@ -17,20 +16,6 @@ constexpr const char* file_name = "libitem3d_cuda.so";
 
 [[noreturn]] void cannot_use(const std::string& reason) {
     throw ResourceError(c10::str("cannot compute on CUDA: ", reason, "; use --device cpu"));
-}
-
-void* open_module() {
-    std::error_code error;
-    const std::filesystem::path folder =
-        std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-    for (const std::filesystem::path& path :
-         {folder / file_name, folder / ".." / "lib" / "item3d" / file_name}) {
-        if (!std::filesystem::exists(path, error)) continue;
-        void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-        if (module == nullptr) cannot_use(dlerror());
-        return module;
-    }
-    cannot_use(c10::str(file_name, ", which `make cuda` builds, is not in ", folder.string()));
 }
 
 /// LibTorch before 2.12 gives no way to a CUDA stream but through libtorch_cuda's own headers;
@@ -66,9 +51,10 @@ bool deterministic_sums() {
 }
 
 const TableHeader* find_table(const char* symbol, std::uint32_t size) {
-    static void* const module = open_module();
+    static const Module module = open_module(file_name, "make cuda");
+    if (module.handle == nullptr) cannot_use(module.problem);
     // POSIX has dlsym's pointer hold functions as well.
-    const auto function = reinterpret_cast<const TableHeader* (*)()>(dlsym(module, symbol));
+    const auto function = reinterpret_cast<const TableHeader* (*)()>(dlsym(module.handle, symbol));
     if (function == nullptr) cannot_use(c10::str(file_name, " has no ", symbol));
     const TableHeader* table = function();
     if (table->version != table_version || table->size != size)

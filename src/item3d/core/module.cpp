@@ -1,0 +1,22 @@
+#include "item3d/core/module.h"
+
+#include <dlfcn.h>
+
+#include <filesystem>
+
+namespace item3d {
+
+Module open_module(const std::string& file_name, const std::string& builder) {
+    std::error_code error;
+    const std::filesystem::path folder =
+        std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    for (const std::filesystem::path& path :
+         {folder / file_name, folder / ".." / "lib" / "item3d" / file_name}) {
+        if (!std::filesystem::exists(path, error)) continue;
+        void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+        return handle != nullptr ? Module{handle, ""} : Module{nullptr, dlerror()};
+    }
+    return {nullptr, file_name + ", which `" + builder + "` builds, is not in " + folder.string()};
+}
+
+}  // namespace item3d

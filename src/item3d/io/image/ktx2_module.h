@@ -1,0 +1,25 @@
+// What libitem3d_ktx2.so gives: the encoder of Basis Universal, which most edits do without.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace item3d {
+
+struct Ktx2Picture {
+    const std::uint8_t* rgba;  ///< [height, width, 4]
+    int width;
+    int height;
+    bool has_alpha;
+    bool is_srgb;
+    /// UASTC and Zstandard; else ETC1S, of a fifth of the bytes and more error.
+    bool is_precise;
+    int quality;  ///< of ETC1S, 1 to 255
+    int threads;
+};
+
+/// The function item3d_encode_ktx2. Appends the file, with all its mip levels; false: it failed.
+using Ktx2Encode = bool(const Ktx2Picture& picture, std::vector<std::uint8_t>& file);
+inline constexpr const char* ktx2_encode_name = "item3d_encode_ktx2";
+
+}  // namespace item3d

@@ -1,0 +1,37 @@
+// What was found beside what is true of the materials, where a dataset says it.
+#pragma once
+
+#include "item3d/reconstruct/surface/view_render.h"
+#include "item3d/scene/model.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// One test view's maps, three channels each: base colour sRGB, material (0, roughness, metallic).
+struct MaterialMaps {
+    std::string name;
+    Image true_base_color, base_color;
+    Image true_material, material;
+};
+
+struct MaterialTruth {
+    /// dB, sRGB, over the pixels that both show, after one factor a channel: photographs tell base
+    /// colour and light apart only up to such a factor.
+    double base_color_psnr = 0;
+    Vec3 base_color_gain{1.0f};
+    /// Share of these pixels whose metallic is on the same side of 0.5.
+    double metallic_right = 0;
+    double roughness_error = 0;  ///< mean absolute
+    std::vector<MaterialMaps> views;
+};
+
+/// folder: of each view `NAME_albedo.png` (sRGB) and, if there is one, `NAME_orm.png` (roughness
+/// in green, metallic in blue). Throws InputError where no view has a picture, or one is of
+/// another size.
+MaterialTruth compare_materials(const Model& model, const std::vector<TargetView>& views,
+                                const std::filesystem::path& folder);
+
+}  // namespace item3d
