@@ -192,6 +192,26 @@ TEST(SharedTexels, MaterialsOfOneTextureAreBakedOnce) {
     EXPECT_FALSE(apart.atlas.has_shared_texels());
 }
 
+TEST(SharedTexels, VertexColorsThatDifferGetTexelsOfTheirOwn) {
+    Model model = make_mirrored_halves();
+    model.textures.clear();
+    Material& material = model.materials[0];
+    material.base_color_texture = material.metallic_roughness_texture = -1;
+    material.occlusion_texture = material.normal_texture = -1;
+    const auto is_own = [&] {
+        const FieldSpace space(model, {0});
+        set_verbosity(Verbosity::quiet);
+        const Atlas atlas = choose_uvs(model, space, {0}, UvPolicy::recolored);
+        set_verbosity(Verbosity::normal);
+        return atlas.sets.at(0).is_own();
+    };
+    for (Primitive& primitive : model.primitives)
+        primitive.colors.assign(primitive.positions.size(), Vec4(1, 0.5f, 0, 1));
+    EXPECT_TRUE(is_own());
+    model.primitives[1].colors[0] = Vec4(0, 0, 1, 1);
+    EXPECT_FALSE(is_own());
+}
+
 TEST(SharedTexels, FacesOfOneTexelAreOnePlace) {
     const SharedScene scene(make_palette());
     const Surface surface = scene.points(3, 256);

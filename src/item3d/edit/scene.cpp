@@ -75,10 +75,9 @@ EditScene load_scene(const EditRequest& request) {
     scene.sphere = bounding_sphere(scene.model);
     scene.space = std::make_unique<FieldSpace>(scene.model, scene.materials, device);
     if (plan.edits_texture) {
-        // A recoloured surface without textures looks the same whatever its UVs share.
-        const bool keeps = plan.uv == UvPolicy::automatic && plan.regularizes_color;
+        const bool recolors = plan.uv == UvPolicy::automatic && plan.regularizes_color;
         scene.atlas = choose_uvs(scene.model, *scene.space, scene.materials,
-                                 keeps ? UvPolicy::keep : plan.uv);
+                                 recolors ? UvPolicy::recolored : plan.uv);
         if (scene.atlas.has_shared_texels())
             scene.space->share(std::make_shared<SharedTexels>(scene.model, scene.atlas,
                                                               plan.texture_size, device));

@@ -12,6 +12,8 @@ namespace {
 
 /// Of pictures that are smallest as PNG.
 constexpr int tiny_edge = 8;
+/// Of textures that the source has none of.
+constexpr int new_quality = 92;
 
 const Texture* texture_of(const Model& model, int index) {
     return index >= 0 ? &model.textures[static_cast<std::size_t>(index)] : nullptr;
@@ -27,7 +29,9 @@ bool is_transparent(const Image& image) {
 }
 
 ImageCoding wanted_coding(TextureFormat format, const Texture* source) {
-    const ImageCoding own = source ? source->coding : ImageCoding{};
+    // What an edit finds for a material without textures is smooth: JPEG loses little of it.
+    const ImageCoding own =
+        source ? source->coding : ImageCoding{ImageEncoding::jpeg, false, new_quality};
     switch (format) {
         case TextureFormat::png:
             return {};

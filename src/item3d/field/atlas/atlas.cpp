@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace item3d {
@@ -23,6 +24,19 @@ std::vector<std::size_t> first_triangles(const Model& model) {
         count += primitive.indices.size() / 3;
     }
     return first;
+}
+
+/// Whether vertex colours differ from place to place.
+bool has_vertex_colors(const Model& model, const TextureSet& set) {
+    std::optional<Vec4> first;
+    for (const int index : set.primitives) {
+        const Primitive& primitive = model.primitives[static_cast<std::size_t>(index)];
+        for (const Vec4& color : primitive.colors) {
+            if (!first) first = color;
+            if (color != *first) return true;
+        }
+    }
+    return false;
 }
 
 }  // namespace
@@ -67,8 +81,10 @@ Atlas choose_uvs(const Model& model, const FieldSpace& space, const std::vector<
     for (TextureSet& set : atlas.sets) {
         const Material& material = model.materials[static_cast<std::size_t>(set.materials.front())];
         const std::string problem = find_uv_problem(model, set.primitives);
-        const bool keeps = policy == UvPolicy::keep ||
-                           (policy == UvPolicy::automatic && !textures_of(material).empty());
+        const bool has_textures = !textures_of(material).empty();
+        const bool keeps =
+            policy == UvPolicy::keep || (policy == UvPolicy::automatic && has_textures) ||
+            (policy == UvPolicy::recolored && (has_textures || !has_vertex_colors(model, set)));
         if (keeps && !problem.empty() && have_uvs(model, set.primitives)) {
             note(names_of(model, set) + ": " + problem +
                  ", and is kept: places that share texels change alike (--uv new gives each its "

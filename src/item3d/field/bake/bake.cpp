@@ -19,6 +19,16 @@ namespace {
 const Vec3 luminance_weights(0.2126f, 0.7152f, 0.0722f);
 /// Longest edge of a new texture when it is tried.
 constexpr int tried_edge = 256;
+/// Texels around an island that continue it: enough for four mip levels.
+constexpr int padding = 16;
+
+bool shows_alpha(const Image& image) {
+    if (image.channels % 2 != 0) return false;
+    const auto channels = static_cast<std::size_t>(image.channels);
+    for (std::size_t i = channels - 1; i < image.pixels.size(); i += channels)
+        if (image.pixels[i] < 1.0f) return true;
+    return false;
+}
 
 Vec3 encode_srgb(Vec3 linear) {
     return Vec3(linear_to_srgb(linear.x), linear_to_srgb(linear.y), linear_to_srgb(linear.z));
@@ -202,7 +212,7 @@ void SetBaker::start_base_color() {
     const Texture* source = texture(material_.base_color_texture);
     // Without, the alpha factor stays a factor.
     const bool has_alpha = (has_vertex_alpha_ && material_.alpha != Material::Alpha::opaque) ||
-                           (source != nullptr && source->image.channels % 2 == 0);
+                           (source != nullptr && shows_alpha(source->image));
     base_color_.open(has_alpha ? 4 : 3);
     base_color_.filled_channels = set_.is_own() && base_color_texels_ != nullptr ? 0u : ~0u;
     if (base_color_texels_ == nullptr) return;
@@ -368,7 +378,7 @@ bool SetBaker::is_new(const Slot& slot) const {
 
 /// False: it was tried too small.
 bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
-    fill_uncovered(slot.image, slot.covered, slot.filled_channels);
+    fill_uncovered(slot.image, slot.covered, slot.filled_channels, padding);
     Image image = std::move(slot.image);
     if (is_new(slot)) {
         image = shrink(std::move(image), wrap_of(scene_.model, index_), options_.blotch);

@@ -3,6 +3,25 @@
 #include <algorithm>
 
 namespace item3d {
+namespace {
+
+std::vector<float> means_of(const Image& image, const std::vector<std::uint8_t>& covered) {
+    const auto channels = static_cast<std::size_t>(image.channels);
+    std::vector<double> sums(channels, 0.0);
+    double count = 0;
+    for (std::size_t i = 0; i < covered.size(); ++i) {
+        if (covered[i] == 0) continue;
+        ++count;
+        for (std::size_t c = 0; c < channels; ++c)
+            sums[c] += image.pixels[i * channels + c];
+    }
+    std::vector<float> means;
+    for (const double sum : sums)
+        means.push_back(static_cast<float>(sum / std::max(count, 1.0)));
+    return means;
+}
+
+}  // namespace
 
 void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels,
                     int layers) {
@@ -35,6 +54,7 @@ void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsi
             if (covered[at(x, y)] != 0) enqueue_around(x, y);
         }
     }
+    const std::vector<float> means = layers > 0 ? means_of(image, covered) : std::vector<float>();
     for (int done = 0; !next.empty() && (layers == 0 || done < layers); ++done) {
         layer.swap(next);
         next.clear();
@@ -55,6 +75,14 @@ void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsi
             known[at(texel.x, texel.y)] = 1;
         for (const Texel texel : layer)
             enqueue_around(texel.x, texel.y);
+    }
+    if (layers == 0) return;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            for (int c = 0; c < image.channels && known[at(x, y)] != 1; ++c)
+                if ((channels >> c & 1u) != 0)
+                    image.at(x, y, c) = means[static_cast<std::size_t>(c)];
+        }
     }
 }
 

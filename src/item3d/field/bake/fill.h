@@ -9,8 +9,9 @@
 namespace item3d {
 
 /// Gives each texel with covered == 0 the mean of its neighbours (of eight) that have a value
-/// already, layer by layer outwards, in the channels of `channels` (bit c: channel c). Layers:
-/// at most this many, 0: until the image is full. covered: [height * width].
+/// already, layer by layer outwards, in the channels of `channels` (bit c: channel c). layers:
+/// so many, and the mean of what is covered beyond, which compresses better; 0: until the image is
+/// full. covered: [height * width].
 void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels = ~0u,
                     int layers = 0);
 

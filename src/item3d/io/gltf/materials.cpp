@@ -55,7 +55,7 @@ class MaterialReader {
         material.double_sided = source.boolean("doubleSided", false);
         material.unlit = find_extension(source, "KHR_materials_unlit").has_value();
         if (use.primitives > 0) read_textures(source, use, material);
-        if (!source.has("pbrMetallicRoughness")) {
+        if (!has_metallic_roughness(source)) {
             if (const auto old = find_extension(source, specular_glossiness))
                 convert_glossiness(source, *old, use, material);
         }
@@ -71,7 +71,8 @@ class MaterialReader {
 
   private:
     void read_factors(const GltfObject& source, Material& material) {
-        if (const auto pbr = source.object("pbrMetallicRoughness")) {
+        const auto pbr = source.object("pbrMetallicRoughness");
+        if (has_metallic_roughness(source)) {
             if (const auto factor = pbr->numbers("baseColorFactor", 4); !factor.empty()) {
                 material.base_color_factor = to_vec4(factor);
             }
@@ -108,7 +109,7 @@ class MaterialReader {
         read_slot(slots.base_color, material.base_color_texture, base_color_uvs);
         if (slots.base_color && material.base_color_texture < 0)
             material.missing_base_color = picture_name(*slots.base_color);
-        if (source.has("pbrMetallicRoughness")) {
+        if (has_metallic_roughness(source)) {
             read_slot(slots.metallic_roughness, material.metallic_roughness_texture,
                       material.metallic_roughness_uvs);
         }

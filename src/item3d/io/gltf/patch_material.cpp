@@ -160,7 +160,8 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
     const Json* old_pbr = find(original, "pbrMetallicRoughness");
     if (edit.base_color || edit.metallic_roughness) {
         // Viewers that know this older model would prefer it to the edited values.
-        if (!old_pbr && material.contains("extensions") &&
+        const bool is_older = !has_metallic_roughness(GltfObject(document, original, "material"));
+        if (is_older && material.contains("extensions") &&
             material["extensions"].contains("KHR_materials_pbrSpecularGlossiness")) {
             const Json old = material["extensions"]["KHR_materials_pbrSpecularGlossiness"];
             Json& pbr = material["pbrMetallicRoughness"] = Json::object();

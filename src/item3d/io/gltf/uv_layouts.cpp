@@ -44,11 +44,20 @@ TextureSlots::TextureSlots(const GltfObject& material)
       normal(material.object("normalTexture")),
       occlusion(material.object("occlusionTexture")),
       emissive(material.object("emissiveTexture")) {
-    if (!material.has("pbrMetallicRoughness")) {
+    if (!has_metallic_roughness(material)) {
         const auto old = find_extension(material, "KHR_materials_pbrSpecularGlossiness");
         base_color = child(old, "diffuseTexture");
         metallic_roughness = child(old, "specularGlossinessTexture");
     }
+}
+
+bool has_metallic_roughness(const GltfObject& material) {
+    const auto pbr = material.object("pbrMetallicRoughness");
+    if (!pbr) return false;
+    for (const char* key : {"baseColorFactor", "baseColorTexture", "metallicFactor",
+                            "roughnessFactor", "metallicRoughnessTexture"})
+        if (pbr->has(key)) return true;
+    return false;
 }
 
 std::optional<GltfObject> find_extension(const GltfObject& object, const char* name) {

@@ -33,6 +33,10 @@ struct TextureSlots {
     explicit TextureSlots(const GltfObject& material);
 };
 
+/// Whether pbrMetallicRoughness says anything: some exporters write an empty one beside
+/// KHR_materials_pbrSpecularGlossiness.
+bool has_metallic_roughness(const GltfObject& material);
+
 /// An extension of an object, if it has it.
 std::optional<GltfObject> find_extension(const GltfObject& object, const char* name);
 
