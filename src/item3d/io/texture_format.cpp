@@ -29,7 +29,6 @@ bool is_transparent(const Image& image) {
 }
 
 ImageCoding wanted_coding(TextureFormat format, const Texture* source) {
-    // What an edit finds for a material without textures is smooth: JPEG loses little of it.
     const ImageCoding own =
         source ? source->coding : ImageCoding{ImageEncoding::jpeg, false, new_quality};
     switch (format) {
@@ -69,8 +68,10 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
         const auto choose = [&](EditedTexture& texture, int slot, bool must_be_exact) {
             if (!texture) return;
             const Texture* own = texture_of(model, slot);
+            // A new one is smooth, so PNG is not followed.
+            const Texture* followed = own ? own : base && !base->coding.is_lossless ? base : nullptr;
             ImageCoding coding =
-                possible_coding(wanted_coding(format, own ? own : base), *texture, must_be_exact);
+                possible_coding(wanted_coding(format, followed), *texture, must_be_exact);
             // Eight bits would be a loss to an image that has more.
             if (format == TextureFormat::keep && own && own->bits_per_channel > 8) coding = {};
             if (coding.encoding == ImageEncoding::ktx2) {
