@@ -5,6 +5,7 @@
 #include "item3d/field/atlas/unwrap.h"
 #include "item3d/field/atlas/uv_problem.h"
 #include "item3d/field/bake/fill.h"
+#include "item3d/field/bake/keep_flat.h"
 #include "tests/support/field_models.h"
 
 #include <gtest/gtest.h>
@@ -278,6 +279,41 @@ TEST(FillUncovered, ContinuesTheNearestTexels) {
         EXPECT_FLOAT_EQ(image.at(8, y, 0), 0.75f);
         EXPECT_FLOAT_EQ(image.at(4, y, 1), 0.0f);  // a channel that was not asked for
     }
+}
+
+TEST(KeepFlat, TexelsOfOneColorBecomeOneColor) {
+    const int edge = 16;
+    Image source(edge, edge, 3), image(edge, edge, 3);
+    for (int y = 0; y < edge; ++y) {
+        for (int x = 0; x < edge; ++x) {
+            const bool left = x < edge / 2;
+            source.at(x, y, 0) = left ? 0.2f : 0.8f;
+            image.at(x, y, 0) = (left ? 0.5f : 0.6f) + 0.001f * static_cast<float>(y);
+            image.at(x, y, 1) = left ? 0.1f : 0.05f * static_cast<float>(y);
+        }
+    }
+    std::vector<std::uint8_t> covered(edge * edge, 1);
+    covered[0] = 0;
+    const Image before = image;
+    keep_flat(image, source, covered, 3u, 10.0f / 255);
+    EXPECT_EQ(image.at(0, 0, 0), before.at(0, 0, 0));
+    EXPECT_EQ(image.at(1, 0, 0), image.at(7, 15, 0));
+    EXPECT_NEAR(image.at(1, 0, 0), 0.5075f, 1e-3f);
+    EXPECT_NEAR(image.at(8, 3, 0), 0.6075f, 1e-3f);
+    EXPECT_EQ(image.at(8, 3, 1), before.at(8, 3, 1));  // the edit tells these apart
+
+    // More colours than anybody paints.
+    Image many(64, 64, 3), changed(64, 64, 3);
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            many.at(x, y, 0) = static_cast<float>(x) / 255;
+            many.at(x, y, 1) = static_cast<float>(y) / 255;
+            changed.at(x, y, 0) = 0.001f * static_cast<float>(x % 5);
+        }
+    }
+    const Image as_it_was = changed;
+    keep_flat(changed, many, std::vector<std::uint8_t>(64 * 64, 1), 7u, 10.0f / 255);
+    EXPECT_EQ(changed.pixels, as_it_was.pixels);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace {
 
 using testing::fresh_folder;
 
-constexpr int size = 32;
+constexpr int edge = 32;
 
 /// A square that fills the middle of the view, of one material.
 Model square(Vec3 base_color, float roughness, float metallic) {
@@ -34,14 +34,14 @@ TargetView front_view() {
     TargetView view;
     view.name = "./test/r_0";
     view.camera = orbit_camera(Vec3(0), 3, 0, 0, 0.7f);
-    view.image = at::ones({1, size, size, 4});
+    view.image = at::ones({1, edge, edge, 4});
     return view;
 }
 
 void write_plain(const std::filesystem::path& path, Vec3 value) {
-    Image image(size, size, 4, 1.0f);
-    for (int y = 0; y < size; ++y)
-        for (int x = 0; x < size; ++x)
+    Image image(edge, edge, 4, 1.0f);
+    for (int y = 0; y < edge; ++y)
+        for (int x = 0; x < edge; ++x)
             for (int c = 0; c < 3; ++c)
                 image.at(x, y, c) = value[c];
     save_image(path, image);
@@ -60,7 +60,7 @@ TEST(MaterialTruth, OneFactorAChannelIsNoError) {
     EXPECT_EQ(found.metallic_right, 1);
     EXPECT_NEAR(found.roughness_error, 0.25, 0.01);
     ASSERT_EQ(found.views.size(), 1u);
-    EXPECT_EQ(found.views[0].material.width, size);
+    EXPECT_EQ(found.views[0].material.width, edge);
 
     const MaterialTruth wrong =
         compare_materials(square(Vec3(0.3f, 0.4f, 0.1f), 0.5f, 0.2f), {front_view()}, folder);

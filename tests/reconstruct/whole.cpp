@@ -206,7 +206,7 @@ TEST(Reconstruct, ThePreviewShowsPhotographsAndWhatThereIs) {
     StagePreview preview(picture, dataset);
     const Model model = load_plain_model(dataset_folder / "sphere.glb");
     const auto views = make_targets(dataset.train, model.bounds());
-    Appearance appearance = make_appearance(model.bounds(), views, 0);
+    Appearance appearance = make_appearance(model.bounds(), views, AppearanceStart::smooth, 0);
     MovableMesh mesh(model, false);
     RefineOptions options;
     options.shadows = false;
@@ -274,7 +274,7 @@ TEST(Refine, LightAloneIsComparedWithThePhotographsLargestChannel) {
     const Geometry geometry = Geometry::from_model(model);
     TargetView view{"view", testing::ring_of_cameras(1).front(), at::zeros({1, 24, 24, 4})};
     fit_depth_range(view.camera, model.bounds());
-    Appearance appearance = make_appearance(model.bounds(), {view}, 0);
+    Appearance appearance = make_appearance(model.bounds(), {view}, AppearanceStart::matt, 0);
     const EnvironmentLight light = appearance.light.prefiltered();
     const RenderedView rendered = render_view(geometry, appearance.field, light, view);
     MaterialSample white = rendered.shaded;

@@ -69,7 +69,9 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
             if (!texture) return;
             const Texture* own = texture_of(model, slot);
             // A new one is smooth, so PNG is not followed.
-            const Texture* followed = own ? own : base && !base->coding.is_lossless ? base : nullptr;
+            const Texture* followed = own                                 ? own
+                                      : base && !base->coding.is_lossless ? base
+                                                                          : nullptr;
             ImageCoding coding =
                 possible_coding(wanted_coding(format, followed), *texture, must_be_exact);
             // Eight bits would be a loss to an image that has more.

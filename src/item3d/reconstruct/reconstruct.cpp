@@ -101,7 +101,8 @@ Start start_from_mesh(const ReconstructRequest& request, const Dataset& dataset)
     Model model = unwrapped(load_plain_model(request.mesh), request.texture_size);
     const auto bounds = model.bounds();
     const auto views = make_targets({dataset.train.front()}, bounds);
-    return {std::move(model), make_appearance(bounds, views, request.refine.seed)};
+    return {std::move(model),
+            make_appearance(bounds, views, AppearanceStart::smooth, request.refine.seed)};
 }
 
 Start start_from_photographs(const ReconstructRequest& request, Reconstruction& result,
@@ -109,10 +110,13 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
     const Dataset& dataset = result.dataset;
     const VisualHull hull(dataset.train);
     const auto bounds = hull.bounds(dataset.centre, dataset.radius, request.dataset.string());
-    Appearance appearance =
-        make_appearance(bounds, make_targets({dataset.train.front()}, bounds), request.refine.seed);
+    const auto appearance_from = [&](AppearanceStart start) {
+        return make_appearance(bounds, make_targets({dataset.train.front()}, bounds), start,
+                               request.refine.seed);
+    };
     result.shape = runner.found_shape();
     if (!result.shape) {
+        Appearance appearance = appearance_from(AppearanceStart::matt);
         ShapeSearch search(dataset, hull, bounds, appearance, request.shape);
         runner.run(search);
         result.shape = search.shape();
@@ -128,7 +132,7 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
     const TriangleMesh& mesh = result.shape->mesh;
     result.times.end_stage("shape");
     return {unwrapped(plain_model(mesh.positions, mesh.triangles), request.texture_size),
-            std::move(appearance)};
+            appearance_from(AppearanceStart::smooth)};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "item3d/core/parallel.h"
 #include "item3d/core/progress.h"
 #include "item3d/field/bake/fill.h"
+#include "item3d/field/bake/keep_flat.h"
 #include "item3d/field/bake/residual_gain.h"
 #include "item3d/field/bake/shrink.h"
 #include "item3d/field/bake/texel_values.h"
@@ -378,6 +379,9 @@ bool SetBaker::is_new(const Slot& slot) const {
 
 /// False: it was tried too small.
 bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
+    const Image* texels = &slot == &base_color_ ? base_color_texels_ : orm_texels_;
+    if (texels != nullptr && &slot != &normal_)
+        keep_flat(slot.image, *texels, slot.covered, slot.filled_channels, options_.blotch);
     fill_uncovered(slot.image, slot.covered, slot.filled_channels, padding);
     Image image = std::move(slot.image);
     if (is_new(slot)) {

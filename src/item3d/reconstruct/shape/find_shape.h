@@ -26,7 +26,7 @@ struct ShapeOptions {
     double sign_change_weight_first = 0.05, sign_change_weight_last = 0.005;
     double smoothness_weight = 0.03;
     double whiteness_weight = 0.003;
-    double brightness_weight = 0.5;
+    double brightness_weight = 0.06;
     double demodulation_weight = 0.0;  ///< see RegularizerWeights
     double light_alone = 0.15;         ///< part of the iterations, see RefineOptions
     int light_every = 2;

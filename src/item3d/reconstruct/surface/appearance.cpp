@@ -5,6 +5,12 @@
 
 namespace item3d {
 
+namespace {
+
+constexpr int matt_light_height = 64, smooth_light_height = 128;
+
+}  // namespace
+
 float pixel_size(std::array<Vec3, 2> bounds, const TargetView& view) {
     const float distance = glm::distance(view.camera.position(), 0.5f * (bounds[0] + bounds[1]));
     return 2 * std::tan(0.5f * view.camera.field_of_view_x) * distance /
@@ -13,14 +19,14 @@ float pixel_size(std::array<Vec3, 2> bounds, const TargetView& view) {
 
 MaterialRanges reconstruction_ranges() {
     MaterialRanges ranges;
-    ranges.base_color = {0.03f, 1.0f};
-    ranges.roughness = {0.08f, 1.0f};
+    ranges.base_color = {0.01f, 1.0f};
+    ranges.roughness = {0.04f, 1.0f};
     ranges.normal_slope = 1.0f;
     return ranges;
 }
 
 Appearance make_appearance(std::array<Vec3, 2> bounds, const std::vector<TargetView>& views,
-                           std::uint64_t seed) {
+                           AppearanceStart start, std::uint64_t seed) {
     NeuralTextureOptions options;
     options.seed = seed;
     options.ranges = reconstruction_ranges();
@@ -30,12 +36,13 @@ Appearance make_appearance(std::array<Vec3, 2> bounds, const std::vector<TargetV
     options.finest_resolution =
         std::clamp(static_cast<int>(extent / pixel_size(bounds, views.front())), 64, 1024);
     NeuralTexture field(options);
+    const bool is_smooth = start == AppearanceStart::smooth;
     {
-        // Most things are no metal, and a grey metal explains a picture nearly as well as paint.
         const at::NoGradGuard no_gradient;
-        field->output_bias(OrmChannel::metallic).fill_(-3.0f);
+        field->output_bias(OrmChannel::metallic).fill_(is_smooth ? 0.0f : -3.0f);
+        if (is_smooth) field->output_bias(OrmChannel::roughness).fill_(-2.0f);
     }
-    return {std::move(field), TrainableLight()};
+    return {std::move(field), TrainableLight(is_smooth ? smooth_light_height : matt_light_height)};
 }
 
 }  // namespace item3d

@@ -86,6 +86,10 @@ at::Tensor Refinement::regularization(const RenderedView& rendered, const Target
                weights.smoothness * smoothness_loss(appearance_.field, rendered, pixel_, farthest_,
                                                     smoothness_points, learning_.random) +
                weights.brightness * brightness_loss(rendered);
+        if (iteration() > options_.decision_begin * options_.iterations) {
+            const at::Tensor metallic = rendered.material.orm.select(1, 2);
+            loss = loss + weights.decision * (metallic * (1 - metallic)).mean();
+        }
         if (weights.demodulation > 0)
             loss = loss + weights.demodulation *
                               demodulated_light_loss(rendered, learning_.light, view.image);

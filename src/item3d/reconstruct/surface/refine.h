@@ -15,9 +15,10 @@ namespace item3d {
 /// Weights of what is asked besides that renders look like the photographs.
 struct RegularizerWeights {
     double mask = 1.0;           ///< coverage
-    double smoothness = 0.05;    ///< base colour, roughness and metallic vary little
+    double smoothness = 0.005;   ///< base colour, roughness and metallic vary little
     double whiteness = 0.003;    ///< the light has little colour
-    double brightness = 0.5;     ///< white is like paper
+    double brightness = 0.03;    ///< white is like paper, see brightness_loss()
+    double decision = 0.01;      ///< metallic is 0 or 1, after decision_begin
     double crumpling = 0.05;     ///< vertices move together
     double flat_normals = 0.01;  ///< the normal map is flat
     /// The light alone is as bright as the photographs (demodulated_light_loss()). Off: it was
@@ -31,6 +32,8 @@ struct RefineOptions {
     /// Part of the iterations in which the whole view has one material, so that shading is first
     /// explained by the light.
     double light_alone = 0.15;
+    /// Part of the iterations after which metallic must decide.
+    double decision_begin = 0.4;
     bool normal_map = true;
     /// Light that the object itself keeps away is traced: from everywhere at first, then of the
     /// light that was found so far, three times. Otherwise shadows end up in the base colour.

@@ -16,7 +16,7 @@ namespace item3d {
 class TrainableLight {
   public:
     /// Grey of the given radiance from everywhere; height: a power of two, at least 16.
-    explicit TrainableLight(int height = 64, float radiance = 0.7f);
+    explicit TrainableLight(int height, float radiance = 0.7f);
 
     /// [h, 2h, 3] each; they require gradients.
     const std::vector<at::Tensor>& parameters() const { return levels_; }

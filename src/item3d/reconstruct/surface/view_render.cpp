@@ -16,6 +16,7 @@ namespace {
 constexpr float roughness_weight = 1.0f;
 constexpr float metallic_weight = 1.0f;
 constexpr double paper = 0.8;  ///< base colour of what looks white
+constexpr double far_from_paper = 0.25;
 
 /// Steps in all directions, of lengths from `nearest` to `farthest`.
 at::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random& random) {
@@ -143,7 +144,8 @@ at::Tensor brightness_loss(const RenderedView& view) {
         (view.material.base_color * at::tensor({0.2126f, 0.7152f, 0.0722f})).sum(1);
     const auto rank =
         static_cast<std::int64_t>(decile * static_cast<double>(luminance.size(0) - 1));
-    return (std::get<0>(luminance.kthvalue(rank + 1)) - paper).square();
+    const at::Tensor square = (std::get<0>(luminance.kthvalue(rank + 1)) - paper).square();
+    return square / (square + far_from_paper * far_from_paper);
 }
 
 }  // namespace item3d

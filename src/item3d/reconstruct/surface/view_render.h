@@ -70,8 +70,10 @@ at::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float
 at::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLight& light,
                                   const at::Tensor& target);
 
-/// Squared distance of the ninth decile of the view's base colour (luminance) from 0.8. Light and
-/// base colour are known up to a factor: of all pairs, the one whose white is like paper.
+/// d^2 / (d^2 + 0.25^2), d the distance of the ninth decile of the view's base colour (luminance)
+/// from 0.8. Light and base colour of what does not shine are known up to a factor: of all pairs,
+/// the one whose white is like paper. What is far darker is let go (Geman and McClure 1987): it is
+/// black, and what shines on it says how bright the light is.
 at::Tensor brightness_loss(const RenderedView& view);
 
 }  // namespace item3d
