@@ -100,7 +100,7 @@ TEST(Reconstruct, MaterialsAndLightOfAGivenMesh) {
     const Model model = load_model(request.output / "model.glb");
     EXPECT_GE(model.materials[0].base_color_texture, 0);
     EXPECT_GE(model.materials[0].metallic_roughness_texture, 0);
-    EXPECT_EQ(load_image(request.output / "light.hdr").width, 128);
+    EXPECT_EQ(load_image(request.output / "light.hdr").width, 256);
     const std::string report = read_text(request.output / "report.html");
     EXPECT_NE(report.find("Held-out views"), std::string::npos);
     EXPECT_EQ(report.find("http://"), std::string::npos);

@@ -68,8 +68,9 @@ BytePairs BytePairs::load(const std::filesystem::path& folder, const std::string
     if (const auto file = TokenizerJson::read(folder, "vocab.json", "BPE"))
         return BytePairs(ids(file->vocabulary()), file->merges(), word_end, file->subject());
     const std::filesystem::path path = folder / "vocab.json";
-    return BytePairs(ids(read_ids(Config::read(path))), read_merges(folder / "merges.txt"),
-                     word_end, path.string());
+    Vocabulary vocabulary = ids(read_ids(Config::read(path)));
+    return BytePairs(std::move(vocabulary), read_merges(folder / "merges.txt"), word_end,
+                     path.string());
 }
 
 void BytePairs::save(const std::filesystem::path& folder) const {
