@@ -8,6 +8,8 @@
 #include "item3d/text/gpt2_tokenizer.h"
 #include "tests/support/networks.h"
 
+#include <sstream>
+
 namespace item3d {
 namespace {
 
@@ -30,6 +32,26 @@ TEST(CaptionTokenizers, GiveTheReferencesIdsAndTexts) {
     expect_tokens(BertTokenizer::load(fixture("blip")), fixture("blip") / "tokens.json");
     expect_tokens(Gpt2Tokenizer::load(fixture("gpt2_tokenizer")),
                   fixture("gpt2_tokenizer") / "tokens.json");
+}
+
+TEST(CaptionTokenizers, BertReadsTokenizerJsonInPlaceOfItsVocabulary) {
+    const TemporaryFolder folder;
+    nlohmann::json vocabulary = nlohmann::json::object();
+    std::istringstream lines(read_text(fixture("blip") / "vocab.txt"));
+    for (std::string line; std::getline(lines, line);)
+        vocabulary[line] = vocabulary.size();
+    const auto write = [&] {
+        const nlohmann::json model{{"type", "WordPiece"}, {"vocab", vocabulary}};
+        testing::write_file(folder.path() / "tokenizer.json",
+                            nlohmann::json{{"model", model}}.dump());
+    };
+    fs::copy_file(fixture("blip") / "tokenizer_config.json",
+                  folder.path() / "tokenizer_config.json");
+    write();
+    expect_tokens(BertTokenizer::load(folder.path()), fixture("blip") / "tokens.json");
+    vocabulary["far"] = 1 << 20;
+    write();
+    EXPECT_THROW(BertTokenizer::load(folder.path()), InputError);
 }
 
 TEST(CaptionTokenizers, TakeTextThatIsNotUtf8) {

@@ -36,8 +36,8 @@ void write_atomically(const std::filesystem::path& path,
 /// Throws InputError that says why not.
 void make_output_folder(const std::filesystem::path& folder);
 
-/// make_output_folder(), and where it was not there before, away with it again when nothing is in
-/// it in the end.
+/// A folder of make_output_folder(). The destructor removes a folder that this made and that is
+/// still empty.
 class OutputFolder {
   public:
     explicit OutputFolder(const std::filesystem::path& folder);

@@ -28,8 +28,8 @@ struct EditScene {
     std::vector<int> materials;            ///< edited ones, indices into model.materials
     std::map<int, MaterialLosses> losses;  ///< of the edited materials in the file
     MaterialStart start;                   ///< and which channels are edited
-    Atlas
-        atlas;  ///< the UV maps that the result is baked into; new ones come by unwrap_meanwhile()
+    /// The UV maps that the result is baked into; new ones come by unwrap_meanwhile().
+    Atlas atlas;
     std::unique_ptr<FieldSpace> space;
     std::unique_ptr<TexturedMaterials> textured;
     std::unique_ptr<MaterialSource> source;

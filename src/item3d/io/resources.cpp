@@ -149,7 +149,7 @@ namespace {
 constexpr std::size_t most_folders = 1000;
 constexpr int deepest_folder = 4;
 
-/// Of a folder that pictures may be read from, relative to it, in order of their names.
+/// The folders below one that pictures may be read from, relative to it, in order of their names.
 std::vector<fs::path> folders_below(const fs::path& root) {
     std::vector<fs::path> folders;
     std::error_code code;

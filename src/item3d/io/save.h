@@ -15,7 +15,7 @@ namespace item3d {
 /// half). PNG and JPEG store the values as they are: give sRGB-encoded ones.
 void save_image(const std::filesystem::path& path, const Image& image, int bits_per_channel = 8);
 
-/// What an edit changed in one material. With a texture, the factors of that slot are reset (base
+/// The changes of an edit to one material. With a texture, the factors of that slot are reset (base
 /// colour, metallic, roughness and occlusion strength, normal scale to 1) so that texture values
 /// are the material's; alpha stays a factor where base_color is RGB. Occlusion is used where the
 /// material had it, or where it is not 1 throughout.

@@ -10,9 +10,9 @@
 namespace item3d {
 namespace {
 
-/// Of pictures that are smallest as PNG.
+/// Longest edge of pictures that are smallest as PNG.
 constexpr int tiny_edge = 8;
-/// Of textures that the source has none of.
+/// JPEG quality of textures that the source lacks.
 constexpr int new_quality = 92;
 
 const Texture* texture_of(const Model& model, int index) {

@@ -23,6 +23,9 @@ BertTokenizer BertTokenizer::load(const std::filesystem::path& folder) {
     if (const auto file = TokenizerJson::read(folder, "vocab.txt", "WordPiece")) {
         path = folder / "tokenizer.json";
         for (const auto& [token, id] : file->vocabulary()) {
+            if (static_cast<std::size_t>(id) >= file->vocabulary().size())
+                throw InputError(path.string(), fmt::format("token '{}' has id {} of {}", token, id,
+                                                            file->vocabulary().size()));
             tokenizer.id_of_[token] = id;
             if (static_cast<std::size_t>(id) >= tokenizer.tokens_.size())
                 tokenizer.tokens_.resize(static_cast<std::size_t>(id) + 1);

@@ -15,7 +15,7 @@ namespace {
 constexpr int largest_texture = 4096;
 constexpr int default_texture = 1024;
 
-/// Of each primitive, in Geometry.
+/// The first triangle of each primitive in Geometry.
 std::vector<std::size_t> first_triangles(const Model& model) {
     std::vector<std::size_t> first;
     std::size_t count = 0;

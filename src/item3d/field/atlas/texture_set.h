@@ -25,7 +25,7 @@ struct TextureSet {
     bool has(int material) const;
 };
 
-/// Of those of `materials` that are seen; without triangles and reasons yet.
+/// The sets of those `materials` that are seen, without triangles and reasons yet.
 std::vector<TextureSet> texture_sets(const Model& model, const FieldSpace& space,
                                      const std::vector<int>& materials);
 

@@ -15,7 +15,7 @@ namespace item3d {
 /// The UVs of a triangle's corners; (0, 0) is the top left corner of the image.
 using UvTriangle = std::array<Vec2, 3>;
 
-/// Of the triangle whose corners are indices[first], [first + 1] and [first + 2].
+/// UVs of the triangle whose corners are indices[first], [first + 1] and [first + 2].
 inline UvTriangle uv_corners(std::span<const Vec2> uvs, std::span<const std::uint32_t> indices,
                              std::size_t first) {
     return {uvs[indices[first]], uvs[indices[first + 1]], uvs[indices[first + 2]]};

@@ -53,8 +53,8 @@ struct Slot {
     /// Bit c: channel c is baked or resampled, so texels beyond the triangles are filled too.
     std::atomic<unsigned> filled_channels = 0;
 
-    void open(int channels, float value = 0.0f) {
-        image = Image(size.first, size.second, channels, value);
+    void open(int channels) {
+        image = Image(size.first, size.second, channels);
         covered.assign(static_cast<std::size_t>(size.first) * static_cast<std::size_t>(size.second),
                        0);
     }

@@ -7,7 +7,8 @@
 // source - fitted two things are taken away. Where the colour moved far, the remainder belongs to a
 // colour that is gone: its luminance is kept (the detail) and its chroma fades out, fully where a
 // channel moved by a quarter or more. And it fades with the contrast around it (remainder_gain.h):
-// of a marking that the edit painted over no crisp outline stays.
+// of a marking that the edit painted over no crisp outline stays. Texels of one colour in a texture
+// of few colours become one colour again (keep_flat.h).
 #pragma once
 
 #include "item3d/field/atlas/atlas.h"

@@ -36,6 +36,7 @@ std::uint32_t color_at(const Image& image, std::size_t texel) {
 
 void keep_flat(Image& image, const Image& source, const std::vector<std::uint8_t>& covered,
                unsigned channels, float blotch) {
+    if (channels == 0) return;
     const auto stride = static_cast<std::size_t>(image.channels);
     const int colors = std::min(image.channels, 3);
     std::unordered_map<std::uint32_t, Statistics> found;

@@ -24,7 +24,7 @@ struct TexelValue {
     TexelMaterial source, fitted, now;
 };
 
-/// What a bake asks of each texel besides the base colour and orm of both fields.
+/// The values that a bake asks of each texel besides the base colour and orm of both fields.
 struct TexelNeeds {
     bool source = false;
     bool normals = false;  ///< in the tangent space of the atlas

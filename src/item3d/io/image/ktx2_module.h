@@ -1,4 +1,4 @@
-// What libitem3d_ktx2.so gives: the encoder of Basis Universal, which most edits do without.
+// The interface of libitem3d_ktx2.so: the encoder of Basis Universal, which most edits do without.
 #pragma once
 
 #include <cstdint>
