@@ -281,6 +281,27 @@ TEST(FillUncovered, ContinuesTheNearestTexels) {
     }
 }
 
+TEST(FillInvisible, TakesTheColorAndLeavesTheAlphaOfWhatIsCutOut) {
+    Image image(4, 1, 4, 0.9f);
+    const std::vector<std::uint8_t> covered{1, 1, 1, 0};
+    image.at(0, 0, 0) = 0.25f;
+    image.at(0, 0, 3) = 1.0f;
+    image.at(1, 0, 3) = image.at(2, 0, 3) = 0.0f;
+    fill_invisible(image, covered, 7u, 1);
+    EXPECT_FLOAT_EQ(image.at(0, 0, 0), 0.25f);
+    EXPECT_FLOAT_EQ(image.at(1, 0, 0), 0.25f);  // beside what is seen
+    EXPECT_FLOAT_EQ(image.at(2, 0, 0), 0.25f);  // farther: the mean
+    EXPECT_FLOAT_EQ(image.at(3, 0, 0), 0.25f);
+    EXPECT_FLOAT_EQ(image.at(1, 0, 3), 0.0f);
+    EXPECT_FLOAT_EQ(image.at(3, 0, 3), 0.9f);
+    fill_invisible(image, covered, 15u, 1);
+    EXPECT_FLOAT_EQ(image.at(2, 0, 3), 0.0f);
+    EXPECT_FLOAT_EQ(image.at(3, 0, 3), 0.0f);
+    image.at(1, 0, 0) = 0.5f;
+    fill_invisible(image, covered, 8u, 1);
+    EXPECT_FLOAT_EQ(image.at(1, 0, 0), 0.5f);  // colours are the source's
+}
+
 TEST(KeepFlat, TexelsOfOneColorBecomeOneColor) {
     const int edge = 16;
     Image source(edge, edge, 3), image(edge, edge, 3);

@@ -231,11 +231,13 @@ TEST(Textures, ThatMustNotLoseAreWrittenWithoutLosses) {
     EXPECT_EQ(changed.normal.coding().encoding, ImageEncoding::jpeg);  // as the base colour
     changed.keeps_orm_texels = true;
     choose_codings(model, TextureFormat::keep, edit);
-    EXPECT_EQ(changed.metallic_roughness.coding(), ImageCoding{});
+    EXPECT_EQ(changed.metallic_roughness.coding(), (ImageCoding{ImageEncoding::jpeg, false, 95}));
     choose_codings(model, TextureFormat::webp, edit);
     EXPECT_EQ(changed.metallic_roughness.coding(), lossless_webp);
     EXPECT_FALSE(changed.base_color.coding().is_lossless);
     model.textures[0].coding = {};
+    choose_codings(model, TextureFormat::keep, edit);
+    EXPECT_EQ(changed.metallic_roughness.coding(), ImageCoding{});
     choose_codings(model, TextureFormat::webp, edit);
     EXPECT_EQ(changed.normal.coding().encoding, ImageEncoding::webp);
     EXPECT_FALSE(changed.normal.coding().is_lossless);  // a new one is smooth

@@ -23,7 +23,7 @@ struct MaterialEdit {
     EditedTexture base_color;          ///< RGB or RGBA
     EditedTexture metallic_roughness;  ///< occlusion, roughness, metallic
     EditedTexture normal;
-    /// A channel of metallic_roughness is the source's: what is written must not lose any.
+    /// A channel of metallic_roughness is the source's: only what was a JPEG becomes one.
     bool keeps_orm_texels = false;
     /// base_color holds what vertex colours multiplied before, so primitives with it lose COLOR_0.
     bool includes_vertex_colors = true;

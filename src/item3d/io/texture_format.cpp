@@ -14,6 +14,8 @@ namespace {
 constexpr int tiny_edge = 8;
 /// JPEG quality of textures that the source lacks.
 constexpr int new_quality = 92;
+/// JPEG quality, at least, of a picture one of whose channels is that of a JPEG already.
+constexpr int kept_quality = 95;
 
 const Texture* texture_of(const Model& model, int index) {
     return index >= 0 ? &model.textures[static_cast<std::size_t>(index)] : nullptr;
@@ -72,8 +74,13 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
             const Texture* followed = own                                 ? own
                                       : base && !base->coding.is_lossless ? base
                                                                           : nullptr;
-            ImageCoding coding =
-                possible_coding(wanted_coding(format, followed), *texture, must_be_exact);
+            ImageCoding coding = wanted_coding(format, followed);
+            // What a JPEG lost already is no reason for a PNG of four times its size.
+            const bool is_kept_jpeg = must_be_exact && own &&
+                                      own->coding.encoding == ImageEncoding::jpeg &&
+                                      coding.encoding == ImageEncoding::jpeg;
+            if (is_kept_jpeg) coding.quality = std::max(coding.quality, kept_quality);
+            coding = possible_coding(coding, *texture, must_be_exact && !is_kept_jpeg);
             // Eight bits would be a loss to an image that has more.
             if (format == TextureFormat::keep && own && own->bits_per_channel > 8) coding = {};
             if (coding.encoding == ImageEncoding::ktx2) {

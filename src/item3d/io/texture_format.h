@@ -14,7 +14,7 @@ enum class TextureFormat { keep, png, jpeg, webp, ktx2 };
 /// Sets the codings of all images of the edit. Where a material had no texture in a slot, its base
 /// colour's is followed if that has losses, else it is JPEG. Images that JPEG or a lossy WebP
 /// cannot hold get a coding without losses: those with alpha (JPEG), those that keep texels
-/// (MaterialEdit), and with 16 bits.
+/// (MaterialEdit) unless those are a JPEG's, and with 16 bits.
 void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit);
 
 /// bits_per_channel: 8, or 16, which PNG alone has.

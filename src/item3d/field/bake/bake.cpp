@@ -382,7 +382,9 @@ bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
     const Image* texels = &slot == &base_color_ ? base_color_texels_ : orm_texels_;
     if (texels != nullptr && &slot != &normal_)
         keep_flat(slot.image, *texels, slot.covered, slot.filled_channels, options_.blotch);
-    fill_uncovered(slot.image, slot.covered, slot.filled_channels, padding);
+    const bool hides = slot.image.channels == 4 && material_.alpha != Material::Alpha::opaque;
+    (hides ? fill_invisible : fill_uncovered)(slot.image, slot.covered, slot.filled_channels,
+                                              padding);
     Image image = std::move(slot.image);
     if (is_new(slot)) {
         image = shrink(std::move(image), wrap_of(scene_.model, index_), options_.blotch);

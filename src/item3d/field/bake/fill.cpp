@@ -86,4 +86,15 @@ void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsi
     }
 }
 
+void fill_invisible(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels,
+                    int layers) {
+    constexpr unsigned color = 7u;
+    fill_uncovered(image, covered, channels & ~color, layers);
+    if ((channels & color) == 0) return;
+    std::vector<std::uint8_t> visible = covered;
+    for (std::size_t i = 0; i < visible.size(); ++i)
+        if (image.pixels[4 * i + 3] == 0) visible[i] = 0;
+    fill_uncovered(image, visible, channels & color, layers);
+}
+
 }  // namespace item3d

@@ -15,4 +15,9 @@ namespace item3d {
 void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels = ~0u,
                     int layers = 0);
 
+/// The same for RGBA that is cut out or blended: the colour of texels whose alpha is 0 is nobody's,
+/// so it is filled as well, and compresses. Their alpha stays.
+void fill_invisible(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels,
+                    int layers);
+
 }  // namespace item3d
