@@ -210,7 +210,8 @@ TEST(Reconstruct, ThePreviewShowsPhotographsAndWhatThereIs) {
     MovableMesh mesh(model, false);
     RefineOptions options;
     options.shadows = false;
-    Refinement stage(appearance, mesh, model, views, options);
+    ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius, {});
+    Refinement stage(appearance, corrections, mesh, model, views, options);
     stage.step();
     preview.update(stage);
     const Image image = load_image(picture);

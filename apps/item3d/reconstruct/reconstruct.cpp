@@ -6,6 +6,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/metrics/color.h"
+#include "item3d/reconstruct/dataset/find_poses.h"
 
 #include <filesystem>
 #include <memory>
@@ -19,9 +20,12 @@ namespace {
 struct ReconstructCommand : CommonOptions {
     ReconstructRequest request;
     std::string background;
+    std::filesystem::path from_images;
     bool move_vertices = false;
     bool no_normal_map = false;
     bool no_shadows = false;
+    std::string poses = "auto";
+    bool keep_exposure = false;
     int cells = 96;
     double demodulation = 0;
     std::uint64_t seed = 0;
@@ -50,6 +54,10 @@ ReconstructRequest make_request(const ReconstructCommand& options) {
     request.move_vertices = request.mesh.empty() || options.move_vertices;
     request.refine.normal_map = !options.no_normal_map;
     request.refine.shadows = !options.no_shadows;
+    request.corrections = {.poses = options.poses == "keep"     ? PoseRefinement::keep
+                                    : options.poses == "refine" ? PoseRefinement::refine
+                                                                : PoseRefinement::automatic,
+                           .exposure = !options.keep_exposure};
     request.shape.cells = {options.cells / 2, options.cells};
     request.shape.demodulation_weight = request.refine.weights.demodulation = options.demodulation;
     request.shape.seed = request.refine.seed = options.seed;
@@ -58,8 +66,22 @@ ReconstructRequest make_request(const ReconstructCommand& options) {
     return request;
 }
 
+/// The dataset that COLMAP makes of photographs without poses, for `request`.
+void take_found_poses(const ReconstructCommand& options, ReconstructRequest& request) {
+    DatasetOptions& dataset = request.dataset_options;
+    if (dataset.masks.empty() && std::filesystem::is_directory(options.from_images / "masks"))
+        dataset.masks = options.from_images / "masks";
+    request.dataset =
+        find_poses({options.from_images, dataset.masks, request.output, options.threads});
+    dataset.images = options.from_images;
+}
+
 void run_reconstruct(const ReconstructCommand& options) {
-    const nlohmann::json summary = reconstruct(make_request(options));
+    ReconstructRequest request = make_request(options);
+    if (options.from_images.empty() == request.dataset.empty())
+        throw UsageError("name a DATASET, or photographs without poses by --from-images FOLDER");
+    if (!options.from_images.empty()) take_found_poses(options, request);
+    const nlohmann::json summary = reconstruct(request);
     if (options.json) {
         print_json(summary);
         return;
@@ -67,7 +89,7 @@ void run_reconstruct(const ReconstructCommand& options) {
     const auto& scores = summary["scores"];
     const auto& chosen = scores["test"].is_null() ? scores["train"] : scores["test"];
     fmt::print("{}: {} views {:.2f} dB, SSIM {:.3f}\n",
-               (options.request.output / "model.glb").string(),
+               (request.output / "model.glb").string(),
                scores["test"].is_null() ? "training" : "held-out", chosen["psnr"].get<double>(),
                chosen["ssim"].get<double>());
 }
@@ -115,10 +137,13 @@ void add_reconstruct_command(CLI::App& app) {
     auto options = std::make_shared<ReconstructCommand>();
     CLI::App* command = add_command(app, "reconstruct", *options);
     ReconstructRequest& request = options->request;
+    CLI::Option* dataset = command->add_option(
+        "DATASET", request.dataset, "NeRF-synthetic, nerfstudio (transforms.json), COLMAP or LLFF");
     command
-        ->add_option("DATASET", request.dataset,
-                     "NeRF-synthetic, nerfstudio (transforms.json), COLMAP or LLFF")
-        ->required();
+        ->add_option("--from-images", options->from_images,
+                     "Photographs without poses, in place of DATASET: COLMAP (apt install colmap) "
+                     "finds them")
+        ->excludes(dataset);
     command->add_option("-o,--output", request.output, "A folder")->required();
     command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
     add_dataset_options(*command, *options);
@@ -153,6 +178,14 @@ void add_reconstruct_command(CLI::App& app) {
     command->add_flag("--no-normal-map", options->no_normal_map, "The mesh alone has normals");
     command->add_flag("--no-shadows", options->no_shadows,
                       "Do not trace what the object hides from the light");
+    command
+        ->add_option("--poses", options->poses,
+                     "Whether cameras are moved; auto: where the outlines of the pictures do not "
+                     "agree")
+        ->check(CLI::IsMember({"auto", "refine", "keep"}))
+        ->capture_default_str();
+    command->add_flag("--keep-exposure", options->keep_exposure,
+                      "All pictures have one exposure and white balance");
     command
         ->add_option("--demodulation", options->demodulation,
                      "Weight of a loss that makes the light alone as bright as the photographs")

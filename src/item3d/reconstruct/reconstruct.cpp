@@ -8,9 +8,12 @@
 #include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
+#include "item3d/reconstruct/dataset/check_frame.h"
+#include "item3d/reconstruct/dataset/check_views.h"
 #include "item3d/reconstruct/dataset/photograph.h"
 #include "item3d/reconstruct/outputs/outputs.h"
 #include "item3d/reconstruct/outputs/report.h"
+#include "item3d/reconstruct/shape/align_poses.h"
 #include "item3d/reconstruct/stage_runner.h"
 #include "item3d/reconstruct/surface/plain_model.h"
 #include "item3d/scene/far_origin.h"
@@ -22,9 +25,8 @@ namespace item3d {
 namespace {
 
 constexpr std::size_t train_views_scored = 6;
-/// Outlines of exact poses agree better than this even on a coarse lattice; those of poses that
-/// are half a degree off do not.
-constexpr double least_hull_overlap = 0.95;
+/// Pixels; poses that are half a degree off leave more.
+constexpr double most_disagreement = 0.15;
 
 std::string describe(const Dataset& dataset) {
     const Image& first = dataset.train.front().image;
@@ -65,14 +67,43 @@ std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructReq
     return views;
 }
 
-void score(Reconstruction& result) {
+void leave_out(Dataset& dataset, std::vector<std::size_t> views) {
+    std::sort(views.rbegin(), views.rend());
+    for (const std::size_t i : views)
+        dataset.train.erase(dataset.train.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
+/// Empty: none.
+void add_warning(Reconstruction& result, const std::string& text) {
+    if (text.empty()) return;
+    result.warnings.push_back(text);
+    warn(text);
+}
+
+void note_blurred_views(Reconstruction& result, const ViewCorrections& corrections) {
+    const auto blurred = corrections.blurred();
+    if (blurred.empty()) return;
+    std::string names;
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, blurred.size()); ++i)
+        names += (i > 0 ? ", " : "") + result.dataset.train[blurred[i]].name;
+    add_warning(result, fmt::format("{} of {} pictures are less sharp than those beside them and "
+                                    "count less: {}{}",
+                                    blurred.size(), result.dataset.train.size(), names,
+                                    blurred.size() > 3 ? ", ..." : ""));
+}
+
+void score(Reconstruction& result, const ViewCorrections& corrections) {
     const ReconstructRequest& request = result.request;
     const auto bounds = result.model.bounds();
     const ModelRenderer renderer(result.model, result.light, request.refine.shadows);
     const auto test = make_targets(result.dataset.test, bounds);
     result.test = renderer.score(test);
-    result.train =
-        renderer.score(make_targets(some_views(result.dataset.train, train_views_scored), bounds));
+    result.train = renderer.score(make_targets(
+        some_views(corrections.corrected(result.dataset.train), train_views_scored), bounds));
+    if (request.corrections.exposure) result.test_scaled = renderer.score_each_scaled(test);
+    if (corrections.refines_poses() && !test.empty())
+        result.test_aligned = renderer.score_each_scaled(make_targets(
+            aligned_to_mesh(mesh_of(result.model), result.dataset, result.dataset.test), bounds));
     result.test_without_shadows = ModelRenderer(result.model, result.light, false).score(test);
     for (const RelitViews& views : request.relit) {
         const auto targets = make_targets(relit_views(result.dataset, request, views), bounds);
@@ -97,8 +128,11 @@ struct Start {
     Appearance appearance;
 };
 
-Start start_from_mesh(const ReconstructRequest& request, const Dataset& dataset) {
-    Model model = unwrapped(load_plain_model(request.mesh), request.texture_size);
+Start start_from_mesh(const ReconstructRequest& request, Reconstruction& result) {
+    const Dataset& dataset = result.dataset;
+    Model plain = load_plain_model(request.mesh);
+    add_warning(result, check_mesh_frame(mesh_of(plain), dataset, request.mesh.string()));
+    Model model = unwrapped(std::move(plain), request.texture_size);
     const auto bounds = model.bounds();
     const auto views = make_targets({dataset.train.front()}, bounds);
     return {std::move(model),
@@ -106,9 +140,10 @@ Start start_from_mesh(const ReconstructRequest& request, const Dataset& dataset)
 }
 
 Start start_from_photographs(const ReconstructRequest& request, Reconstruction& result,
-                             StageRunner& runner) {
+                             ViewCorrections& corrections, StageRunner& runner) {
     const Dataset& dataset = result.dataset;
-    const VisualHull hull(dataset.train);
+    const double disagreement = align_to_hull(dataset, request.dataset.string(), corrections);
+    const VisualHull hull(corrections.corrected(dataset.train));
     const auto bounds = hull.bounds(dataset.centre, dataset.radius, request.dataset.string());
     const auto appearance_from = [&](AppearanceStart start) {
         return make_appearance(bounds, make_targets({dataset.train.front()}, bounds), start,
@@ -117,17 +152,16 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
     result.shape = runner.found_shape();
     if (!result.shape) {
         Appearance appearance = appearance_from(AppearanceStart::matt);
-        ShapeSearch search(dataset, hull, bounds, appearance, request.shape);
+        ShapeSearch search(dataset, hull, bounds, appearance, corrections, request.shape);
         runner.run(search);
         result.shape = search.shape();
+        result.shape->outline_disagreement = disagreement;
     }
     runner.keep(*result.shape);
-    if (result.shape->hull_overlap < least_hull_overlap) {
-        result.warnings.push_back(fmt::format(
-            "the outlines of the pictures agree with each other only to {:.1f} %: poses "
-            "or masks look wrong",
-            100 * result.shape->hull_overlap));
-        warn(result.warnings.back());
+    if (result.shape->outline_disagreement > most_disagreement) {
+        add_warning(result, fmt::format("the outlines of the pictures disagree by {:.1f} pixels: "
+                                        "poses or masks look wrong",
+                                        result.shape->outline_disagreement));
     }
     const TriangleMesh& mesh = result.shape->mesh;
     result.times.end_stage("shape");
@@ -140,18 +174,24 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
 nlohmann::json reconstruct(const ReconstructRequest& request) {
     const OutputFolder folder(request.output);
     StageTimes times;
-    const Dataset dataset = load_dataset(request.dataset, request.dataset_options);
+    Dataset dataset = load_dataset(request.dataset, request.dataset_options);
     note(describe(dataset));
+    const ViewProblems problems = check_views(dataset, request.dataset.string());
+    leave_out(dataset, problems.contradicting);
     Reconstruction result(request, dataset, times);
+    for (const std::string& warning : problems.warnings)
+        add_warning(result, warning);
     result.times.end_stage("load");
 
     StageRunner runner(request, dataset);
-    Start start = request.mesh.empty() ? start_from_photographs(request, result, runner)
-                                       : start_from_mesh(request, dataset);
+    ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius, request.corrections);
+    note_blurred_views(result, corrections);
+    Start start = request.mesh.empty() ? start_from_photographs(request, result, corrections, runner)
+                                       : start_from_mesh(request, result);
     result.times.end_stage("unwrap");
 
     MovableMesh mesh(start.model, request.move_vertices);
-    Refinement refinement(start.appearance, mesh, start.model,
+    Refinement refinement(start.appearance, corrections, mesh, start.model,
                           make_targets(dataset.train, start.model.bounds()), request.refine);
     runner.run(refinement);
     result.refine = refinement.curves();
@@ -163,7 +203,8 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     save_image(request.output / "light.hdr", result.light, 32);
     result.times.end_stage("bake");
 
-    score(result);
+    result.corrections = corrections_json(dataset, corrections);
+    score(result, corrections);
     result.times.end_stage("scores");
     const nlohmann::json summary = summary_json(result);
     write_atomically(request.output / "report.html", std::string_view(report_html(result)));

@@ -30,6 +30,7 @@ struct ReconstructRequest {
     DatasetOptions dataset_options;
     ShapeOptions shape;
     RefineOptions refine;
+    CorrectionOptions corrections;
     bool move_vertices = true;  ///< of a shape that was looked for; of a given mesh only if asked
     int texture_size = 1024;
     std::vector<RelitViews> relit;

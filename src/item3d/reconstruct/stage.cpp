@@ -46,6 +46,8 @@ NamedTensors Stage::state() const {
     const auto& levels = appearance_.light.parameters();
     for (std::size_t i = 0; i < levels.size(); ++i)
         tensors.emplace_back("light." + std::to_string(i), levels[i].detach());
+    for (auto& named : corrections_.state())
+        tensors.push_back(std::move(named));
     for (const auto& [name, tensor] : learning_.optimizer.state())
         tensors.emplace_back("optimizer." + name, tensor);
     tensors.emplace_back("random",
@@ -61,6 +63,7 @@ void Stage::load_state(const CheckpointReader& reader) {
     const auto& levels = appearance_.light.parameters();
     for (std::size_t i = 0; i < levels.size(); ++i)
         reader.copy("light." + std::to_string(i), levels[i]);
+    corrections_.load_state(reader);
     learning_.optimizer.load_state(reader.with_prefix("optimizer."));
     learning_.iteration = static_cast<int>(reader.get("iteration").item<std::int64_t>());
     learning_.curves = {curve_values(reader.get("curve.picture")),

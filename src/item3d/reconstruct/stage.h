@@ -5,6 +5,7 @@
 #include "item3d/core/random.h"
 #include "item3d/field/adam.h"
 #include "item3d/reconstruct/surface/appearance.h"
+#include "item3d/reconstruct/surface/view_corrections.h"
 #include "item3d/reconstruct/surface/view_render.h"
 #include "item3d/tensors/checkpoint.h"
 
@@ -57,7 +58,8 @@ class ViewOrder {
 
 class Stage {
   public:
-    explicit Stage(Appearance& appearance) : appearance_(appearance) {}
+    Stage(Appearance& appearance, ViewCorrections& corrections)
+        : appearance_(appearance), corrections_(corrections) {}
     virtual ~Stage() = default;
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
@@ -81,6 +83,7 @@ class Stage {
 
   protected:
     Appearance& appearance_;
+    ViewCorrections& corrections_;
     Learning learning_;
 };
 

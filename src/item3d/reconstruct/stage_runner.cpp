@@ -44,6 +44,8 @@ nlohmann::json identity_of(const ReconstructRequest& request, const Dataset& dat
                             {"shadows", request.refine.shadows},
                             {"normal map", request.refine.normal_map},
                             {"demodulation", request.refine.weights.demodulation},
+                            {"poses", pose_refinement_name(request.corrections.poses)},
+                            {"matched exposure", request.corrections.exposure},
                             {"seed", request.refine.seed},
                             {"mesh", nullptr}};
     if (!request.mesh.empty()) {
@@ -96,7 +98,7 @@ std::optional<FoundShape> StageRunner::found_shape() const {
                       {curve_values(reader_->get("shape.curve.picture")),
                        curve_values(reader_->get("shape.curve.mask"))},
                       curve_values(reader_->get("shape.curve.triangles")),
-                      reader_->get("shape.hull_overlap").item<double>()};
+                      reader_->get("shape.outline_disagreement").item<double>()};
 }
 
 void StageRunner::keep(const FoundShape& shape) {
@@ -105,7 +107,7 @@ void StageRunner::keep(const FoundShape& shape) {
               {"shape.curve.picture", curve_tensor(shape.curves.picture)},
               {"shape.curve.mask", curve_tensor(shape.curves.mask)},
               {"shape.curve.triangles", curve_tensor(shape.triangles)},
-              {"shape.hull_overlap", curve_tensor({shape.hull_overlap})}};
+              {"shape.outline_disagreement", curve_tensor({shape.outline_disagreement})}};
     behind_ = request_.shape.iterations;
 }
 

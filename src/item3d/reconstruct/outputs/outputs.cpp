@@ -56,6 +56,29 @@ Model bake_and_save(const std::filesystem::path& file, const Model& model, Appea
     return written;
 }
 
+nlohmann::json corrections_json(const Dataset& dataset, const ViewCorrections& corrections) {
+    const at::Tensor gains = corrections.gains();
+    nlohmann::json views = nlohmann::json::array();
+    for (std::size_t i = 0; i < dataset.train.size(); ++i) {
+        const Photograph& view = dataset.train[i];
+        const Mat4 pose = corrections.corrected_camera(view.camera, i).camera_to_world;
+        nlohmann::json rows = nlohmann::json::array();
+        for (int row = 0; row < 4; ++row)
+            rows.push_back({pose[0][row], pose[1][row], pose[2][row], pose[3][row]});
+        const at::Tensor gain = gains[static_cast<std::int64_t>(i)];
+        views.push_back({{"name", view.name},
+                         {"gain",
+                          {gain[0].item<float>(), gain[1].item<float>(), gain[2].item<float>()}},
+                         {"weight", corrections.weight(i)},
+                         {"camera_to_world", rows}});
+    }
+    return {{"largest_turn_degrees", corrections.largest_turn()},
+            {"largest_shift", corrections.largest_shift()},
+            {"least_gain", gains.min().item<float>()},
+            {"greatest_gain", gains.max().item<float>()},
+            {"views", views}};
+}
+
 nlohmann::json summary_json(const Reconstruction& result) {
     const ReconstructRequest& request = result.request;
     nlohmann::json rotation = nlohmann::json::array();
@@ -86,6 +109,8 @@ nlohmann::json summary_json(const Reconstruction& result) {
                              {"move_vertices", request.move_vertices},
                              {"shadows", request.refine.shadows},
                              {"normal_map", request.refine.normal_map},
+                             {"poses", pose_refinement_name(request.corrections.poses)},
+                             {"matched_exposure", request.corrections.exposure},
                              {"demodulation", request.refine.weights.demodulation},
                              {"texture_size", request.texture_size},
                              {"seed", request.refine.seed},
@@ -96,11 +121,15 @@ nlohmann::json summary_json(const Reconstruction& result) {
                            {"scores",
                             {{"train", score_json(result.train)},
                              {"test", score_json(result.test)},
-                             {"test_without_shadows", score_json(result.test_without_shadows)}}},
+                             {"test_without_shadows", score_json(result.test_without_shadows)},
+                             {"test_scaled", score_json(result.test_scaled)},
+                             {"test_aligned", score_json(result.test_aligned)}}},
+                           {"corrections", result.corrections},
                            {"warnings", result.warnings},
                            {"seconds", seconds},
                            {"peak_memory_bytes", peak_memory_bytes()}};
-    if (result.shape) summary["scores"]["hull_overlap"] = result.shape->hull_overlap;
+    if (result.shape)
+        summary["scores"]["outline_disagreement_pixels"] = result.shape->outline_disagreement;
     if (result.chamfer) summary["scores"]["chamfer"] = *result.chamfer;
     for (std::size_t i = 0; i < result.relit.size(); ++i) {
         const RelitScores& relit = result.relit[i];

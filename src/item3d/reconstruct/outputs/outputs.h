@@ -36,12 +36,19 @@ struct Reconstruction {
     RefineCurves refine;
     std::vector<ScoredView> train, test;  ///< a few of the former
     std::vector<ScoredView> test_without_shadows;
+    std::vector<ScoredView> test_scaled;  ///< with a gain for each view and channel
+    std::vector<ScoredView> test_aligned;  ///< and moved, where poses were refined
+    nlohmann::json corrections;           ///< of the training views, see corrections_json()
     std::vector<RelitScores> relit;
     std::optional<MaterialTruth> materials;
     std::optional<double> chamfer;  ///< part of the reference's diagonal
     StageTimes times;
     std::vector<std::string> warnings;
 };
+
+/// What was found of the training views' poses and exposures: {"largest_turn_degrees",
+/// "largest_shift" (of dataset.radius), "views": [{"name", "gain", "weight", "camera_to_world"}]}.
+nlohmann::json corrections_json(const Dataset& dataset, const ViewCorrections& corrections);
 
 /// The content of reconstruct.json.
 nlohmann::json summary_json(const Reconstruction& result);

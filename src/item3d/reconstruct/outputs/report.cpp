@@ -101,6 +101,8 @@ std::string scores_table(const Reconstruction& result) {
     add("Held-out views", result.test);
     if (result.request.refine.shadows)
         add("Held-out views, no shadows traced", result.test_without_shadows);
+    add("Held-out views, one gain a view and channel", result.test_scaled);
+    add("Held-out views, and their cameras moved", result.test_aligned);
     add("Training views", result.train);
     for (std::size_t i = 0; i < result.relit.size(); ++i) {
         const std::string light = result.request.relit[i].light;
@@ -124,11 +126,19 @@ std::string scores_table(const Reconstruction& result) {
 std::string dataset_table(const Reconstruction& result) {
     const Dataset& dataset = result.dataset;
     const Image& first = dataset.train.front().image;
-    return html_table({{"Layout", dataset_kind_name(dataset.kind)},
-                       {"Views", fmt::format("{} to learn from, {} held out", dataset.train.size(),
-                                             dataset.test.size())},
-                       {"Size", fmt::format("{} x {}", first.width, first.height)},
-                       {"Masks", dataset.masks}});
+    const nlohmann::json& corrections = result.corrections;
+    return html_table(
+        {{"Layout", dataset_kind_name(dataset.kind)},
+         {"Views", fmt::format("{} to learn from, {} held out", dataset.train.size(),
+                               dataset.test.size())},
+         {"Size", fmt::format("{} x {}", first.width, first.height)},
+         {"Masks", dataset.masks},
+         {"Poses", fmt::format("moved by at most {:.2f} degrees and {:.2f} % of the radius",
+                               corrections["largest_turn_degrees"].get<double>(),
+                               100 * corrections["largest_shift"].get<double>())},
+         {"Exposure", fmt::format("gains of {:.2f} to {:.2f}",
+                                  corrections["least_gain"].get<double>(),
+                                  corrections["greatest_gain"].get<double>())}});
 }
 
 std::string charts(const Reconstruction& result) {

@@ -143,6 +143,14 @@ Vec3 ModelRenderer::best_gain(const std::vector<TargetView>& views) const {
     return {gain[0].item<float>(), gain[1].item<float>(), gain[2].item<float>()};
 }
 
+std::vector<ScoredView> ModelRenderer::score_each_scaled(
+    const std::vector<TargetView>& views) const {
+    std::vector<ScoredView> scored;
+    for (const TargetView& view : views)
+        scored.push_back(score({view}, best_gain({view})).front());
+    return scored;
+}
+
 double chamfer_distance(const TriangleMesh& mesh, const TriangleMesh& reference, int points,
                         std::uint64_t seed) {
     Random random(seed, RandomStream::chamfer);

@@ -41,6 +41,8 @@ class ModelRenderer {
     /// The gain that brings renders nearest to the photographs, least squares of linear radiance:
     /// light and base colour are known only up to such a factor.
     Vec3 best_gain(const std::vector<TargetView>& views) const;
+    /// Each view with its own best gain: for photographs of different exposure.
+    std::vector<ScoredView> score_each_scaled(const std::vector<TargetView>& views) const;
 
   private:
     Geometry geometry_;

@@ -16,13 +16,15 @@ constexpr float largest_offset = 0.45f;
 /// Values beyond this are as far inside or outside as can be.
 constexpr float largest_value = 3.0f;
 /// Fine enough that the hull's own outlines show, whatever lattice the shape is looked for on.
-constexpr int hull_check_cells = 64;
 constexpr std::int64_t smoothness_points_of_shape = 2048;
 
 [[noreturn]] void refuse_vanished_shape() {
     throw InputError("reconstruct", "the shape vanished while it was optimised",
                      "masks and poses do not belong together, or the object is tiny");
 }
+
+/// Of the learning rates of corrections, at the end.
+constexpr double corrections_scale_last = 0.2;
 
 double blend(double first, double last, int iteration, int iterations) {
     return first + (last - first) * static_cast<double>(iteration) / std::max(1, iterations);
@@ -75,15 +77,13 @@ double mask_overlap(const TriangleMesh& mesh, const std::vector<TargetView>& vie
 }
 
 ShapeSearch::ShapeSearch(const Dataset& dataset, const VisualHull& hull, std::array<Vec3, 2> bounds,
-                         Appearance& appearance, const ShapeOptions& options)
-    : Stage(appearance), options_(options), order_(dataset.train.size(), options.seed) {
+                         Appearance& appearance, ViewCorrections& corrections,
+                         const ShapeOptions& options)
+    : Stage(appearance, corrections), options_(options), order_(dataset.train.size(), options.seed) {
     ITEM3D_CHECK(!options.cells.empty(), "at least one lattice");
     lattice_ = make_lattice(bounds, options.cells.front());
     const Vec3 size(lattice_.cells[0], lattice_.cells[1], lattice_.cells[2]);
     views_ = make_targets(dataset.train, {lattice_.origin, lattice_.origin + lattice_.cell * size});
-    const Lattice fine = make_lattice(bounds, hull_check_cells);
-    ShapeField hull_field(fine, options.extraction, hull.distance(fine.vertices()) / fine.cell);
-    hull_overlap_ = mask_overlap(hull_field.mesh(), views_);
     begin_level(0, hull.distance(lattice_.vertices()) / lattice_.cell);
 }
 
@@ -111,6 +111,7 @@ void ShapeSearch::begin_level(int level, const at::Tensor& start) {
                    {.learning_rate = options_.offset_learning_rate, .beta2 = 0.999});
     adam.add_group("weights", field_->extraction->weights(),
                    {.learning_rate = options_.weight_learning_rate, .beta2 = 0.999});
+    corrections_.add_groups(adam);
 }
 
 void ShapeSearch::start_next_level() {
@@ -150,14 +151,21 @@ void ShapeSearch::step() {
     const bool light_alone = iteration() < options_.light_alone * options_.iterations;
     const Geometry geometry = untextured_geometry(
         light_alone ? surface.positions.detach() : surface.positions, surface.triangles);
-    const TargetView& view = views_[order_.at(iteration())];
-    const RenderedView rendered = render_view(geometry, appearance_.field, learning_.light, view,
-                                              {.one_material = light_alone});
+    const std::size_t index = order_.at(iteration());
+    const TargetView& view = views_[index];
+    ViewRenderOptions how{.one_material = light_alone};
+    if (!light_alone) {
+        how.motion = corrections_.motion(index);
+        how.gain = corrections_.gain(index);
+    }
+    const RenderedView rendered =
+        render_view(geometry, appearance_.field, learning_.light, view, how);
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
     const at::Tensor picture = picture_loss(rendered.image, view.image, background);
     const at::Tensor mask = mask_loss(rendered.image, view.image);
-    at::Tensor loss = picture + options_.mask_weight * mask +
-                      loss_besides_picture(rendered, surface, light_alone);
+    at::Tensor loss = corrections_.weight(index) * (picture + options_.mask_weight * mask) +
+                      loss_besides_picture(rendered, surface, light_alone) +
+                      corrections_.motion_loss(index);
     if (options_.demodulation_weight > 0)
         loss = loss + options_.demodulation_weight *
                           demodulated_light_loss(rendered, learning_.light, view.image);
@@ -168,12 +176,14 @@ void ShapeSearch::step() {
     adam.options("values").learning_rate = rate * options_.value_learning_rate;
     adam.options("offsets").learning_rate = rate * options_.offset_learning_rate;
     adam.options("weights").learning_rate = rate * options_.weight_learning_rate;
+    corrections_.set_rates(adam, blend(1.0, corrections_scale_last, iteration(), options_.iterations));
     adam.step();
     adam.zero_grad();
     {
         const at::NoGradGuard no_gradient;
         field_->values.clamp_(-largest_value, largest_value);
     }
+    if (!light_alone) corrections_.update_gain(index, rendered.without_gain, view.image);
     learning_.note_losses(picture, mask);
     triangles_.push_back(static_cast<double>(surface.triangles.size(0)));
     ++learning_.iteration;
@@ -223,8 +233,7 @@ void ShapeSearch::load_state(const CheckpointReader& reader) {
 FoundShape ShapeSearch::shape() {
     const TriangleMesh mesh = field_->mesh();
     if (mesh.triangles.size(0) == 0) refuse_vanished_shape();
-    return {simplified(without_specks(mesh), options_.triangles), learning_.curves, triangles_,
-            hull_overlap_};
+    return {simplified(without_specks(mesh), options_.triangles), learning_.curves, triangles_, 0};
 }
 
 }  // namespace item3d

@@ -38,7 +38,7 @@ struct FoundShape {
     TriangleMesh mesh;
     RefineCurves curves;
     std::vector<double> triangles;  ///< of the surface that was drawn, by iteration
-    double hull_overlap = 0;  ///< of the hull's outlines with the masks: intersection over union
+    double outline_disagreement = 0;  ///< pixels, see VisualHull
 };
 
 /// The signed field on one lattice: what is optimised.
@@ -60,8 +60,9 @@ struct ShapeField {
 class ShapeSearch : public Stage {
   public:
     /// appearance: learns with the shape, so that shading tells of hollows that no outline shows.
+    /// corrections: learn too, and must outlive this as the appearance must.
     ShapeSearch(const Dataset& dataset, const VisualHull& hull, std::array<Vec3, 2> bounds,
-                Appearance& appearance, const ShapeOptions& options);
+                Appearance& appearance, ViewCorrections& corrections, const ShapeOptions& options);
 
     std::string name() const override { return "shape"; }
     int iterations() const override { return options_.iterations; }
@@ -88,7 +89,6 @@ class ShapeSearch : public Stage {
     std::unique_ptr<ShapeField> field_;
     int level_ = 0;  ///< index into the options' cells
     std::vector<double> triangles_;
-    double hull_overlap_ = 0;
 };
 
 /// Sum over views of the pixels that both outlines cover, over those that either does.

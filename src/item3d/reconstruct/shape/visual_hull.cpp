@@ -104,7 +104,7 @@ VisualHull::VisualHull(const std::vector<Photograph>& views) : silhouettes_(view
         1);
 }
 
-at::Tensor VisualHull::distance(const at::Tensor& points_) const {
+at::Tensor VisualHull::distance(const at::Tensor& points_, std::size_t ignored) const {
     const at::Tensor points = points_.detach().contiguous();
     at::Tensor result = at::empty({points.size(0)});
     const float* p = points.const_data_ptr<float>();
@@ -123,7 +123,7 @@ at::Tensor VisualHull::distance(const at::Tensor& points_) const {
         "visual_hull", points.size(0),
         [&](std::int64_t i) {
             const Vec4 point(p[3 * i], p[3 * i + 1], p[3 * i + 2], 1);
-            float farthest = -std::numeric_limits<float>::infinity();
+            std::vector<float> distances;
             for (std::size_t s = 0; s < silhouettes_.size(); ++s) {
                 const Image& mask = silhouettes_[s].distance;
                 const Vec3 seen(projections[s].to_camera * point);
@@ -134,22 +134,29 @@ at::Tensor VisualHull::distance(const at::Tensor& points_) const {
                 if (x < 0 || y < 0 || x > static_cast<float>(mask.width) ||
                     y > static_cast<float>(mask.height))
                     continue;
-                farthest = std::max(farthest, look_up(mask, x, y) * depth / focal);
+                distances.push_back(look_up(mask, x, y) * depth / focal);
             }
-            out[i] = std::isfinite(farthest) ? farthest : far_away;
+            if (distances.empty()) {
+                out[i] = far_away;
+                return;
+            }
+            const auto chosen = distances.begin() + static_cast<std::ptrdiff_t>(
+                                                        std::min(ignored, distances.size() - 1));
+            std::nth_element(distances.begin(), chosen, distances.end(), std::greater<>());
+            out[i] = *chosen;
         },
         1024);
     return result;
 }
 
 std::array<Vec3, 2> VisualHull::bounds(Vec3 centre, float radius,
-                                       const std::string& subject) const {
+                                       const std::string& subject, std::size_t ignored) const {
     const float reach = 1.2f * radius;
     const Lattice lattice{
         centre - reach, 2 * reach / search_cells, {search_cells, search_cells, search_cells}};
     const at::Tensor points = lattice.vertices();
     // Thin parts may lie between the lattice's points.
-    const at::Tensor inside = (distance(points) < lattice.cell).nonzero().select(1, 0);
+    const at::Tensor inside = (distance(points, ignored) < lattice.cell).nonzero().select(1, 0);
     if (inside.size(0) == 0) {
         throw InputError(
             subject, "no place is inside the masks of all views",
@@ -161,6 +168,45 @@ std::array<Vec3, 2> VisualHull::bounds(Vec3 centre, float radius,
         return Vec3(t[0].item<float>(), t[1].item<float>(), t[2].item<float>());
     };
     return {corner(low) - lattice.cell, corner(high) + lattice.cell};
+}
+
+double VisualHull::disagreement(const std::vector<Photograph>& views, Vec3 centre,
+                                float radius) const {
+    constexpr int pixels_a_view = 64;
+    double sum = 0, count = 0;
+    for (const Photograph& view : views) {
+        const Image& image = view.image;
+        std::vector<Vec2> inside;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                if (image.at(x, y, 3) > 0.99f) inside.emplace_back(x + 0.5f, y + 0.5f);
+        if (inside.empty()) continue;
+        const float slope = std::tan(0.5f * view.camera.field_of_view_x);
+        const Mat4& pose = view.camera.camera_to_world;
+        const Vec3 eye = view.camera.position();
+        const float distance = glm::distance(eye, centre);
+        const float pixel = 2 * slope * distance / static_cast<float>(image.width);
+        const int steps = static_cast<int>(std::ceil(2 * radius / (0.5f * pixel)));
+        const std::size_t every = std::max<std::size_t>(1, inside.size() / pixels_a_view);
+        std::vector<float> points;
+        for (std::size_t i = every / 2; i < inside.size(); i += every) {
+            const Vec2 p = 2.0f * inside[i] / static_cast<float>(image.width);
+            const float aspect = static_cast<float>(image.height) / static_cast<float>(image.width);
+            const Vec3 ray = Vec3(pose * Vec4((p.x - 1) * slope, (aspect - p.y) * slope, -1, 0));
+            for (int k = 0; k < steps; ++k) {
+                const float depth = distance - radius + 0.5f * pixel * (static_cast<float>(k) + 0.5f);
+                const Vec3 point = eye + depth * ray;
+                points.insert(points.end(), {point.x, point.y, point.z});
+            }
+        }
+        const auto rays = static_cast<std::int64_t>(points.size()) / (3 * steps);
+        const at::Tensor places =
+            at::from_blob(points.data(), {rays * steps, 3}, at::kFloat);
+        const at::Tensor nearest = std::get<0>(this->distance(places).reshape({rays, steps}).min(1));
+        sum += (nearest.clamp_min(0) / pixel).sum().item<double>();
+        count += static_cast<double>(rays);
+    }
+    return count > 0 ? sum / count : 0;
 }
 
 Lattice make_lattice(std::array<Vec3, 2> bounds, int cells) {

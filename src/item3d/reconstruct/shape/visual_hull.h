@@ -23,12 +23,19 @@ class VisualHull {
 
     /// [P, 3] world -> [P] world units: about the signed distance to the hull, below 0 inside.
     /// In each picture a point has the distance to the outline, at the point's depth; the largest
-    /// counts. Pictures that do not show a point say nothing about it; what none shows is outside.
-    at::Tensor distance(const at::Tensor& points) const;
+    /// counts, or the one after the `ignored` largest, which poses that are a little off do not eat
+    /// away. Pictures that do not show a point say nothing about it; what none shows is outside.
+    at::Tensor distance(const at::Tensor& points, std::size_t ignored = 0) const;
 
     /// A box around the hull, looked for within `radius` of `centre`. Throws InputError that begins
-    /// with `subject` where no point is inside all masks.
-    std::array<Vec3, 2> bounds(Vec3 centre, float radius, const std::string& subject) const;
+    /// with `subject` where no point is inside all masks but `ignored`.
+    std::array<Vec3, 2> bounds(Vec3 centre, float radius, const std::string& subject,
+                               std::size_t ignored = 0) const;
+
+    /// How far the outlines are from agreeing, in pixels: for object pixels of all views, how far
+    /// outside the hull the ray through one stays at least; the mean. Exact poses and masks leave
+    /// a tenth, however thin the parts. `views` are those that this was made of.
+    double disagreement(const std::vector<Photograph>& views, Vec3 centre, float radius) const;
 
   private:
     struct Silhouette {

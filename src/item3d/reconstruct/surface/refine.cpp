@@ -14,6 +14,8 @@ constexpr double final_rate = 0.1;
 constexpr std::int64_t smoothness_points = 4096;
 constexpr float farthest_smoothness = 0.15f;  ///< of the object's diagonal
 constexpr int traces = 4;                     ///< of shadows, in all
+/// Of the learning rates of corrections: most was found with the shape.
+constexpr double corrections_scale = 0.25;
 
 double falling(double rate, int iteration, int iterations) {
     const double progress = static_cast<double>(iteration) / iterations;
@@ -31,9 +33,10 @@ Occlusion trace_occlusion(const MovableMesh& mesh, const at::Tensor& radiance) {
 
 }  // namespace
 
-Refinement::Refinement(Appearance& appearance, MovableMesh& mesh, const Model& model,
-                       std::vector<TargetView> views, const RefineOptions& options)
-    : Stage(appearance),
+Refinement::Refinement(Appearance& appearance, ViewCorrections& corrections, MovableMesh& mesh,
+                       const Model& model, std::vector<TargetView> views,
+                       const RefineOptions& options)
+    : Stage(appearance, corrections),
       mesh_(mesh),
       views_(std::move(views)),
       options_(options),
@@ -54,6 +57,7 @@ Refinement::Refinement(Appearance& appearance, MovableMesh& mesh, const Model& m
     if (mesh.moves())
         add("offsets", {mesh.offsets()},
             {.learning_rate = options.vertex_learning_rate * mesh.mean_edge(), .beta2 = 0.999});
+    corrections_.add_groups(learning_.optimizer);
 }
 
 void Refinement::trace() {
@@ -64,17 +68,16 @@ void Refinement::trace() {
     occlusion_ = trace_occlusion(mesh_, traced_.radiance);
 }
 
-RenderedView Refinement::render(const TargetView& view, bool light_alone) {
+RenderedView Refinement::render(const TargetView& view, ViewRenderOptions how) {
     Geometry geometry = mesh_.geometry();
     // One material would dent what is printed on it, so the shape stands still meanwhile.
-    if (light_alone) {
+    if (how.one_material) {
         geometry.positions = geometry.positions.detach();
         geometry.normals = geometry.normals.detach();
     }
-    return render_view(geometry, appearance_.field, learning_.light, view,
-                       {.occlusion = occlusion_ ? &*occlusion_ : nullptr,
-                        .normal_map = options_.normal_map && !light_alone,
-                        .one_material = light_alone});
+    how.occlusion = occlusion_ ? &*occlusion_ : nullptr;
+    how.normal_map = options_.normal_map && !how.one_material;
+    return render_view(geometry, appearance_.field, learning_.light, view, how);
 }
 
 at::Tensor Refinement::regularization(const RenderedView& rendered, const TargetView& view,
@@ -105,19 +108,27 @@ void Refinement::step() {
     const int trace_every = std::max(1, (options_.iterations + traces - 1) / traces);
     if (options_.shadows && i % trace_every == 0) trace();
     const bool light_learns = learning_.update_light(appearance_, i, options_.light_every);
-    const TargetView& view = views_[order_.at(i)];
-    const RenderedView rendered = render(view, i < options_.light_alone * options_.iterations);
+    const std::size_t index = order_.at(i);
+    const TargetView& view = views_[index];
+    const bool light_alone = i < options_.light_alone * options_.iterations;
+    const RigidMotion motion = corrections_.motion(index);
+    const RenderedView rendered = render(view, {.one_material = light_alone,
+                                                .motion = light_alone ? motion.detached() : motion,
+                                                .gain = corrections_.gain(index)});
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
     const at::Tensor picture = picture_loss(rendered.image, view.image, background);
     const at::Tensor mask = mask_loss(rendered.image, view.image);
-    at::Tensor loss = picture + regularization(rendered, view, mask);
+    at::Tensor loss = corrections_.weight(index) * picture +
+                      regularization(rendered, view, mask) + corrections_.motion_loss(index);
     if (light_learns) loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss();
     loss.backward();
     Adam& adam = learning_.optimizer;
     for (const auto& [group, rate] : rates_)
         adam.options(group).learning_rate = falling(rate, i, options_.iterations);
+    corrections_.set_rates(adam, falling(corrections_scale, i, options_.iterations));
     adam.step();
     adam.zero_grad();
+    if (!light_alone) corrections_.update_gain(index, rendered.without_gain, view.image);
     learning_.note_losses(picture, mask);
     ++learning_.iteration;
 }
@@ -128,7 +139,7 @@ std::string Refinement::detail() const {
 
 RenderedView Refinement::draw(const TargetView& view) {
     const at::NoGradGuard no_gradient;
-    return render(view, false);
+    return render(view, {});
 }
 
 NamedTensors Refinement::state() const {

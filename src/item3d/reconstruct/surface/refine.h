@@ -48,9 +48,10 @@ struct RefineOptions {
 /// One view a step in shuffled order, Adam with rates that fall to a tenth.
 class Refinement : public Stage {
   public:
-    /// Optimises the appearance and the mesh's offsets; all of it must outlive this.
-    Refinement(Appearance& appearance, MovableMesh& mesh, const Model& model,
-               std::vector<TargetView> views, const RefineOptions& options);
+    /// Optimises the appearance, the corrections of `views` and the mesh's offsets; all of it must
+    /// outlive this.
+    Refinement(Appearance& appearance, ViewCorrections& corrections, MovableMesh& mesh,
+               const Model& model, std::vector<TargetView> views, const RefineOptions& options);
 
     std::string name() const override { return "materials and light"; }
     int iterations() const override { return options_.iterations; }
@@ -68,7 +69,7 @@ class Refinement : public Stage {
         at::Tensor radiance;  ///< [H, 2H, 3]; undefined: light from everywhere
     };
     void trace();
-    RenderedView render(const TargetView& view, bool light_alone);
+    RenderedView render(const TargetView& view, ViewRenderOptions how);
     at::Tensor regularization(const RenderedView& rendered, const TargetView& view,
                               const at::Tensor& mask);
 

@@ -60,13 +60,16 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
                          const EnvironmentLight& light, const TargetView& view,
                          const ViewRenderOptions& options) {
     const std::vector<Camera> cameras{view.camera};
+    const bool moves = options.motion.rotation.defined();
+    const Geometry seen = moves ? options.motion.moved(geometry) : geometry;
     RenderedView result;
-    result.raster = rasterize(geometry, cameras, view.width(), view.height());
-    result.surface = interpolate_surface(geometry, result.raster, cameras);
+    result.raster = rasterize(seen, cameras, view.width(), view.height());
+    result.surface = interpolate_surface(seen, result.raster, cameras);
     if (result.surface.count() == 0) {
-        result.image = at::zeros({1, view.height(), view.width(), 4});
+        result.image = result.without_gain = at::zeros({1, view.height(), view.width(), 4});
         return result;
     }
+    if (moves) options.motion.move_back(result.surface);
     result.material = field->forward(result.surface.position);
     MaterialSample& shaded = result.shaded;
     shaded = result.material;
@@ -81,8 +84,11 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
     shaded.orm = at::cat({occlusion, shaded.orm.narrow(1, 1, 2)}, 1);
     const at::Tensor radiance = shade(result.surface, shaded, light);
     const at::Tensor values = at::cat({radiance, at::ones_like(radiance.narrow(1, 0, 1))}, 1);
-    result.image = antialias(scatter(values, result.surface, result.raster, at::zeros({4})),
-                             result.raster, geometry);
+    result.image = result.without_gain =
+        antialias(scatter(values, result.surface, result.raster, at::zeros({4})), result.raster,
+                  seen);
+    if (options.gain.defined())
+        result.image = result.image * at::cat({options.gain, at::ones({1})});
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include "item3d/core/random.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/reconstruct/dataset/dataset.h"
+#include "item3d/reconstruct/surface/view_corrections.h"
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/shade.h"
@@ -27,7 +28,8 @@ std::vector<TargetView> make_targets(const std::vector<Photograph>& views,
                                      std::array<Vec3, 2> bounds, int shrink = 1);
 
 struct RenderedView {
-    at::Tensor image;  ///< [1, H, W, 4] as TargetView's, antialiased
+    at::Tensor image;         ///< [1, H, W, 4] as TargetView's, antialiased
+    at::Tensor without_gain;  ///< the same in the model's own exposure
     Raster raster;
     Surface surface;
     MaterialSample material;
@@ -38,6 +40,8 @@ struct ViewRenderOptions {
     const Occlusion* occlusion = nullptr;  ///< traced, in place of the material's own
     bool normal_map = false;               ///< use the field's tangent-space normals
     bool one_material = false;  ///< the view's mean everywhere: only the light can explain shading
+    RigidMotion motion = {};    ///< of the object in front of the camera; undefined tensors: none
+    at::Tensor gain = {};       ///< [3], of all radiance; undefined: 1
 };
 
 /// Differentiable in the field, the light, and the geometry's positions and normals.

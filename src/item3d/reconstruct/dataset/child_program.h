@@ -1,0 +1,37 @@
+// Another program, started without a shell.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// The first executable file of that name in the folders of $PATH; empty: there is none.
+std::filesystem::path program_in_path(const std::string& name);
+
+/// A running program in a process group of its own, so that Ctrl-C on a terminal reaches this
+/// program alone. It ends with this program, however that ends.
+class ChildProgram {
+  public:
+    /// arguments: the program's path first; output: a file that what it prints is added to. A
+    /// program that cannot be run exits with 127. Throws ResourceError where no process can be
+    /// made.
+    ChildProgram(const std::vector<std::string>& arguments, const std::filesystem::path& output);
+    /// Kills the group where the program still runs, and waits for its end.
+    ~ChildProgram();
+    ChildProgram(const ChildProgram&) = delete;
+    ChildProgram& operator=(const ChildProgram&) = delete;
+
+    /// What waitpid() says of it once it has ended.
+    std::optional<int> status();
+
+  private:
+    pid_t id_ = -1;
+    std::optional<int> status_;
+};
+
+}  // namespace item3d

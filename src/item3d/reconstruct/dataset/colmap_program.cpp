@@ -1,0 +1,143 @@
+#include "item3d/reconstruct/dataset/colmap_program.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/reconstruct/dataset/child_program.h"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// No heading, stack trace, or date of glog's before it; empty: the line says nothing.
+std::string without_decoration(std::string line) {
+    const auto first = std::find_if(line.begin(), line.end(), [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '@' || c == '*';
+    });
+    if (first == line.end() || *first == '@' || *first == '*') return {};
+    line.erase(line.begin(), first);
+    // F20260131 12:00:00.000000 1234 file.cc:10] message
+    const std::size_t date = line.find("] ");
+    const bool is_dated = line.size() > 2 && std::isdigit(static_cast<unsigned char>(line[1])) != 0;
+    if (is_dated && date != std::string::npos) line.erase(0, date + 2);
+    return line.substr(0, 200);
+}
+
+bool speaks_of_error(const std::string& line) {
+    for (const char* word : {"ERROR", "rror:", "Check failed", "what():", "ailed to"})
+        if (line.find(word) != std::string::npos) return true;
+    return false;
+}
+
+/// What a step adds to the log, read while it is written.
+class StepLog {
+  public:
+    StepLog(fs::path file, std::string counted)
+        : file_(std::move(file)), counted_(std::move(counted)) {
+        std::error_code code;
+        const std::uintmax_t size = fs::file_size(file_, code);
+        at_ = code ? 0 : static_cast<std::streamoff>(size);
+    }
+    /// Reads what came since, whole lines only.
+    void read_on() {
+        std::ifstream text(file_);
+        text.seekg(at_);
+        for (std::string line; std::getline(text, line) && !text.eof();) {
+            at_ += static_cast<std::streamoff>(line.size() + 1);
+            count_ += line.find(counted_) != std::string::npos;
+            line = without_decoration(line);
+            if (speaks_of_error(line)) error_ = line;
+            if (!line.empty()) last_ = line;
+        }
+    }
+    std::int64_t count() const { return count_; }
+    /// The last line that speaks of an error, else the last that says anything.
+    std::string telling() const {
+        if (!error_.empty()) return error_;
+        return last_.empty() ? "it said nothing" : last_;
+    }
+
+  private:
+    fs::path file_;
+    std::string counted_;
+    std::streamoff at_ = 0;
+    std::int64_t count_ = 0;
+    std::string last_, error_;
+};
+
+/// Calls `meanwhile` now and then, and once after the end. Returns what waitpid() says.
+int wait_for(const std::vector<std::string>& arguments, const fs::path& output,
+             const std::function<void()>& meanwhile) {
+    ChildProgram child(arguments, output);
+    std::chrono::milliseconds pause(2);
+    for (;;) {
+        const std::optional<int> status = child.status();
+        meanwhile();
+        if (status) return *status;
+        if (interrupted()) throw Interrupted("interrupted while COLMAP looked for the poses");
+        std::this_thread::sleep_for(pause);
+        pause = std::min(2 * pause, std::chrono::milliseconds(200));
+    }
+}
+
+}  // namespace
+
+ColmapProgram::ColmapProgram(fs::path program, fs::path log, int threads)
+    : program_(std::move(program)), log_(std::move(log)), threads_(threads > 0 ? threads : -1) {}
+
+ColmapOutcome ColmapProgram::run(const ColmapStep& step) const {
+    std::vector<std::string> arguments{program_.string(), step.command};
+    arguments.insert(arguments.end(), step.arguments.begin(), step.arguments.end());
+    Progress progress(step.label, step.total);
+    StepLog log(log_, step.counted);
+    const int status = wait_for(arguments, log_, [&] {
+        log.read_on();
+        progress.update(std::min(log.count(), step.total));
+    });
+    progress.finish();
+    if (!WIFSIGNALED(status)) return {WEXITSTATUS(status), log.telling()};
+    const int signal = WTERMSIG(status);
+    throw ResourceError(fmt::format(
+        "colmap {} was ended by signal {} ({}): {}; all it said is in {}{}", step.command, signal,
+        ::strsignal(signal), log.telling(), log_.string(),
+        signal == SIGKILL ? "; memory may have run out: try fewer --threads or smaller pictures"
+                          : ""));
+}
+
+void ColmapProgram::check(const ColmapStep& step, const ColmapOutcome& outcome) const {
+    if (outcome.exit_code == 0) return;
+    throw ResourceError(fmt::format("colmap {} failed (exit code {}): {}; all it said is in {}",
+                                    step.command, outcome.exit_code, outcome.telling,
+                                    log_.string()));
+}
+
+void ColmapProgram::add_device(ColmapStep& step, const std::string& now, const std::string& before,
+                               const fs::path& scratch) const {
+    write_atomically(scratch, std::string_view());
+    wait_for({program_.string(), step.command, "-h"}, scratch, [] {});
+    const std::string help = read_text(scratch);
+    const auto add = [&](const std::string& name, int value) {
+        const std::string option = "--" + now + "." + name;
+        const bool is_new = help.find(option) != std::string::npos;
+        step.arguments.push_back(is_new ? option : "--" + before + "." + name);
+        step.arguments.push_back(std::to_string(value));
+    };
+    add("use_gpu", 0);
+    add("num_threads", threads_);
+}
+
+}  // namespace item3d

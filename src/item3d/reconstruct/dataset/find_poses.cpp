@@ -1,0 +1,318 @@
+#include "item3d/reconstruct/dataset/find_poses.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/reconstruct/dataset/child_program.h"
+#include "item3d/reconstruct/dataset/colmap.h"
+#include "item3d/reconstruct/dataset/colmap_program.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t fewest_pictures = 3;
+/// Each picture with each other takes too long beyond.
+constexpr std::size_t most_exhaustive = 150;
+/// Pictures of a block that is matched with another; COLMAP's own 50 would show no progress.
+constexpr std::size_t matcher_block = 10;
+/// Of a picture, about. Time of matching grows with the square: COLMAP's own 8192 are for its GPU.
+constexpr int most_features = 2048;
+
+// ---- The pictures ----
+
+struct PictureSize {
+    unsigned width = 0, height = 0;
+    auto operator<=>(const PictureSize&) const = default;
+};
+
+unsigned big_endian(const Bytes& bytes, std::size_t at, int count) {
+    unsigned value = 0;
+    for (int i = 0; i < count; ++i)
+        value = value << 8 | bytes[at + static_cast<std::size_t>(i)];
+    return value;
+}
+
+/// As stored, of PNG and JPEG by their content; nothing for other files.
+std::optional<PictureSize> stored_size(const Bytes& file) {
+    constexpr std::uint8_t png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    if (file.size() >= 24 && std::equal(std::begin(png), std::end(png), file.begin()))
+        return PictureSize{big_endian(file, 16, 4), big_endian(file, 20, 4)};
+    if (file.size() < 4 || big_endian(file, 0, 2) != 0xffd8) return std::nullopt;
+    for (std::size_t at = 2; at + 9 < file.size() && file[at] == 0xff;) {
+        const unsigned marker = file[at + 1];
+        const bool is_frame =
+            marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+        if (is_frame) return PictureSize{big_endian(file, at + 7, 2), big_endian(file, at + 5, 2)};
+        at += marker == 0xff ? 1 : 2 + big_endian(file, at + 2, 2);
+    }
+    return std::nullopt;
+}
+
+struct Pictures {
+    std::vector<fs::path> files;
+    std::set<PictureSize> sizes;
+};
+
+Pictures find_pictures(const fs::path& folder) {
+    if (!fs::is_directory(folder)) {
+        throw InputError(folder.string(), "is not a folder of pictures", "name one of photographs");
+    }
+    Pictures pictures;
+    for (const fs::path& file : list_pictures(folder)) {
+        if (!fs::is_regular_file(file)) continue;
+        const std::optional<PictureSize> size = stored_size(read_bytes(file));
+        if (!size) {
+            warn(file.string() + ": is no PNG or JPEG picture and is left out");
+            continue;
+        }
+        pictures.files.push_back(file);
+        pictures.sizes.insert(*size);
+    }
+    if (pictures.files.size() < fewest_pictures) {
+        throw InputError(folder.string(),
+                         fmt::format("{} PNG or JPEG picture(s)", pictures.files.size()),
+                         "at least 3 are needed, and 30 or more are good");
+    }
+    return pictures;
+}
+
+/// One for each picture, as COLMAP names them; else none at all.
+std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const Pictures& pictures) {
+    if (search.masks.empty()) return {};
+    if (!fs::is_directory(search.masks))
+        throw InputError(search.masks.string(), "is not a folder of masks");
+    std::vector<fs::path> masks;
+    for (const fs::path& picture : pictures.files) {
+        masks.push_back(search.masks / (picture.filename().string() + ".png"));
+        if (!fs::is_regular_file(masks.back())) return {};
+    }
+    return masks;
+}
+
+json list_files(const std::vector<fs::path>& files) {
+    json list = json::array();
+    for (const fs::path& file : files) {
+        list.push_back({{"name", file.filename().string()},
+                        {"bytes", fs::file_size(file)},
+                        {"modified", std::int64_t{fs::last_write_time(file).time_since_epoch() /
+                                                  std::chrono::nanoseconds(1)}}});
+    }
+    return list;
+}
+
+// ---- The steps ----
+
+ColmapStep extraction(const PoseSearch& search, const Pictures& pictures, bool has_masks,
+                      const fs::path& folder) {
+    std::string names;
+    for (const fs::path& file : pictures.files)
+        names += file.filename().string() + "\n";
+    write_atomically(folder / "pictures.txt", std::string_view(names));
+    ColmapStep step{
+        "features",
+        "Processed file",
+        static_cast<std::int64_t>(pictures.files.size()),
+        "feature_extractor",
+        {"--database_path", (folder / "database.db").string(), "--image_path",
+         fs::absolute(search.images).string(), "--image_list_path",
+         (folder / "pictures.txt").string(), "--ImageReader.camera_model", "SIMPLE_RADIAL",
+         "--ImageReader.single_camera", pictures.sizes.size() == 1 ? "1" : "0",
+         "--SiftExtraction.max_num_features", std::to_string(most_features)}};
+    if (has_masks) {
+        step.arguments.push_back("--ImageReader.mask_path");
+        step.arguments.push_back(fs::absolute(search.masks).string());
+    }
+    return step;
+}
+
+ColmapStep matching(std::size_t pictures, const fs::path& folder) {
+    const bool all = pictures <= most_exhaustive;
+    const std::size_t blocks = (pictures + matcher_block - 1) / matcher_block;
+    ColmapStep step{"matches",
+                    all ? "ing block [" : "ing image [",
+                    static_cast<std::int64_t>(all ? blocks * blocks : pictures),
+                    all ? "exhaustive_matcher" : "sequential_matcher",
+                    {"--database_path", (folder / "database.db").string()}};
+    if (all) {
+        step.arguments.push_back("--ExhaustiveMatching.block_size");
+        step.arguments.push_back(std::to_string(matcher_block));
+    }
+    return step;
+}
+
+ColmapStep mapping(const PoseSearch& search, std::size_t pictures, int threads,
+                   const fs::path& folder) {
+    return {"poses",
+            "Registering image #",
+            static_cast<std::int64_t>(pictures),
+            "mapper",
+            {"--database_path", (folder / "database.db").string(), "--image_path",
+             fs::absolute(search.images).string(), "--output_path", (folder / "sparse").string(),
+             "--Mapper.num_threads", std::to_string(threads)}};
+}
+
+/// The model that load_dataset() takes: the one with the most pictures. Empty: there is none.
+fs::path largest_model(const fs::path& sparse) {
+    fs::path largest;
+    std::size_t most = 0;
+    std::error_code code;
+    for (fs::directory_iterator i(sparse, code), end; !code && i != end; i.increment(code)) {
+        const std::size_t count = is_colmap_model(i->path()) ? count_colmap_images(i->path()) : 0;
+        if (count > most) {
+            most = count;
+            largest = i->path();
+        }
+    }
+    return largest;
+}
+
+constexpr const char* no_poses_hint =
+    "take more pictures that overlap, put an object without texture on a printed sheet, or give "
+    "masks named PICTURE.jpg.png where the object turned before a fixed camera";
+
+void check_poses(const PoseSearch& search, const Pictures& pictures, const fs::path& folder) {
+    const fs::path model = largest_model(folder / "sparse");
+    if (model.empty()) {
+        throw InputError(search.images.string(),
+                         "no poses were found: the pictures share too few features", no_poses_hint);
+    }
+    std::set<fs::path> found;
+    for (const SourceView& view : read_colmap(model, search.images).views)
+        found.insert(view.picture.filename());
+    std::vector<std::string> lost;
+    for (const fs::path& file : pictures.files)
+        if (!found.contains(file.filename())) lost.push_back(file.filename().string());
+    const std::size_t all = pictures.files.size(), with_pose = all - lost.size();
+    if (with_pose < fewest_pictures) {
+        throw InputError(search.images.string(),
+                         fmt::format("poses were found for only {} of {} pictures", with_pose, all),
+                         no_poses_hint);
+    }
+    if (lost.empty()) {
+        note(fmt::format("COLMAP found the poses of all {} pictures", all));
+        return;
+    }
+    const std::size_t shown = std::min<std::size_t>(lost.size(), 3);
+    const std::vector<std::string> first(lost.begin(),
+                                         lost.begin() + static_cast<std::ptrdiff_t>(shown));
+    warn(fmt::format("poses were found for {} of {} pictures; left out: {}{}", with_pose, all,
+                     fmt::join(first, ", "),
+                     lost.size() > shown ? fmt::format(" and {} more", lost.size() - shown) : ""));
+}
+
+// ---- The folder ----
+
+constexpr const char* record_name = "pictures.json";
+
+/// Whether it holds what was found for these pictures. Throws InputError where the folder is not
+/// one of find_poses().
+bool is_found_before(const fs::path& folder, const json& record) {
+    if (!fs::exists(folder)) return false;
+    if (!fs::is_regular_file(folder / record_name)) {
+        throw InputError(folder.string(), "is there and was not written by a search for poses",
+                         "give it as the dataset, or choose another -o");
+    }
+    const json before = json::parse(read_text(folder / record_name), nullptr, false);
+    return before == record && !largest_model(folder / "sparse").empty();
+}
+
+/// Removed again unless it becomes the result.
+class PartialFolder {
+  public:
+    explicit PartialFolder(fs::path folder) : folder_(std::move(folder)) {
+        remove(folder_);
+        make_output_folder(folder_ / "sparse");
+    }
+    ~PartialFolder() { remove(folder_); }
+    PartialFolder(const PartialFolder&) = delete;
+    PartialFolder& operator=(const PartialFolder&) = delete;
+
+    void become(const fs::path& result) {
+        remove(result);
+        std::error_code code;
+        fs::rename(folder_, result, code);
+        if (code) throw ResourceError(result.string() + ": cannot be made: " + code.message());
+    }
+
+  private:
+    static void remove(const fs::path& folder) {
+        std::error_code ignored;
+        fs::remove_all(folder, ignored);
+    }
+
+    fs::path folder_;
+};
+
+/// Leaves the models in folder/sparse, none where the pictures do not suffice.
+void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const Pictures& pictures,
+                bool has_masks, const fs::path& folder) {
+    const fs::path scratch = folder / "help.txt";
+    ColmapStep step = extraction(search, pictures, has_masks, folder);
+    colmap.add_device(step, "FeatureExtraction", "SiftExtraction", scratch);
+    colmap.check(step, colmap.run(step));
+    step = matching(pictures.files.size(), folder);
+    colmap.add_device(step, "FeatureMatching", "SiftMatching", scratch);
+    colmap.check(step, colmap.run(step));
+    step = mapping(search, pictures.files.size(), colmap.threads(), folder);
+    const ColmapOutcome outcome = colmap.run(step);
+    // To have found no model is a failure for it; check_poses() says what that means.
+    if (outcome.telling.find("failed to create sparse model") == std::string::npos)
+        colmap.check(step, outcome);
+    for (const char* name : {"help.txt", "pictures.txt"})
+        fs::remove(folder / name);
+}
+
+}  // namespace
+
+fs::path find_poses(const PoseSearch& search) {
+    const Pictures pictures = find_pictures(search.images);
+    const std::vector<fs::path> masks = masks_for_colmap(search, pictures);
+    const json record = {{"pictures", list_files(pictures.files)}, {"masks", list_files(masks)}};
+    const fs::path result = fs::absolute(search.output) / "colmap";
+    if (is_found_before(result, record)) {
+        note("the poses in " + (search.output / "colmap").string() + " are taken again");
+        check_poses(search, pictures, result);
+        return search.output / "colmap";
+    }
+    const fs::path program = program_in_path("colmap");
+    if (program.empty()) {
+        throw ResourceError(
+            "colmap was not found: install it (apt install colmap), or give poses as "
+            "transforms.json");
+    }
+
+    const OutputFolder output(search.output);
+    const fs::path log = result.parent_path() / "colmap.log";
+    std::error_code ignored;
+    fs::remove(log, ignored);
+    const fs::path folder = result.parent_path() / "colmap.partial";
+    PartialFolder partial(folder);
+    const ColmapProgram colmap(program, log, search.threads);
+    try {
+        run_colmap(colmap, search, pictures, !masks.empty(), folder);
+        check_poses(search, pictures, folder);
+    } catch (const Interrupted&) {
+        fs::remove(log, ignored);
+        throw;
+    }
+    write_atomically(folder / record_name, std::string_view(record.dump(1) + "\n"));
+    fs::rename(log, folder / "colmap.log", ignored);
+    partial.become(result);
+    return search.output / "colmap";
+}
+
+}  // namespace item3d

@@ -1,0 +1,248 @@
+#include "item3d/reconstruct/surface/view_corrections.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace item3d {
+
+namespace {
+
+constexpr double rotation_rate = 0.0005;    ///< radians
+constexpr double translation_rate = 0.001;  ///< of the radius
+constexpr double motion_weight = 0.2;
+constexpr double unsure_gain = 0.03;        ///< natural logarithm
+/// Sharpness beside views from about the same side, under which a picture counts less.
+constexpr double sharp_enough = 0.5;
+constexpr double least_weight = 0.05;
+constexpr std::size_t sides_compared = 6;
+constexpr std::int64_t fewest_pixels = 64;  ///< that a gain is told from
+
+at::Tensor mean_of(const std::vector<at::Tensor>& all) {
+    const at::NoGradGuard no_gradient;
+    return at::stack(all).mean(0);
+}
+
+std::vector<at::Tensor> zeros_for(std::size_t views) {
+    std::vector<at::Tensor> result;
+    for (std::size_t i = 0; i < views; ++i)
+        result.push_back(at::zeros({3}).set_requires_grad(true));
+    return result;
+}
+
+/// The matrix K of K x = axis x x; its exponential turns by the length of `axis`.
+at::Tensor rotation_matrix(const at::Tensor& axis) {
+    const at::Tensor zero = at::zeros({});
+    const at::Tensor x = axis[0], y = axis[1], z = axis[2];
+    return at::stack({zero, -z, y, z, zero, -x, -y, x, zero}).reshape({3, 3}).matrix_exp();
+}
+
+/// Mean over pixels, all of whose neighbours are covered too; 0 where there is none.
+double mean_laplacian(const Image& image) {
+    const auto value = [&](int x, int y) {
+        return std::log(0.02f + 0.2126f * image.at(x, y, 0) + 0.7152f * image.at(x, y, 1) +
+                        0.0722f * image.at(x, y, 2));
+    };
+    constexpr int margin = 3;
+    double sum = 0, count = 0;
+    for (int y = margin; y + margin < image.height; ++y) {
+        for (int x = margin; x + margin < image.width; ++x) {
+            const auto covered = [&](int dx, int dy) {
+                return image.at(x + dx, y + dy, 3) > 0.99f;
+            };
+            if (!covered(-margin, 0) || !covered(margin, 0) || !covered(0, -margin) ||
+                !covered(0, margin))
+                continue;
+            sum += std::abs(value(x - 1, y) + value(x + 1, y) + value(x, y - 1) + value(x, y + 1) -
+                            4 * value(x, y));
+            ++count;
+        }
+    }
+    return count > 0 ? sum / count : 0;
+}
+
+}  // namespace
+
+const char* pose_refinement_name(PoseRefinement refinement) {
+    return refinement == PoseRefinement::automatic ? "auto"
+           : refinement == PoseRefinement::refine  ? "refine"
+                                                   : "keep";
+}
+
+Geometry RigidMotion::moved(Geometry geometry) const {
+    geometry.positions =
+        (geometry.positions - centre).matmul(rotation.t()) + (centre + translation);
+    geometry.normals = geometry.normals.matmul(rotation.t());
+    return geometry;
+}
+
+void RigidMotion::move_back(Surface& surface) const {
+    surface.position = (surface.position - (centre + translation)).matmul(rotation) + centre;
+    surface.normal = surface.normal.matmul(rotation);
+    surface.view = surface.view.matmul(rotation);
+}
+
+Camera RigidMotion::seen_from(const Camera& camera) const {
+    Mat4 back(1.0f);
+    const at::Tensor r = rotation.detach(), c = centre, t = translation.detach();
+    const at::Tensor offset = c - (c + t).matmul(r);
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+            back[column][row] = r[column][row].item<float>();
+        back[3][row] = offset[row].item<float>();
+    }
+    Camera moved = camera;
+    moved.camera_to_world = back * camera.camera_to_world;
+    return moved;
+}
+
+RigidMotion RigidMotion::detached() const {
+    if (!rotation.defined()) return {};
+    return {rotation.detach(), translation.detach(), centre};
+}
+
+ViewCorrections::ViewCorrections(const std::vector<Photograph>& views, Vec3 centre, float radius,
+                                 const CorrectionOptions& options)
+    : rotations_(zeros_for(views.size())),
+      translations_(zeros_for(views.size())),
+      log_gains_(at::zeros({static_cast<std::int64_t>(views.size()), 3})),
+      centre_(at::tensor({centre.x, centre.y, centre.z})),
+      radius_(radius),
+      options_(options),
+      refines_poses_(options.poses == PoseRefinement::refine) {
+    for (const double sharpness : relative_sharpness(views, centre))
+        weights_.push_back(std::clamp(std::pow(sharpness / sharp_enough, 2), least_weight, 1.0));
+}
+
+void ViewCorrections::add_groups(Adam& adam) const {
+    if (!refines_poses_) return;
+    adam.add_group("rotations", rotations_, {.beta2 = 0.999});
+    adam.add_group("translations", translations_, {.beta2 = 0.999});
+    set_rates(adam, 1);
+}
+
+void ViewCorrections::set_rates(Adam& adam, double scale) const {
+    if (!refines_poses_) return;
+    adam.options("rotations").learning_rate = scale * rotation_rate;
+    adam.options("translations").learning_rate = scale * translation_rate;
+}
+
+RigidMotion ViewCorrections::motion(std::size_t view) const {
+    if (!refines_poses_) return {};
+    return {rotation_matrix(rotations_[view] - mean_of(rotations_)),
+            radius_ * (translations_[view] - mean_of(translations_)), centre_};
+}
+
+at::Tensor ViewCorrections::motion_loss(std::size_t view) const {
+    if (!refines_poses_) return at::zeros({});
+    return motion_weight * (rotations_[view].square().sum() + translations_[view].square().sum());
+}
+
+at::Tensor ViewCorrections::gain(std::size_t view) const {
+    if (!options_.exposure) return {};
+    return gains()[static_cast<std::int64_t>(view)];
+}
+
+void ViewCorrections::update_gain(std::size_t view, const at::Tensor& drawn,
+                                  const at::Tensor& photograph) {
+    if (!options_.exposure) return;
+    const at::NoGradGuard no_gradient;
+    const auto index = static_cast<std::int64_t>(view);
+    for (std::int64_t c = 0; c < 3; ++c) {
+        const at::Tensor a = drawn.select(3, c), b = photograph.select(3, c);
+        const at::Tensor used = (photograph.select(3, 3) > 0.99f)
+                                    .logical_and(drawn.select(3, 3) > 0.99f)
+                                    .logical_and(b < 0.98f)
+                                    .logical_and(b > 0.01f)
+                                    .logical_and(a > 0.005f);
+        if (used.sum().item<std::int64_t>() < fewest_pixels) continue;
+        const at::Tensor found = (b.masked_select(used) / a.masked_select(used)).log().median();
+        log_gains_[index][c] += 0.5 * (found - log_gains_[index][c]);
+    }
+}
+
+Camera ViewCorrections::corrected_camera(const Camera& camera, std::size_t view) const {
+    const at::NoGradGuard no_gradient;
+    return refines_poses_ ? motion(view).seen_from(camera) : camera;
+}
+
+std::vector<Photograph> ViewCorrections::corrected(std::vector<Photograph> photographs) const {
+    const at::Tensor all = gains().reciprocal().contiguous();
+    const float* factor = all.const_data_ptr<float>();
+    for (std::size_t i = 0; i < photographs.size(); ++i) {
+        photographs[i].camera = corrected_camera(photographs[i].camera, i);
+        std::vector<float>& pixels = photographs[i].image.pixels;
+        for (std::size_t k = 0; options_.exposure && k < pixels.size(); ++k)
+            if (k % 4 < 3) pixels[k] *= factor[3 * i + k % 4];
+    }
+    return photographs;
+}
+
+double ViewCorrections::largest_turn() const {
+    const at::NoGradGuard no_gradient;
+    const at::Tensor all = at::stack(rotations_);
+    return (all - all.mean(0)).norm(2, 1).max().item<double>() * 180 / pi;
+}
+
+double ViewCorrections::largest_shift() const {
+    const at::NoGradGuard no_gradient;
+    const at::Tensor all = at::stack(translations_);
+    return (all - all.mean(0)).norm(2, 1).max().item<double>();
+}
+
+at::Tensor ViewCorrections::gains() const {
+    const at::NoGradGuard no_gradient;
+    if (!options_.exposure) return at::ones_like(log_gains_);
+    const at::Tensor apart = log_gains_ - std::get<0>(log_gains_.median(0));
+    return (apart.sign() * (apart.abs() - unsure_gain).clamp_min(0)).exp();
+}
+
+std::vector<std::size_t> ViewCorrections::blurred() const {
+    std::vector<std::size_t> views;
+    for (std::size_t i = 0; i < weights_.size(); ++i)
+        if (weights_[i] < 1) views.push_back(i);
+    return views;
+}
+
+NamedTensors ViewCorrections::state() const {
+    const at::NoGradGuard no_gradient;
+    return {{"correction.rotations", at::stack(rotations_)},
+            {"correction.translations", at::stack(translations_)},
+            {"correction.log_gains", log_gains_.clone()}};
+}
+
+void ViewCorrections::load_state(const CheckpointReader& reader) {
+    const at::NoGradGuard no_gradient;
+    const auto load = [&](const char* name, std::vector<at::Tensor>& into) {
+        at::Tensor all = at::stack(into).contiguous();
+        reader.copy(name, all);
+        for (std::size_t i = 0; i < into.size(); ++i)
+            into[i].copy_(all[static_cast<std::int64_t>(i)]);
+    };
+    load("correction.rotations", rotations_);
+    load("correction.translations", translations_);
+    reader.copy("correction.log_gains", log_gains_);
+}
+
+std::vector<double> relative_sharpness(const std::vector<Photograph>& views, Vec3 centre) {
+    std::vector<double> sharpness;
+    std::vector<Vec3> directions;
+    for (const Photograph& view : views) {
+        sharpness.push_back(mean_laplacian(view.image));
+        directions.push_back(glm::normalize(view.camera.position() - centre));
+    }
+    std::vector<double> relative;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        std::vector<std::pair<float, double>> beside;
+        for (std::size_t k = 0; k < views.size(); ++k)
+            beside.emplace_back(-glm::dot(directions[i], directions[k]), sharpness[k]);
+        std::sort(beside.begin(), beside.end());
+        beside.resize(std::min(beside.size(), sides_compared + 1));
+        std::sort(beside.begin(), beside.end(),
+                  [](const auto& a, const auto& b) { return a.second < b.second; });
+        const double median = beside[beside.size() / 2].second;
+        relative.push_back(median > 0 ? sharpness[i] / median : 1.0);
+    }
+    return relative;
+}
+
+}  // namespace item3d
