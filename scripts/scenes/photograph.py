@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Photographs scenes in NeRF-synthetic's layout, to measure `item3d reconstruct` on.
 
-    python3 scripts/scenes/photograph.py OUT [SCENE ...] [--samples 144] [--size 256] [--train 60] [--test 12]
+    python3 scripts/scenes/photograph.py OUT [SCENE ...] [--samples 64] [--size 256] [--train 60] [--test 12]
 
 Eight scenes (scenes.py), path traced by Mitsuba 3 with light between surfaces; without names all of them. Two are for
 choosing settings, six for reporting. OUT/SCENE gets
@@ -11,7 +11,9 @@ choosing settings, six for reporting. OUT/SCENE gets
     test_gt                            of the test views: base colour, roughness (G) and metallic (B), normal, depth
     gt/mesh.obj, gt/light*.exr         the surface and the three lights, +Y up
 
-Needs Mitsuba 3 and Pillow (pip install mitsuba pillow); Mitsuba's llvm variants need an LLVM library, which the
+What 64 samples a pixel leave of noise, Open Image Denoise takes away, with base colour and normals as a guide.
+
+Needs Mitsuba 3, pyoidn and Pillow (pip install mitsuba pyoidn pillow); Mitsuba's llvm variants need an LLVM library, which the
 environment variable DRJIT_LIBLLVM_PATH names where it is not found."""
 import argparse
 import json
@@ -21,6 +23,7 @@ import zlib
 
 import mitsuba as mi
 import numpy as np
+import pyoidn
 from PIL import Image
 
 mi.set_variant(os.environ.get('MITSUBA_VARIANT', 'llvm_ad_rgb'))
@@ -82,22 +85,21 @@ def color_of(part):
     return rgb(part.base_color) if part.texture is None else bitmap(linear(part.texture[..., :3]), True)
 
 
-def cut_out(part, bsdf, two_sided):
-    if two_sided:
-        bsdf = {'type': 'twosided', 'nested': bsdf}
+def cut_out(part, bsdf):
+    bsdf = {'type': 'twosided', 'nested': bsdf}
     if part.texture is None or part.texture.shape[-1] < 4:
         return bsdf
     return {'type': 'mask', 'opacity': bitmap(part.texture[..., 3:], True), 'nested': bsdf}
 
 
-def surface(part, two_sided):
+def surface(part):
     return cut_out(part, {'type': 'principled', 'base_color': color_of(part), 'roughness': part.roughness,
                           'metallic': float(part.metallic), 'specular': 0.5, 'clearcoat': part.clearcoat,
-                          'clearcoat_gloss': 0.95}, two_sided)
+                          'clearcoat_gloss': 0.95})
 
 
-def plain(part, color, two_sided):
-    return cut_out(part, {'type': 'diffuse', 'reflectance': color}, two_sided)
+def plain(part, color):
+    return cut_out(part, {'type': 'diffuse', 'reflectance': color})
 
 
 def mesh(data, bsdf):
@@ -141,6 +143,17 @@ def sensor(camera, size):
                          'sampler': {'type': 'multijitter'}})
 
 
+def with_guides(integrator):
+    """RGBA, then base colour, normal and depth."""
+    return {'type': 'aov', 'aovs': 'albedo:albedo,normal:sh_normal,depth:depth', 'nested': integrator}
+
+
+def denoised(image):
+    part = [np.ascontiguousarray(image[..., at:at + 3], np.float32) for at in (0, 4, 7)]
+    color = pyoidn.denoise(part[0], albedo=np.clip(part[1], 0, 1), normal=part[2], hdr=True)
+    return np.concatenate([color, image[..., 3:4]], -1)
+
+
 def save_rgba(path, image):
     """Straight alpha, sRGB."""
     alpha = np.clip(image[..., 3:4], 0, 1)
@@ -177,29 +190,28 @@ def photograph(name, folder, options):
                              else {'type': 'constant', 'radiance': 1.0}})
 
     seed = zlib.crc32(name.encode()) % 100000
-    path = mi.load_dict({'type': 'path', 'max_depth': options.depth, 'hide_emitters': True})
+    path = mi.load_dict(with_guides({'type': 'path', 'max_depth': options.depth, 'hide_emitters': True}))
     train, test = cameras(options.train, options.test)
     begin = time.time()
     for suffix, light in lights.items():
         picture = light_picture(light)
         save_exr(f'{folder}/gt/light{"_" + suffix if suffix else ""}.exr', picture)
-        lit = world(lambda part: surface(part, scene.two_sided), picture)
+        lit = world(lambda part: surface(part), picture)
         splits = {f'test_{suffix}': (test, 2)} if suffix else {'train': (train, 1), 'test': (test, 1)}
         for number, (split, (views, step)) in enumerate(splits.items()):
             for k in range(0, len(views), step):
                 image = mi.render(lit, sensor=sensor(views[k], options.size), integrator=path, spp=options.samples,
                                   seed=seed + 1000 * number + k)
-                save_rgba(f'{folder}/{split}/r_{k}.png', np.array(image))
+                save_rgba(f'{folder}/{split}/r_{k}.png', denoised(np.array(image)))
             print(name, split, f'{time.time() - begin:.0f} s', flush=True)
     for split, views in (('train', train), ('test', test)):
         frames = [{'file_path': f'./{split}/r_{k}', 'transform_matrix': (Z_UP @ m).tolist()} for k, m in enumerate(views)]
         with open(f'{folder}/transforms_{split}.json', 'w') as out:
             json.dump({'camera_angle_x': FIELD_OF_VIEW_X, 'frames': frames}, out, indent=1)
 
-    truth = mi.load_dict({'type': 'aov', 'aovs': 'albedo:albedo,normal:sh_normal,depth:depth', 'nested': {
-        'type': 'path', 'max_depth': 2, 'hide_emitters': True}})
-    colors = world(lambda part: plain(part, color_of(part), scene.two_sided))
-    others = world(lambda part: plain(part, rgb((0, part.roughness, float(part.metallic))), scene.two_sided))
+    truth = mi.load_dict(with_guides({'type': 'path', 'max_depth': 2, 'hide_emitters': True}))
+    colors = world(lambda part: plain(part, color_of(part)))
+    others = world(lambda part: plain(part, rgb((0, part.roughness, float(part.metallic)))))
     for k, camera in enumerate(test):
         view = sensor(camera, options.size)
         a = np.array(mi.render(colors, sensor=view, integrator=truth, spp=64, seed=k))
@@ -220,7 +232,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('out')
     parser.add_argument('scene', nargs='*', help=', '.join(scenes.scenes))
-    parser.add_argument('--samples', type=int, default=144, help='a pixel, a square number')
+    parser.add_argument('--samples', type=int, default=64, help='a pixel, a square number')
     parser.add_argument('--depth', type=int, default=4, help='of paths')
     parser.add_argument('--size', type=int, default=256)
     parser.add_argument('--train', type=int, default=60)

@@ -1,5 +1,5 @@
 """The photographed scenes: what stands in them, and the light they stand in."""
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,7 +21,6 @@ class Part:
 class Scene:
     parts: list
     light: callable  # directions [N, 3] -> radiance [N, 3]
-    two_sided: bool = field(default=False)
 
 
 # Lights: directions are Y up; azimuth 0 is +Z, 90 is +X; angles are degrees.
@@ -137,7 +136,7 @@ def plant():
         tilt, length = 18 + 50 * (k % 5) / 4, 1.15 - 0.09 * (k % 5)
         turned = turn('y', 137.5 * k) @ turn('x', tilt)
         parts.append(Part(moved(leaf(length, 0.3, 0.45), (0, -0.25, 0), turn=turned), (0.1, 0.3, 0.08), 0.4, texture=picture))
-    return Scene(parts, overcast, two_sided=True)
+    return Scene(parts, overcast)
 
 
 def toy():

@@ -88,8 +88,7 @@ void run_reconstruct(const ReconstructCommand& options) {
     }
     const auto& scores = summary["scores"];
     const auto& chosen = scores["test"].is_null() ? scores["train"] : scores["test"];
-    fmt::print("{}: {} views {:.2f} dB, SSIM {:.3f}\n",
-               (request.output / "model.glb").string(),
+    fmt::print("{}: {} views {:.2f} dB, SSIM {:.3f}\n", (request.output / "model.glb").string(),
                scores["test"].is_null() ? "training" : "held-out", chosen["psnr"].get<double>(),
                chosen["ssim"].get<double>());
 }

@@ -186,8 +186,9 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     StageRunner runner(request, dataset);
     ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius, request.corrections);
     note_blurred_views(result, corrections);
-    Start start = request.mesh.empty() ? start_from_photographs(request, result, corrections, runner)
-                                       : start_from_mesh(request, result);
+    Start start = request.mesh.empty()
+                      ? start_from_photographs(request, result, corrections, runner)
+                      : start_from_mesh(request, result);
     result.times.end_stage("unwrap");
 
     MovableMesh mesh(start.model, request.move_vertices);

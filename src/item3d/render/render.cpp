@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/render/antialias.h"
+#include "item3d/render/occlusion/indirect_light.h"
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/scatter.h"
 
@@ -19,7 +20,16 @@ at::Tensor shade_layer(const Raster& raster, const Geometry& geometry,
     add_uv_footprints(geometry, raster, surface);
     MaterialSample material = materials.sample(surface);
     if (options.occlusion) material = options.occlusion->shadowed(material, raster, surface);
-    const at::Tensor radiance = shade(surface, material, light, options.shade);
+    at::Tensor radiance;
+    if (options.indirect) {
+        const auto reflection = options.indirect->reflect(
+            raster, surface, material.orm.narrow(1, 1, 1), options.indirect_rays, 0);
+        radiance =
+            shade_indirect(surface, material, light, options.indirect->bounce(raster, surface),
+                           reflection, options.shade);
+    } else {
+        radiance = shade(surface, material, light, options.shade);
+    }
     const at::Tensor alpha = material.alpha.defined()
                                  ? material.alpha.unsqueeze(1)
                                  : at::ones({surface.count(), 1}, radiance.options());

@@ -9,6 +9,7 @@
 
 namespace item3d {
 
+class IndirectLight;
 class Occlusion;
 
 struct RenderOptions {
@@ -21,6 +22,9 @@ struct RenderOptions {
     ShadeOptions shade;
     /// Darkens what the model hides from the light (occlusion.h). Null: nothing.
     std::shared_ptr<const Occlusion> occlusion;
+    /// What surfaces throw at each other (indirect_light.h), on the CPU. Null: nothing.
+    std::shared_ptr<const IndirectLight> indirect;
+    int indirect_rays = 16;  ///< of each mirrored lobe
 };
 
 /// One picture a camera: [N, H, W, 4] linear radiance, premultiplied, with coverage in A (1 where a

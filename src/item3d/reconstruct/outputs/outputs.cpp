@@ -66,11 +66,11 @@ nlohmann::json corrections_json(const Dataset& dataset, const ViewCorrections& c
         for (int row = 0; row < 4; ++row)
             rows.push_back({pose[0][row], pose[1][row], pose[2][row], pose[3][row]});
         const at::Tensor gain = gains[static_cast<std::int64_t>(i)];
-        views.push_back({{"name", view.name},
-                         {"gain",
-                          {gain[0].item<float>(), gain[1].item<float>(), gain[2].item<float>()}},
-                         {"weight", corrections.weight(i)},
-                         {"camera_to_world", rows}});
+        views.push_back(
+            {{"name", view.name},
+             {"gain", {gain[0].item<float>(), gain[1].item<float>(), gain[2].item<float>()}},
+             {"weight", corrections.weight(i)},
+             {"camera_to_world", rows}});
     }
     return {{"largest_turn_degrees", corrections.largest_turn()},
             {"largest_shift", corrections.largest_shift()},

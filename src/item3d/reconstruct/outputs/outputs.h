@@ -36,9 +36,9 @@ struct Reconstruction {
     RefineCurves refine;
     std::vector<ScoredView> train, test;  ///< a few of the former
     std::vector<ScoredView> test_without_shadows;
-    std::vector<ScoredView> test_scaled;  ///< with a gain for each view and channel
+    std::vector<ScoredView> test_scaled;   ///< with a gain for each view and channel
     std::vector<ScoredView> test_aligned;  ///< and moved, where poses were refined
-    nlohmann::json corrections;           ///< of the training views, see corrections_json()
+    nlohmann::json corrections;            ///< of the training views, see corrections_json()
     std::vector<RelitScores> relit;
     std::optional<MaterialTruth> materials;
     std::optional<double> chamfer;  ///< part of the reference's diagonal

@@ -129,16 +129,16 @@ std::string dataset_table(const Reconstruction& result) {
     const nlohmann::json& corrections = result.corrections;
     return html_table(
         {{"Layout", dataset_kind_name(dataset.kind)},
-         {"Views", fmt::format("{} to learn from, {} held out", dataset.train.size(),
-                               dataset.test.size())},
+         {"Views",
+          fmt::format("{} to learn from, {} held out", dataset.train.size(), dataset.test.size())},
          {"Size", fmt::format("{} x {}", first.width, first.height)},
          {"Masks", dataset.masks},
          {"Poses", fmt::format("moved by at most {:.2f} degrees and {:.2f} % of the radius",
                                corrections["largest_turn_degrees"].get<double>(),
                                100 * corrections["largest_shift"].get<double>())},
-         {"Exposure", fmt::format("gains of {:.2f} to {:.2f}",
-                                  corrections["least_gain"].get<double>(),
-                                  corrections["greatest_gain"].get<double>())}});
+         {"Exposure",
+          fmt::format("gains of {:.2f} to {:.2f}", corrections["least_gain"].get<double>(),
+                      corrections["greatest_gain"].get<double>())}});
 }
 
 std::string charts(const Reconstruction& result) {

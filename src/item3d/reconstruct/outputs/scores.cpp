@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/metrics/image_quality.h"
+#include "item3d/render/occlusion/indirect_light.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/render.h"
 #include "item3d/render/srgb.h"
@@ -95,6 +96,15 @@ ModelRenderer::ModelRenderer(const Model& model, const Image& light, bool shadow
     OcclusionOptions options;
     options.light = light;
     occlusion_ = std::make_shared<Occlusion>(geometry_, &model, options);
+    indirect_ =
+        std::make_shared<IndirectLight>(geometry_, &model, IndirectLightOptions{.rays = 128});
+    indirect_->update([&](const Raster& raster, const Surface& surface, const at::Tensor& bounce) {
+        MaterialSample material = materials_.sample(surface);
+        material.normal = at::Tensor();
+        material = occlusion_->shadowed(material, raster, surface);
+        return shade(surface, material, light_) +
+               material.base_color * (1 - material.orm.narrow(1, 2, 1)) * bounce;
+    });
 }
 
 at::Tensor ModelRenderer::draw(const TargetView& view) const {
@@ -103,6 +113,7 @@ at::Tensor ModelRenderer::draw(const TargetView& view) const {
     options.width = view.width();
     options.height = view.height();
     options.occlusion = occlusion_;
+    options.indirect = indirect_;
     return render(geometry_, materials_, light_, {view.camera}, options);
 }
 

@@ -120,7 +120,8 @@ double align_to_hull(const Dataset& dataset, const std::string& subject,
     }
     progress.finish();
     const double after = disagreement();
-    note(fmt::format("poses: the outlines disagreed by {:.2f} pixels, now by {:.2f}", before, after));
+    note(fmt::format("poses: the outlines disagreed by {:.2f} pixels, now by {:.2f}", before,
+                     after));
     return after;
 }
 

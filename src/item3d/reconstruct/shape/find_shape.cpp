@@ -79,7 +79,9 @@ double mask_overlap(const TriangleMesh& mesh, const std::vector<TargetView>& vie
 ShapeSearch::ShapeSearch(const Dataset& dataset, const VisualHull& hull, std::array<Vec3, 2> bounds,
                          Appearance& appearance, ViewCorrections& corrections,
                          const ShapeOptions& options)
-    : Stage(appearance, corrections), options_(options), order_(dataset.train.size(), options.seed) {
+    : Stage(appearance, corrections),
+      options_(options),
+      order_(dataset.train.size(), options.seed) {
     ITEM3D_CHECK(!options.cells.empty(), "at least one lattice");
     lattice_ = make_lattice(bounds, options.cells.front());
     const Vec3 size(lattice_.cells[0], lattice_.cells[1], lattice_.cells[2]);
@@ -176,7 +178,8 @@ void ShapeSearch::step() {
     adam.options("values").learning_rate = rate * options_.value_learning_rate;
     adam.options("offsets").learning_rate = rate * options_.offset_learning_rate;
     adam.options("weights").learning_rate = rate * options_.weight_learning_rate;
-    corrections_.set_rates(adam, blend(1.0, corrections_scale_last, iteration(), options_.iterations));
+    corrections_.set_rates(adam,
+                           blend(1.0, corrections_scale_last, iteration(), options_.iterations));
     adam.step();
     adam.zero_grad();
     {

@@ -37,7 +37,7 @@ struct ShapeOptions {
 struct FoundShape {
     TriangleMesh mesh;
     RefineCurves curves;
-    std::vector<double> triangles;  ///< of the surface that was drawn, by iteration
+    std::vector<double> triangles;    ///< of the surface that was drawn, by iteration
     double outline_disagreement = 0;  ///< pixels, see VisualHull
 };
 

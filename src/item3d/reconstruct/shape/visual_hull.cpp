@@ -149,8 +149,8 @@ at::Tensor VisualHull::distance(const at::Tensor& points_, std::size_t ignored) 
     return result;
 }
 
-std::array<Vec3, 2> VisualHull::bounds(Vec3 centre, float radius,
-                                       const std::string& subject, std::size_t ignored) const {
+std::array<Vec3, 2> VisualHull::bounds(Vec3 centre, float radius, const std::string& subject,
+                                       std::size_t ignored) const {
     const float reach = 1.2f * radius;
     const Lattice lattice{
         centre - reach, 2 * reach / search_cells, {search_cells, search_cells, search_cells}};
@@ -194,15 +194,16 @@ double VisualHull::disagreement(const std::vector<Photograph>& views, Vec3 centr
             const float aspect = static_cast<float>(image.height) / static_cast<float>(image.width);
             const Vec3 ray = Vec3(pose * Vec4((p.x - 1) * slope, (aspect - p.y) * slope, -1, 0));
             for (int k = 0; k < steps; ++k) {
-                const float depth = distance - radius + 0.5f * pixel * (static_cast<float>(k) + 0.5f);
+                const float depth =
+                    distance - radius + 0.5f * pixel * (static_cast<float>(k) + 0.5f);
                 const Vec3 point = eye + depth * ray;
                 points.insert(points.end(), {point.x, point.y, point.z});
             }
         }
         const auto rays = static_cast<std::int64_t>(points.size()) / (3 * steps);
-        const at::Tensor places =
-            at::from_blob(points.data(), {rays * steps, 3}, at::kFloat);
-        const at::Tensor nearest = std::get<0>(this->distance(places).reshape({rays, steps}).min(1));
+        const at::Tensor places = at::from_blob(points.data(), {rays * steps, 3}, at::kFloat);
+        const at::Tensor nearest =
+            std::get<0>(this->distance(places).reshape({rays, steps}).min(1));
         sum += (nearest.clamp_min(0) / pixel).sum().item<double>();
         count += static_cast<double>(rays);
     }

@@ -13,7 +13,7 @@ namespace {
 constexpr double final_rate = 0.1;
 constexpr std::int64_t smoothness_points = 4096;
 constexpr float farthest_smoothness = 0.15f;  ///< of the object's diagonal
-constexpr int traces = 4;                     ///< of shadows, in all
+constexpr int traces = 8;                     ///< of shadows, in all
 /// Of the learning rates of corrections: most was found with the shape.
 constexpr double corrections_scale = 0.25;
 
@@ -66,6 +66,17 @@ void Refinement::trace() {
     if (mesh_.moves()) traced_.offsets = mesh_.offsets().detach().clone();
     if (iteration() > 0) traced_.radiance = appearance_.light.radiance();
     occlusion_ = trace_occlusion(mesh_, traced_.radiance);
+    if (iteration() == 0) return;
+    indirect_.emplace(mesh_.geometry());
+    indirect_->update([&](const Raster& raster, const Surface& surface, const at::Tensor& bounce) {
+        MaterialSample material = appearance_.field->forward(surface.position);
+        material.normal = at::Tensor();
+        material.orm = at::cat(
+            {occlusion_->at(raster, surface).unsqueeze(1), material.orm.narrow(1, 1, 2)}, 1);
+        const at::Tensor plain = material.base_color * (1 - material.orm.narrow(1, 2, 1));
+        return shade(surface, material, learning_.light) + plain * bounce;
+    });
+    traced_.indirect = indirect_->stored();
 }
 
 RenderedView Refinement::render(const TargetView& view, ViewRenderOptions how) {
@@ -76,6 +87,8 @@ RenderedView Refinement::render(const TargetView& view, ViewRenderOptions how) {
         geometry.normals = geometry.normals.detach();
     }
     how.occlusion = occlusion_ ? &*occlusion_ : nullptr;
+    how.indirect = indirect_ ? &*indirect_ : nullptr;
+    how.seed = mix_bits(options_.seed ^ static_cast<std::uint64_t>(iteration()));
     how.normal_map = options_.normal_map && !how.one_material;
     return render_view(geometry, appearance_.field, learning_.light, view, how);
 }
@@ -118,8 +131,8 @@ void Refinement::step() {
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
     const at::Tensor picture = picture_loss(rendered.image, view.image, background);
     const at::Tensor mask = mask_loss(rendered.image, view.image);
-    at::Tensor loss = corrections_.weight(index) * picture +
-                      regularization(rendered, view, mask) + corrections_.motion_loss(index);
+    at::Tensor loss = corrections_.weight(index) * picture + regularization(rendered, view, mask) +
+                      corrections_.motion_loss(index);
     if (light_learns) loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss();
     loss.backward();
     Adam& adam = learning_.optimizer;
@@ -147,6 +160,7 @@ NamedTensors Refinement::state() const {
     if (mesh_.moves()) tensors.emplace_back("offsets", mesh_.offsets().detach());
     if (traced_.offsets.defined()) tensors.emplace_back("traced.offsets", traced_.offsets);
     if (traced_.radiance.defined()) tensors.emplace_back("traced.radiance", traced_.radiance);
+    if (traced_.indirect.defined()) tensors.emplace_back("traced.indirect", traced_.indirect);
     return tensors;
 }
 
@@ -162,6 +176,11 @@ void Refinement::load_state(const CheckpointReader& reader) {
             reader.copy("traced.offsets", mesh_.offsets());
         }
         occlusion_ = trace_occlusion(mesh_, traced_.radiance);
+        if (reader.has("traced.indirect")) {
+            traced_.indirect = reader.get("traced.indirect");
+            indirect_.emplace(mesh_.geometry());
+            indirect_->restore(traced_.indirect);
+        }
     }
     if (mesh_.moves()) reader.copy("offsets", mesh_.offsets());
 }

@@ -67,6 +67,7 @@ class Refinement : public Stage {
     struct Traced {
         at::Tensor offsets;   ///< of the mesh; undefined: it does not move
         at::Tensor radiance;  ///< [H, 2H, 3]; undefined: light from everywhere
+        at::Tensor indirect;  ///< IndirectLight::stored(); undefined: none
     };
     void trace();
     RenderedView render(const TargetView& view, ViewRenderOptions how);
@@ -82,6 +83,7 @@ class Refinement : public Stage {
     ViewOrder order_;
     Traced traced_;
     std::optional<Occlusion> occlusion_;
+    std::optional<IndirectLight> indirect_;
 };
 
 }  // namespace item3d

@@ -10,7 +10,7 @@ namespace {
 constexpr double rotation_rate = 0.0005;    ///< radians
 constexpr double translation_rate = 0.001;  ///< of the radius
 constexpr double motion_weight = 0.2;
-constexpr double unsure_gain = 0.03;        ///< natural logarithm
+constexpr double unsure_gain = 0.03;  ///< natural logarithm
 /// Sharpness beside views from about the same side, under which a picture counts less.
 constexpr double sharp_enough = 0.5;
 constexpr double least_weight = 0.05;
@@ -193,7 +193,9 @@ at::Tensor ViewCorrections::gains() const {
     const at::NoGradGuard no_gradient;
     if (!options_.exposure) return at::ones_like(log_gains_);
     const at::Tensor apart = log_gains_ - std::get<0>(log_gains_.median(0));
-    return (apart.sign() * (apart.abs() - unsure_gain).clamp_min(0)).exp();
+    // One view in which something shines is no drift.
+    if (apart.abs().median().item<double>() < unsure_gain) return at::ones_like(log_gains_);
+    return apart.exp();
 }
 
 std::vector<std::size_t> ViewCorrections::blurred() const {

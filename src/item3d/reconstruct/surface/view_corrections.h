@@ -58,8 +58,8 @@ class ViewCorrections {
     RigidMotion motion(std::size_t view) const;
     /// Square of the motion, so that what no picture shows stays as it was; 0 where poses are kept.
     at::Tensor motion_loss(std::size_t view) const;
-    /// [3], what radiance is multiplied by; undefined where exposure is kept. Gains within 3 % of 1
-    /// are 1, and others that much nearer to it: they may not explain what materials can.
+    /// [3], what radiance is multiplied by; undefined where exposure is kept. All are 1 where half
+    /// of them are within 3 % of it: gains may not explain what materials can.
     at::Tensor gain(std::size_t view) const;
     /// Moves the view's gain half the way to the one that brings what was drawn without any to the
     /// photograph: the median of their quotients. [1, H, W, 4] each, as TargetView's.

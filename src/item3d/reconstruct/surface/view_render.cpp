@@ -82,11 +82,19 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
     if (options.occlusion != nullptr)
         occlusion = options.occlusion->at(result.raster, result.surface).unsqueeze(1);
     shaded.orm = at::cat({occlusion, shaded.orm.narrow(1, 1, 2)}, 1);
-    const at::Tensor radiance = shade(result.surface, shaded, light);
+    at::Tensor radiance;
+    if (options.indirect == nullptr) {
+        radiance = shade(result.surface, shaded, light);
+    } else {
+        const IndirectLight& indirect = *options.indirect;
+        radiance = shade_indirect(result.surface, shaded, light,
+                                  indirect.bounce(result.raster, result.surface),
+                                  indirect.reflect(result.raster, result.surface,
+                                                   shaded.orm.narrow(1, 1, 1), 1, options.seed));
+    }
     const at::Tensor values = at::cat({radiance, at::ones_like(radiance.narrow(1, 0, 1))}, 1);
-    result.image = result.without_gain =
-        antialias(scatter(values, result.surface, result.raster, at::zeros({4})), result.raster,
-                  seen);
+    result.image = result.without_gain = antialias(
+        scatter(values, result.surface, result.raster, at::zeros({4})), result.raster, seen);
     if (options.gain.defined())
         result.image = result.image * at::cat({options.gain, at::ones({1})});
     return result;

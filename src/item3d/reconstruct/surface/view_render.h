@@ -5,6 +5,7 @@
 #include "item3d/field/neural_texture.h"
 #include "item3d/reconstruct/dataset/dataset.h"
 #include "item3d/reconstruct/surface/view_corrections.h"
+#include "item3d/render/occlusion/indirect_light.h"
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/prefilter/environment_light.h"
 #include "item3d/render/shade.h"
@@ -38,7 +39,10 @@ struct RenderedView {
 
 struct ViewRenderOptions {
     const Occlusion* occlusion = nullptr;  ///< traced, in place of the material's own
-    bool normal_map = false;               ///< use the field's tangent-space normals
+    /// What surfaces throw at each other; null: nothing. One ray of each lobe, drawn by `seed`.
+    const IndirectLight* indirect = nullptr;
+    std::uint64_t seed = 0;
+    bool normal_map = false;    ///< use the field's tangent-space normals
     bool one_material = false;  ///< the view's mean everywhere: only the light can explain shading
     RigidMotion motion = {};    ///< of the object in front of the camera; undefined tensors: none
     at::Tensor gain = {};       ///< [3], of all radiance; undefined: 1

@@ -121,7 +121,7 @@ bool TransparentTriangles::lets_through(unsigned primitive, float u, float v,
     return Random(chance, static_cast<std::uint64_t>(t)).uniform() >= static_cast<double>(alpha);
 }
 
-void occlusion_filter(const RTCFilterFunctionNArguments* arguments) {
+void let_through(const RTCFilterFunctionNArguments* arguments) {
     const auto& triangles = *static_cast<const TransparentTriangles*>(arguments->geometryUserPtr);
     const auto* context = reinterpret_cast<const Context*>(arguments->context);
     for (unsigned i = 0; i < arguments->N; ++i) {
@@ -131,6 +131,19 @@ void occlusion_filter(const RTCFilterFunctionNArguments* arguments) {
                                    RTCHitN_v(arguments->hit, arguments->N, i), context->chance))
             arguments->valid[i] = 0;
     }
+}
+
+RTCRay ray_from(Vec3 origin, Vec3 direction) {
+    RTCRay ray{};
+    ray.org_x = origin.x;
+    ray.org_y = origin.y;
+    ray.org_z = origin.z;
+    ray.dir_x = direction.x;
+    ray.dir_y = direction.y;
+    ray.dir_z = direction.z;
+    ray.tfar = std::numeric_limits<float>::infinity();
+    ray.mask = 0xffffffffu;
+    return ray;
 }
 
 /// Throws what Embree could not do since the last call.
@@ -146,6 +159,7 @@ struct RayScene::State {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     TransparentTriangles transparent;
+    std::vector<std::vector<std::int32_t>> triangles;  ///< of each of Embree's geometries
 
     State() = default;
     State(const State&) = delete;
@@ -175,10 +189,12 @@ struct RayScene::State {
                     corners.const_data_ptr<std::int32_t>()[3 * static_cast<std::int64_t>(t) + k]);
         if (filtered != nullptr) {
             rtcSetGeometryUserData(geometry, filtered);
-            rtcSetGeometryOccludedFilterFunction(geometry, occlusion_filter);
+            rtcSetGeometryOccludedFilterFunction(geometry, let_through);
+            rtcSetGeometryIntersectFilterFunction(geometry, let_through);
         }
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene, geometry);
+        triangles.push_back(chosen);
         rtcReleaseGeometry(geometry);
     }
 };
@@ -224,18 +240,22 @@ bool RayScene::blocked(Vec3 origin, Vec3 direction, std::uint64_t chance) const 
     Context context;
     rtcInitIntersectContext(&context.base);
     context.chance = chance;
-    RTCRay ray{};
-    ray.org_x = origin.x;
-    ray.org_y = origin.y;
-    ray.org_z = origin.z;
-    ray.dir_x = direction.x;
-    ray.dir_y = direction.y;
-    ray.dir_z = direction.z;
-    ray.tnear = 0;
-    ray.tfar = std::numeric_limits<float>::infinity();
-    ray.mask = 0xffffffffu;
+    RTCRay ray = ray_from(origin, direction);
     rtcOccluded1(state_->scene, &context.base, &ray);
     return ray.tfar < 0;
+}
+
+RayScene::Hit RayScene::nearest(Vec3 origin, Vec3 direction, std::uint64_t chance) const {
+    Context context;
+    rtcInitIntersectContext(&context.base);
+    context.chance = chance;
+    RTCRayHit found{};
+    found.ray = ray_from(origin, direction);
+    found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(state_->scene, &context.base, &found);
+    if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    return {state_->triangles[found.hit.geomID][found.hit.primID], 1 - found.hit.u - found.hit.v,
+            found.hit.u};
 }
 
 }  // namespace item3d

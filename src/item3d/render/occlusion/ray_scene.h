@@ -21,6 +21,13 @@ class RayScene {
     /// through; the same ray and chance give the same answer. Safe to call from many threads.
     bool blocked(Vec3 origin, Vec3 direction, std::uint64_t chance = 0) const;
 
+    struct Hit {
+        std::int32_t triangle = -1;   ///< -1: nothing is hit
+        float first = 0, second = 0;  ///< barycentrics of the triangle's vertices 0 and 1
+    };
+    /// The nearest triangle along the ray.
+    Hit nearest(Vec3 origin, Vec3 direction, std::uint64_t chance = 0) const;
+
   private:
     struct State;
     std::shared_ptr<const State> state_;
