@@ -33,6 +33,9 @@ TEST_F(RenderProgram, ChangesThePictureOnlyWhereAsked) {
     EXPECT_EQ(picture("again", "--occlusion=ambient --threads 3"), ambient);
     const std::string light = picture("light", "--occlusion=light --light noon");
     EXPECT_NE(light, picture("noon", "--occlusion --light noon"));
+    const std::string indirect = picture("indirect", "--indirect --light noon");
+    EXPECT_NE(indirect, light);
+    EXPECT_EQ(picture("same", "--indirect --occlusion=light --light noon --threads 3"), indirect);
 }
 
 TEST_F(RenderProgram, SamplesChangeEdgesAndFitTheSize) {

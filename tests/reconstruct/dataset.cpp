@@ -145,15 +145,28 @@ TEST(Dataset, BackgroundColourMakesAMask) {
                 picture.at(x, y, 1) = 0.3f;
         save_image(plain.folder / "train" / ("view_" + std::to_string(i) + ".png"), picture);
     }
-    expect_problem(plain.problem(), "all object (masks: none)");
+    const auto covered = [](const Dataset& dataset) {
+        float sum = 0;
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 24; ++x)
+                sum += dataset.train[0].image.at(x, y, 3);
+        return sum;
+    };
     DatasetOptions options;
     options.background = Vec3(1);
-    const Dataset dataset = plain.load(options);
-    float covered = 0;
-    for (int y = 0; y < 24; ++y)
-        for (int x = 0; x < 24; ++x)
-            covered += dataset.train[0].image.at(x, y, 3);
-    EXPECT_EQ(covered, 64.0f);
+    EXPECT_EQ(covered(plain.load(options)), 64.0f);
+    // Plain as it is, it is found.
+    const Dataset found = plain.load();
+    EXPECT_EQ(covered(found), 64.0f);
+    EXPECT_EQ(found.masks, "the plain background that was found");
+    for (int i = 0; i < 4; ++i) {
+        Image picture(24, 24, 3);
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 24; ++x)
+                picture.at(x, y, 1) = static_cast<float>((x + y) % 8) / 8;
+        save_image(plain.folder / "train" / ("view_" + std::to_string(i) + ".png"), picture);
+    }
+    expect_problem(plain.problem(), "all object (masks: none)");
 }
 
 /// Up is +Y already.

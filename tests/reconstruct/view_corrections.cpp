@@ -90,11 +90,11 @@ TEST(ViewCorrections, GainsFollowADriftAndNotOneView) {
 }
 
 TEST(ViewCorrections, ABlurredPictureIsFound) {
-    Dataset dataset = photographs_of(three_arms(), 12, 64);
+    Dataset dataset = photographs_of(three_arms(), 40, 128);
     for (std::size_t v = 0; v < dataset.train.size(); ++v) {
         Image& image = dataset.train[v].image;
-        for (int y = 0; y < 64; ++y)
-            for (int x = 0; x < 64; ++x)
+        for (int y = 0; y < 128; ++y)
+            for (int x = 0; x < 128; ++x)
                 for (int c = 0; c < 3; ++c)
                     image.at(x, y, c) *= v == 5 ? 0.75f : ((x / 2 + y / 2) % 2 == 0 ? 1.0f : 0.5f);
     }

@@ -88,7 +88,8 @@ TEST(Reconstruct, MaterialsAndLightOfAGivenMesh) {
     request.mesh = request.dataset / "sphere.glb";
     request.reference = request.mesh;
     request.move_vertices = false;
-    request.refine.iterations = 150;
+    request.refine.iterations = 110;
+    request.refine.traces = 2;
     request.refine.light_every = 3;  // most of a step's time is the light's
     request.texture_size = 128;
     const nlohmann::json summary = reconstruct(request);
@@ -116,6 +117,7 @@ TEST(Reconstruct, ShapeFromPicturesAlone) {
     request.shape.iterations = 80;
     request.shape.triangles = 2000;
     request.refine.iterations = 60;
+    request.refine.traces = 2;
     request.refine.light_every = 4;
     request.texture_size = 128;
     const nlohmann::json summary = reconstruct(request);
@@ -134,7 +136,8 @@ ReconstructRequest short_request(const fs::path& dataset, const std::string& out
     request.shape.cells = {8, 16};
     request.shape.iterations = 9;  // three on the coarse lattice
     request.shape.triangles = 600;
-    request.refine.iterations = 6;  // shadows are traced at every second
+    request.refine.iterations = 6;
+    request.refine.traces = 3;
     request.texture_size = 64;
     request.command = "item3d reconstruct";
     return request;

@@ -15,6 +15,7 @@
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/metrics/color.h"
+#include "item3d/render/occlusion/indirect_light.h"
 #include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/scatter.h"
@@ -53,6 +54,7 @@ struct RenderCommand : CommonOptions {
     std::string channel = "shaded";
     std::string background = "none";
     std::string occlusion = "none";
+    bool indirect = false;
     int samples = 0;  ///< along each side of a pixel; 0: 2, or 1 where that is too large to draw
 };
 
@@ -175,6 +177,8 @@ class Painter {
                 if (options.occlusion == "light") occlusion.light = light;
                 occlusion_ = std::make_shared<Occlusion>(geometry_, &model, occlusion);
             }
+            if (options.indirect)
+                indirect_ = trace_indirect_light(geometry_, model, materials_, light_, *occlusion_);
         }
     }
 
@@ -188,6 +192,7 @@ class Painter {
         options.supersampling = samples_;
         options.background = background_;
         options.occlusion = occlusion_;
+        options.indirect = indirect_;
         return to_image(render(geometry_, materials_, light_, {camera}, options)[0].cpu());
     }
 
@@ -286,14 +291,20 @@ class Painter {
     TexturedMaterials materials_;
     EnvironmentLight light_;
     std::shared_ptr<const Occlusion> occlusion_;
+    std::shared_ptr<const IndirectLight> indirect_;
 };
 
-void run_render(const RenderCommand& options, at::Device device) {
+void run_render(RenderCommand options, at::Device device) {
+    if (options.indirect) {
+        if (device.is_cuda())
+            throw ResourceError("--indirect is computed on the CPU; use --device cpu");
+        if (options.occlusion == "none") options.occlusion = "light";
+    }
     if (!options.cameras.empty() && options.views > 0) {
         throw UsageError("--views and --cameras exclude one another");
     }
     if (options.occlusion != "none" && options.channel != "shaded") {
-        throw UsageError("--occlusion is of --channel shaded alone");
+        throw UsageError("--occlusion and --indirect are of --channel shaded alone");
     }
     const PictureSize size = parse_size(options.size);
     const Model model = load_model(
@@ -383,6 +394,9 @@ void add_render_command(CLI::App& app) {
                    "Darken what the model hides from light all around it; --occlusion=light: from "
                    "this light, so that its sun casts shadows. Multiplies an occlusion texture")
         ->check(CLI::IsMember({"none", "ambient", "light"}));
+    command->add_flag("--indirect", options->indirect,
+                      "Light that surfaces throw at each other, and each other's reflections; with "
+                      "--occlusion=light unless another is asked for");
     command
         ->add_option("--samples", options->samples,
                      "So many along each side of a shaded pixel: more make finer edges and take "

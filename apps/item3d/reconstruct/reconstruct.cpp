@@ -171,9 +171,10 @@ void add_reconstruct_command(CLI::App& app) {
     command->add_option("--triangles", request.shape.triangles, "Of the model, at most about")
         ->check(CLI::Range(100, 10000000))
         ->capture_default_str();
-    command->add_option("--texture-size", request.texture_size, "Pixels of a side")
-        ->check(CLI::Range(16, 4096))
-        ->capture_default_str();
+    command
+        ->add_option("--texture-size", request.texture_size,
+                     "Pixels of a side; without it 1024 to 4096, as fine as the photographs")
+        ->check(CLI::Range(16, 4096));
     command->add_flag("--no-normal-map", options->no_normal_map, "The mesh alone has normals");
     command->add_flag("--no-shadows", options->no_shadows,
                       "Do not trace what the object hides from the light");

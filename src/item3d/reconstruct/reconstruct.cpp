@@ -80,6 +80,11 @@ void add_warning(Reconstruction& result, const std::string& text) {
     warn(text);
 }
 
+void choose_texture_size(Reconstruction& result, const Model& model, float pixel) {
+    result.texture_size = result.request.texture_size > 0 ? result.request.texture_size
+                                                          : texture_size_for(model, pixel);
+}
+
 void note_blurred_views(Reconstruction& result, const ViewCorrections& corrections) {
     const auto blurred = corrections.blurred();
     if (blurred.empty()) return;
@@ -132,9 +137,10 @@ Start start_from_mesh(const ReconstructRequest& request, Reconstruction& result)
     const Dataset& dataset = result.dataset;
     Model plain = load_plain_model(request.mesh);
     add_warning(result, check_mesh_frame(mesh_of(plain), dataset, request.mesh.string()));
-    Model model = unwrapped(std::move(plain), request.texture_size);
-    const auto bounds = model.bounds();
+    const auto bounds = plain.bounds();
     const auto views = make_targets({dataset.train.front()}, bounds);
+    choose_texture_size(result, plain, pixel_size(bounds, views.front()));
+    Model model = unwrapped(std::move(plain), result.texture_size);
     return {std::move(model),
             make_appearance(bounds, views, AppearanceStart::smooth, request.refine.seed)};
 }
@@ -165,7 +171,10 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
     }
     const TriangleMesh& mesh = result.shape->mesh;
     result.times.end_stage("shape");
-    return {unwrapped(plain_model(mesh.positions, mesh.triangles), request.texture_size),
+    Model plain = plain_model(mesh.positions, mesh.triangles);
+    choose_texture_size(result, plain,
+                        pixel_size(bounds, make_targets({dataset.train.front()}, bounds).front()));
+    return {unwrapped(std::move(plain), result.texture_size),
             appearance_from(AppearanceStart::smooth)};
 }
 
@@ -199,7 +208,7 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     result.times.end_stage("refine");
 
     result.model = bake_and_save(request.output / "model.glb", mesh.apply(start.model),
-                                 start.appearance, request);
+                                 start.appearance, request, result.texture_size);
     result.light = start.appearance.light.to_image();
     save_image(request.output / "light.hdr", result.light, 32);
     result.times.end_stage("bake");

@@ -32,7 +32,7 @@ struct ReconstructRequest {
     RefineOptions refine;
     CorrectionOptions corrections;
     bool move_vertices = true;  ///< of a shape that was looked for; of a given mesh only if asked
-    int texture_size = 1024;
+    int texture_size = 0;       ///< 0: as the photographs have detail, see texture_size_for()
     std::vector<RelitViews> relit;
     /// Pictures of the materials of test views, see compare_materials(); empty: none.
     std::filesystem::path truth;

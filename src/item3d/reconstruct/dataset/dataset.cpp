@@ -121,7 +121,8 @@ std::string origin_words(const std::map<MaskOrigin, std::size_t>& origins) {
         {MaskOrigin::folder, "a folder"},
         {MaskOrigin::mask_path, "mask_path"},
         {MaskOrigin::alpha, "alpha"},
-        {MaskOrigin::background, "the background's colour"}};
+        {MaskOrigin::background, "the background's colour"},
+        {MaskOrigin::plain_border, "the plain background that was found"}};
     std::string text;
     for (const auto& [origin, count] : origins)
         text += (text.empty() ? "" : ", ") + std::string(words.at(origin)) +

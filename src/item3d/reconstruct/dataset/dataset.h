@@ -48,7 +48,8 @@ struct DatasetOptions {
 /// Finds out what `path` (a folder, or a transforms.json) is, reads it and checks it: a picture
 /// for each pose and of one size with its lens; masks that show something and not everything; at
 /// least three cameras at different places. Masks come from `options.masks`, mask_path, the folder
-/// "masks", alpha, or `options.background`, in this order. Throws InputError in one line.
+/// "masks", alpha, `options.background`, or a plain background, in this order. Throws InputError in
+/// one line.
 Dataset load_dataset(const std::filesystem::path& path, const DatasetOptions& options = {});
 
 /// Up to `count` of them, evenly chosen.

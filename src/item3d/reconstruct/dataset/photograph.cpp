@@ -97,28 +97,33 @@ Image load_mask(const fs::path& file, const Image& picture) {
     return resize(mask, picture.width, picture.height);
 }
 
-float background_coverage(const Vec3& encoded, const DatasetOptions& options) {
-    const Vec3 difference = glm::abs(encoded - *options.background);
-    const float largest = std::max({difference.x, difference.y, difference.z});
-    // A soft step: antialiased edges are partly background.
-    return std::clamp(largest / options.background_tolerance - 0.5f, 0.0f, 1.0f);
+float largest_difference(const Vec3& a, const Vec3& b) {
+    const Vec3 difference = glm::abs(a - b);
+    return std::max({difference.x, difference.y, difference.z});
+}
+
+Vec3 color_at(const Image& picture, int x, int y) {
+    Vec3 color;
+    for (int c = 0; c < 3; ++c)
+        color[c] = picture.at(x, y, picture.channels >= 3 ? c : 0);
+    return color;
 }
 
 /// Linear RGB times coverage, and coverage.
 Image premultiplied(const Image& picture, const Image& mask, bool is_linear,
-                    const DatasetOptions& options) {
+                    const std::optional<Vec3>& background, float tolerance) {
     Image result(picture.width, picture.height, 4);
     const bool has_alpha = picture.channels == 2 || picture.channels == 4;
     for (int y = 0; y < picture.height; ++y) {
         for (int x = 0; x < picture.width; ++x) {
-            Vec3 color;
-            for (int c = 0; c < 3; ++c)
-                color[c] = picture.at(x, y, picture.channels >= 3 ? c : 0);
+            const Vec3 color = color_at(picture, x, y);
             float alpha = has_alpha ? picture.at(x, y, picture.channels - 1) : 1.0f;
             if (!mask.empty()) {
                 alpha = mask.at(x, y, 0);
-            } else if (options.background) {
-                alpha = std::min(alpha, background_coverage(color, options));
+            } else if (background) {
+                // A soft step: antialiased edges are partly background.
+                alpha = std::clamp(largest_difference(color, *background) / tolerance - 0.5f, 0.0f,
+                                   alpha);
             }
             alpha = std::isfinite(alpha) ? std::clamp(alpha, 0.0f, 1.0f) : 0.0f;
             for (int c = 0; c < 3; ++c) {
@@ -145,6 +150,34 @@ fs::path find_mask(const fs::path& folder, const SourceView& view) {
     return {};
 }
 
+std::optional<Vec3> plain_border_color(const Image& picture, float tolerance) {
+    constexpr double plain_share = 0.9, least_object = 0.002;
+    std::vector<Vec3> border;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x)
+            if (x == 0 || y == 0 || x + 1 == picture.width || y + 1 == picture.height)
+                border.push_back(color_at(picture, x, y));
+    Vec3 median;
+    for (int c = 0; c < 3; ++c) {
+        std::vector<float> values;
+        for (const Vec3& color : border)
+            values.push_back(color[c]);
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        median[c] = *middle;
+    }
+    const auto plain = std::count_if(border.begin(), border.end(), [&](const Vec3& color) {
+        return largest_difference(color, median) <= 0.5f * tolerance;
+    });
+    if (static_cast<double>(plain) < plain_share * static_cast<double>(border.size())) return {};
+    int other = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x)
+            other += largest_difference(color_at(picture, x, y), median) > tolerance;
+    if (other < least_object * picture.width * picture.height) return {};
+    return median;
+}
+
 Image load_photograph(const SourceView& view, const fs::path& mask_file,
                       const DatasetOptions& options, Lens& lens, MaskOrigin& origin) {
     std::error_code ignored;
@@ -158,17 +191,21 @@ Image load_photograph(const SourceView& view, const fs::path& mask_file,
     lens = lens_for(picture, view);
 
     const bool has_alpha = picture.channels == 2 || picture.channels == 4;
+    std::optional<Vec3> background = options.background;
     Image mask;
     if (!mask_file.empty()) {
         mask = load_mask(mask_file, picture);
         origin = MaskOrigin::folder;
     } else if (has_alpha && varies(picture, picture.channels - 1)) {
         origin = MaskOrigin::alpha;
+    } else if (background) {
+        origin = MaskOrigin::background;
     } else {
-        origin = options.background ? MaskOrigin::background : MaskOrigin::none;
+        background = plain_border_color(picture, options.background_tolerance);
+        origin = background ? MaskOrigin::plain_border : MaskOrigin::none;
     }
-    Image image =
-        premultiplied(picture, mask, options.is_linear || is_floating(view.picture), options);
+    Image image = premultiplied(picture, mask, options.is_linear || is_floating(view.picture),
+                                background, options.background_tolerance);
     image = undistort(image, lens);
     Lens ideal;
     ideal.width = lens.width;

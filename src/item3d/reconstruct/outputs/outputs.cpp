@@ -31,7 +31,7 @@ nlohmann::json score_json(const std::vector<ScoredView>& views) {
 }  // namespace
 
 Model bake_and_save(const std::filesystem::path& file, const Model& model, Appearance& appearance,
-                    const ReconstructRequest& request) {
+                    const ReconstructRequest& request, int texture_size) {
     const at::NoGradGuard no_gradient;
     Model neutral = model;
     set_constant_material(neutral, appearance.field->options().ranges);
@@ -39,9 +39,9 @@ Model bake_and_save(const std::filesystem::path& file, const Model& model, Appea
     const Geometry geometry = Geometry::from_model(neutral);
     const TexturedMaterials materials(neutral);
     const FieldSpace space(neutral, {0});
-    const Atlas atlas = make_atlas(neutral, space, {0}, request.texture_size);
+    const Atlas atlas = make_atlas(neutral, space, {0}, texture_size);
     BakeOptions options;
-    options.texture_size = request.texture_size;
+    options.texture_size = texture_size;
     // Shadows are the renderer's business: a baked occlusion would darken the model a second time.
     options.channels = {.base_color = true,
                         .occlusion = false,
@@ -112,7 +112,7 @@ nlohmann::json summary_json(const Reconstruction& result) {
                              {"poses", pose_refinement_name(request.corrections.poses)},
                              {"matched_exposure", request.corrections.exposure},
                              {"demodulation", request.refine.weights.demodulation},
-                             {"texture_size", request.texture_size},
+                             {"texture_size", result.texture_size},
                              {"seed", request.refine.seed},
                              {"threads", at::get_num_threads()}}},
                            {"model",

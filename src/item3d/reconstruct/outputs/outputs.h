@@ -14,7 +14,7 @@ namespace item3d {
 /// Bakes the field into the model's UV map, writes model.glb and reads it back: scores and pictures
 /// are of what was written.
 Model bake_and_save(const std::filesystem::path& file, const Model& model, Appearance& appearance,
-                    const ReconstructRequest& request);
+                    const ReconstructRequest& request, int texture_size);
 
 /// Of one of RelitViews.
 struct RelitScores {
@@ -32,6 +32,7 @@ struct Reconstruction {
     const Dataset& dataset;
     Model model;  ///< as written
     Image light;
+    int texture_size = 0;
     std::optional<FoundShape> shape;  ///< none for a given mesh
     RefineCurves refine;
     std::vector<ScoredView> train, test;  ///< a few of the former

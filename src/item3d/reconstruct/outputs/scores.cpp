@@ -96,15 +96,7 @@ ModelRenderer::ModelRenderer(const Model& model, const Image& light, bool shadow
     OcclusionOptions options;
     options.light = light;
     occlusion_ = std::make_shared<Occlusion>(geometry_, &model, options);
-    indirect_ =
-        std::make_shared<IndirectLight>(geometry_, &model, IndirectLightOptions{.rays = 128});
-    indirect_->update([&](const Raster& raster, const Surface& surface, const at::Tensor& bounce) {
-        MaterialSample material = materials_.sample(surface);
-        material.normal = at::Tensor();
-        material = occlusion_->shadowed(material, raster, surface);
-        return shade(surface, material, light_) +
-               material.base_color * (1 - material.orm.narrow(1, 2, 1)) * bounce;
-    });
+    indirect_ = trace_indirect_light(geometry_, model, materials_, light_, *occlusion_);
 }
 
 at::Tensor ModelRenderer::draw(const TargetView& view) const {

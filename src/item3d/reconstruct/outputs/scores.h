@@ -49,7 +49,7 @@ class ModelRenderer {
     TexturedMaterials materials_;
     EnvironmentLight light_;
     std::shared_ptr<const Occlusion> occlusion_;
-    std::shared_ptr<IndirectLight> indirect_;
+    std::shared_ptr<const IndirectLight> indirect_;
 };
 
 /// Mean of both directions' mean distances between points drawn evenly from two surfaces, over the

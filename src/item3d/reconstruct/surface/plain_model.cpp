@@ -51,6 +51,25 @@ Model load_plain_model(const std::filesystem::path& path) {
     return model;
 }
 
+int texture_size_for(const Model& model, float pixel) {
+    constexpr double texels_a_pixel = 2.5, used_share = 0.6;
+    double area = 0;
+    for (const Primitive& primitive : model.primitives) {
+        for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+            const auto corner = [&](std::size_t k) {
+                return primitive.positions[primitive.indices[i + k]];
+            };
+            area += 0.5 * static_cast<double>(glm::length(
+                              glm::cross(corner(1) - corner(0), corner(2) - corner(0))));
+        }
+    }
+    const double side = texels_a_pixel * std::sqrt(area / used_share) / static_cast<double>(pixel);
+    int size = 1024;
+    while (size < 4096 && side > std::sqrt(2.0) * size)
+        size *= 2;
+    return size;
+}
+
 Model unwrapped(Model model, int texture_size) {
     const FieldSpace space(model, {0});
     const Atlas atlas = make_atlas(model, space, {0}, texture_size);

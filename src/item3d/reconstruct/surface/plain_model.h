@@ -15,6 +15,10 @@ Model plain_model(const at::Tensor& positions, const at::Tensor& triangles);
 /// All triangles of a model file as one primitive: UVs stay where all of it has them.
 Model load_plain_model(const std::filesystem::path& path);
 
+/// Texels of a side, a power of two from 1024 to 4096, of which about two and a half lie across a
+/// pixel of the photographs. pixel: world units.
+int texture_size_for(const Model& model, float pixel);
+
 /// With UVs that each texel is used once in: the model's own, or new ones by xatlas.
 Model unwrapped(Model model, int texture_size);
 

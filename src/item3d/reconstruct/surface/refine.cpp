@@ -13,7 +13,6 @@ namespace {
 constexpr double final_rate = 0.1;
 constexpr std::int64_t smoothness_points = 4096;
 constexpr float farthest_smoothness = 0.15f;  ///< of the object's diagonal
-constexpr int traces = 8;                     ///< of shadows, in all
 /// Of the learning rates of corrections: most was found with the shape.
 constexpr double corrections_scale = 0.25;
 
@@ -67,6 +66,8 @@ void Refinement::trace() {
     if (iteration() > 0) traced_.radiance = appearance_.light.radiance();
     occlusion_ = trace_occlusion(mesh_, traced_.radiance);
     if (iteration() == 0) return;
+    // Of its own: a resumed run has not prefiltered any yet.
+    const EnvironmentLight light = appearance_.light.prefiltered();
     indirect_.emplace(mesh_.geometry());
     indirect_->update([&](const Raster& raster, const Surface& surface, const at::Tensor& bounce) {
         MaterialSample material = appearance_.field->forward(surface.position);
@@ -74,7 +75,7 @@ void Refinement::trace() {
         material.orm = at::cat(
             {occlusion_->at(raster, surface).unsqueeze(1), material.orm.narrow(1, 1, 2)}, 1);
         const at::Tensor plain = material.base_color * (1 - material.orm.narrow(1, 2, 1));
-        return shade(surface, material, learning_.light) + plain * bounce;
+        return shade(surface, material, light) + plain * bounce;
     });
     traced_.indirect = indirect_->stored();
 }
@@ -118,7 +119,8 @@ at::Tensor Refinement::regularization(const RenderedView& rendered, const Target
 
 void Refinement::step() {
     const int i = iteration();
-    const int trace_every = std::max(1, (options_.iterations + traces - 1) / traces);
+    const int trace_every =
+        std::max(1, (options_.iterations + options_.traces - 1) / options_.traces);
     if (options_.shadows && i % trace_every == 0) trace();
     const bool light_learns = learning_.update_light(appearance_, i, options_.light_every);
     const std::size_t index = order_.at(i);

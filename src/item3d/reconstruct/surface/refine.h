@@ -35,9 +35,11 @@ struct RefineOptions {
     /// Part of the iterations after which metallic must decide.
     double decision_begin = 0.4;
     bool normal_map = true;
-    /// Light that the object itself keeps away is traced: from everywhere at first, then of the
-    /// light that was found so far, three times. Otherwise shadows end up in the base colour.
+    /// Light that the object itself keeps away, and what its surfaces throw at each other, are
+    /// traced: of light from everywhere at first, then of the light that was found so far.
+    /// Otherwise shadows and glow end up in the base colour.
     bool shadows = true;
+    int traces = 8;  ///< in all
     double field_learning_rate = 0.01;
     double light_learning_rate = 0.05;
     double vertex_learning_rate = 0.02;  ///< in mean edges

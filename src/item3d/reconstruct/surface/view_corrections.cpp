@@ -12,9 +12,11 @@ constexpr double translation_rate = 0.001;  ///< of the radius
 constexpr double motion_weight = 0.2;
 constexpr double unsure_gain = 0.03;  ///< natural logarithm
 /// Sharpness beside views from about the same side, under which a picture counts less.
-constexpr double sharp_enough = 0.5;
+constexpr double sharp_enough = 0.4;
+constexpr float same_side = 0.7f;  ///< cosine
+constexpr int fewest_pixels_across = 96;
 constexpr double least_weight = 0.05;
-constexpr std::size_t sides_compared = 6;
+constexpr std::size_t fewest_compared = 4, sides_compared = 6;
 constexpr std::int64_t fewest_pixels = 64;  ///< that a gain is told from
 
 at::Tensor mean_of(const std::vector<at::Tensor>& all) {
@@ -235,8 +237,14 @@ std::vector<double> relative_sharpness(const std::vector<Photograph>& views, Vec
     std::vector<double> relative;
     for (std::size_t i = 0; i < views.size(); ++i) {
         std::vector<std::pair<float, double>> beside;
-        for (std::size_t k = 0; k < views.size(); ++k)
-            beside.emplace_back(-glm::dot(directions[i], directions[k]), sharpness[k]);
+        for (std::size_t k = 0; k < views.size(); ++k) {
+            const float cosine = glm::dot(directions[i], directions[k]);
+            if (cosine > same_side) beside.emplace_back(-cosine, sharpness[k]);
+        }
+        if (beside.size() < fewest_compared || views[i].image.width < fewest_pixels_across) {
+            relative.push_back(1);
+            continue;
+        }
         std::sort(beside.begin(), beside.end());
         beside.resize(std::min(beside.size(), sides_compared + 1));
         std::sort(beside.begin(), beside.end(),

@@ -93,7 +93,9 @@ class ViewCorrections {
 };
 
 /// How sharp each picture is: the mean size of the Laplacian of its log luminance well inside the
-/// mask, divided by the median of the six views from the nearest directions and of itself.
+/// mask, divided by the median of itself and of up to six views from the nearest directions. 1
+/// where fewer than four look from within 45 degrees, or where a picture is less than 96 pixels
+/// wide.
 std::vector<double> relative_sharpness(const std::vector<Photograph>& views, Vec3 centre);
 
 }  // namespace item3d

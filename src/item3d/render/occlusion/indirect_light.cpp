@@ -5,6 +5,7 @@
 #include "item3d/core/random.h"
 #include "item3d/render/kernels/interpolate.h"
 #include "item3d/render/kernels/occlusion.h"
+#include "item3d/render/occlusion/occlusion.h"
 #include "item3d/render/occlusion/occlusion_grid.h"
 #include "item3d/render/occlusion/ray_scene.h"
 
@@ -15,6 +16,7 @@ namespace item3d {
 namespace {
 
 constexpr float dielectric = 0.04f;
+constexpr double golden_ratio = 0.6180339887498949;
 
 /// A frame around a direction.
 struct Frame {
@@ -147,18 +149,27 @@ struct IndirectLight::State {
                 const Frame frame(behind ? -point.normal : point.normal);
                 const Vec3 up = glm::dot(frame.up, point.face) < 0 ? -point.face : point.face;
                 Vec3 sum(0.0f);
+                bool is_open = false;
+                int traced = 0;
+                // Any first part of the sequence is spread evenly.
+                const double first = random.uniform();
                 for (int ray = 0; ray < options.rays; ++ray) {
-                    const float share =
-                        (static_cast<float>(ray) + static_cast<float>(random.uniform())) /
-                        static_cast<float>(options.rays);
+                    // Nobody sees the inside of a closed shape.
+                    if (ray == options.rays / 4 && ray >= 16 && !is_open) break;
+                    ++traced;
+                    const double share = std::fmod(first + golden_ratio * ray, 1.0);
                     const auto turn = static_cast<float>(random.uniform());
-                    const Vec3 direction = frame.at(std::sqrt(1 - share), 2 * pi * turn);
+                    const Vec3 direction =
+                        frame.at(std::sqrt(static_cast<float>(1 - share)), 2 * pi * turn);
                     if (!(glm::dot(direction, up) > 0)) continue;
                     const Vec3 radiance =
                         seen(point.position + offset * up, direction, random.bits());
-                    if (radiance.x >= 0) sum += radiance;
+                    if (radiance.x >= 0)
+                        sum += radiance;
+                    else
+                        is_open = true;
                 }
-                sum /= static_cast<float>(options.rays);
+                sum /= static_cast<float>(traced);
                 for (std::int64_t m = grid.begin[group]; m < grid.begin[group + 1]; ++m)
                     kernels::store3(
                         out + 3 * (2 * grid.member[static_cast<std::size_t>(m)] + (behind ? 1 : 0)),
@@ -268,6 +279,23 @@ at::Tensor IndirectLight::stored() const {
 void IndirectLight::restore(const at::Tensor& stored) {
     state_->outgoing.copy_(stored[0]);
     state_->bounce.copy_(stored[1]);
+}
+
+std::shared_ptr<const IndirectLight> trace_indirect_light(const Geometry& geometry,
+                                                          const Model& model,
+                                                          const TexturedMaterials& materials,
+                                                          const EnvironmentLight& light,
+                                                          const Occlusion& occlusion) {
+    auto indirect =
+        std::make_shared<IndirectLight>(geometry, &model, IndirectLightOptions{.rays = 128});
+    indirect->update([&](const Raster& raster, const Surface& surface, const at::Tensor& bounce) {
+        MaterialSample material = materials.sample(surface);
+        material.normal = at::Tensor();
+        material = occlusion.shadowed(material, raster, surface);
+        return shade(surface, material, light) +
+               material.base_color * (1 - material.orm.narrow(1, 2, 1)) * bounce;
+    });
+    return indirect;
 }
 
 at::Tensor shade_indirect(const Surface& surface, const MaterialSample& material,

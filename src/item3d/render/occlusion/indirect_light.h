@@ -2,12 +2,15 @@
 #pragma once
 
 #include "item3d/render/shade.h"
+#include "item3d/render/textured_materials.h"
 
 #include <cstdint>
 #include <functional>
 #include <memory>
 
 namespace item3d {
+
+class Occlusion;
 
 struct IndirectLightOptions {
     int rays = 64;  ///< from each stored point on each of its sides
@@ -62,5 +65,12 @@ at::Tensor shade_indirect(const Surface& surface, const MaterialSample& material
                           const EnvironmentLight& light, const at::Tensor& bounce,
                           const IndirectLight::Reflection& reflection,
                           const ShadeOptions& options = {});
+
+/// Of a textured model in a light, ready to render with. occlusion: of that light or of any.
+std::shared_ptr<const IndirectLight> trace_indirect_light(const Geometry& geometry,
+                                                          const Model& model,
+                                                          const TexturedMaterials& materials,
+                                                          const EnvironmentLight& light,
+                                                          const Occlusion& occlusion);
 
 }  // namespace item3d
