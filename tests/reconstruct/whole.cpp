@@ -90,7 +90,7 @@ TEST(Reconstruct, MaterialsAndLightOfAGivenMesh) {
     request.move_vertices = false;
     request.refine.iterations = 110;
     request.refine.traces = 2;
-    request.refine.light_every = 3;  // most of a step's time is the light's
+    request.refine.light_every = 5;  // most of a step's time is the light's
     request.texture_size = 128;
     const nlohmann::json summary = reconstruct(request);
     EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 25);
@@ -116,6 +116,7 @@ TEST(Reconstruct, ShapeFromPicturesAlone) {
     request.shape.cells = {12, 24};
     request.shape.iterations = 80;
     request.shape.triangles = 2000;
+    request.shape.light_every = 4;
     request.refine.iterations = 60;
     request.refine.traces = 2;
     request.refine.light_every = 4;
@@ -200,6 +201,17 @@ TEST(Reconstruct, ResumesWithAGivenMesh) {
     parts.resume = true;
     reconstruct(parts);
     EXPECT_EQ(read_bytes(whole.output / "model.glb"), read_bytes(parts.output / "model.glb"));
+}
+
+TEST(Reconstruct, TexturesAreAsFineAsThePhotographs) {
+    // A square of 2 x 2.
+    const Model model = plain_model(
+        at::tensor({-1.0f, -1.0f, 0.0f, 1.0f, -1.0f, 0.0f, 1.0f, 1.0f, 0.0f, -1.0f, 1.0f, 0.0f})
+            .reshape({4, 3}),
+        at::tensor({0, 1, 2, 0, 2, 3}, at::kLong).reshape({2, 3}));
+    EXPECT_EQ(texture_size_for(model, 0.02f), 1024);
+    EXPECT_EQ(texture_size_for(model, 0.003f), 2048);
+    EXPECT_EQ(texture_size_for(model, 0.0001f), 4096);
 }
 
 TEST(Reconstruct, ThePreviewShowsPhotographsAndWhatThereIs) {
