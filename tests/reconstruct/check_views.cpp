@@ -82,7 +82,8 @@ TEST(CheckViews, ViewsThatContradictAreNamed) {
     EXPECT_EQ(problems.contradicting, std::vector<std::size_t>{7});
     ASSERT_EQ(problems.warnings.size(), 1u);
     EXPECT_EQ(problems.warnings[0],
-              "1 of 24 pictures contradicts the others: 'view_7'; its pose or mask is wrong");
+              "1 of 24 pictures contradicts the others and is left out: 'view_7'; its pose or mask "
+              "is wrong");
 
     for (const std::size_t i : {2, 11, 20})
         dataset.train[i].image = left_to_right(good.train[(i + 5) % 24].image);
@@ -90,7 +91,8 @@ TEST(CheckViews, ViewsThatContradictAreNamed) {
     std::sort(problems.contradicting.begin(), problems.contradicting.end());
     EXPECT_EQ(problems.contradicting, (std::vector<std::size_t>{2, 7, 11, 20}));
     ASSERT_EQ(problems.warnings.size(), 1u);
-    EXPECT_TRUE(problems.warnings[0].starts_with("4 of 24 pictures contradict the others: "));
+    EXPECT_TRUE(problems.warnings[0].starts_with(
+        "4 of 24 pictures contradict the others and are left out: "));
     EXPECT_NE(problems.warnings[0].find(", ...; the object moved"), std::string::npos);
 
     // Of three pictures none can be called the wrong one.

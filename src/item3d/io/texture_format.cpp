@@ -75,7 +75,7 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
                                       : base && !base->coding.is_lossless ? base
                                                                           : nullptr;
             ImageCoding coding = wanted_coding(format, followed);
-            // What a JPEG lost already is no reason for a PNG of four times its size.
+            // A channel that a JPEG lost something of already needs no PNG of four times its size.
             const bool is_kept_jpeg = must_be_exact && own &&
                                       own->coding.encoding == ImageEncoding::jpeg &&
                                       coding.encoding == ImageEncoding::jpeg;

@@ -22,7 +22,7 @@ constexpr double compared_side = 60;
 constexpr double least_overlap = 0.8, least_agreement = 0.95;
 /// A turn must be better by this much than what is there.
 constexpr double plainly_better = 0.1;
-/// Of the masks and of the overlap: of a mesh whose opacity cuts out what the masks do not show.
+/// Least parts, of the masks and of the overlap, of a mesh whose opacity cuts out the rest.
 constexpr double least_masks_covered = 0.985, least_overlap_of_cut_out = 0.5;
 /// An overlap from which on a placement is not looked for more closely.
 constexpr double well_placed = 0.97;

@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// What is done to a mesh: position -> scale * turn * position + move.
+/// A change of a mesh's place: position -> scale * turn * position + move.
 struct Placement {
     Mat3 turn{1.0f};
     float scale = 1;

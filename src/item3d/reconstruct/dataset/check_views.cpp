@@ -127,7 +127,7 @@ void check_brightness(const std::vector<ObjectPixels>& views, const std::string&
     }
 }
 
-/// What could have been done to all pictures or poses at once.
+/// A mistake that was made with all pictures or poses at once, undone.
 struct Remedy {
     const char* problem;
     const char* hint;
@@ -204,8 +204,9 @@ void check_outlines(const Dataset& dataset, const std::string& subject, ViewProb
     const std::size_t wrong = found.views.size();
     problems.contradicting = found.views;
     problems.warnings.push_back(fmt::format(
-        "{} of {} pictures {} the others: {}; {}", wrong, count,
-        wrong == 1 ? "contradicts" : "contradict", names_of(dataset.train, found.views),
+        "{} of {} pictures {} the others and {} left out: {}; {}", wrong, count,
+        wrong == 1 ? "contradicts" : "contradict", wrong == 1 ? "is" : "are",
+        names_of(dataset.train, found.views),
         wrong > std::max<std::size_t>(names_listed, count / 20)
             ? "the object moved between the pictures, or their poses or masks are wrong"
             : (wrong == 1 ? "its pose or mask is wrong" : "their poses or masks are wrong")));

@@ -1,4 +1,4 @@
-// What can be told of a dataset's pictures and poses before anything is learned from them.
+// Mistakes in a dataset's pictures and poses, found before anything is learned from them.
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the new process does. Between fork() and exec() only what is safe in a signal handler may
-/// be called: other threads may have held any lock.
+/// The new process becomes the program. Only calls that are safe in a signal handler may stand
+/// between fork() and exec(): other threads may have held any lock.
 [[noreturn]] void become(char* const* arguments, const char* output, pid_t parent) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -26,7 +26,7 @@ class ChildProgram {
     ChildProgram(const ChildProgram&) = delete;
     ChildProgram& operator=(const ChildProgram&) = delete;
 
-    /// What waitpid() says of it once it has ended.
+    /// The status of waitpid() once it has ended; before, nothing.
     std::optional<int> status();
 
   private:

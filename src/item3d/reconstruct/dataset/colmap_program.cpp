@@ -43,7 +43,7 @@ bool speaks_of_error(const std::string& line) {
     return false;
 }
 
-/// What a step adds to the log, read while it is written.
+/// The lines that a step adds to the log, read while they are written.
 class StepLog {
   public:
     StepLog(fs::path file, std::string counted)

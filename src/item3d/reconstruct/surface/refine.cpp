@@ -71,11 +71,9 @@ void Refinement::trace() {
     indirect_.emplace(mesh_.geometry());
     indirect_->update([&](const Raster& raster, const Surface& surface, const at::Tensor& bounce) {
         MaterialSample material = appearance_.field->forward(surface.position);
-        material.normal = at::Tensor();
         material.orm = at::cat(
             {occlusion_->at(raster, surface).unsqueeze(1), material.orm.narrow(1, 1, 2)}, 1);
-        const at::Tensor plain = material.base_color * (1 - material.orm.narrow(1, 2, 1));
-        return shade(surface, material, light) + plain * bounce;
+        return outgoing_radiance(surface, std::move(material), light, bounce);
     });
     traced_.indirect = indirect_->stored();
 }

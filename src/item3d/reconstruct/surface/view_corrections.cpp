@@ -11,8 +11,9 @@ constexpr double rotation_rate = 0.0005;    ///< radians
 constexpr double translation_rate = 0.001;  ///< of the radius
 constexpr double motion_weight = 0.2;
 constexpr double unsure_gain = 0.03;  ///< natural logarithm
-/// Sharpness beside views from about the same side, under which a picture counts less.
-constexpr double sharp_enough = 0.4;
+/// Sharpness beside views from about the same side, under which a picture counts less
+/// (docs/reconstruct.md, "Poses, exposure, blur").
+constexpr double sharp_enough = 0.58;
 constexpr float same_side = 0.7f;  ///< cosine
 constexpr int fewest_pixels_across = 96;
 constexpr double least_weight = 0.05;

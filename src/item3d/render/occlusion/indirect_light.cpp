@@ -281,6 +281,13 @@ void IndirectLight::restore(const at::Tensor& stored) {
     state_->bounce.copy_(stored[1]);
 }
 
+at::Tensor outgoing_radiance(const Surface& surface, MaterialSample material,
+                             const EnvironmentLight& light, const at::Tensor& bounce) {
+    material.normal = at::Tensor();
+    return shade(surface, material, light) +
+           material.base_color * (1 - material.orm.narrow(1, 2, 1)) * bounce;
+}
+
 std::shared_ptr<const IndirectLight> trace_indirect_light(const Geometry& geometry,
                                                           const Model& model,
                                                           const TexturedMaterials& materials,
@@ -289,11 +296,8 @@ std::shared_ptr<const IndirectLight> trace_indirect_light(const Geometry& geomet
     auto indirect =
         std::make_shared<IndirectLight>(geometry, &model, IndirectLightOptions{.rays = 128});
     indirect->update([&](const Raster& raster, const Surface& surface, const at::Tensor& bounce) {
-        MaterialSample material = materials.sample(surface);
-        material.normal = at::Tensor();
-        material = occlusion.shadowed(material, raster, surface);
-        return shade(surface, material, light) +
-               material.base_color * (1 - material.orm.narrow(1, 2, 1)) * bounce;
+        return outgoing_radiance(
+            surface, occlusion.shadowed(materials.sample(surface), raster, surface), light, bounce);
     });
     return indirect;
 }

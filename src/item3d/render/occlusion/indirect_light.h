@@ -66,6 +66,11 @@ at::Tensor shade_indirect(const Surface& surface, const MaterialSample& material
                           const IndirectLight::Reflection& reflection,
                           const ShadeOptions& options = {});
 
+/// Radiance that leaves the surface without its normal map: shade(), and what of `bounce` its base
+/// colour sends on. The material's occlusion is of the light.
+at::Tensor outgoing_radiance(const Surface& surface, MaterialSample material,
+                             const EnvironmentLight& light, const at::Tensor& bounce);
+
 /// Of a textured model in a light, ready to render with. occlusion: of that light or of any.
 std::shared_ptr<const IndirectLight> trace_indirect_light(const Geometry& geometry,
                                                           const Model& model,
