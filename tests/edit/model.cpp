@@ -102,7 +102,7 @@ TEST_F(EditTest, detail_changes_the_base_color_and_little_else) {
                                      {{"learning_rate", 1e-9},  // what changes is the stage's doing
                                       {"metallic", "always"},
                                       {"detail", "always"},
-                                      {"detail_views", 2}});
+                                      {"detail_views", 1}});
     const nlohmann::json summary = edit_model(edit);
     EXPECT_TRUE(summary["seconds"].contains("detail"));
     const auto& before = summary["scores"]["before"];
@@ -118,7 +118,7 @@ TEST_F(EditTest, detail_changes_the_base_color_and_little_else) {
 }
 
 TEST_F(EditTest, a_thing_without_a_word_is_edited_as_an_object) {
-    EditRequest edit = request("cube", 2, {{"detail", "always"}, {"detail_views", 2}});
+    EditRequest edit = request("cube", 2, {{"detail", "always"}, {"detail_views", 1}});
     const fs::path prior = folder_ / "prior";
     fs::copy(edit.prior, prior, fs::copy_options::recursive);
     write_atomically(prior / "prior.json",

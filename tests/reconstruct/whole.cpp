@@ -90,7 +90,8 @@ TEST(Reconstruct, MaterialsAndLightOfAGivenMesh) {
     request.move_vertices = false;
     request.refine.iterations = 110;
     request.refine.traces = 2;
-    request.refine.light_every = 5;  // most of a step's time is the light's
+    request.refine.shadow_points = 4096;
+    request.refine.light_every = 8;  // most of a step's time is the light's
     request.texture_size = 128;
     const nlohmann::json summary = reconstruct(request);
     EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 25);
@@ -116,10 +117,11 @@ TEST(Reconstruct, ShapeFromPicturesAlone) {
     request.shape.cells = {12, 24};
     request.shape.iterations = 80;
     request.shape.triangles = 2000;
-    request.shape.light_every = 4;
+    request.shape.light_every = 8;
     request.refine.iterations = 60;
     request.refine.traces = 2;
-    request.refine.light_every = 4;
+    request.refine.shadow_points = 4096;
+    request.refine.light_every = 8;
     request.texture_size = 128;
     const nlohmann::json summary = reconstruct(request);
     EXPECT_GT(summary["scores"]["test"]["psnr"].get<double>(), 22);
@@ -139,6 +141,7 @@ ReconstructRequest short_request(const fs::path& dataset, const std::string& out
     request.shape.triangles = 600;
     request.refine.iterations = 6;
     request.refine.traces = 3;
+    request.refine.shadow_points = 1024;
     request.texture_size = 64;
     request.command = "item3d reconstruct";
     return request;

@@ -18,6 +18,7 @@ class SuiteResume : public testing::EditTest {
         EditTest::SetUp();
         options_.output = folder_ / "suite";
         options_.prior = folder_ / "prior";
+        options_.picture_pixels = 32;
         options_.meshes = {{"cube", folder_ / "cube.glb"}};
         fs::copy(fs::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd", options_.prior,
                  fs::copy_options::recursive);
@@ -27,6 +28,8 @@ class SuiteResume : public testing::EditTest {
                                {"batch", 1},
                                {"resolution", 32},
                                {"fit_steps", 20},
+                               {"light", (folder_ / "light.exr").string()},
+                               {"light_augment", "off"},
                                {"texture_size", 64}};
         write_atomically(options_.prior / "prior.json",
                          json{{"vocabulary", {{"colors", colors}}}, {"defaults", defaults}}.dump());

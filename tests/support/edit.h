@@ -5,6 +5,7 @@
 #include "item3d/edit/edit.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
+#include "item3d/lighting/environment.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -26,6 +27,8 @@ class EditTest : public ::testing::Test {
                    std::to_string(::getpid()));
         fs::create_directories(folder_);
         write_cube(folder_ / "cube.glb");
+        // The whole studio takes a good part of a second.
+        save_image(folder_ / "light.exr", make_light_preset("studio", 32));
     }
     void TearDown() override { fs::remove_all(folder_); }
 
@@ -86,6 +89,7 @@ class EditTest : public ::testing::Test {
                          {"iterations", iterations},
                          {"batch", 1},
                          {"resolution", 32},
+                         {"light", (folder_ / "light.exr").string()},
                          {"light_augment", "off"}});  // other lights take a second each edit
         change(request, settings);
         request.precision = "fp32";

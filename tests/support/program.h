@@ -69,10 +69,18 @@ class Program : public ::testing::Test {
 /// item3d edit with a prior of random weights that is small enough to run in a test.
 class EditProgram : public Program {
   protected:
-    static std::string prior() { return ITEM3D_TEST_DATA "/models/pipeline_sd"; }
-    std::string edit(const std::string& rest, const std::string& prior_folder = prior()) const {
+    void SetUp() override {
+        Program::SetUp();
+        fs::copy(ITEM3D_TEST_DATA "/models/pipeline_sd", prior(), fs::copy_options::recursive);
+        std::ofstream(prior() + "/prior.json")
+            << R"({"defaults": {"fit_steps": 20, "light_augment": "off"}})";
+    }
+    std::string prior() const { return (folder_ / "pipeline_sd").string(); }
+    std::string edit(const std::string& rest) const { return edit(rest, prior()); }
+    std::string edit(const std::string& rest, const std::string& prior_folder) const {
         return "edit " + quoted(cube_) + " --prior '" + prior_folder +
-               "' --resolution 32 --batch 1 --iterations 3 --texture-size 64 " + rest;
+               "' --resolution 32 --batch 1 --iterations 3 --texture-size 64 --picture-size 32 " +
+               rest;
     }
     std::string to(const std::string& name) const {
         return " --from 'a red cube' --to 'a blue cube' -o " + quoted(folder_ / name);

@@ -163,6 +163,11 @@ void add_edit_command(CLI::App& app) {
                      "fit")
         ->check(CLI::IsMember({"auto", "low", "high"}))
         ->capture_default_str();
+    command
+        ->add_option("--picture-size", request.picture_pixels,
+                     "Edge in pixels of the pictures in the report; its turntable has 3/4 of it")
+        ->check(CLI::Range(16, 2048))
+        ->capture_default_str();
     add_guidance(*command, options->overrides);
     add_settings(*command, options->overrides);
     command->callback([options] {

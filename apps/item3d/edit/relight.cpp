@@ -77,11 +77,12 @@ std::vector<Camera> cameras_around(const Model& model, int count) {
 /// Draws a model in one light, with the shadows that it throws upon itself.
 class LitPainter {
   public:
-    LitPainter(const Model& model, const Image& light, bool shadows, at::Device device)
+    /// pixels: of the largest pictures that will be drawn.
+    LitPainter(const Model& model, const Image& light, bool shadows, int pixels, at::Device device)
         : model_(model),
           geometry_(Geometry::from_model(model, device)),
           materials_(model, device),
-          light_(prefilter(light, 256, device)) {
+          light_(prefilter(light, light_texels(pixels), device)) {
         if (!shadows) return;
         OcclusionOptions options;
         options.light = light;
@@ -178,8 +179,8 @@ Image chosen_light(const RelightCommand& options, const std::optional<SunSetting
 void write_pictures(const RelightCommand& options, const Model& model, const Image& old_image,
                     const Image& new_image, at::Device device) {
     const fs::path folder = options.output;
-    const LitPainter old_painter(model, old_image, options.shadows, device);
-    const LitPainter painter(model, new_image, options.shadows, device);
+    const LitPainter old_painter(model, old_image, options.shadows, options.size, device);
+    const LitPainter painter(model, new_image, options.shadows, options.size, device);
     const auto before = old_painter.draw(options.views, options.size);
     const auto after = painter.draw(options.views, options.size);
     const std::string title = light_title(options);

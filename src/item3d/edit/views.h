@@ -45,6 +45,7 @@ class LightRig {
     EnvironmentLight pick(std::uint64_t seed, std::int64_t iteration);
     /// The light as it was given, for pictures.
     const EnvironmentLight& front() { return at(0); }
+    const Image& image() const { return *sources_.front().image; }
     /// White whatever light was given: for pictures that stand beside what a prior draws unasked.
     const EnvironmentLight& studio();
 

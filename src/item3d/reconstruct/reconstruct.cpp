@@ -100,7 +100,8 @@ void note_blurred_views(Reconstruction& result, const ViewCorrections& correctio
 void score(Reconstruction& result, const ViewCorrections& corrections) {
     const ReconstructRequest& request = result.request;
     const auto bounds = result.model.bounds();
-    const ModelRenderer renderer(result.model, result.light, request.refine.shadows);
+    const std::int64_t shadow_points = request.refine.shadows ? request.refine.shadow_points : 0;
+    const ModelRenderer renderer(result.model, result.light, shadow_points);
     const auto test = make_targets(result.dataset.test, bounds);
     result.test = renderer.score(test);
     result.train = renderer.score(make_targets(
@@ -109,12 +110,11 @@ void score(Reconstruction& result, const ViewCorrections& corrections) {
     if (corrections.refines_poses() && !test.empty())
         result.test_aligned = renderer.score_each_scaled(make_targets(
             aligned_to_mesh(mesh_of(result.model), result.dataset, result.dataset.test), bounds));
-    result.test_without_shadows = ModelRenderer(result.model, result.light, false).score(test);
+    result.test_without_shadows = ModelRenderer(result.model, result.light, 0).score(test);
     for (const RelitViews& views : request.relit) {
         const auto targets = make_targets(relit_views(result.dataset, request, views), bounds);
-        const ModelRenderer relit(result.model,
-                                  adjust_light(load_light(views.light), 0, views.exposure),
-                                  request.refine.shadows);
+        const ModelRenderer relit(
+            result.model, adjust_light(load_light(views.light), 0, views.exposure), shadow_points);
         const Vec3 gain = relit.best_gain(targets);
         result.relit.push_back({relit.score(targets), relit.score(targets, gain), gain});
     }

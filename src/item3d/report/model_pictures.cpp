@@ -5,6 +5,8 @@
 #include "item3d/render/render.h"
 #include "item3d/render/srgb.h"
 
+#include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace item3d {
@@ -43,6 +45,10 @@ at::Tensor ModelDrawing::draw(const std::vector<Camera>& cameras, int pixels) co
 at::Tensor draw_pictures(const Model& model, const EnvironmentLight& light,
                          const std::vector<Camera>& cameras, int pixels) {
     return ModelDrawing(model, light).draw(cameras, pixels);
+}
+
+int light_texels(int pixels) {
+    return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::clamp(pixels, 16, 256))));
 }
 
 at::Tensor over_white(const at::Tensor& linear) {

@@ -13,6 +13,9 @@ namespace item3d {
 /// `count` cameras around the model, a little above it.
 std::vector<Camera> picture_cameras(const Model& model, int count);
 
+/// Texels along the edge of a light's cube that pictures of `pixels` x `pixels` are drawn with.
+int light_texels(int pixels);
+
 /// A model made ready to be drawn, for who draws it again and again.
 class ModelDrawing {
   public:

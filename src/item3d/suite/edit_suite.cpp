@@ -42,6 +42,7 @@ EditRequest request_of(const SuiteEdit& edit, const SuiteOptions& options, const
     request.prior = options.prior;
     request.output = folder;
     request.resume = resume;
+    request.picture_pixels = options.picture_pixels;
     json overrides = {{"from", prompt_of(edit.test.source, edit.test.mesh)},
                       {"to", prompt_of(edit.test.target, edit.test.mesh)},
                       {"seed", options.seed}};

@@ -24,7 +24,8 @@ struct SuiteOptions {
     std::filesystem::path prior;
     std::map<std::string, std::filesystem::path> meshes;  ///< by noun
     std::uint64_t seed = 0;
-    bool resume = false;  ///< goes on with the edits that are in `output` already
+    bool resume = false;       ///< goes on with the edits that are in `output` already
+    int picture_pixels = 384;  ///< side of the views in the edits' reports
 };
 
 /// Runs each edit in a folder of its own below `output`, with the prior's defaults, and writes

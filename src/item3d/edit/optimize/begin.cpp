@@ -5,7 +5,6 @@
 #include "item3d/edit/optimize/checkpoint_state.h"
 #include "item3d/edit/optimize/render_view.h"
 #include "item3d/field/fit.h"
-#include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/lighting/layout.h"
 
@@ -52,7 +51,7 @@ std::unique_ptr<LightModel> begin_light(const EditScene& scene, const EditPlan& 
     options.kind = plan.light_kind;
     if (!plan.light_from.empty()) options.from = SkyAngles{plan.light_from[0], plan.light_from[1]};
     options.object_color = surface_means(scene.model, scene.materials).base_color;
-    return make_light_model(load_light(plan.light), options);
+    return make_light_model(scene.lights->image(), options);
 }
 
 /// Makes the field look like the input, with metallic and roughness where the edit starts.

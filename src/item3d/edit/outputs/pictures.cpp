@@ -2,7 +2,6 @@
 
 #include "item3d/core/files.h"
 #include "item3d/edit/material_source.h"
-#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/render/pictures.h"
@@ -48,12 +47,13 @@ std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
 
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
                          const EditedModel& edited, const std::optional<Clip>& clip) {
-    const EnvironmentLight light = prefilter(load_light(request.plan.light), 256, scene.device);
     const int view_pixels = request.picture_pixels;
+    const int texels = light_texels(view_pixels);
+    const EnvironmentLight light = prefilter(scene.lights->image(), texels, scene.device);
     const auto cameras = picture_cameras(scene.model, view_count);
     const at::Tensor before = draw_pictures(scene.model, light, cameras, view_pixels);
     const EnvironmentLight new_light =
-        edited.light ? prefilter(*edited.light, 256, scene.device) : light;
+        edited.light ? prefilter(*edited.light, texels, scene.device) : light;
     const ModelDrawing drawing(edited.model, new_light);
     const at::Tensor after = drawing.draw(cameras, view_pixels);
 

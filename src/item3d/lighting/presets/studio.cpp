@@ -28,6 +28,8 @@ struct SoftBox {
     Vec3 right{0};
     Vec3 up{0};
     Vec3 facing{0};
+    std::array<Vec3, 4> vertices;
+    float reach = 0;  ///< angle around `centre` that holds the box
 
     SoftBox(Vec3 at, float box_width, float box_height, Vec3 light)
         : centre(at), width(box_width), height(box_height), radiance(light) {
@@ -35,11 +37,11 @@ struct SoftBox {
         const Vec3 above = std::abs(facing.y) > 0.99f ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
         right = glm::normalize(glm::cross(above, facing));
         up = glm::cross(facing, right);
-    }
-    std::array<Vec3, 4> vertices() const {
         const Vec3 x = 0.5f * width * right;
         const Vec3 y = 0.5f * height * up;
-        return {centre - x - y, centre + x - y, centre + x + y, centre - x + y};
+        vertices = {centre - x - y, centre + x - y, centre + x + y, centre - x + y};
+        for (const Vec3& vertex : vertices)
+            reach = std::max(reach, std::acos(glm::dot(glm::normalize(vertex), -facing)));
     }
 };
 
@@ -85,7 +87,7 @@ Vec3 direct_irradiance(Vec3 point, Vec3 normal) {
     Vec3 sum(0);
     for (const SoftBox& box : soft_boxes()) {
         if (glm::dot(point - box.centre, box.facing) <= 0) continue;  // behind the box
-        sum += box.radiance * polygon_irradiance(point, normal, box.vertices());
+        sum += box.radiance * polygon_irradiance(point, normal, box.vertices);
     }
     return sum;
 }
@@ -161,6 +163,13 @@ std::optional<Vec3> box_radiance(Vec3 direction) {
     return std::nullopt;
 }
 
+/// Whether a box may be seen within an angle around this direction.
+bool near_a_box(Vec3 direction, float angle) {
+    for (const SoftBox& box : soft_boxes())
+        if (glm::dot(direction, -box.facing) > std::cos(box.reach + angle)) return true;
+    return false;
+}
+
 Vec3 room_radiance(Vec3 direction, Vec3 indirect) {
     const RoomPoint point = room_point(direction);
     return point.albedo * (direct_irradiance(point.position, point.normal) + indirect) / pi;
@@ -172,6 +181,7 @@ Image make_studio(int height) {
     Image image(2 * height, height, 3);
     const Vec3 indirect = indirect_irradiance();
     constexpr int points = 3;
+    const float texel = pi / static_cast<float>(height);
     parallel_for(
         "studio", height,
         [&](std::int64_t y) {
@@ -183,17 +193,20 @@ Image make_studio(int height) {
                     return equirectangular_direction((x + column) / image.width,
                                                      (y + row) / height);
                 };
-                for (int i = 0; i < points * points; ++i) {
-                    const auto box = box_radiance(
-                        direction((i % points + 0.5f) / points, (i / points + 0.5f) / points));
-                    if (box)
-                        sum += *box;
-                    else
-                        ++behind;
+                const Vec3 middle = direction(0.5f, 0.5f);
+                if (near_a_box(middle, texel)) {
+                    for (int i = 0; i < points * points; ++i) {
+                        const auto box = box_radiance(
+                            direction((i % points + 0.5f) / points, (i / points + 0.5f) / points));
+                        if (box)
+                            sum += *box;
+                        else
+                            ++behind;
+                    }
+                } else {
+                    behind = points * points;
                 }
-                if (behind > 0)
-                    sum +=
-                        static_cast<float>(behind) * room_radiance(direction(0.5f, 0.5f), indirect);
+                if (behind > 0) sum += static_cast<float>(behind) * room_radiance(middle, indirect);
                 for (int c = 0; c < 3; ++c) {
                     image.at(x, static_cast<int>(y), c) = sum[c] / (points * points);
                 }

@@ -88,13 +88,14 @@ ViewScore mean_score(const std::vector<ScoredView>& views) {
     return mean;
 }
 
-ModelRenderer::ModelRenderer(const Model& model, const Image& light, bool shadows)
+ModelRenderer::ModelRenderer(const Model& model, const Image& light, std::int64_t shadow_points)
     : geometry_(Geometry::from_model(model)),
       materials_(model),
       light_(prefilter(light, light_cube)) {
-    if (!shadows) return;
+    if (shadow_points == 0) return;
     OcclusionOptions options;
     options.light = light;
+    options.most_points = shadow_points;
     occlusion_ = std::make_shared<Occlusion>(geometry_, &model, options);
     indirect_ = trace_indirect_light(geometry_, model, materials_, light_, *occlusion_);
 }

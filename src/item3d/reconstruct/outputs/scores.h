@@ -31,8 +31,8 @@ ViewScore mean_score(const std::vector<ScoredView>& views);
 /// Draws a model as `item3d render` does, from the cameras of views.
 class ModelRenderer {
   public:
-    /// light: equirectangular. shadows: as with --occlusion=light.
-    ModelRenderer(const Model& model, const Image& light, bool shadows);
+    /// light: equirectangular. shadow_points: OcclusionOptions::most_points; 0: no shadows.
+    ModelRenderer(const Model& model, const Image& light, std::int64_t shadow_points);
 
     /// [1, H, W, 4] premultiplied linear radiance.
     at::Tensor draw(const TargetView& view) const;

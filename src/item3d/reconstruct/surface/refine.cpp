@@ -22,9 +22,11 @@ double falling(double rate, int iteration, int iterations) {
 }
 
 /// radiance: undefined: from everywhere.
-Occlusion trace_occlusion(const MovableMesh& mesh, const at::Tensor& radiance) {
+Occlusion trace_occlusion(const MovableMesh& mesh, const at::Tensor& radiance,
+                          std::int64_t most_points) {
     const at::NoGradGuard no_gradient;
     OcclusionOptions options;
+    options.most_points = most_points;
     options.rays = 128;
     if (radiance.defined()) options.light = to_image(radiance);
     return Occlusion(mesh.geometry(), nullptr, options);
@@ -64,11 +66,12 @@ void Refinement::trace() {
     const at::NoGradGuard no_gradient;
     if (mesh_.moves()) traced_.offsets = mesh_.offsets().detach().clone();
     if (iteration() > 0) traced_.radiance = appearance_.light.radiance();
-    occlusion_ = trace_occlusion(mesh_, traced_.radiance);
+    occlusion_ = trace_occlusion(mesh_, traced_.radiance, options_.shadow_points);
     if (iteration() == 0) return;
     // Of its own: a resumed run has not prefiltered any yet.
     const EnvironmentLight light = appearance_.light.prefiltered();
-    indirect_.emplace(mesh_.geometry());
+    indirect_.emplace(mesh_.geometry(), nullptr,
+                      IndirectLightOptions{.most_points = options_.shadow_points / 2});
     indirect_->update([&](const Raster& raster, const Surface& surface, const at::Tensor& bounce) {
         MaterialSample material = appearance_.field->forward(surface.position);
         material.orm = at::cat(
@@ -175,10 +178,11 @@ void Refinement::load_state(const CheckpointReader& reader) {
             traced_.offsets = reader.get("traced.offsets");
             reader.copy("traced.offsets", mesh_.offsets());
         }
-        occlusion_ = trace_occlusion(mesh_, traced_.radiance);
+        occlusion_ = trace_occlusion(mesh_, traced_.radiance, options_.shadow_points);
         if (reader.has("traced.indirect")) {
             traced_.indirect = reader.get("traced.indirect");
-            indirect_.emplace(mesh_.geometry());
+            indirect_.emplace(mesh_.geometry(), nullptr,
+                              IndirectLightOptions{.most_points = options_.shadow_points / 2});
             indirect_->restore(traced_.indirect);
         }
     }

@@ -39,7 +39,8 @@ struct RefineOptions {
     /// traced: of light from everywhere at first, then of the light that was found so far.
     /// Otherwise shadows and glow end up in the base colour.
     bool shadows = true;
-    int traces = 8;  ///< in all
+    int traces = 8;                      ///< in all
+    std::int64_t shadow_points = 32768;  ///< OcclusionOptions::most_points
     double field_learning_rate = 0.01;
     double light_learning_rate = 0.05;
     double vertex_learning_rate = 0.02;  ///< in mean edges
