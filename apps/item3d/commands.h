@@ -22,6 +22,7 @@ inline constexpr std::array commands = {
     CommandEntry{"generate", "edit", "Draw pictures from a prompt with the prior alone"},
     CommandEntry{"caption", "edit", "Describe a picture or a model in words"},
     CommandEntry{"score", "edit", "Measure by CLIP how well an edit follows its sentences"},
+    CommandEntry{"region", "edit", "Show what part of a model selectors take, before an edit"},
     CommandEntry{"prior", "train", "Train, fetch and inspect priors"},
     CommandEntry{"bench", "bench", "Measure how fast this machine is"},
 };

@@ -1,10 +1,9 @@
-// Picture options that several commands read alike, and the view that they take when told none.
+// Picture options that several commands read alike.
 #pragma once
 
 #include "item3d/core/error.h"
 #include "item3d/core/math.h"
-#include "item3d/scene/camera.h"
-#include "item3d/scene/model.h"
+#include "item3d/scene/model_view.h"
 
 #include <algorithm>
 #include <cctype>
@@ -14,20 +13,6 @@
 #include <vector>
 
 namespace item3d {
-
-/// A three-quarter view from a little above, through a lens that is neither wide nor long.
-inline constexpr float default_azimuth = 35 * pi / 180;
-inline constexpr float default_elevation = 18 * pi / 180;
-inline constexpr float default_field_of_view = 30 * pi / 180;
-
-/// The whole model from there, as large as it fits. aspect: width / height.
-inline Camera default_view(const Model& model, float aspect) {
-    std::vector<Vec3> points;
-    for (const Primitive& primitive : model.primitives)
-        points.insert(points.end(), primitive.positions.begin(), primitive.positions.end());
-    return framing_camera(points, default_azimuth, default_elevation, default_field_of_view,
-                          aspect);
-}
 
 /// ".png" of "a.PNG".
 inline std::string lower_extension(const std::filesystem::path& path) {

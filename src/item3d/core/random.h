@@ -25,6 +25,7 @@ enum class RandomStream : std::uint64_t {
     spread = 6,               ///< edit: offsets of the points where a material is looked up
     painting = 7,             ///< edit: which view the detail stage fits next
     color_points = 9,         ///< edit: where the colour regulariser looks
+    region = 0x726567696f6e,  ///< region: points that a part of a surface is measured at
     field = 0x6669656c64,     ///< field: first values of the neural texture
     fit = 0x666974,           ///< field: points that it is fitted at
     metallic = 0x6d6574616c,  ///< field: points at which its mean metallic is measured
@@ -41,6 +42,8 @@ enum class IndexedStream : std::uint64_t {
     backgrounds = 3,       ///< edit: of an iteration
     lights = 4,            ///< edit: of an iteration
     painting_cameras = 8,  ///< edit: of a view of the detail stage
+    region_cameras = 10,   ///< edit: of a close-up
+    region_looks = 11,     ///< edit: what a close-up looks at
 };
 
 /// Two streams of one value are a case that is there twice, which does not compile; one that is
@@ -54,6 +57,7 @@ constexpr bool is_listed(RandomStream stream) {
         case RandomStream::spread:
         case RandomStream::painting:
         case RandomStream::color_points:
+        case RandomStream::region:
         case RandomStream::field:
         case RandomStream::fit:
         case RandomStream::metallic:
@@ -71,6 +75,8 @@ constexpr bool is_listed(IndexedStream stream) {
         case IndexedStream::backgrounds:
         case IndexedStream::lights:
         case IndexedStream::painting_cameras:
+        case IndexedStream::region_cameras:
+        case IndexedStream::region_looks:
             return true;
     }
     return false;

@@ -5,6 +5,7 @@
 #include "item3d/edit/plan.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/field/surface_points.h"
+#include "item3d/region/region.h"
 #include "item3d/render/textured_materials.h"
 #include "item3d/scene/model.h"
 #include "item3d/tensors/tensor.h"
@@ -19,19 +20,25 @@ namespace item3d {
 /// Throws InputError that lists the model's materials when a name is not among them.
 std::vector<int> select_materials(const Model& model, const std::vector<std::string>& names);
 
+/// The model's own materials at a surface, the same whatever the field holds.
+struct OwnMaterial {
+    MaterialSample sample;
+    at::Tensor edited;  ///< [P, 1] how much of the edit each point takes; undefined: all
+};
+
 /// The neural texture where a material is edited, the model's own textures elsewhere and for the
-/// channels that are kept.
+/// channels that are kept; blended by the weight of the region, where there is one.
 class MaterialSource {
   public:
-    /// `textured` and `space` must outlive this. device: theirs and that of the surfaces to come.
+    /// `textured`, `space` and `region` must outlive this. device: theirs and that of the surfaces
+    /// to come. region: null for all of the edited materials.
     MaterialSource(const Model& model, const TexturedMaterials& textured, const FieldSpace& space,
                    const std::vector<int>& edited_materials, ChannelMask channels,
-                   at::Device device = at::kCPU);
-    /// The model's own materials, which are the same whatever the field holds.
-    MaterialSample own(const Surface& surface) const;
+                   const Region* region = nullptr, at::Device device = at::kCPU);
+    OwnMaterial own(const Surface& surface) const;
     /// Differentiable in the field's parameters. own: of this surface.
     MaterialSample sample(const Surface& surface, NeuralTexture& field,
-                          const MaterialSample& own) const;
+                          const OwnMaterial& own) const;
 
   private:
     const TexturedMaterials& textured_;
@@ -40,6 +47,7 @@ class MaterialSource {
     bool all_edited_ = true;
     at::Tensor orm_is_edited_;  ///< [3] bool
     ChannelMask channels_;
+    const Region* region_;
 };
 
 /// Mean values over a surface, by area: what an edit changed, in numbers.
@@ -50,7 +58,11 @@ struct SurfaceMeans {
 };
 
 /// Means of these materials (indices into Model::materials), at 20,000 points drawn with the seed.
+/// weights: of mean_weights(); undefined: all count alike.
 SurfaceMeans surface_means(const Model& model, const std::vector<int>& materials,
-                           std::uint64_t seed = 0);
+                           const at::Tensor& weights = {}, std::uint64_t seed = 0);
+/// [20000, 1] weights of a region at the points of surface_means().
+at::Tensor mean_weights(const Region& region, const Geometry& geometry, const FieldSpace& space,
+                        std::uint64_t seed = 0);
 
 }  // namespace item3d

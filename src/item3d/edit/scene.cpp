@@ -45,6 +45,21 @@ void note_variants(const Model& model, const std::vector<int>& materials) {
                      left.empty() ? "none" : fmt::format("{}", fmt::join(left, ", "))));
 }
 
+/// Sets the region, where the plan has one, and leaves the materials that have a part in it.
+void choose_region(const EditPlan& plan, EditScene& scene) {
+    const RegionRequest request{plan.region, plan.exclude, plan.feather};
+    if (request.is_everything()) return;
+    const FieldSpace space(scene.model, scene.materials, scene.device);
+    // Of the model as it is in the file: its own base colour is selected by.
+    scene.source_textures = std::make_unique<TexturedMaterials>(scene.model, scene.device);
+    scene.region = std::make_unique<Region>(
+        request, RegionScene{scene.model, scene.geometry, *scene.source_textures, space});
+    scene.region_views =
+        std::make_unique<RegionViews>(scene.region->points(), scene.model, scene.geometry);
+    scene.materials = scene.region->materials();
+    note(fmt::format("the region is {:.1f} % of what is edited", 100 * scene.region->share()));
+}
+
 }  // namespace
 
 EditScene load_scene(const EditRequest& request) {
@@ -68,11 +83,12 @@ EditScene load_scene(const EditRequest& request) {
                              {.texture_folders = request.texture_folders, .variant = plan.variant});
     scene.materials = select_materials(scene.model, plan.material);
     check_looks(request, scene.model, scene.materials);
+    scene.geometry = Geometry::from_model(scene.model, device);
+    scene.sphere = bounding_sphere(scene.model);
+    if (plan.edits_texture) choose_region(plan, scene);
     scene.losses = prepare_materials(scene.model, scene.materials, plan);
     if (plan.edits_texture) note_variants(scene.model, scene.materials);
     scene.start = choose_start(plan, vocabulary, scene.model, scene.materials);
-    scene.geometry = Geometry::from_model(scene.model, device);
-    scene.sphere = bounding_sphere(scene.model);
     scene.space = std::make_unique<FieldSpace>(scene.model, scene.materials, device);
     if (plan.edits_texture) {
         const bool recolors = plan.uv == UvPolicy::automatic && plan.regularizes_color;
@@ -84,7 +100,8 @@ EditScene load_scene(const EditRequest& request) {
     }
     scene.textured = std::make_unique<TexturedMaterials>(scene.model, device);
     scene.source = std::make_unique<MaterialSource>(scene.model, *scene.textured, *scene.space,
-                                                    scene.materials, scene.start.channels, device);
+                                                    scene.materials, scene.start.channels,
+                                                    scene.region.get(), device);
     scene.lights =
         std::make_unique<LightRig>(plan.light, plan.light_variation, plan.light_cube_size, device);
     return scene;

@@ -3,6 +3,7 @@
 
 #include "item3d/edit/material_source.h"
 #include "item3d/edit/material_start.h"
+#include "item3d/edit/region_views.h"
 #include "item3d/edit/request.h"
 #include "item3d/edit/source_materials.h"
 #include "item3d/edit/views.h"
@@ -32,6 +33,10 @@ struct EditScene {
     Atlas atlas;
     std::unique_ptr<FieldSpace> space;
     std::unique_ptr<TexturedMaterials> textured;
+    /// The model's own before the edit prepares them, which a region may look at; null without one.
+    std::unique_ptr<TexturedMaterials> source_textures;
+    std::unique_ptr<Region> region;             ///< null: all of the edited materials
+    std::unique_ptr<RegionViews> region_views;  ///< null with it
     std::unique_ptr<MaterialSource> source;
     std::unique_ptr<LightRig> lights;
     /// Loads asynchronously; get() blocks and rethrows load errors.

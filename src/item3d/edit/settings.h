@@ -70,6 +70,9 @@ struct EditSettings : PipelineExtras {
     Metallic metallic = Metallic::automatic;
     float metallic_start = 0.5f;
     Detail detail = Detail::automatic;
+    std::vector<std::string> region;   ///< selectors, see RegionRequest
+    std::vector<std::string> exclude;  ///< selectors
+    float feather = 0;
     std::vector<std::string> detail_words;
     int detail_views = 20;
     std::vector<std::string> material;

@@ -166,6 +166,19 @@ std::vector<Setting> texture_rows() {
     };
 }
 
+/// The part of the surface that is edited.
+std::vector<Setting> region_rows() {
+    return {
+        repeated(setting("region", &S::region, "--region",
+                         "Edit only what this selector takes (item3d region --help lists them); "
+                         "may be given several times, for their union")),
+        repeated(setting("exclude", &S::exclude, "--exclude",
+                         "Leave alone what this selector takes; may be given several times")),
+        setting("feather", &S::feather, between(0, 50), "--feather",
+                "Width of a region's soft border, within it, in percent of the model's size"),
+    };
+}
+
 /// Additions to the prior.
 std::vector<Setting> extras_rows() {
     return {
@@ -189,8 +202,8 @@ std::vector<Setting> extras_rows() {
 const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = [] {
         std::vector<Setting> all;
-        for (auto& rows :
-             {guidance_rows(), optimization_rows(), light_rows(), texture_rows(), extras_rows()})
+        for (auto& rows : {guidance_rows(), optimization_rows(), light_rows(), texture_rows(),
+                           region_rows(), extras_rows()})
             all.insert(all.end(), rows.begin(), rows.end());
         return all;
     }();

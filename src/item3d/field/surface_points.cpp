@@ -54,6 +54,7 @@ Surface surface_at(const Geometry& geometry, const at::Tensor& triangle,
     surface.view = surface.normal;
     surface.material = geometry.triangle_material.index_select(0, triangle).to(at::kLong);
     surface.primitive = geometry.triangle_primitive.index_select(0, triangle).to(at::kLong);
+    surface.triangle = triangle;
     return surface;
 }
 

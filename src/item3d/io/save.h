@@ -25,6 +25,8 @@ struct MaterialEdit {
     EditedTexture normal;
     /// A channel of metallic_roughness is the source's: only what was a JPEG becomes one.
     bool keeps_orm_texels = false;
+    /// Texels of all images are the source's where nothing was edited: written without losses.
+    bool keeps_texels = false;
     /// base_color holds what vertex colours multiplied before, so primitives with it lose COLOR_0.
     bool includes_vertex_colors = true;
     /// The material's occlusion texture stays as it is, whatever metallic_roughness holds.

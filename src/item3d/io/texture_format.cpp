@@ -67,7 +67,8 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
     for (auto& [index, material_edit] : edit.materials) {
         const Material& material = model.materials[static_cast<std::size_t>(index)];
         const Texture* base = texture_of(model, material.base_color_texture);
-        const auto choose = [&](EditedTexture& texture, int slot, bool must_be_exact) {
+        const auto choose = [&](EditedTexture& texture, int slot, bool has_kept_channel) {
+            const bool must_be_exact = has_kept_channel || material_edit.keeps_texels;
             if (!texture) return;
             const Texture* own = texture_of(model, slot);
             // A new one is smooth, so PNG is not followed.
@@ -76,7 +77,7 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
                                                                           : nullptr;
             ImageCoding coding = wanted_coding(format, followed);
             // A channel that a JPEG lost something of already needs no PNG of four times its size.
-            const bool is_kept_jpeg = must_be_exact && own &&
+            const bool is_kept_jpeg = must_be_exact && !material_edit.keeps_texels && own &&
                                       own->coding.encoding == ImageEncoding::jpeg &&
                                       coding.encoding == ImageEncoding::jpeg;
             if (is_kept_jpeg) coding.quality = std::max(coding.quality, kept_quality);

@@ -169,6 +169,7 @@ Surface interpolate_surface(const Geometry& geometry, const Raster& raster,
     Surface surface;
     surface.pixel = covered_pixels(triangle);
     const std::int64_t count = surface.count();
+    surface.triangle = triangle.reshape({-1}).index_select(0, surface.pixel).to(at::kLong);
     const at::Tensor eyes = camera_positions(cameras).to(device);
     const auto options = at::TensorOptions().dtype(real).device(device);
     surface.position = at::empty({count, 3}, options);

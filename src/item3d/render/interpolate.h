@@ -24,6 +24,7 @@ struct Surface {
     at::Tensor view;                                ///< [P, 3] unit, from the surface to the camera
     at::Tensor material;                            ///< [P] int64 index into Model::materials
     at::Tensor primitive;                           ///< [P] int64 index into Model::primitives
+    at::Tensor triangle;                            ///< [P] int64 index into Geometry::triangles
     std::int64_t count() const { return pixel.size(0); }
 };
 

@@ -88,6 +88,8 @@ struct Primitive {
     std::vector<Vec4> colors;
     /// Three a triangle, each below positions.size(); counter-clockwise is the front.
     std::vector<std::uint32_t> indices;
+    /// One a triangle, indices into Model::groups; empty where the file has none.
+    std::vector<int> triangle_groups;
     /// Index into Model::materials (always valid: a default material is made when there is none).
     int material = 0;
     /// Where it came from in the source document, -1: not from glTF.
@@ -111,6 +113,9 @@ struct Model {
     std::vector<Primitive> primitives;
     std::vector<Material> materials;
     std::vector<Texture> textures;
+    /// Names of an OBJ's groups and objects ("g", "o"): each of the sets of names that triangles of
+    /// it have.
+    std::vector<std::vector<std::string>> groups;
     /// What was taken off the positions of the file (far_origin.h); zero for all but models far
     /// from their origin. Writers add it again, in double precision.
     glm::dvec3 origin{0.0};

@@ -17,6 +17,24 @@ constexpr std::int64_t roughness_output = 4;  ///< of NeuralTexture::encoded()
 constexpr std::int64_t metallic_output = 5;
 /// Keeps the slopes of a surface without contrast at nothing; that of spots is 0.1 and more.
 constexpr float min_variance = 0.01f;
+constexpr double most_draws = 32;  ///< times as many points as are wanted, for a small region
+
+/// draws * points of them, in the field's space.
+at::Tensor edited_positions(const EditScene& scene, Random& random) {
+    const SurfaceSampler sampler(scene.geometry, *scene.space);
+    if (!scene.region) return scene.space->positions(sampler.sample(draws * points, random));
+    const double wanted = draws * points / std::max(scene.region->share(), 1 / most_draws);
+    const Surface surface = sampler.sample(static_cast<std::int64_t>(wanted), random);
+    const at::Tensor inside = scene.region->weight(surface).squeeze(1).gt(0.5).nonzero().squeeze(1);
+    const at::Tensor positions = scene.space->positions(surface);
+    if (inside.size(0) == 0) return positions.narrow(0, 0, draws * points);
+    // In the order of the surface still, evenly drawn from what there is.
+    const at::Tensor chosen =
+        at::linspace(0, static_cast<double>(inside.size(0) - 1), draws * points, at::kDouble)
+            .round()
+            .to(inside.device(), at::kLong);
+    return positions.index_select(0, inside.index_select(0, chosen));
+}
 
 }  // namespace
 
@@ -44,9 +62,7 @@ ColorRegularizer::ColorRegularizer(const EditScene& scene, const EditPlan& plan,
     const at::NoGradGuard no_grad;
     weight_ = plan.evenness;
     Random random(plan.seed, RandomStream::color_points);
-    const Surface surface =
-        SurfaceSampler(scene.geometry, *scene.space).sample(draws * points, random);
-    const at::Tensor positions = scene.space->positions(surface);
+    const at::Tensor positions = edited_positions(scene, random);
     // The sampler goes over the surface in order: each draw takes one of as many neighbours.
     const auto deal = [](const at::Tensor& rows) {
         return rows.reshape({points, draws, -1}).transpose(0, 1).contiguous();

@@ -10,6 +10,7 @@
 #include "item3d/edit/optimize/convergence.h"
 #include "item3d/edit/optimize/render_view.h"
 #include "item3d/guidance/noised_latents.h"
+#include "item3d/render/scatter.h"
 
 #include <cmath>
 
@@ -56,12 +57,25 @@ void end_where_converged(const EditPlan& plan, EditState& state) {
     state.iteration = plan.iterations;
 }
 
+GBuffer rasterize_iteration(const EditScene& scene, const EditPlan& plan, std::int64_t iteration) {
+    std::vector<Camera> cameras = sample_cameras(scene.sphere, plan.batch, plan.seed, iteration);
+    if (scene.region_views) scene.region_views->take_turns(cameras, plan.seed, iteration);
+    return rasterize_views(scene, plan, cameras);
+}
+
+/// [N, 1, h, w], 1 where a pixel of the region, or one beside it, falls on a latent.
+at::Tensor edited_latents(const GBuffer& gbuffer, const at::Tensor& latents) {
+    const at::Tensor pixels = scatter(gbuffer.own.edited, gbuffer.surface, gbuffer.raster,
+                                      at::zeros({1}, gbuffer.own.edited.options()))
+                                  .permute({0, 3, 1, 2});
+    const at::Tensor covered = at::adaptive_avg_pool2d(pixels, {latents.size(2), latents.size(3)});
+    return at::max_pool2d(covered, {3, 3}, {1, 1}, {1, 1}).gt(0).to(latents.dtype());
+}
+
 /// The images that guidance sees. The unedited model is the field as it was fitted, so that a
 /// render that has not been edited yet equals its reference.
 GuidanceInput render_guidance_input(const EditScene& scene, const EditPlan& plan,
-                                    EditState& state) {
-    const GBuffer gbuffer = rasterize_views(
-        scene, plan, sample_cameras(scene.sphere, plan.batch, plan.seed, state.iteration));
+                                    const GBuffer& gbuffer, EditState& state) {
     ViewOptions options{state.iteration};
     EnvironmentLight light;
     if (state.light) {
@@ -91,13 +105,15 @@ void run_iteration(const EditScene& scene, const EditPlan& plan,
                    const ColorRegularizer& color_regularizer, EditState& state,
                    IterationTimes& times) {
     const double start = seconds_now();
-    const GuidanceInput input = render_guidance_input(scene, plan, state);
+    const GBuffer gbuffer = rasterize_iteration(scene, plan, state.iteration);
+    const GuidanceInput input = render_guidance_input(scene, plan, gbuffer, state);
     const double rendered = seconds_now();
     const GuidanceOutput guidance = state.guidance->step(input, state.iteration);
     const double guided = seconds_now();
 
     // A single bad prediction (an overflow in bf16) must not destroy the field.
-    const at::Tensor gradient = at::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
+    at::Tensor gradient = at::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
+    if (scene.region) gradient = gradient * edited_latents(gbuffer, gradient);
     guidance.latents.backward(gradient / plan.batch);
     color_regularizer.backward(state);
     if (state.light) state.light->regularization().backward();

@@ -17,7 +17,7 @@ struct GBuffer {
     Raster raster;
     Surface surface;
     SeenShape shape;
-    MaterialSample own;  ///< the model's own materials
+    OwnMaterial own;  ///< the model's own materials
 };
 
 GBuffer rasterize_views(const EditScene& scene, const EditPlan& plan,

@@ -74,8 +74,9 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
     const ChannelMask& channels = scene.start.channels;
     options.channels = {channels.base_color, channels.occlusion, channels.roughness,
                         channels.metallic, channels.normal};
-    const BakeScene bake_scene{scene.model, scene.geometry, *scene.textured, *scene.space,
-                               scene.atlas};
+    BakeScene bake_scene{scene.model, scene.geometry, *scene.textured, *scene.space, scene.atlas};
+    if (scene.region)
+        bake_scene.weight = [&](const Surface& surface) { return scene.region->weight(surface); };
     ModelEdit edit = bake(bake_scene, state.fitted, state.field, options);
     apply_losses(scene.losses, edit);
     note_vertex_colors(scene.model, edit);

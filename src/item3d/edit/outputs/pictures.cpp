@@ -73,8 +73,10 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     pictures.turntable = {request.plan.to, encode_animation(frames)};
     write_atomically(request.output / "turntable.webp", pictures.turntable.bytes);
 
-    pictures.means_before = surface_means(scene.model, scene.materials);
-    pictures.means_after = surface_means(edited.model, scene.materials);
+    const at::Tensor weights =
+        scene.region ? mean_weights(*scene.region, scene.geometry, *scene.space) : at::Tensor();
+    pictures.means_before = surface_means(scene.model, scene.materials, weights);
+    pictures.means_after = surface_means(edited.model, scene.materials, weights);
     pictures.detail_kept = detail_kept(before, after);
     if (clip)
         pictures.clip = clip_scores(*clip, over_white(before), over_white(after), request.plan.from,

@@ -6,6 +6,7 @@
 #include "item3d/field/bake/keep_flat.h"
 #include "item3d/field/bake/residual_gain.h"
 #include "item3d/field/bake/shrink.h"
+#include "item3d/field/bake/slot.h"
 #include "item3d/field/bake/texel_values.h"
 
 #include <algorithm>
@@ -39,31 +40,7 @@ Vec3 clamp_unit(Vec3 value) {
     return glm::clamp(value, 0.0f, 1.0f);
 }
 
-using Size = std::pair<int, int>;
-
-/// One image of a material while it is baked.
-struct Slot {
-    int texture = -1;     ///< of the source
-    bool wanted = false;  ///< in this pass
-    /// In this pass. A texture that the source lacks is tried small first: most are of one colour.
-    Size size{0, 0};
-    Size full_size{0, 0};
-    Image image;
-    std::vector<std::uint8_t> covered;
-    /// Bit c: channel c is baked or resampled, so texels beyond the triangles are filled too.
-    std::atomic<unsigned> filled_channels = 0;
-
-    void open(int channels) {
-        image = Image(size.first, size.second, channels);
-        covered.assign(static_cast<std::size_t>(size.first) * static_cast<std::size_t>(size.second),
-                       0);
-    }
-    bool is_baked_at(Size pass) const { return wanted && size == pass; }
-    void cover(int x, int y) {
-        covered[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                static_cast<std::size_t>(x)] = 1;
-    }
-};
+using Size = TextureSize;
 
 /// Bakes the images of one texture set.
 class SetBaker {
@@ -101,6 +78,7 @@ class SetBaker {
     const BakeOptions& options_;
     int index_;
     const Material& material_;
+    bool in_part_;  ///< a part of the surface alone is edited
     bool has_uvs_ = true;
     bool has_vertex_colors_ = false, has_vertex_alpha_ = false;
     std::atomic<bool> normal_changed_ = false;
@@ -118,7 +96,8 @@ SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOpti
       set_(set),
       options_(options),
       index_(set.materials.front()),
-      material_(scene.model.materials[static_cast<std::size_t>(index_)]) {
+      material_(scene.model.materials[static_cast<std::size_t>(index_)]),
+      in_part_(scene.weight != nullptr) {
     for (const Primitive& primitive : scene.model.primitives) {
         if (!set.has(primitive.material)) continue;
         has_uvs_ = has_uvs_ && !primitive.uvs.empty();
@@ -205,6 +184,8 @@ void SetBaker::start() {
     if (base_color_.wanted) start_base_color();
     if (orm_.wanted) start_orm();
     if (normal_.wanted) start_normal();
+    for (Slot* slot : {&base_color_, &orm_, &normal_})
+        if (slot->wanted) slot->keep_source();
 }
 
 void SetBaker::start_base_color() {
@@ -214,7 +195,7 @@ void SetBaker::start_base_color() {
     // Without, the alpha factor stays a factor.
     const bool has_alpha = (has_vertex_alpha_ && material_.alpha != Material::Alpha::opaque) ||
                            (source != nullptr && shows_alpha(source->image));
-    base_color_.open(has_alpha ? 4 : 3);
+    base_color_.open(has_alpha ? 4 : 3, in_part_);
     base_color_.filled_channels = set_.is_own() && base_color_texels_ != nullptr ? 0u : ~0u;
     if (base_color_texels_ == nullptr) return;
     const Image& texels = *base_color_texels_;
@@ -240,7 +221,7 @@ void SetBaker::start_base_color() {
 }
 
 void SetBaker::start_orm() {
-    orm_.open(3);
+    orm_.open(3, in_part_);
     orm_texels_ = texels_of(material_.metallic_roughness_texture, material_.metallic_roughness_uvs,
                             orm_.size);
     occlusion_texels_ = texels_of(material_.occlusion_texture, material_.occlusion_uvs, orm_.size);
@@ -263,7 +244,7 @@ void SetBaker::start_orm() {
 }
 
 void SetBaker::start_normal() {
-    normal_.open(3);
+    normal_.open(3, in_part_);
     normal_texels_ = texels_of(material_.normal_texture, material_.normal_uvs, normal_.size);
     if (normal_texels_ != nullptr &&
         (normal_texels_->channels < 3 || material_.normal_scale != 1.0f)) {
@@ -282,7 +263,7 @@ void SetBaker::start_normal() {
 
 void SetBaker::write_base_color(const TexelValue& texel, const RemainderGain& gain) {
     Image& image = base_color_.image;
-    base_color_.cover(texel.x, texel.y);
+    base_color_.cover(texel.x, texel.y, texel.weight);
     Vec3 source;
     if (base_color_texels_ != nullptr) {
         for (int c = 0; c < 3; ++c)
@@ -292,6 +273,8 @@ void SetBaker::write_base_color(const TexelValue& texel, const RemainderGain& ga
         for (int c = 0; c < 3; ++c)
             image.at(texel.x, texel.y, c) = source[c];
         if (image.channels == 4) image.at(texel.x, texel.y, 3) = texel.source.alpha;
+        for (int c = 0; in_part_ && c < image.channels; ++c)
+            base_color_.source.at(texel.x, texel.y, c) = image.at(texel.x, texel.y, c);
     }
     if (!options_.channels.base_color) return;
     const Vec3 fitted = encode_srgb(texel.fitted.base_color);
@@ -309,7 +292,7 @@ void SetBaker::write_base_color(const TexelValue& texel, const RemainderGain& ga
 }
 
 void SetBaker::write_orm(const TexelValue& texel) {
-    orm_.cover(texel.x, texel.y);
+    orm_.cover(texel.x, texel.y, texel.weight);
     const bool edited[3] = {options_.channels.occlusion, options_.channels.roughness,
                             options_.channels.metallic};
     for (int c = 0; c < 3; ++c) {
@@ -317,6 +300,7 @@ void SetBaker::write_orm(const TexelValue& texel) {
         const bool copied = c == 0 ? occlusion_texels_ != nullptr : orm_texels_ != nullptr;
         if (c == 0 && keeps_occlusion_) continue;
         if (!copied) value = texel.source.orm[c];
+        if (!copied && in_part_) orm_.source.at(texel.x, texel.y, c) = value;
         const float change = texel.now.orm[c] - texel.fitted.orm[c];
         if (!edited[c] || change == 0.0f) continue;
         orm_.filled_channels |= 1u << c;
@@ -325,7 +309,7 @@ void SetBaker::write_orm(const TexelValue& texel) {
 }
 
 void SetBaker::write_normal(const TexelValue& texel) {
-    normal_.cover(texel.x, texel.y);
+    normal_.cover(texel.x, texel.y, texel.weight);
     const Vec3 change = texel.now.normal - texel.fitted.normal;
     const bool is_changed = options_.channels.normal && change != Vec3(0.0f);
     if (normal_texels_ != nullptr && !is_changed) return;
@@ -337,8 +321,11 @@ void SetBaker::write_normal(const TexelValue& texel) {
     }
     const float length = glm::length(normal);
     normal = length > 1e-6f ? normal / length : Vec3(0.0f, 0.0f, 1.0f);
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3; ++c) {
         normal_.image.at(texel.x, texel.y, c) = 0.5f + 0.5f * normal[c];
+        if (in_part_ && normal_texels_ == nullptr)
+            normal_.source.at(texel.x, texel.y, c) = 0.5f + 0.5f * texel.source.normal[c];
+    }
 }
 
 void SetBaker::bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
@@ -374,7 +361,8 @@ void SetBaker::bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
 /// A texture that the source lacks, of a size that nobody asks for.
 bool SetBaker::is_new(const Slot& slot) const {
     const bool holds_occlusion = &slot == &orm_ && material_.occlusion_texture >= 0;
-    return texture(slot.texture) == nullptr && !holds_occlusion && options_.texture_size == 0;
+    return texture(slot.texture) == nullptr && !holds_occlusion && options_.texture_size == 0 &&
+           !in_part_;
 }
 
 /// False: it was tried too small.
@@ -385,6 +373,10 @@ bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
     const bool hides = slot.image.channels == 4 && material_.alpha != Material::Alpha::opaque;
     (hides ? fill_invisible : fill_uncovered)(slot.image, slot.covered, slot.filled_channels,
                                               padding);
+    const bool is_copied = &slot == &base_color_ ? base_color_texels_ != nullptr
+                           : &slot == &orm_      ? orm_texels_ != nullptr
+                                                 : normal_texels_ != nullptr;
+    slot.blend_with_source(is_copied, padding);
     Image image = std::move(slot.image);
     if (is_new(slot)) {
         image = shrink(std::move(image), wrap_of(scene_.model, index_), options_.blotch);
@@ -419,6 +411,7 @@ MaterialEdit SetBaker::run(NeuralTexture& fitted, NeuralTexture& now,
         (material_.occlusion_texture >= 0 && !keeps_occlusion_ && !edited.occlusion) ||
         (material_.metallic_roughness_texture >= 0 && !(edited.roughness && edited.metallic));
     edit.keeps_occlusion = keeps_occlusion_;
+    edit.keeps_texels = in_part_;
     edit.includes_vertex_colors = has_vertex_colors_ || has_vertex_alpha_;
     return edit;
 }

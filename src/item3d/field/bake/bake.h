@@ -16,6 +16,8 @@
 #include "item3d/io/save.h"
 #include "item3d/render/textured_materials.h"
 
+#include <functional>
+
 namespace item3d {
 
 /// True: baked from the field. False: kept, texels stay bit for bit as they are in the source (with
@@ -52,6 +54,9 @@ struct BakeScene {
     const TexturedMaterials& materials;
     const FieldSpace& space;
     const Atlas& atlas;
+    /// Of a place: how much of the edit it takes, [P, 1] in [0, 1]. Where it is 0 texels stay bit
+    /// for bit, where they are the source's own. Null: all of it everywhere.
+    std::function<at::Tensor(const Surface&)> weight = nullptr;
 };
 
 /// fitted: the field before the edit (`snapshot`), now: after it. Returns images for all edited

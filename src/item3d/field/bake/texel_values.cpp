@@ -154,6 +154,8 @@ std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture&
     const at::Tensor values[3] = {
         needs_.source ? pack(scene_.materials.sample(surface), rotation) : at::Tensor(),
         pack(fitted->forward(positions), rotation), pack(now->forward(positions), rotation)};
+    const at::Tensor parts =
+        scene_.weight ? scene_.weight(surface).cpu().contiguous() : at::Tensor();
     for (std::size_t i = 0; i < texels.size(); ++i) {
         const float share = 1.0f / static_cast<float>(first_sample[i + 1] - first_sample[i]);
         TexelMaterial* targets[3] = {&texels[i].source, &texels[i].fitted, &texels[i].now};
@@ -166,6 +168,11 @@ std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture&
             }
             *targets[k] = read(mean);
         }
+        if (!parts.defined()) continue;
+        texels[i].weight = 0;
+        for (std::size_t s = first_sample[i]; s < first_sample[i + 1]; ++s)
+            texels[i].weight += parts.const_data_ptr<float>()[s];
+        texels[i].weight *= share;
     }
     return texels;
 }

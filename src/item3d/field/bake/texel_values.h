@@ -22,6 +22,7 @@ struct TexelMaterial {
 struct TexelValue {
     int x = 0, y = 0;
     TexelMaterial source, fitted, now;
+    float weight = 1.0f;  ///< BakeScene::weight
 };
 
 /// The values that a bake asks of each texel besides the base colour and orm of both fields.

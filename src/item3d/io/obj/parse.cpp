@@ -62,6 +62,15 @@ class ObjParser {
             read_face(rest);
         } else if (key == "s") {
             read_smoothing(rest);
+        } else if (key == "g") {
+            group_names_.clear();
+            for (std::string_view words = rest, word = take_word(words); !word.empty();
+                 word = take_word(words))
+                group_names_.push_back(to_utf8(word));
+            group_ = no_group_yet;
+        } else if (key == "o") {
+            object_name_ = to_utf8(trim(rest));
+            group_ = no_group_yet;
         } else if (key == "usemtl") {
             use_material(trim(line));
         } else if (key == "mtllib") {
@@ -171,8 +180,20 @@ class ObjParser {
             return;
         }
         if (material_ < 0) use_material("");
+        if (group_ == no_group_yet) use_group();
         file_.faces.push_back({first, static_cast<std::uint32_t>(count), material_,
-                               lines_.line_number(), smoothing_});
+                               lines_.line_number(), smoothing_, group_});
+    }
+
+    void use_group() {
+        std::vector<std::string> names = group_names_;
+        if (!object_name_.empty()) names.push_back(object_name_);
+        group_ = -1;
+        if (names.empty()) return;
+        const auto [entry, is_new] =
+            group_indices_.try_emplace(names, static_cast<int>(file_.groups.size()));
+        group_ = entry->second;
+        if (is_new) file_.groups.push_back(std::move(names));
     }
 
     void read_smoothing(std::string_view rest) {
@@ -245,6 +266,11 @@ class ObjParser {
     LineReader lines_;
     ObjFile file_;
     std::map<std::string, int> material_indices_;
+    std::map<std::vector<std::string>, int> group_indices_;
+    std::vector<std::string> group_names_;
+    std::string object_name_;
+    static constexpr int no_group_yet = -2;
+    int group_ = -1;
     int material_ = -1;
     std::int64_t smoothing_ = unsaid_smoothing;
     Flaw short_faces_, not_finite_uvs_, not_finite_normals_, not_finite_colors_, missing_uvs_,

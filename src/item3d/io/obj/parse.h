@@ -26,6 +26,7 @@ struct ObjFace {
     int line;
     /// What "s" says: above 0 a group, 0 "off", unsaid_smoothing where there is no such statement.
     std::int64_t smoothing;
+    int group;  ///< into ObjFile::groups; -1: in none
 };
 
 inline constexpr std::int64_t unsaid_smoothing = std::int64_t{1} << 40;
@@ -38,7 +39,8 @@ struct ObjFile {
     std::vector<ObjCorner> corners;
     std::vector<ObjFace> faces;               ///< all corners of all faces are within the lists
     std::vector<std::string> material_names;  ///< as written; "" for faces before any usemtl
-    std::vector<std::string> libraries;       ///< what stands behind each mtllib
+    std::vector<std::vector<std::string>> groups;  ///< names of the object and of the groups
+    std::vector<std::string> libraries;            ///< what stands behind each mtllib
 };
 
 /// Warns, once for each kind, of what it leaves out: faces of one or two corners, values that are

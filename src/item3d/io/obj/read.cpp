@@ -35,6 +35,7 @@ struct CornerHash {
 struct ObjTriangles {
     std::vector<ObjCorner> corners;    ///< three a triangle
     std::vector<std::int64_t> groups;  ///< of smoothing, one a triangle
+    std::vector<int> named_groups;     ///< Primitive::triangle_groups
 };
 
 class ObjReader {
@@ -82,7 +83,10 @@ class ObjReader {
             for (const std::uint32_t i : chosen)
                 triangles.corners.push_back(file_.corners[face.first_corner + i]);
             triangles.groups.insert(triangles.groups.end(), chosen.size() / 3, group);
+            triangles.named_groups.insert(triangles.named_groups.end(), chosen.size() / 3,
+                                          face.group);
         }
+        model_.groups = file_.groups;
     }
 
     // Over the whole file, so that materials do not part them.
@@ -127,16 +131,18 @@ class ObjReader {
             if (!found && !name.empty()) unknown.push_back(name);
             const auto [slot, is_new] = slots.try_emplace(found, parts.size());
             if (found && !is_new) {
-                auto& corners = parts[slot->second].second.corners;
-                corners.insert(corners.end(), triangles_[m].corners.begin(),
-                               triangles_[m].corners.end());
+                ObjTriangles& part = parts[slot->second].second;
+                const ObjTriangles& more = triangles_[m];
+                part.corners.insert(part.corners.end(), more.corners.begin(), more.corners.end());
+                part.named_groups.insert(part.named_groups.end(), more.named_groups.begin(),
+                                         more.named_groups.end());
                 continue;
             }
             parts.emplace_back(found ? *found : MtlMaterial{}, std::move(triangles_[m]));
             if (!found) parts.back().first.name = name;
         }
         for (auto& [source, triangles] : parts)
-            add_primitive(materials.add(source), source, triangles.corners);
+            add_primitive(materials.add(source), source, std::move(triangles));
         materials.make_visible();
         if (unknown.empty()) return;
         const std::size_t shown = std::min<std::size_t>(unknown.size(), 3);
@@ -149,9 +155,10 @@ class ObjReader {
                              : std::string()));
     }
 
-    void add_primitive(int material, const MtlMaterial& source,
-                       const std::vector<ObjCorner>& corners) {
+    void add_primitive(int material, const MtlMaterial& source, ObjTriangles triangles) {
+        const std::vector<ObjCorner>& corners = triangles.corners;
         Primitive primitive;
+        if (!file_.groups.empty()) primitive.triangle_groups = std::move(triangles.named_groups);
         primitive.material = material;
         primitive.name =
             model_.materials.back().name.empty() ? model_.name : model_.materials.back().name;

@@ -1,0 +1,246 @@
+// item3d region: what selectors take of a model, before anything is edited.
+#include "item3d/region/region.h"
+
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/model_options.h"
+#include "apps/item3d/edit/picture_options.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/edit/material_source.h"
+#include "item3d/field/atlas/atlas.h"
+#include "item3d/io/file_names.h"
+#include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
+#include "item3d/io/part_names.h"
+#include "item3d/io/save.h"
+#include "item3d/region/masks.h"
+#include "item3d/region/preview.h"
+#include "item3d/render/pictures.h"
+#include "item3d/report/animation.h"
+#include "item3d/report/contact_sheet.h"
+#include "item3d/report/model_pictures.h"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int view_count = 6;
+
+struct RegionCommand : CommonOptions {
+    std::string model;
+    RegionRequest request;
+    std::vector<std::string> materials;
+    std::vector<fs::path> texture_folders;
+    std::string output;
+    int size = 384;
+    int texture_size = 0;
+};
+
+/// What a model can be selected by: the names that its file gives.
+json names_of(const Model& model) {
+    std::set<std::string> materials, nodes, meshes, groups;
+    for (const Primitive& primitive : model.primitives) {
+        materials.insert(model.materials[static_cast<std::size_t>(primitive.material)].name);
+        for (const std::string& name : node_names(model, primitive))
+            nodes.insert(name);
+        meshes.insert(mesh_name(model, primitive));
+    }
+    for (const auto& names : model.groups)
+        groups.insert(names.begin(), names.end());
+    json names = json::object();
+    const auto add = [&](const char* kind, std::set<std::string> found) {
+        found.erase("");
+        if (!found.empty()) names[kind] = found;
+    };
+    add("material", std::move(materials));
+    add("node", std::move(nodes));
+    add("mesh", std::move(meshes));
+    add("group", std::move(groups));
+    const std::vector<std::string> attributes = vertex_attribute_names(model);
+    if (!attributes.empty()) names["attribute"] = attributes;
+    return names;
+}
+
+void print_names(const json& names) {
+    for (const auto& [kind, list] : names.items()) {
+        const std::size_t shown = std::min<std::size_t>(list.size(), 12);
+        std::string line;
+        for (std::size_t i = 0; i < shown; ++i)
+            line += (i > 0 ? ", " : "") + list[i].get<std::string>();
+        fmt::print("{}: {}{}\n", kind, line,
+                   list.size() > shown ? fmt::format(" and {} more", list.size() - shown) : "");
+    }
+}
+
+/// The views' cameras, for painting on them: view=PICTURE@transforms.json#view_0.
+void save_cameras(const fs::path& path, const std::vector<Camera>& cameras, const Model& model) {
+    json document{{"camera_angle_x", cameras.front().field_of_view_x}, {"frames", json::array()}};
+    for (const Camera& camera : cameras) {
+        json rows = json::array();
+        for (int row = 0; row < 4; ++row) {
+            json values = json::array();
+            for (int column = 0; column < 4; ++column) {
+                double value = camera.camera_to_world[column][row];
+                if (column == 3 && row < 3) value += model.origin[row];
+                values.push_back(value);
+            }
+            rows.push_back(std::move(values));
+        }
+        document["frames"].push_back(
+            {{"file_path", "./" + camera.name}, {"transform_matrix", std::move(rows)}});
+    }
+    write_atomically(path, std::string_view(document.dump(2)));
+}
+
+class RegionOutput {
+  public:
+    RegionOutput(const RegionCommand& options, at::Device device)
+        : options_(options),
+          folder_(options.output),
+          model_(load_model(options.model, {.texture_folders = options.texture_folders})),
+          geometry_(Geometry::from_model(model_, device)),
+          textured_(model_, device),
+          light_(prefilter(load_light("studio"), light_texels(options.size), device)),
+          cameras_(picture_cameras(model_, view_count)) {
+        for (std::size_t i = 0; i < cameras_.size(); ++i)
+            cameras_[i].name = fmt::format("view_{}", i);
+    }
+
+    json write() {
+        json record{{"model", options_.model}, {"names", names_of(model_)}};
+        // A selector that cannot be used is told before anything is written.
+        const std::vector<int> materials = select_materials(model_, options_.materials);
+        const FieldSpace space(model_, materials, geometry_.positions.device());
+        std::unique_ptr<Region> region;
+        if (!options_.request.is_everything())
+            region = std::make_unique<Region>(options_.request,
+                                              RegionScene{model_, geometry_, textured_, space});
+        make_output_folder(folder_);
+        write_views();
+        if (!region) return record;
+        std::vector<Tile> tiles;
+        for (const Image& picture :
+             region_pictures(*region, geometry_, textured_, light_, cameras_, options_.size))
+            tiles.push_back({picture, cameras_[tiles.size()].name});
+        ContactSheetOptions sheet;
+        sheet.columns = 3;
+        sheet.title = fmt::format("{:.1f} % of the surface", 100 * region->share());
+        save_image(folder_ / "region.png", contact_sheet(tiles, sheet));
+        record["share"] = region->share();
+        record["materials"] = write_masks(*region, space, materials);
+        return record;
+    }
+
+  private:
+    void write_views() const {
+        const at::Tensor linear = ModelDrawing(model_, light_).draw(cameras_, options_.size);
+        for (std::size_t i = 0; i < cameras_.size(); ++i)
+            save_image(folder_ / (cameras_[i].name + ".png"),
+                       to_display(to_image(linear[static_cast<std::int64_t>(i)].cpu())));
+        save_cameras(folder_ / "transforms.json", cameras_, model_);
+    }
+
+    json write_masks(const Region& region, const FieldSpace& space,
+                     const std::vector<int>& materials) const {
+        const Atlas atlas = choose_uvs(model_, space, materials, UvPolicy::keep);
+        const auto masks = region_masks(region, model_, geometry_, atlas, options_.texture_size);
+        json records = json::array();
+        FileNames names;
+        for (const int index : region.materials()) {
+            const Material& material = model_.materials[static_cast<std::size_t>(index)];
+            json record{{"name", material.name}};
+            const auto mask = masks.find(index);
+            if (mask != masks.end()) {
+                const std::string plain = plain_file_name(material.name);
+                const std::string file =
+                    "mask_" +
+                    names.unused(plain.empty() ? "material" + std::to_string(index) : plain) +
+                    ".png";
+                save_image(folder_ / file, mask->second);
+                record["mask"] = file;
+            }
+            records.push_back(std::move(record));
+        }
+        return records;
+    }
+
+    const RegionCommand& options_;
+    fs::path folder_;
+    Model model_;
+    Geometry geometry_;
+    TexturedMaterials textured_;
+    EnvironmentLight light_;
+    std::vector<Camera> cameras_;
+};
+
+void run_region(const RegionCommand& options, at::Device device) {
+    const at::NoGradGuard no_grad;
+    const json record = RegionOutput(options, device).write();
+    write_atomically(fs::path(options.output) / "region.json", std::string_view(record.dump(2)));
+    if (options.json) {
+        print_json(record);
+        return;
+    }
+    if (record.contains("share"))
+        fmt::print("{:.1f} % of the surface\n", 100 * record["share"].get<double>());
+    else
+        print_names(record["names"]);
+    fmt::print("{}\n", options.output);
+}
+
+std::string selectors_help() {
+    std::string text = "\nSelectors:\n";
+    for (const SelectorKind& kind : selector_kinds())
+        text += fmt::format("  {:<26}{}\n", kind.form, kind.help);
+    return text;
+}
+
+}  // namespace
+
+void add_region_command(CLI::App& app) {
+    auto options = std::make_shared<RegionCommand>();
+    CLI::App* command = add_command(app, "region", *options);
+    command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
+    command
+        ->add_option("-o,--output", options->output,
+                     "Folder: region.png shows the region, mask_<material>.png holds it in UV "
+                     "space, view_<n>.png and transforms.json are there to paint on")
+        ->required();
+    command
+        ->add_option("--region", options->request.include,
+                     "What to select; may be given several times, for the union. Without it, "
+                     "the names that can be selected by")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--exclude", options->request.exclude,
+                     "What to leave out of it; may be given several times")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--feather", options->request.feather,
+                     "Width of the soft border, within the region, in percent of the model's "
+                     "size")
+        ->check(CLI::Range(0.0, 50.0));
+    command->add_option("--material", options->materials, "Only the materials of these names");
+    add_texture_folders(*command, options->texture_folders);
+    command->add_option("--size", options->size, "Pixels of a view's side")
+        ->check(CLI::Range(32, 4096))
+        ->capture_default_str();
+    command
+        ->add_option("--texture-size", options->texture_size,
+                     "Edge of the masks; 0: as the textures'")
+        ->check(CLI::Range(0, 8192));
+    command->footer(selectors_help());
+    command->callback([options] { run_region(*options, start_command(*options)); });
+}
+
+}  // namespace item3d

@@ -1,0 +1,73 @@
+#include "item3d/region/region.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/core/random.h"
+
+namespace item3d {
+namespace {
+
+constexpr std::int64_t sampled_points = 1 << 17;
+constexpr std::int64_t kept_points = 4096;
+
+/// The largest of the selectors' weights.
+at::Tensor united(const std::vector<std::unique_ptr<Selector>>& selectors, const Surface& surface) {
+    at::Tensor weights = selectors.front()->weight(surface);
+    for (std::size_t i = 1; i < selectors.size(); ++i)
+        weights = at::maximum(weights, selectors[i]->weight(surface));
+    return weights;
+}
+
+}  // namespace
+
+Region::Region(const RegionRequest& request, const RegionScene& scene) {
+    const at::NoGradGuard no_grad;
+    for (const std::string& text : request.include)
+        include_.push_back(make_selector(text, scene));
+    for (const std::string& text : request.exclude)
+        exclude_.push_back(make_selector(text, scene));
+    Random random(0, RandomStream::region);
+    const Surface surface =
+        SurfaceSampler(scene.geometry, scene.space).sample(sampled_points, random);
+    const at::Tensor inside = unfeathered(surface);
+    const at::Tensor positions = surface.position.cpu();
+    if (request.feather > 0) {
+        const auto [low, high] = scene.model.bounds();
+        feather_.emplace(positions.index({inside.le(0)}),
+                         request.feather / 100 * glm::length(high - low));
+    }
+    share_ = weight(surface).mean().item<double>();
+    const at::Tensor indices = inside.gt(0).nonzero().squeeze(1);
+    if (indices.size(0) == 0) {
+        std::vector<std::string> all = request.include;
+        if (all.empty()) all.emplace_back("everything");
+        throw InputError(fmt::format("{}", fmt::join(all, ", ")),
+                         request.exclude.empty()
+                             ? "nothing of what is edited is in this region"
+                             : "nothing is left of this region without what is excluded",
+                         "item3d region MODEL --region ... -o FOLDER shows what a selector takes");
+    }
+    const at::Tensor materials = surface.material.cpu().index_select(0, indices);
+    for (std::size_t m = 0; m < scene.model.materials.size(); ++m)
+        if (materials.eq(static_cast<std::int64_t>(m)).any().item<bool>())
+            materials_.push_back(static_cast<int>(m));
+    const std::int64_t step = std::max<std::int64_t>(1, indices.size(0) / kept_points);
+    const at::Tensor kept = indices.slice(0, 0, indices.size(0), step);
+    points_ = {positions.index_select(0, kept), surface.normal.cpu().index_select(0, kept)};
+}
+
+at::Tensor Region::unfeathered(const Surface& surface) const {
+    at::Tensor weights = include_.empty() ? at::ones({surface.count()}) : united(include_, surface);
+    if (!exclude_.empty()) weights = weights * (1 - united(exclude_, surface));
+    return weights;
+}
+
+at::Tensor Region::weight(const Surface& surface) const {
+    const at::NoGradGuard no_grad;
+    if (surface.count() == 0) return at::zeros({0, 1}, surface.position.options());
+    at::Tensor weights = unfeathered(surface);
+    if (feather_) weights = weights * feather_->weight(surface.position.detach().cpu(), weights);
+    return weights.unsqueeze(1).to(surface.position.device());
+}
+
+}  // namespace item3d

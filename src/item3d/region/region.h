@@ -1,0 +1,55 @@
+// A part of a model's surface that an edit changes: a weight in [0, 1] at each place.
+#pragma once
+
+#include "item3d/region/feather.h"
+#include "item3d/region/selector.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+struct RegionRequest {
+    std::vector<std::string> include;  ///< selectors, united; empty: the whole surface
+    std::vector<std::string> exclude;  ///< selectors, subtracted
+    float feather = 0;  ///< width of the border, in percent of the diagonal of the model's box
+
+    bool is_everything() const { return include.empty() && exclude.empty(); }
+};
+
+/// Points of a region, drawn by area: for cameras that look at it.
+struct RegionPoints {
+    at::Tensor positions;  ///< [K, 3] on the CPU
+    at::Tensor normals;    ///< [K, 3]
+};
+
+/// Weights are 0 outside: the feather lies within the border. Places that share texels, and
+/// instances of one mesh, cannot be told apart by a texture: what the file shows of them is the
+/// weight of the first.
+class Region {
+  public:
+    /// The scene must outlive this. Throws InputError for a selector that cannot be used, and where
+    /// nothing is selected.
+    Region(const RegionRequest& request, const RegionScene& scene);
+
+    /// [P, 1] float32 on the surface's device.
+    at::Tensor weight(const Surface& surface) const;
+    /// Part of the area of the scene's edited materials, weights counted.
+    double share() const { return share_; }
+    const RegionPoints& points() const { return points_; }
+    /// Materials that have a part in it, rising: indices into Model::materials.
+    const std::vector<int>& materials() const { return materials_; }
+
+  private:
+    at::Tensor unfeathered(const Surface& surface) const;
+
+    std::vector<std::unique_ptr<Selector>> include_, exclude_;
+    std::optional<Feather> feather_;
+    double share_ = 0;
+    RegionPoints points_;
+    std::vector<int> materials_;
+};
+
+}  // namespace item3d

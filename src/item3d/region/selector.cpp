@@ -1,0 +1,91 @@
+#include "item3d/region/selector.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/io/text.h"
+#include "item3d/region/color_selector.h"
+#include "item3d/region/part_selectors.h"
+#include "item3d/region/picture_selectors.h"
+#include "item3d/region/space_selectors.h"
+
+#include <cmath>
+#include <functional>
+
+namespace item3d {
+namespace {
+
+struct Kind {
+    SelectorKind shown;
+    std::function<std::unique_ptr<Selector>(const SelectorText&, const RegionScene&)> make;
+};
+
+const std::vector<Kind>& kinds() {
+    static const std::vector<Kind> all = {
+        {{"material=NAME", "what has this material"}, select_material},
+        {{"node=NAME", "a glTF node and all below it"}, select_node},
+        {{"mesh=NAME", "a glTF mesh"}, select_mesh},
+        {{"group=NAME", "an OBJ group or object (g, o)"}, select_group},
+        {{"attribute=_NAME", "a glTF vertex attribute, as exporters write vertex groups"},
+         select_attribute},
+        {{"box=X0,Y0,Z0,X1,Y1,Z1", "between two corners, in the model's units"}, select_box},
+        {{"sphere=X,Y,Z,R", "around a point, in the model's units"}, select_sphere},
+        {{"mask=FILE[@MATERIAL]", "where a picture in UV space is white"}, select_mask},
+        {{"view=FILE[@CAMERA]",
+          "what is seen where a picture of the model is white; CAMERA: AZIMUTH,ELEVATION in "
+          "degrees, or a transforms.json, with #FRAME unless the first is meant; without it, the "
+          "view of item3d render"},
+         select_view},
+        {{"color=COLOR[~DISTANCE]",
+          "where the model's own base colour is within this CIELAB distance, 12 if not given"},
+         select_color},
+    };
+    return all;
+}
+
+}  // namespace
+
+std::unique_ptr<Selector> make_selector(const std::string& text, const RegionScene& scene) {
+    const std::size_t equals = text.find('=');
+    const std::string kind = text.substr(0, equals);
+    for (const Kind& candidate : kinds()) {
+        const std::string& form = candidate.shown.form;
+        if (kind != form.substr(0, form.find('='))) continue;
+        const SelectorText parts{
+            text, equals == std::string::npos ? std::string() : text.substr(equals + 1), form};
+        if (parts.value.empty()) throw InputError(text, "a value is missing", "as in " + form);
+        return candidate.make(parts, scene);
+    }
+    std::vector<std::string> forms;
+    for (const SelectorKind& known : selector_kinds())
+        forms.push_back(known.form);
+    throw InputError(text.empty() ? "region" : text, "it is no selector",
+                     fmt::format("choose from {}", fmt::join(forms, ", ")));
+}
+
+const std::vector<SelectorKind>& selector_kinds() {
+    static const std::vector<SelectorKind> shown = [] {
+        std::vector<SelectorKind> all;
+        for (const Kind& kind : kinds())
+            all.push_back(kind.shown);
+        return all;
+    }();
+    return shown;
+}
+
+std::vector<float> numbers_of(const SelectorText& text, std::size_t count) {
+    std::vector<float> numbers;
+    std::size_t begin = 0;
+    while (begin <= text.value.size()) {
+        const std::size_t end = std::min(text.value.find(',', begin), text.value.size());
+        const auto number = parse_number(trim(text.value.substr(begin, end - begin)));
+        if (!number || !std::isfinite(*number)) break;
+        numbers.push_back(static_cast<float>(*number));
+        begin = end + 1;
+    }
+    if (begin <= text.value.size() || numbers.size() != count)
+        throw InputError(text.whole, fmt::format("{} numbers were expected", count),
+                         "as in " + text.form);
+    return numbers;
+}
+
+}  // namespace item3d
