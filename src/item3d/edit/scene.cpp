@@ -4,6 +4,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/load_networks.h"
+#include "item3d/edit/region_choice.h"
 #include "item3d/field/atlas/shared_texels.h"
 #include "item3d/io/load.h"
 #include "item3d/networks/vocabulary.h"
@@ -45,21 +46,6 @@ void note_variants(const Model& model, const std::vector<int>& materials) {
                      left.empty() ? "none" : fmt::format("{}", fmt::join(left, ", "))));
 }
 
-/// Sets the region, where the plan has one, and leaves the materials that have a part in it.
-void choose_region(const EditPlan& plan, EditScene& scene) {
-    const RegionRequest request{plan.region, plan.exclude, plan.feather};
-    if (request.is_everything()) return;
-    const FieldSpace space(scene.model, scene.materials, scene.device);
-    // Of the model as it is in the file: its own base colour is selected by.
-    scene.source_textures = std::make_unique<TexturedMaterials>(scene.model, scene.device);
-    scene.region = std::make_unique<Region>(
-        request, RegionScene{scene.model, scene.geometry, *scene.source_textures, space});
-    scene.region_views =
-        std::make_unique<RegionViews>(scene.region->points(), scene.model, scene.geometry);
-    scene.materials = scene.region->materials();
-    note(fmt::format("the region is {:.1f} % of what is edited", 100 * scene.region->share()));
-}
-
 }  // namespace
 
 EditScene load_scene(const EditRequest& request) {
@@ -85,7 +71,7 @@ EditScene load_scene(const EditRequest& request) {
     check_looks(request, scene.model, scene.materials);
     scene.geometry = Geometry::from_model(scene.model, device);
     scene.sphere = bounding_sphere(scene.model);
-    if (plan.edits_texture) choose_region(plan, scene);
+    if (plan.edits_texture) choose_region(plan, vocabulary, scene);
     scene.losses = prepare_materials(scene.model, scene.materials, plan);
     if (plan.edits_texture) note_variants(scene.model, scene.materials);
     scene.start = choose_start(plan, vocabulary, scene.model, scene.materials);

@@ -1,6 +1,7 @@
 #include "item3d/region/color_selector.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/io/text.h"
 #include "item3d/metrics/color.h"
 
@@ -12,20 +13,39 @@ namespace {
 constexpr float usual_distance = 12;
 constexpr float fading = 0.5f;  ///< of the distance
 
+/// Paint in the shade or worn keeps its hue, and is called by it: of a named colour hue counts most,
+/// chroma where there is little of it, and lightness enough to tell brown from orange.
+constexpr float hue_scale = 60, little_chroma = 10, lightness_scale = 0.35f;
+constexpr float named_fading = 8;  ///< distances over which one name gives way to the next
+
+/// [N, 3] in which equal distances are about as different to who names colours. lab: [N, 3].
+at::Tensor naming_space(const at::Tensor& lab) {
+    const at::Tensor ab = lab.narrow(1, 1, 2);
+    const at::Tensor chroma = ab.square().sum(1, true).sqrt();
+    return at::cat({lightness_scale * lab.narrow(1, 0, 1), hue_scale * ab / (chroma + little_chroma)},
+                   1);
+}
+
+/// CIELAB [P, 3] of the model's own base colour, on the CPU.
+at::Tensor own_lab(const TexturedMaterials& textured, const Surface& surface) {
+    Surface sharp = surface;  // footprints would blur what a pixel covers
+    sharp.uv_footprint = at::Tensor();
+    sharp.further_uv_footprints.clear();
+    return lab_of(textured.sample(sharp).base_color.cpu());
+}
+
+at::Tensor row_of(const Lab& color) {
+    return at::tensor({static_cast<float>(color.l), static_cast<float>(color.a),
+                       static_cast<float>(color.b)});
+}
+
 class ColorSelector : public Selector {
   public:
     ColorSelector(const TexturedMaterials& textured, const Lab& color, float distance)
-        : textured_(textured),
-          lab_(at::tensor({static_cast<float>(color.l), static_cast<float>(color.a),
-                           static_cast<float>(color.b)})),
-          distance_(distance) {}
+        : textured_(textured), lab_(row_of(color)), distance_(distance) {}
 
     at::Tensor weight(const Surface& surface) const override {
-        Surface sharp = surface;  // footprints would blur what a pixel covers
-        sharp.uv_footprint = at::Tensor();
-        sharp.further_uv_footprints.clear();
-        const at::Tensor lab = lab_of(textured_.sample(sharp).base_color.cpu());
-        const at::Tensor distance = (lab - lab_).square().sum(1).sqrt();
+        const at::Tensor distance = (own_lab(textured_, surface) - lab_).square().sum(1).sqrt();
         return ((1 + fading) - distance / distance_).div(fading).clamp(0, 1);
     }
 
@@ -33,6 +53,30 @@ class ColorSelector : public Selector {
     const TexturedMaterials& textured_;
     at::Tensor lab_;
     float distance_;
+};
+
+class NamedSelector : public Selector {
+  public:
+    NamedSelector(const TexturedMaterials& textured, std::size_t chosen)
+        : textured_(textured), chosen_(static_cast<std::int64_t>(chosen)) {
+        std::vector<at::Tensor> rows;
+        for (const NamedColor& color : basic_colors())
+            rows.push_back(row_of(srgb_to_lab(color.srgb)));
+        colors_ = naming_space(at::stack(rows));
+    }
+    at::Tensor weight(const Surface& surface) const override {
+        const at::Tensor own = naming_space(own_lab(textured_, surface));
+        const at::Tensor distance = (own.unsqueeze(1) - colors_).square().sum(2).sqrt();
+        at::Tensor others = distance.clone();
+        others.select(1, chosen_).fill_(1e9f);
+        const at::Tensor lead = others.amin(1) - distance.select(1, chosen_);
+        return (0.5f + lead / named_fading).clamp(0, 1);
+    }
+
+  private:
+    const TexturedMaterials& textured_;
+    at::Tensor colors_;  ///< [N, 3] in naming_space()
+    std::int64_t chosen_;
 };
 
 }  // namespace
@@ -69,6 +113,17 @@ std::unique_ptr<Selector> select_color(const SelectorText& text, const RegionSce
         throw InputError(text.whole, error.what());
     }
     return std::make_unique<ColorSelector>(scene.textured, srgb_to_lab(srgb), distance);
+}
+
+std::unique_ptr<Selector> select_named(const SelectorText& text, const RegionScene& scene) {
+    std::vector<std::string> names;
+    for (const NamedColor& color : basic_colors()) {
+        if (color.name == (text.value == "grey" ? "gray" : text.value))
+            return std::make_unique<NamedSelector>(scene.textured, names.size());
+        names.push_back(color.name);
+    }
+    throw InputError(text.whole, "it is no basic colour",
+                     fmt::format("choose from {}", fmt::join(names, ", ")));
 }
 
 }  // namespace item3d

@@ -1,5 +1,8 @@
 #include "item3d/region/masks.h"
 
+#include "item3d/field/bake/bake.h"
+#include "item3d/field/bake/fill.h"
+
 #include <algorithm>
 
 namespace item3d {
@@ -18,6 +21,9 @@ Image mask_of(const Region& region, const Model& model, const Geometry& geometry
     if (!set.shared.empty()) claim_texels(raster, triangles);
     widen(raster);
     Image mask(width, height, 1);
+    std::vector<std::uint8_t> covered;
+    for (const UvOwner& owner : raster.owners)
+        covered.push_back(owner.triangle >= 0 ? 1 : 0);
     for (int first = 0; first < height; first += rows_at_once) {
         std::vector<std::int64_t> triangle, texel;
         std::vector<float> barycentrics;
@@ -41,6 +47,7 @@ Image mask_of(const Region& region, const Model& model, const Geometry& geometry
         for (std::size_t i = 0; i < texel.size(); ++i)
             mask.pixels[static_cast<std::size_t>(texel[i])] = weights.const_data_ptr<float>()[i];
     }
+    continue_weights(mask, covered, texture_padding);
     return mask;
 }
 

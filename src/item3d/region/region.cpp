@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-constexpr std::int64_t sampled_points = 1 << 17;
+constexpr std::int64_t sampled_points = 1 << 16;
 constexpr std::int64_t kept_points = 4096;
 
 /// The largest of the selectors' weights.

@@ -38,6 +38,10 @@ const std::vector<Kind>& kinds() {
         {{"color=COLOR[~DISTANCE]",
           "where the model's own base colour is within this CIELAB distance, 12 if not given"},
          select_color},
+        {{"named=COLOR",
+          "where people would call the base colour so: black, white, gray, red, green, blue, "
+          "yellow, orange, purple, pink or brown"},
+         select_named},
     };
     return all;
 }

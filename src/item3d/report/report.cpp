@@ -62,6 +62,14 @@ std::string views(const EditReport& report) {
     return html_gallery(figures, figures.size() <= 4 ? 420 : 300);
 }
 
+std::string region(const EditReport& report) {
+    if (report.region.empty()) return "";
+    std::vector<std::string> figures;
+    for (const ReportImage& picture : report.region)
+        figures.push_back(html_figure(picture));
+    return "<p>" + html_escape(report.region_note) + "</p>\n" + html_gallery(figures, 180);
+}
+
 std::string scores(const EditReport& report) {
     if (report.scores.empty()) return "";
     std::string html = "<dl class=\"scores\">";
@@ -118,6 +126,7 @@ std::string settings(const EditReport& report) {
 std::string edit_report_html(const EditReport& report) {
     std::string body = header(report);
     body += html_section("Before and after", views(report));
+    body += html_section("Region", region(report));
     // The scores stand beside the turning model, where both are there.
     std::string around = scores(report);
     if (report.turntable) {

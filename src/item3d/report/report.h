@@ -41,6 +41,8 @@ struct EditReport {
     /// Pictures of the same views; before[i] and after[i] show the same camera.
     std::vector<ReportImage> before;
     std::vector<ReportImage> after;
+    std::vector<ReportImage> region;  ///< views that show what was to change; none: all of it
+    std::string region_note;
     std::optional<ReportImage> turntable;
     std::vector<TexturePair> textures;
     std::vector<Score> scores;

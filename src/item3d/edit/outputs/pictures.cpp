@@ -4,6 +4,7 @@
 #include "item3d/edit/material_source.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
+#include "item3d/region/preview.h"
 #include "item3d/render/pictures.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
@@ -64,6 +65,12 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     save_sheet(request.output / "after.png", after_pictures, request.plan.to);
     pictures.before = to_report(before_pictures);
     pictures.after = to_report(after_pictures);
+
+    if (scene.region) {
+        pictures.region = to_report(region_pictures(*scene.region, scene.geometry, *scene.textured,
+                                                    light, cameras, view_pixels / 2));
+        pictures.outside = compare_outside(scene, edited.model);
+    }
 
     std::vector<Image> frames;
     for (const Camera& camera : picture_cameras(scene.model, turntable_frames)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/edit/outputs/baked_files.h"
+#include "item3d/edit/outputs/outside_texels.h"
 #include "item3d/edit/request.h"
 #include "item3d/edit/scene.h"
 #include "item3d/metrics/clip_score.h"
@@ -15,6 +16,8 @@ namespace item3d {
 struct Pictures {
     std::vector<ReportImage> before;
     std::vector<ReportImage> after;
+    std::vector<ReportImage> region;  ///< of the same views; empty where all was to change
+    OutsideTexels outside;
     ReportImage turntable;
     SurfaceMeans means_before;
     SurfaceMeans means_after;

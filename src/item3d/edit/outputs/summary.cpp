@@ -100,6 +100,11 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
         summary["variants"] = {{"changed", variants_with(scene.model, scene.materials, true)},
                                {"left", variants_with(scene.model, scene.materials, false)}};
     }
+    if (scene.region)
+        summary["region"] = {{"share", scene.region->share()},
+                             {"outside",
+                              {{"texels", pictures.outside.compared},
+                               {"changed", pictures.outside.changed}}}};
     if (pictures.clip) {
         json clip = pictures.clip->mean;
         clip["model"] = request.clip.string();
@@ -224,6 +229,13 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     report.before = pictures.before;
     report.after = pictures.after;
     report.turntable = pictures.turntable;
+    if (scene.region) {
+        report.region = pictures.region;
+        report.region_note = fmt::format(
+            "What was to change, in orange: {:.1f} % of the edited materials' surface. Outside of "
+            "it {} of {} texels changed.",
+            100 * scene.region->share(), pictures.outside.changed, pictures.outside.compared);
+    }
     report.textures = edited.textures;
     report.scores = scores_of(pictures);
     report.timeline = timeline_of(state.adjustment.records);

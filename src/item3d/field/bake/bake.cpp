@@ -21,8 +21,6 @@ namespace {
 const Vec3 luminance_weights(0.2126f, 0.7152f, 0.0722f);
 /// Longest edge of a new texture when it is tried.
 constexpr int tried_edge = 256;
-/// Texels around an island that continue it: enough for four mip levels.
-constexpr int padding = 16;
 
 bool shows_alpha(const Image& image) {
     if (image.channels % 2 != 0) return false;
@@ -372,11 +370,11 @@ bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
         keep_flat(slot.image, *texels, slot.covered, slot.filled_channels, options_.blotch);
     const bool hides = slot.image.channels == 4 && material_.alpha != Material::Alpha::opaque;
     (hides ? fill_invisible : fill_uncovered)(slot.image, slot.covered, slot.filled_channels,
-                                              padding);
+                                              texture_padding);
     const bool is_copied = &slot == &base_color_ ? base_color_texels_ != nullptr
                            : &slot == &orm_      ? orm_texels_ != nullptr
                                                  : normal_texels_ != nullptr;
-    slot.blend_with_source(is_copied, padding);
+    slot.blend_with_source(is_copied, texture_padding);
     Image image = std::move(slot.image);
     if (is_new(slot)) {
         image = shrink(std::move(image), wrap_of(scene_.model, index_), options_.blotch);

@@ -47,6 +47,9 @@ struct BakeOptions {
     bool show_progress = true;
 };
 
+/// Texels around an island that continue it: enough for four mip levels.
+inline constexpr int texture_padding = 16;
+
 /// What is baked from. All must live as long as the call.
 struct BakeScene {
     const Model& model;

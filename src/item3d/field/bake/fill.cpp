@@ -21,6 +21,28 @@ std::vector<float> means_of(const Image& image, const std::vector<std::uint8_t>&
     return means;
 }
 
+/// From each texel to the nearest covered one, along rows and columns.
+std::vector<int> steps_to(const std::vector<std::uint8_t>& covered, int width, int height) {
+    std::vector<int> steps(covered.size());
+    const auto at = [&](int x, int y) -> int& {
+        return steps[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(x)];
+    };
+    for (std::size_t i = 0; i < covered.size(); ++i)
+        steps[i] = covered[i] ? 0 : width + height;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            if (x > 0) at(x, y) = std::min(at(x, y), at(x - 1, y) + 1);
+            if (y > 0) at(x, y) = std::min(at(x, y), at(x, y - 1) + 1);
+        }
+    for (int y = height - 1; y >= 0; --y)
+        for (int x = width - 1; x >= 0; --x) {
+            if (x + 1 < width) at(x, y) = std::min(at(x, y), at(x + 1, y) + 1);
+            if (y + 1 < height) at(x, y) = std::min(at(x, y), at(x, y + 1) + 1);
+        }
+    return steps;
+}
+
 }  // namespace
 
 void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels,
@@ -95,6 +117,13 @@ void fill_invisible(Image& image, const std::vector<std::uint8_t>& covered, unsi
     for (std::size_t i = 0; i < visible.size(); ++i)
         if (image.pixels[4 * i + 3] == 0) visible[i] = 0;
     fill_uncovered(image, visible, channels & color, layers);
+}
+
+void continue_weights(Image& weight, const std::vector<std::uint8_t>& covered, int layers) {
+    fill_uncovered(weight, covered, 1u, layers);
+    const std::vector<int> steps = steps_to(covered, weight.width, weight.height);
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (steps[i] > layers) weight.pixels[i] = 0;
 }
 
 }  // namespace item3d

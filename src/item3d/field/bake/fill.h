@@ -20,4 +20,8 @@ void fill_uncovered(Image& image, const std::vector<std::uint8_t>& covered, unsi
 void fill_invisible(Image& image, const std::vector<std::uint8_t>& covered, unsigned channels,
                     int layers);
 
+/// The same for weights of one channel: within `layers` of what is covered they go on, beyond they
+/// are 0.
+void continue_weights(Image& weight, const std::vector<std::uint8_t>& covered, int layers);
+
 }  // namespace item3d

@@ -1,0 +1,87 @@
+#include "item3d/edit/region_choice.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/words.h"
+#include "item3d/metrics/color.h"
+
+#include <algorithm>
+
+namespace item3d {
+namespace {
+
+/// Shares of the surface between which a colour is one part of several.
+constexpr double least_share = 0.03, largest_share = 0.97;
+
+/// The one colour that a sentence names; nothing for none and for several.
+std::optional<KnownWord> only_color(const PriorVocabulary& vocabulary, const std::string& sentence) {
+    const std::vector<KnownWord> named = vocabulary.named("colors", sentence);
+    if (named.size() != 1 || !named.front().base_color) return std::nullopt;
+    return named.front();
+}
+
+/// The sentence's words but those that spell the colour.
+std::vector<std::string> other_words(const std::string& sentence, const KnownWord& color) {
+    std::vector<std::string> words = prompt_words(sentence);
+    std::erase_if(words, [&](const std::string& word) {
+        return word == "a" || word == "an" || word == color.word ||
+               std::find(color.spellings.begin(), color.spellings.end(), word) !=
+                   color.spellings.end();
+    });
+    return words;
+}
+
+std::unique_ptr<Region> make_region(const RegionRequest& request, const EditScene& scene) {
+    const FieldSpace space(scene.model, scene.materials, scene.device);
+    return std::make_unique<Region>(
+        request, RegionScene{scene.model, scene.geometry, *scene.source_textures, space});
+}
+
+/// Null where the colour is nearly everywhere or hardly anywhere.
+std::unique_ptr<Region> region_of_color(const std::string& color, const RegionRequest& request,
+                                        const EditScene& scene) {
+    RegionRequest colored = request;
+    colored.include = {"named=" + color};
+    std::unique_ptr<Region> region;
+    try {
+        region = make_region(colored, scene);
+    } catch (const InputError&) {
+        return nullptr;
+    }
+    if (region->share() < least_share || region->share() > largest_share) return nullptr;
+    note(fmt::format("only what is {} is edited, {:.0f} % of the surface; --region all edits all",
+                     color, 100 * region->share()));
+    return region;
+}
+
+}  // namespace
+
+std::optional<std::string> color_to_change(const EditPlan& plan,
+                                           const PriorVocabulary& vocabulary) {
+    const auto from = only_color(vocabulary, plan.from), to = only_color(vocabulary, plan.to);
+    if (!from || !to || from->word == to->word) return std::nullopt;
+    if (other_words(plan.from, *from) != other_words(plan.to, *to)) return std::nullopt;
+    return basic_colors()[nearest_color(*from->base_color, basic_colors())].name;
+}
+
+void choose_region(const EditPlan& plan, const PriorVocabulary& vocabulary, EditScene& scene) {
+    RegionRequest request{plan.region, plan.exclude, plan.feather};
+    const bool is_automatic = plan.region.empty() || plan.region == std::vector<std::string>{"auto"};
+    if (is_automatic || plan.region == std::vector<std::string>{"all"}) request.include.clear();
+    const auto color = is_automatic ? color_to_change(plan, vocabulary) : std::nullopt;
+    if (request.is_everything() && !color) return;
+    // Of the model as it is in the file: its own base colour is selected by.
+    scene.source_textures = std::make_unique<TexturedMaterials>(scene.model, scene.device);
+    if (color) scene.region = region_of_color(*color, request, scene);
+    if (!scene.region) {
+        if (request.is_everything()) return;
+        scene.region = make_region(request, scene);
+        note(fmt::format("the region is {:.1f} % of what is edited", 100 * scene.region->share()));
+    }
+    scene.region_views =
+        std::make_unique<RegionViews>(scene.region->points(), scene.model, scene.geometry);
+    scene.materials = scene.region->materials();
+}
+
+}  // namespace item3d

@@ -1,0 +1,279 @@
+// What each selector takes of small models.
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/metrics/color.h"
+#include "item3d/region/color_selector.h"
+#include "item3d/region/feather.h"
+#include "item3d/region/region.h"
+#include "item3d/scene/model_view.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A square in the plane z = `depth` that faces +Z, from -1 to 1, in texture coordinates from 0 to 1.
+Primitive square(float depth, int material) {
+    Primitive primitive;
+    primitive.material = material;
+    primitive.positions = {{-1, -1, depth}, {1, -1, depth}, {1, 1, depth}, {-1, 1, depth}};
+    primitive.normals.assign(4, Vec3(0, 0, 1));
+    primitive.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    primitive.indices = {0, 1, 2, 0, 2, 3};
+    return primitive;
+}
+
+/// Two squares, "front" before "back", which shows a red left half and a white right half.
+Model two_squares() {
+    Model model;
+    Image image(64, 64, 3, 1.0f);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 32; ++x)
+            for (int c = 0; c < 3; ++c)
+                image.at(x, y, c) = c == 0 ? 0.75f : 0.1f;
+    model.textures.push_back({"halves", image});
+    Material front, back;
+    front.name = "front";
+    front.base_color_factor = Vec4(0, 0, 1, 1);
+    back.name = "back";
+    back.base_color_texture = 0;
+    model.materials = {front, back};
+    model.primitives = {square(1, 0), square(-1, 1)};
+    return model;
+}
+
+class RegionTest : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("item3d-region-" + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+        use(two_squares());
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    void use(Model model) {
+        model_ = std::move(model);
+        geometry_ = Geometry::from_model(model_);
+        textured_ = std::make_unique<TexturedMaterials>(model_);
+        std::vector<int> all;
+        for (std::size_t i = 0; i < model_.materials.size(); ++i)
+            all.push_back(static_cast<int>(i));
+        space_ = std::make_unique<FieldSpace>(model_, all);
+    }
+    RegionScene scene() const { return {model_, geometry_, *textured_, *space_}; }
+
+    Region region(const std::vector<std::string>& include,
+                  const std::vector<std::string>& exclude = {}, float feather = 0) const {
+        return Region({include, exclude, feather}, scene());
+    }
+    /// At a place of the n-th square.
+    float weight(const Region& region, int square_index, float x, float y) const {
+        // Triangle 0 of a square has corners (-1, -1), (1, -1), (1, 1); triangle 1 (-1, -1), (1, 1),
+        // (-1, 1).
+        const bool is_lower = y <= x;
+        const float first = is_lower ? (1 - x) / 2 : (1 - y) / 2;
+        const float second = is_lower ? (x - y) / 2 : (x + 1) / 2;
+        const at::Tensor triangle =
+            at::full({1}, static_cast<std::int64_t>(2 * square_index + (is_lower ? 0 : 1)), at::kLong);
+        const Surface surface =
+            surface_at(geometry_, triangle, at::tensor({first, second}).reshape({1, 2}));
+        return region.weight(surface).item<float>();
+    }
+    /// A white rectangle in a black picture, in parts of its sides.
+    std::string mask(const std::string& name, float left, float top, float right, float bottom,
+                     int size = 64) const {
+        Image image(size, size, 1);
+        for (int y = 0; y < size; ++y)
+            for (int x = 0; x < size; ++x) {
+                const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(size);
+                const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(size);
+                if (u > left && u < right && v > top && v < bottom) image.at(x, y, 0) = 1;
+            }
+        save_image(folder_ / name, image);
+        return (folder_ / name).string();
+    }
+    std::string error_of(const std::string& selector) const {
+        try {
+            region({selector});
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "no error";
+    }
+    void expect_error(const std::string& selector, const std::string& words) const {
+        EXPECT_NE(error_of(selector).find(words), std::string::npos) << error_of(selector);
+    }
+
+    fs::path folder_;
+    Model model_;
+    Geometry geometry_;
+    std::unique_ptr<TexturedMaterials> textured_;
+    std::unique_ptr<FieldSpace> space_;
+};
+
+TEST_F(RegionTest, MaterialsAreTakenWhole) {
+    const Region back = region({"material=Back"});  // case does not matter
+    EXPECT_EQ(weight(back, 0, 0.1f, 0.2f), 0);
+    EXPECT_EQ(weight(back, 1, 0.1f, 0.2f), 1);
+    EXPECT_NEAR(back.share(), 0.5, 1e-3);
+    EXPECT_EQ(back.materials(), std::vector<int>{1});
+    EXPECT_EQ(region({"material=back", "material=front"}).materials(), (std::vector<int>{0, 1}));
+    expect_error("material=side", "front");
+}
+
+TEST_F(RegionTest, BoxesAndSpheresAreMeasuredInTheModelsUnits) {
+    const Region box = region({"box=0,0,2,1,1,0.5"});
+    EXPECT_EQ(weight(box, 0, 0.5f, 0.5f), 1);
+    EXPECT_EQ(weight(box, 0, -0.5f, 0.5f), 0);
+    EXPECT_EQ(weight(box, 1, 0.5f, 0.5f), 0);
+    const Region sphere = region({"sphere=0,0,-1,0.5"});
+    EXPECT_EQ(weight(sphere, 1, 0.4f, 0.1f), 1);
+    EXPECT_EQ(weight(sphere, 1, 0.4f, 0.4f), 0);
+    EXPECT_NEAR(sphere.share(), pi * 0.25 / 8, 1e-3);
+    expect_error("box=1,2,3", "6 numbers");
+    expect_error("box=1,2,3,4,5,x", "6 numbers");
+    expect_error("sphere=0,0,0,-1", "above 0");
+    expect_error("sphere=9,0,0,1", "the model lies between");
+}
+
+TEST_F(RegionTest, ExcludedPlacesAreTakenOff) {
+    const Region rest = region({}, {"material=front", "sphere=0,0,-1,0.5"});
+    EXPECT_EQ(weight(rest, 0, 0, 0), 0);
+    EXPECT_EQ(weight(rest, 1, 0, 0), 0);
+    EXPECT_EQ(weight(rest, 1, 0.9f, 0), 1);
+    EXPECT_THROW(region({"material=back"}, {"material=back"}), InputError);
+}
+
+TEST_F(RegionTest, MasksLieInTheUvMap) {
+    const std::string file = mask("quarter.png", 0, 0, 0.5f, 0.5f);
+    const Region everywhere = region({"mask=" + file});
+    EXPECT_EQ(weight(everywhere, 0, -0.5f, 0.5f), 1);
+    EXPECT_EQ(weight(everywhere, 0, 0.5f, 0.5f), 0);
+    EXPECT_EQ(weight(everywhere, 1, -0.5f, 0.5f), 1);
+    const Region one = region({"mask=" + file + "@back"});
+    EXPECT_EQ(weight(one, 0, -0.5f, 0.5f), 0);
+    EXPECT_EQ(weight(one, 1, -0.5f, 0.5f), 1);
+    expect_error("mask=" + mask("black.png", 0, 0, 0, 0), "white");
+    expect_error("mask=" + file + "@side", "front");
+    expect_error("mask=/nowhere.png", "/nowhere.png");
+}
+
+TEST_F(RegionTest, ViewsPaintWhatTheySee) {
+    // From the front the front square hides the other one; from 180 degrees it is the other way.
+    const std::string file = mask("middle.png", 0.45f, 0.45f, 0.55f, 0.55f);
+    const Region front = region({"view=" + file + "@0,0"});
+    EXPECT_EQ(weight(front, 0, 0, 0), 1);
+    EXPECT_EQ(weight(front, 0, 0.8f, 0), 0);
+    EXPECT_EQ(weight(front, 1, 0, 0), 0);
+    const Region back = region({"view=" + file + "@180,0"});
+    EXPECT_EQ(weight(back, 0, 0, 0), 0);
+    EXPECT_EQ(weight(back, 1, 0, 0), 1);
+    EXPECT_GT(region({"view=" + file}).share(), 0);
+    expect_error("view=" + file + "@front", "2 numbers");
+    expect_error("view=" + file + "@/nowhere.json", "/nowhere.json");
+}
+
+TEST_F(RegionTest, ColorsAreTheModelsOwn) {
+    for (const char* selector : {"color=#bf1a1a~10", "named=red"}) {
+        const Region red = region({selector});
+        EXPECT_EQ(weight(red, 1, -0.5f, 0.3f), 1) << selector;
+        EXPECT_EQ(weight(red, 1, 0.5f, 0.3f), 0) << selector;
+        EXPECT_EQ(weight(red, 0, -0.5f, 0.3f), 0) << selector;
+        EXPECT_NEAR(red.share(), 0.25, 0.01) << selector;
+    }
+    EXPECT_EQ(weight(region({"named=white"}), 1, 0.5f, 0.3f), 1);
+    expect_error("color=reddish", "reddish");
+    expect_error("color=red~0", "above 0");
+    expect_error("named=crimson", "purple");
+    expect_error("named=yellow", "nothing of what is edited");
+}
+
+TEST(RegionColor, LabIsThatOfTheMetrics) {
+    const at::Tensor colors = at::tensor({0.2f, 0.5f, 0.9f, 0.0f, 0.0f, 0.0f, 0.004f, 0.001f, 0.0f})
+                                  .reshape({3, 3});
+    const at::Tensor lab = lab_of(colors);
+    for (int i = 0; i < 3; ++i) {
+        const Lab one = linear_to_lab(Vec3(colors[i][0].item<float>(), colors[i][1].item<float>(),
+                                           colors[i][2].item<float>()));
+        EXPECT_NEAR(lab[i][0].item<float>(), one.l, 2e-3);
+        EXPECT_NEAR(lab[i][1].item<float>(), one.a, 5e-3);
+        EXPECT_NEAR(lab[i][2].item<float>(), one.b, 5e-3);
+    }
+}
+
+TEST_F(RegionTest, FeathersLieWithinTheBorder) {
+    const float diagonal = std::sqrt(12.0f);
+    const Region soft = region({"box=0,-1,-2,1,1,0"}, {}, 100 * 0.5f / diagonal);
+    EXPECT_EQ(weight(soft, 1, -0.05f, 0), 0);
+    EXPECT_NEAR(weight(soft, 1, 0.25f, 0), 0.5, 0.03);
+    EXPECT_EQ(weight(soft, 1, 0.6f, 0), 1);
+    EXPECT_LT(weight(soft, 1, 0.1f, 0), weight(soft, 1, 0.2f, 0));
+}
+
+TEST_F(RegionTest, GroupsOfAnObj) {
+    write_atomically(folder_ / "parts.obj",
+                     std::string_view("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\n"
+                                      "o chair\ng seat wood\nf 1 2 3\ng back\nf 1 3 4\n"
+                                      "o table\nf 1 2 6 5\n"));
+    use(load_model(folder_ / "parts.obj"));
+    EXPECT_NEAR(region({"group=seat"}).share(), 0.25, 0.01);
+    EXPECT_NEAR(region({"group=back"}).share(), 0.75, 0.01);  // g goes on in the next object
+    EXPECT_NEAR(region({"group=chair"}).share(), 0.5, 0.01);
+    EXPECT_NEAR(region({"group=Table"}).share(), 0.5, 0.01);
+    expect_error("group=leg", "seat");
+    expect_error("node=leg", "no node with a name");
+}
+
+TEST_F(RegionTest, NodesMeshesAndAttributesOfAGltf) {
+    // Three triangles side by side: nodes "arm" > "hand", and "foot"; _GLOVE is 1 on the hand.
+    std::string bytes;
+    const auto add = [&](float value) {
+        bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    for (const float v : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f})
+        add(v);
+    for (const float v : {1.f, 1.f, 1.f})
+        add(v);
+    write_atomically(folder_ / "data.bin", std::string_view(bytes));
+    write_atomically(
+        folder_ / "parts.gltf",
+        std::string_view(R"({"asset": {"version": "2.0"}, "scene": 0,
+          "scenes": [{"nodes": [0, 2]}],
+          "nodes": [{"name": "arm", "mesh": 0, "children": [1]},
+                    {"name": "hand", "mesh": 1, "translation": [2, 0, 0]},
+                    {"name": "foot", "mesh": 2, "translation": [4, 0, 0]}],
+          "meshes": [{"name": "Arm", "primitives": [{"attributes": {"POSITION": 0}}]},
+                     {"name": "Hand", "primitives": [{"attributes": {"POSITION": 0, "_GLOVE": 1}}]},
+                     {"name": "Foot", "primitives": [{"attributes": {"POSITION": 0}}]}],
+          "buffers": [{"uri": "data.bin", "byteLength": 48}],
+          "bufferViews": [{"buffer": 0, "byteLength": 36},
+                          {"buffer": 0, "byteOffset": 36, "byteLength": 12}],
+          "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                         "min": [0, 0, 0], "max": [1, 1, 0]},
+                        {"bufferView": 1, "componentType": 5126, "count": 3, "type": "SCALAR"}]})"));
+    use(load_model(folder_ / "parts.gltf"));
+    EXPECT_NEAR(region({"node=hand"}).share(), 1.0 / 3, 0.01);
+    EXPECT_NEAR(region({"node=arm"}).share(), 2.0 / 3, 0.01);  // and what hangs on it
+    EXPECT_NEAR(region({"mesh=Foot"}).share(), 1.0 / 3, 0.01);
+    EXPECT_NEAR(region({"attribute=_GLOVE"}).share(), 1.0 / 3, 0.01);
+    expect_error("node=head", "arm, foot, hand");
+    expect_error("attribute=_SHOE", "_GLOVE");
+}
+
+TEST_F(RegionTest, WhatIsNoSelectorIsTold) {
+    expect_error("", "sphere=X,Y,Z,R");
+    expect_error("handle", "choose from material=NAME");
+    expect_error("material=", "a value is missing");
+    expect_error("planet=mars", "choose from");
+}
+
+}  // namespace
+}  // namespace item3d
