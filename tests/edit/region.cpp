@@ -40,9 +40,8 @@ TEST_F(EditTest, outside_a_region_no_texel_changes) {
     const EditRequest edit =
         request("part", 6, {{"region", {top}}, {"feather", 5}, {"learning_rate", 0.05}});
     const nlohmann::json summary = edit_model(edit);
-    const auto [outside, inside] =
-        changed_texels(load_model(edit.model), base_color_of(edit.output / "model.glb"),
-                       {{top}, {}, 5});
+    const auto [outside, inside] = changed_texels(
+        load_model(edit.model), base_color_of(edit.output / "model.glb"), {{top}, {}, 5});
     EXPECT_EQ(outside, 0);
     EXPECT_GT(inside, 0.9);
     EXPECT_GT(summary["region"]["outside"]["texels"].get<int>(), 1000);
@@ -64,8 +63,8 @@ TEST_F(EditTest, decoded_texels_of_a_jpeg_are_kept_too) {
     edit_model(edit);
     const Model source = load_model(edit.model);
     ASSERT_EQ(source.textures.at(0).coding.encoding, ImageEncoding::jpeg);
-    const auto [outside, inside] = changed_texels(
-        source, base_color_of(edit.output / "model.glb"), {{"sphere=0.5,0,0,0.3"}, {}, 0});
+    const auto [outside, inside] = changed_texels(source, base_color_of(edit.output / "model.glb"),
+                                                  {{"sphere=0.5,0,0,0.3"}, {}, 0});
     EXPECT_EQ(outside, 0);
     EXPECT_GT(inside, 0.5);
 }

@@ -286,6 +286,11 @@ TEST(Refine, LossesSeeWhatTheyShould) {
     light.prefiltered().diffuse.sum().backward();
     for (const at::Tensor& level : light.parameters())
         EXPECT_GT(level.grad().abs().min().item<float>(), 0);
+    // Without colour, channels learn alike.
+    light.radiance().select(2, 0).sum().backward();
+    light.take_color_from_gradients();
+    for (const at::Tensor& level : light.parameters())
+        EXPECT_TRUE(level.grad().select(2, 0).equal(level.grad().select(2, 2)));
 }
 
 TEST(Refine, LightAloneIsComparedWithThePhotographsLargestChannel) {

@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A square in the plane z = `depth` that faces +Z, from -1 to 1, in texture coordinates from 0 to 1.
+/// A square in the plane z = `depth` that faces +Z, from -1 to 1, in texture coordinates from 0
+/// to 1.
 Primitive square(float depth, int material) {
     Primitive primitive;
     primitive.material = material;
@@ -76,13 +77,14 @@ class RegionTest : public ::testing::Test {
     }
     /// At a place of the n-th square.
     float weight(const Region& region, int square_index, float x, float y) const {
-        // Triangle 0 of a square has corners (-1, -1), (1, -1), (1, 1); triangle 1 (-1, -1), (1, 1),
+        // Triangle 0 of a square has corners (-1, -1), (1, -1), (1, 1); triangle 1 (-1, -1), (1,
+        // 1),
         // (-1, 1).
         const bool is_lower = y <= x;
         const float first = is_lower ? (1 - x) / 2 : (1 - y) / 2;
         const float second = is_lower ? (x - y) / 2 : (x + 1) / 2;
-        const at::Tensor triangle =
-            at::full({1}, static_cast<std::int64_t>(2 * square_index + (is_lower ? 0 : 1)), at::kLong);
+        const at::Tensor triangle = at::full(
+            {1}, static_cast<std::int64_t>(2 * square_index + (is_lower ? 0 : 1)), at::kLong);
         const Surface surface =
             surface_at(geometry_, triangle, at::tensor({first, second}).reshape({1, 2}));
         return region.weight(surface).item<float>();
@@ -197,8 +199,8 @@ TEST_F(RegionTest, ColorsAreTheModelsOwn) {
 }
 
 TEST(RegionColor, LabIsThatOfTheMetrics) {
-    const at::Tensor colors = at::tensor({0.2f, 0.5f, 0.9f, 0.0f, 0.0f, 0.0f, 0.004f, 0.001f, 0.0f})
-                                  .reshape({3, 3});
+    const at::Tensor colors =
+        at::tensor({0.2f, 0.5f, 0.9f, 0.0f, 0.0f, 0.0f, 0.004f, 0.001f, 0.0f}).reshape({3, 3});
     const at::Tensor lab = lab_of(colors);
     for (int i = 0; i < 3; ++i) {
         const Lab one = linear_to_lab(Vec3(colors[i][0].item<float>(), colors[i][1].item<float>(),
@@ -243,9 +245,8 @@ TEST_F(RegionTest, NodesMeshesAndAttributesOfAGltf) {
     for (const float v : {1.f, 1.f, 1.f})
         add(v);
     write_atomically(folder_ / "data.bin", std::string_view(bytes));
-    write_atomically(
-        folder_ / "parts.gltf",
-        std::string_view(R"({"asset": {"version": "2.0"}, "scene": 0,
+    write_atomically(folder_ / "parts.gltf",
+                     std::string_view(R"({"asset": {"version": "2.0"}, "scene": 0,
           "scenes": [{"nodes": [0, 2]}],
           "nodes": [{"name": "arm", "mesh": 0, "children": [1]},
                     {"name": "hand", "mesh": 1, "translation": [2, 0, 0]},

@@ -5,6 +5,7 @@
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"
 #include "apps/item3d/edit/picture_options.h"
+#include "apps/item3d/edit/plan_file.h"
 #include "apps/item3d/edit/relight_words.h"
 #include "apps/item3d/edit/setting_options.h"
 #include "item3d/core/error.h"
@@ -25,7 +26,8 @@ namespace {
 
 struct EditCommandOptions : CommonOptions {
     EditRequest request;
-    std::string prior;  ///< folder or name, see find_prior()
+    std::string prior;                ///< folder or name, see find_prior()
+    std::filesystem::path plan_file;  ///< of several edits; empty: one, by the settings
     /// Settings given on the command line; what is absent comes from the prior.
     nlohmann::json overrides = nlohmann::json::object();
 };
@@ -99,29 +101,51 @@ void warn_of_options(const EditPlan& plan, const nlohmann::json& overrides) {
         warn("--adjust has no effect: only rdl has a source to adjust");
 }
 
-void run_edit(EditCommandOptions& options) {
+/// One edit by request and overrides.
+nlohmann::json edit_once(EditCommandOptions& options) {
     refuse_contradictions(options.overrides);
-
     EditRequest& request = options.request;
-    if (is_file_name(lower_extension(request.output)))
-        throw UsageError("-o " + request.output.string() +
-                         ": is the name of a file, expected one of a folder, in which model.glb "
-                         "and the report will be");
     nlohmann::json& overrides = options.overrides;
-    request.device = start_command(options);
-    request.prior = find_prior(options.prior);
     const auto said = overrides.get<EditSettings>();
     if (said.optimize == Optimize::light) require_light_words(request.prior, said.to);
-    if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
-    if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
     if (said.keep == std::vector<std::string>{"nothing"})
         overrides["keep"] = nlohmann::json::array();
     take_found_light(options);
     request.plan = resolve_plan(request.prior, overrides);
     warn_of_words(request);
     warn_of_options(request.plan, overrides);
+    return edit_model(request);
+}
 
-    const nlohmann::json summary = edit_model(request);
+nlohmann::json edit_by_plan(const EditCommandOptions& options) {
+    return run_plan(options.request.model, options.request.output,
+                    read_plan_file(options.plan_file), options.request.resume,
+                    [&](const PlannedEdit& planned) {
+                        EditCommandOptions one = options;
+                        one.request.model = planned.model;
+                        one.request.output = planned.output;
+                        one.request.resume = planned.is_begun;
+                        // What the command line says is of all edits that do not say it themselves.
+                        one.overrides.update(planned.settings);
+                        return edit_once(one);
+                    });
+}
+
+void run_edit(EditCommandOptions& options) {
+    EditRequest& request = options.request;
+    if (is_file_name(lower_extension(request.output)))
+        throw UsageError("-o " + request.output.string() +
+                         ": is the name of a file, expected one of a folder, in which model.glb "
+                         "and the report will be");
+    if (options.plan_file.empty() &&
+        !(options.overrides.contains("from") && options.overrides.contains("to")))
+        throw UsageError("--from and --to are required, or --plan");
+    request.device = start_command(options);
+    request.prior = find_prior(options.prior);
+    if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
+    if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
+    const nlohmann::json summary =
+        options.plan_file.empty() ? edit_once(options) : edit_by_plan(options);
     if (options.json) {
         print_json(summary);
     } else {
@@ -136,8 +160,11 @@ void add_edit_command(CLI::App& app) {
     CLI::App* command = add_command(app, "edit", *options);
     EditRequest& request = options->request;
     command->add_option("MODEL", request.model, "A .glb, .gltf or .obj file")->required();
-    add_setting(*command, options->overrides, "from")->required();
-    add_setting(*command, options->overrides, "to")->required();
+    add_setting(*command, options->overrides, "from");
+    add_setting(*command, options->overrides, "to");
+    command->add_option("--plan", options->plan_file,
+                        "A JSON file of several edits, made one after the other; instead of --from "
+                        "and --to");
     command->add_option("-o,--output", request.output, "Folder for everything that is made")
         ->required();
     command->add_option("--prior", options->prior,

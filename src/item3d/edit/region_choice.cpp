@@ -15,7 +15,8 @@ namespace {
 constexpr double least_share = 0.03, largest_share = 0.97;
 
 /// The one colour that a sentence names; nothing for none and for several.
-std::optional<KnownWord> only_color(const PriorVocabulary& vocabulary, const std::string& sentence) {
+std::optional<KnownWord> only_color(const PriorVocabulary& vocabulary,
+                                    const std::string& sentence) {
     const std::vector<KnownWord> named = vocabulary.named("colors", sentence);
     if (named.size() != 1 || !named.front().base_color) return std::nullopt;
     return named.front();
@@ -67,7 +68,8 @@ std::optional<std::string> color_to_change(const EditPlan& plan,
 
 void choose_region(const EditPlan& plan, const PriorVocabulary& vocabulary, EditScene& scene) {
     RegionRequest request{plan.region, plan.exclude, plan.feather};
-    const bool is_automatic = plan.region.empty() || plan.region == std::vector<std::string>{"auto"};
+    const bool is_automatic =
+        plan.region.empty() || plan.region == std::vector<std::string>{"auto"};
     if (is_automatic || plan.region == std::vector<std::string>{"all"}) request.include.clear();
     const auto color = is_automatic ? color_to_change(plan, vocabulary) : std::nullopt;
     if (request.is_everything() && !color) return;

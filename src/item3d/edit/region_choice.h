@@ -9,14 +9,14 @@
 
 namespace item3d {
 
-/// The basic colour that an edit from one colour to another is about ("red", of "a red barrel" to "a
-/// blue barrel"): only what has it is meant to change. Nothing where the sentences name no colours,
-/// or differ in more than them.
+/// The basic colour that an edit from one colour to another is about ("red", of "a red barrel" to
+/// "a blue barrel"): only what has it is meant to change. Nothing where the sentences name no
+/// colours, or differ in more than them.
 std::optional<std::string> color_to_change(const EditPlan& plan, const PriorVocabulary& vocabulary);
 
 /// Sets the scene's region and its views, and leaves the materials that have a part in it. Without
-/// selectors, or with "auto", it is what has the colour to change, if that is a part of the surface;
-/// with "all", or where nothing is to be told apart, there is none. Throws InputError.
+/// selectors, or with "auto", it is what has the colour to change, if that is a part of the
+/// surface; with "all", or where nothing is to be told apart, there is none. Throws InputError.
 void choose_region(const EditPlan& plan, const PriorVocabulary& vocabulary, EditScene& scene);
 
 }  // namespace item3d

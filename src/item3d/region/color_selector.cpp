@@ -13,8 +13,8 @@ namespace {
 constexpr float usual_distance = 12;
 constexpr float fading = 0.5f;  ///< of the distance
 
-/// Paint in the shade or worn keeps its hue, and is called by it: of a named colour hue counts most,
-/// chroma where there is little of it, and lightness enough to tell brown from orange.
+/// Paint in the shade or worn keeps its hue, and is called by it: of a named colour hue counts
+/// most, chroma where there is little of it, and lightness enough to tell brown from orange.
 constexpr float hue_scale = 60, little_chroma = 10, lightness_scale = 0.35f;
 constexpr float named_fading = 8;  ///< distances over which one name gives way to the next
 
@@ -22,8 +22,8 @@ constexpr float named_fading = 8;  ///< distances over which one name gives way 
 at::Tensor naming_space(const at::Tensor& lab) {
     const at::Tensor ab = lab.narrow(1, 1, 2);
     const at::Tensor chroma = ab.square().sum(1, true).sqrt();
-    return at::cat({lightness_scale * lab.narrow(1, 0, 1), hue_scale * ab / (chroma + little_chroma)},
-                   1);
+    return at::cat(
+        {lightness_scale * lab.narrow(1, 0, 1), hue_scale * ab / (chroma + little_chroma)}, 1);
 }
 
 /// CIELAB [P, 3] of the model's own base colour, on the CPU.
@@ -35,8 +35,8 @@ at::Tensor own_lab(const TexturedMaterials& textured, const Surface& surface) {
 }
 
 at::Tensor row_of(const Lab& color) {
-    return at::tensor({static_cast<float>(color.l), static_cast<float>(color.a),
-                       static_cast<float>(color.b)});
+    return at::tensor(
+        {static_cast<float>(color.l), static_cast<float>(color.a), static_cast<float>(color.b)});
 }
 
 class ColorSelector : public Selector {

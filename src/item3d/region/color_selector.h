@@ -13,8 +13,8 @@ at::Tensor lab_of(const at::Tensor& linear);
 /// texels that a painted edge mixes go along. Throws InputError.
 std::unique_ptr<Selector> select_color(const SelectorText& text, const RegionScene& scene);
 
-/// One of basic_colors(): where the base colour is nearer to it than to the others, above all by hue,
-/// so that worn or shaded red is red. Throws InputError that lists them.
+/// One of basic_colors(): where the base colour is nearer to it than to the others, above all by
+/// hue, so that worn or shaded red is red. Throws InputError that lists them.
 std::unique_ptr<Selector> select_named(const SelectorText& text, const RegionScene& scene);
 
 }  // namespace item3d

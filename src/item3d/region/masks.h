@@ -10,8 +10,8 @@
 namespace item3d {
 
 /// Of each texture set that has UVs of its own, by its first material: the weights of its texels,
-/// one channel, as large as the texture that is baked. Around the triangles they go on as far as the
-/// texture itself does.
+/// one channel, as large as the texture that is baked. Around the triangles they go on as far as
+/// the texture itself does.
 std::map<int, Image> region_masks(const Region& region, const Model& model,
                                   const Geometry& geometry, const Atlas& atlas, int texture_size);
 

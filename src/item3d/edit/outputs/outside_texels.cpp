@@ -26,8 +26,7 @@ void compare(const Image* was, const Image* now, const Image& mask, unsigned cha
             bool is_same = true;
             for (int c = 0; c < std::min(was->channels, now->channels); ++c)
                 if ((channels >> c & 1u) != 0)
-                    is_same =
-                        is_same && std::abs(was->at(x, y, c) - now->at(x, y, c)) < half_step;
+                    is_same = is_same && std::abs(was->at(x, y, c) - now->at(x, y, c)) < half_step;
             outside.changed += is_same ? 0 : 1;
         }
     }

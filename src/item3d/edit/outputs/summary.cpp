@@ -101,10 +101,10 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
                                {"left", variants_with(scene.model, scene.materials, false)}};
     }
     if (scene.region)
-        summary["region"] = {{"share", scene.region->share()},
-                             {"outside",
-                              {{"texels", pictures.outside.compared},
-                               {"changed", pictures.outside.changed}}}};
+        summary["region"] = {
+            {"share", scene.region->share()},
+            {"outside",
+             {{"texels", pictures.outside.compared}, {"changed", pictures.outside.changed}}}};
     if (pictures.clip) {
         json clip = pictures.clip->mean;
         clip["model"] = request.clip.string();

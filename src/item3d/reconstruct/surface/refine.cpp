@@ -138,6 +138,8 @@ void Refinement::step() {
                       corrections_.motion_loss(index);
     if (light_learns) loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss();
     loss.backward();
+    // The one material's colour is the object's; a light that could take it would keep it.
+    if (light_alone) appearance_.light.take_color_from_gradients();
     Adam& adam = learning_.optimizer;
     for (const auto& [group, rate] : rates_)
         adam.options(group).learning_rate = falling(rate, i, options_.iterations);

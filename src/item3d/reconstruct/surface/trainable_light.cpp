@@ -55,6 +55,12 @@ Image TrainableLight::to_image() const {
     return item3d::to_image(radiance().detach());
 }
 
+void TrainableLight::take_color_from_gradients() {
+    for (const at::Tensor& level : levels_)
+        if (level.grad().defined())
+            level.mutable_grad() = level.grad().mean(2, true).expand_as(level).contiguous();
+}
+
 at::Tensor TrainableLight::whiteness_loss() const {
     const at::Tensor values = radiance();
     return ((values - values.mean(2, true)).abs() * solid_angle_).sum() / 3;

@@ -29,6 +29,8 @@ class TrainableLight {
     /// Mean distance of the texels' channels from their mean, by solid angle (nvdiffrec's
     /// regulariser: of all lights that explain the pictures, the whitest).
     at::Tensor whiteness_loss() const;
+    /// Sets the gradients of each texel's channels to their mean: the light learns no colour.
+    void take_color_from_gradients();
 
   private:
     int height_;
