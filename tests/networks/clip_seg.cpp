@@ -42,8 +42,7 @@ TEST_P(ClipSeg, ReproducesTheReference) {
 
 TEST_P(ClipSeg, InterpolatesItsPositionsForLargerPictures) {
     const at::Tensor big = golden_.in("pixel_values_big");
-    golden_.expect(name("logits_big"),
-                   model_->forward(big, embeddings_.unsqueeze(1)).squeeze(1));
+    golden_.expect(name("logits_big"), model_->forward(big, embeddings_.unsqueeze(1)).squeeze(1));
 }
 
 TEST_P(ClipSeg, AsksAllPromptsOfAllPictures) {
@@ -110,8 +109,7 @@ TEST(Segmenter, SaysWhatIsWrongWithAFolder) {
     const TemporaryFolder folder;
     fs::copy(fixture("clip_seg") / "plain", folder.path(), fs::copy_options::recursive);
     const auto with = [&](const char* key, const nlohmann::json& value) {
-        nlohmann::json config =
-            Config::read(fixture("clip_seg") / "plain" / "config.json").json();
+        nlohmann::json config = Config::read(fixture("clip_seg") / "plain" / "config.json").json();
         config[key] = value;
         fs::remove(folder.path() / "config.json");
         testing::write_file(folder.path() / "config.json", config.dump());

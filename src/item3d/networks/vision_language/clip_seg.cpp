@@ -118,15 +118,13 @@ ClipSegDecoderImpl::ClipSegDecoderImpl(const ClipSegConfig& config) : config_(co
     };
     if (config_.use_complex_transposed_convolution) {
         auto steps = std::make_shared<nn::Module>("transposed_convolution");
-        smooth_ = steps->register_module(
-            "0", nn::Conv2d(nn::Conv2dOptions(width, width, 3).padding(1)));
-        upscalers_.push_back(
-            steps->register_module("2", enlarging(width, width / 2, patch / 4)));
+        smooth_ =
+            steps->register_module("0", nn::Conv2d(nn::Conv2dOptions(width, width, 3).padding(1)));
+        upscalers_.push_back(steps->register_module("2", enlarging(width, width / 2, patch / 4)));
         upscalers_.push_back(steps->register_module("4", enlarging(width / 2, 1, patch / 4)));
         register_module("transposed_convolution", steps);
     } else {
-        upscalers_.push_back(
-            register_module("transposed_convolution", enlarging(width, 1, patch)));
+        upscalers_.push_back(register_module("transposed_convolution", enlarging(width, 1, patch)));
     }
     nn::ModuleList reduces, layers;
     for (std::size_t i = 0; i < config_.extract_layers.size(); ++i) {
@@ -167,8 +165,8 @@ at::Tensor ClipSegDecoderImpl::forward(const std::vector<at::Tensor>& activation
         }
         x = layers_[i](x.reshape({pictures * each, tokens, width}));
     }
-    const at::Tensor map = x.slice(1, 1).transpose(1, 2).reshape(
-        {pictures * prompts, width, rows, columns});
+    const at::Tensor map =
+        x.slice(1, 1).transpose(1, 2).reshape({pictures * prompts, width, rows, columns});
     const at::Tensor logits = upscale(map);
     return logits.view({pictures, prompts, logits.size(2), logits.size(3)});
 }
@@ -193,8 +191,7 @@ std::vector<at::Tensor> ClipSegModelImpl::activations(const at::Tensor& pixel_va
     return result;
 }
 
-at::Tensor ClipSegModelImpl::forward(const at::Tensor& pixel_values,
-                                     const at::Tensor& embeddings) {
+at::Tensor ClipSegModelImpl::forward(const at::Tensor& pixel_values, const at::Tensor& embeddings) {
     const int patch = config_.clip.vision.patch_size;
     return decoder_->forward(activations(pixel_values), embeddings, pixel_values.size(2) / patch,
                              pixel_values.size(3) / patch);

@@ -148,9 +148,8 @@ ImageProcessorConfig ImageProcessorConfig::from_config(const Config& config) {
     for (const char* flag : {"do_resize", "do_rescale", "do_normalize"})
         config.expect(flag, true);
     // ViTImageProcessor has other defaults, and a number as its size means both edges.
-    const bool vit =
-        config.text("image_processor_type", config.text("feature_extractor_type", ""))
-            .starts_with("ViT");
+    const bool vit = config.text("image_processor_type", config.text("feature_extractor_type", ""))
+                         .starts_with("ViT");
     const int resample = config.integer("resample", vit ? 2 : 3);
     if (resample != 2 && resample != 3) config.fail("resample", "2 (bilinear) or 3 (bicubic)");
     result.filter = static_cast<ResizeFilter>(resample);

@@ -1,5 +1,5 @@
-// Pictures as vision networks want them, as transformers' CLIPImageProcessor, BlipImageProcessor and
-// ViTImageProcessor make them: resize, centre crop, normalisation.
+// Pictures as vision networks want them, as transformers' CLIPImageProcessor, BlipImageProcessor
+// and ViTImageProcessor make them: resize, centre crop, normalisation.
 #pragma once
 
 #include "item3d/core/config.h"

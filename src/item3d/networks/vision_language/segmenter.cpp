@@ -36,11 +36,11 @@ Segmenter Segmenter::load(const std::filesystem::path& folder, at::Device device
     segmenter.processor_ = std::make_shared<ImageProcessor>(ImageProcessor::load(folder));
     check_patches(folder, *segmenter.processor_, config.clip.vision.patch_size);
     if (segmenter.tokenizer_->largest_id() >= config.clip.text.vocab_size)
-        throw InputError((folder / "vocab.json").string(),
-                         fmt::format("has id {}, but the text model knows {} tokens",
-                                     segmenter.tokenizer_->largest_id(),
-                                     config.clip.text.vocab_size),
-                         "the tokenizer does not belong to this model");
+        throw InputError(
+            (folder / "vocab.json").string(),
+            fmt::format("has id {}, but the text model knows {} tokens",
+                        segmenter.tokenizer_->largest_id(), config.clip.text.vocab_size),
+            "the tokenizer does not belong to this model");
     segmenter.model_ = load_clip_seg(folder, device, dtype).ptr();
     return segmenter;
 }
