@@ -80,6 +80,16 @@ fs::path find_begin(const TrainSettings& settings) {
     return fs::exists(clip / "config.json") ? clip : begin_with_part(settings, clip_folder);
 }
 
+/// Throws InputError where the weights in `begin` are of a segmenter of another size: before the
+/// pictures are drawn.
+void check_begin_size(const fs::path& begin, const ClipSegConfig& wanted) {
+    if (begin.filename() != segmenter_folder) return;
+    if (load_clip_seg(begin)->config().to_json() != wanted.to_json())
+        throw InputError((begin / "config.json").string(),
+                         "is of a network of another size than this training's",
+                         "train this part without --begin-with");
+}
+
 }  // namespace
 
 void train_segmenter_part(const TrainSettings& settings) {
@@ -95,6 +105,7 @@ void train_segmenter_part(const TrainSettings& settings) {
                                                         tokenizer.bos_id(), tokenizer.eos_id());
     PartPictures data;
     if (processes.first()) {
+        if (!begin.empty()) check_begin_size(begin, config);
         make_output_folder(settings.output);
         data = prepare_part_pictures(settings);
     }
