@@ -92,12 +92,12 @@ at::Tensor resample(const at::Tensor& bytes, int output, ResizeFilter kind) {
     return result;
 }
 
-/// Grey to three channels, alpha composed over white, in bytes as Pillow does.
-at::Tensor to_rgb(const at::Tensor& bytes) {
+/// Grey to three channels, alpha left out or composed over white, in bytes as Pillow does.
+at::Tensor to_rgb(const at::Tensor& bytes, bool alpha_over_white) {
     const auto channels = bytes.size(2);
     const at::Tensor color =
         channels < 3 ? bytes.narrow(2, 0, 1).expand({-1, -1, 3}) : bytes.narrow(2, 0, 3);
-    if (channels != 2 && channels != 4) return color;
+    if (!alpha_over_white || (channels != 2 && channels != 4)) return color;
     const at::Tensor alpha = bytes.narrow(2, channels - 1, 1).to(at::kLong);
     // Division by 255 as (x + (x >> 8)) >> 8, with seven bits more than bytes have.
     const at::Tensor sum = 128 * (color * alpha + 255 * (255 - alpha)) + (0x80 << 7);
@@ -154,6 +154,7 @@ ImageProcessorConfig ImageProcessorConfig::from_config(const Config& config) {
     if (resample != 2 && resample != 3) config.fail("resample", "2 (bilinear) or 3 (bicubic)");
     result.filter = static_cast<ResizeFilter>(resample);
     if (vit) result.mean = result.deviation = {.5, .5, .5};
+    result.alpha_over_white = !vit;
     // Old files hold a number where newer ones hold an object.
     if (config.has("size") && config.json().at("size").is_object()) {
         const Config size(config.json().at("size"), config.subject() + ": size");
@@ -220,7 +221,7 @@ at::Tensor ImageProcessor::resize(const at::Tensor& bytes) const {
     ITEM3D_CHECK(bytes.dim() == 3, "a picture must be [H, W, C]");
     const auto [height, width] =
         resized_size(static_cast<int>(bytes.size(0)), static_cast<int>(bytes.size(1)));
-    return resize_picture(to_rgb(bytes), height, width, config_.filter);
+    return resize_picture(to_rgb(bytes, config_.alpha_over_white), height, width, config_.filter);
 }
 
 at::Tensor ImageProcessor::process(const at::Tensor& bytes) const {

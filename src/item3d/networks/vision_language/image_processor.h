@@ -23,6 +23,8 @@ struct ImageProcessorConfig {
     int crop_height = 224;
     int crop_width = 224;
     ResizeFilter filter = ResizeFilter::bicubic;
+    /// Else alpha is left out, as it is in front of a ViTImageProcessor.
+    bool alpha_over_white = true;
     double rescale_factor = 1.0 / 255;
     std::array<double, 3> mean{0.48145466, 0.4578275, 0.40821073};
     std::array<double, 3> deviation{0.26862954, 0.26130258, 0.27577711};
@@ -40,7 +42,7 @@ class ImageProcessor {
     /// pictures would not become such.
     static ImageProcessor load(const std::filesystem::path& folder, int image_size);
 
-    /// Bytes [H, W, C] (grey or RGB; with alpha, composed over white) -> [1, 3, h, w] float32,
+    /// Bytes [H, W, C] (grey or RGB, with alpha or without) -> [1, 3, h, w] float32,
     /// exactly as Pillow resizes them (resize_picture).
     at::Tensor process(const at::Tensor& bytes) const;
     /// The resized bytes [h, w, 3] before cropping and normalising.
