@@ -94,7 +94,8 @@ nlohmann::json readers_record(const fs::path& folder, const nlohmann::json& read
           std::pair{"captioner", "model_captions"}, std::pair{"segmenter", "parts"}}) {
         if (!readers.contains(reached)) continue;
         if (!record.contains(part)) record[part] = prior.value(part, nlohmann::json::object());
-        record[part][reached] = readers[reached];
+        record[part][reached] =
+            reached == std::string("parts") ? part_summary(readers[reached]) : readers[reached];
     }
     return record;
 }

@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t held_out_part_pictures = 1500;
+constexpr std::int64_t held_out_part_pictures = 500;
 constexpr int part_views_each = 2;
-constexpr int part_lights = 240;  ///< more than pictures of a shape that tell them apart
+constexpr int part_lights = 96;  ///< at most: more would take longer to prefilter than to draw by
 constexpr const char* part_pictures_name = "parts";
 
 /// What the pictures depend on: those made with other settings are not gone on with.
@@ -115,8 +115,8 @@ void train_segmenter_part(const TrainSettings& settings) {
         const PartPictures held_out = draw_held_out_parts(
             mix_bits(settings.seed * 1000 + 42), held_out_part_pictures, settings.replicas);
         const Segmenter segmenter = Segmenter::load(settings.output / segmenter_folder);
-        record["parts"] = measure_parts(segmenter, held_out);
-        note("segmenter: " + part_summary(record["parts"]).dump());
+        record["parts"] = part_summary(measure_parts(segmenter, held_out));
+        note("segmenter: " + record["parts"].dump());
         update_prior_json(settings.output, {{"segmenter", record}});
     }
     processes.wait_for_first();
