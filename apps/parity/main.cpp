@@ -61,6 +61,11 @@ void check(Case& golden) {
         golden.set_class("ControlNetModel");
         return check_controlnet(golden);
     }
+    if (fs::exists(folder / "plain" / "config.json") &&
+        fs::exists(folder / "refined" / "config.json")) {
+        golden.set_class("CLIPSegForImageSegmentation");
+        return check_clip_seg(golden);
+    }
     if (golden.has_meta()) {
         const Config meta = golden.meta();
         if (meta.has("kinds") && meta.has("configs")) {

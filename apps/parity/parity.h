@@ -82,6 +82,7 @@ void check_clip_text(Case& golden);
 void check_clip_tokenizer(Case& golden);
 void check_clip_vision(Case& golden);
 void check_clip_model(Case& golden);
+void check_clip_seg(Case& golden);
 void check_blip(Case& golden);
 void check_blip2(Case& golden);
 void check_pipeline(Case& golden);

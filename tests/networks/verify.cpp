@@ -55,6 +55,12 @@ TEST_F(Verify, NetworksBesideThePipelineAreReadToo) {
     EXPECT_EQ(report.parts.back().class_name, "BlipForConditionalGeneration");
     EXPECT_GT(report.parts.back().parameters, 1000);
 
+    fs::copy(fixture("clip_seg") / "plain", prior() / "segmenter", fs::copy_options::recursive);
+    EXPECT_EQ(verify_prior(prior()).parts.back().class_name, "CLIPSegForImageSegmentation");
+    fs::remove(prior() / "segmenter" / "vocab.json");
+    expect_problem("segmenter/vocab.json");
+    fs::remove_all(prior() / "segmenter");
+
     fs::remove(prior() / "captioner" / "vocab.txt");
     expect_problem("captioner/vocab.txt");
 }

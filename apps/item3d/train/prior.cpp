@@ -11,6 +11,7 @@
 #include "item3d/networks/vocabulary.h"
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/prior/evaluation/sheets.h"
+#include "item3d/prior/training/segmenter_training.h"
 #include "item3d/prior/training/settings.h"
 #include "item3d/prior/training/train.h"
 #include "item3d/prior/training/vision_language.h"
@@ -60,9 +61,10 @@ void run_train(const TrainOptions& options) {
                          settings.processes.size()));
     const bool all = options.part == "all";
     if (all || options.part == "diffusion") train_prior(settings);
-    if (all || options.part != "diffusion")
-        train_vision_language(settings, all || options.part == "clip",
-                              all || options.part == "captioner");
+    const bool clip = all || options.part == "clip";
+    const bool captioner = all || options.part == "captioner";
+    if (clip || captioner) train_vision_language(settings, clip, captioner);
+    if (all || options.part == "segmenter") train_segmenter_part(settings);
 }
 
 void add_network_settings(CLI::App& command, TrainOptions& options) {
@@ -113,6 +115,13 @@ void add_count_settings(CLI::App& command, TrainOptions& options) {
     add("--captioner-samples", &TrainSettings::captioner_samples,
         "Pictures that the captioner learns from, repetitions counted")
         ->check(CLI::PositiveNumber);
+    add("--segmenter-samples", &TrainSettings::segmenter_samples,
+        "Pictures that the segmenter learns from, repetitions counted")
+        ->check(CLI::PositiveNumber);
+    add("--part-data", &TrainSettings::part_samples, "Different pictures for the segmenter")
+        ->check(CLI::Range(16, 10000000));
+    add("--part-variants", &TrainSettings::part_variants, "Shapes of each class for it")
+        ->check(CLI::Range(1, 10000));
     add("--labeled-data", &TrainSettings::labeled_samples,
         "Different pictures for CLIP and the captioner")
         ->check(CLI::Range(256, 10000000));
@@ -153,8 +162,8 @@ void add_train(CLI::App& app) {
     command
         ->add_option("--part", options->part,
                      "What to train: diffusion (autoencoder, text encoder and U-Net), clip, "
-                     "captioner, or all")
-        ->check(CLI::IsMember({"all", "diffusion", "clip", "captioner"}))
+                     "captioner, segmenter, or all")
+        ->check(CLI::IsMember({"all", "diffusion", "clip", "captioner", "segmenter"}))
         ->capture_default_str();
     add_count_settings(*command, *options);
     add_network_settings(*command, *options);
@@ -285,6 +294,13 @@ void print_vocabulary(const nlohmann::json& prior, const std::string& subject) {
             "captioner: of {}, names the object of {:.0f} %, the material of {:.0f} %, both "
             "of {:.0f} %\n",
             what, part(named, "object"), part(named, "material"), part(named, "both"));
+    }
+    if (prior.contains("segmenter") && prior["segmenter"].contains("parts")) {
+        const auto& found = prior["segmenter"]["parts"];
+        fmt::print(
+            "segmenter: intersection over union {:.2f} of parts by their names, {:.2f} on "
+            "classes never trained on\n",
+            found.value("part_iou", 0.0), found.value("new_class_iou", 0.0));
     }
     if (kinds.empty()) fmt::print("not measured: see `item3d prior evaluate`\n");
     for (const std::string& kind : kinds) {

@@ -29,6 +29,7 @@ struct EvaluateOptions : CommonOptions {
     std::string prior;
     std::string output;
     std::vector<std::string> meshes;
+    std::string part = "all";
     bool edits = false;
     bool resume = false;
     EvaluationOptions evaluation;
@@ -51,9 +52,35 @@ nlohmann::json run_edits(const EvaluateOptions& options) {
     return run_edit_suite(edits, suite).at("totals");
 }
 
+/// The segmenter alone: OUTPUT/parts.json, and the parts that it finds, the worst first.
+void run_evaluate_segmenter(const EvaluateOptions& options, const EvaluationOptions& evaluation) {
+    const fs::path file = fs::path(options.output) / "parts.json";
+    make_output_folder(options.output);
+    const nlohmann::json parts = evaluate_segmenter(find_prior(options.prior), evaluation);
+    write_atomically(file, parts.dump(2) + "\n");
+    if (options.json) {
+        print_json(parts);
+        return;
+    }
+    for (const nlohmann::json& part : parts.at("worst"))
+        fmt::print("{:12} {:.2f}  of {} pictures\n", part.at(0).get<std::string>(),
+                   part.at(1).get<double>(),
+                   parts["words"][part.at(0).get<std::string>()].at("asked").get<int>());
+    fmt::print(
+        "all parts {:.2f}, of classes never trained on {:.2f}, objects {:.2f}, parts by their "
+        "material {:.2f}; of what is not there {:.1f} % of the object is marked\n{}\n",
+        parts.at("part_iou").get<double>(), parts.at("new_class_iou").get<double>(),
+        parts.at("object_iou").get<double>(), parts.at("material_iou").get<double>(),
+        100 * parts.at("absent_marked").get<double>(), file.string());
+}
+
 void run_evaluate(const EvaluateOptions& options) {
     EvaluationOptions evaluation = options.evaluation;
     evaluation.threads = at::get_num_threads();
+    if (options.part == "segmenter") {
+        run_evaluate_segmenter(options, evaluation);
+        return;
+    }
     if (options.edits || !options.meshes.empty()) {
         for (const auto& [noun, path] : named_meshes(options.meshes))
             load_model(path);  // what is wrong with them is said before the measuring
@@ -168,7 +195,8 @@ void add_prior_evaluate(CLI::App& prior) {
     auto options = std::make_shared<EvaluateOptions>();
     CLI::App* command = add_command(
         prior, "evaluate",
-        "Measure a prior on held-out shapes: words, samples, autoencoder, scorer and captioner",
+        "Measure a prior on held-out shapes: words, samples, autoencoder, scorer, captioner, "
+        "segmenter",
         *options);
     command->add_option("PRIOR", options->prior, "Its folder or name; prior.json there is updated")
         ->required();
@@ -176,6 +204,11 @@ void add_prior_evaluate(CLI::App& prior) {
         ->add_option("-o,--output", options->output,
                      "Folder for evaluate.html, evaluate.json and sheets of samples")
         ->required();
+    command
+        ->add_option("--part", options->part,
+                     "all, or segmenter: that alone, into parts.json, what it finds worst first")
+        ->check(CLI::IsMember({"all", "segmenter"}))
+        ->capture_default_str();
     command->add_flag("--edits", options->edits,
                       "Ten edits of each of six held-out shapes by the prior's words, with a page "
                       "of their own, edits/suite.html");
@@ -198,6 +231,9 @@ void add_prior_evaluate(CLI::App& prior) {
     command
         ->add_option("--labeled-models", evaluation.labeled_models,
                      "For the captioner, which sees each from four sides")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    command->add_option("--part-pictures", evaluation.part_pictures, "For the segmenter")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     command->add_option("--seed", evaluation.seed)->capture_default_str();

@@ -30,16 +30,21 @@ bool is_description(const std::string& name) {
            name == "merges.txt" || name == "vocab.txt";
 }
 
+/// Networks of item3d's own priors that are no part of the pipeline.
+bool is_own_part(const std::string& part) {
+    return part == "clip" || part == "captioner" || part == "segmenter";
+}
+
 /// The stem of a network's weights; "" for parts without any.
 std::string weights_stem(const std::string& part) {
     if (part == "unet" || part == "vae") return "diffusion_pytorch_model";
-    if (part.starts_with("text_encoder") || part == "clip" || part == "captioner") return "model";
+    if (part.starts_with("text_encoder") || is_own_part(part)) return "model";
     return "";
 }
 
-constexpr const char* used_parts[] = {"scheduler", "text_encoder", "text_encoder_2",
-                                      "tokenizer", "tokenizer_2",  "unet",
-                                      "vae",       "clip",         "captioner"};
+constexpr const char* used_parts[] = {
+    "scheduler", "text_encoder", "text_encoder_2", "tokenizer", "tokenizer_2",
+    "unet",      "vae",          "clip",           "captioner", "segmenter"};
 
 /// Whether model_index.json names a class for the part.
 bool is_named(const nlohmann::json& index, const std::string& part) {
@@ -50,7 +55,7 @@ bool is_named(const nlohmann::json& index, const std::string& part) {
 
 /// What priors of item3d have beside the pipeline: diffusers would not know it in model_index.json.
 bool stands_beside(const std::string& part, const Paths& files) {
-    return (part == "clip" || part == "captioner") && contains(files, "prior.json") &&
+    return is_own_part(part) && contains(files, "prior.json") &&
            contains(files, part + "/config.json");
 }
 

@@ -10,6 +10,7 @@
 #include "item3d/networks/vision_language/captioner.h"
 #include "item3d/networks/vision_language/clip.h"
 #include "item3d/networks/vision_language/clip_text.h"
+#include "item3d/networks/vision_language/segmenter.h"
 #include "item3d/tensors/safetensors.h"
 #include "item3d/tensors/weights.h"
 #include "item3d/text/clip_tokenizer.h"
@@ -40,6 +41,9 @@ const KnownPart known_parts[] = {
     {"vae", {"AutoencoderKL", "AutoencoderTiny"}, true},
     {"scheduler", {}, true},
 };
+
+/// Networks for scores, captions and masks, which model_index.json does not name.
+const std::string parts_beside[] = {"clip", "captioner", "segmenter"};
 
 /// The class that model_index.json names for a part; "" for none.
 std::string class_of(const Config& index, const std::string& part) {
@@ -116,8 +120,8 @@ class Verification {
     PriorReport run() {
         for (const KnownPart& known : known_parts)
             look_at(known);
-        look_beside("clip");
-        look_beside("captioner");
+        for (const std::string& name : parts_beside)
+            look_beside(name);
         attempt([&] { check_fit(); });
         if (report_.usable()) add_memory();
         return std::move(report_);
@@ -183,7 +187,7 @@ class Verification {
         }
     }
 
-    /// A network for scores or captions, which model_index.json does not name.
+    /// One of parts_beside, where the prior has it.
     void look_beside(const std::string& name) {
         const fs::path folder = folder_ / name;
         if (!fs::exists(folder / "config.json")) return;
@@ -194,6 +198,8 @@ class Verification {
             if (!classes.empty()) part.class_name = classes.front();
             if (name == "clip")
                 Clip::load(folder, at::kMeta);
+            else if (name == "segmenter")
+                Segmenter::load(folder, at::kMeta);
             else
                 load_captioner(folder, at::kMeta);
             part.parameters = describe_weights(part).total_elements();
@@ -281,7 +287,9 @@ class Verification {
             MemoryReport memory;
             memory.precision = name;
             for (const PartReport& part : report_.parts) {
-                if (part.name == "clip" || part.name == "captioner") continue;  // loaded on demand
+                if (std::find(std::begin(parts_beside), std::end(parts_beside), part.name) !=
+                    std::end(parts_beside))
+                    continue;  // loaded on demand
                 const bool text = part.name.starts_with("text");
                 const double each = text ? 4 : size == 4 && halves ? bytes_of_halves : size;
                 const auto bytes =

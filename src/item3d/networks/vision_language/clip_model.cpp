@@ -11,6 +11,10 @@ namespace nn = torch::nn;
 ClipConfig ClipConfig::from_config(const Config& config) {
     for (const std::string& name : config.texts("architectures", {}))
         if (name != "CLIPModel") config.fail("architectures", "CLIPModel");
+    return from_parts(config);
+}
+
+ClipConfig ClipConfig::from_parts(const Config& config) {
     ClipConfig result;
     result.text = ClipTextConfig::from_config(config.part("text_config"));
     result.vision = ClipVisionConfig::from_config(config.part("vision_config"));

@@ -21,6 +21,8 @@ struct ClipConfig {
     int projection_dim = 512;
 
     static ClipConfig from_config(const Config& config);
+    /// The same of a config of another class that has a CLIP in it.
+    static ClipConfig from_parts(const Config& config);
     nlohmann::json to_json() const;
 };
 

@@ -34,19 +34,42 @@ ClipVisionModelImpl::ClipVisionModelImpl(const ClipVisionConfig& config) : confi
     post_norm_ = register_module("post_layernorm", nn::LayerNorm(norm));
 }
 
-at::Tensor ClipVisionModelImpl::embed(const at::Tensor& pixel_values) {
+void ClipVisionModelImpl::check_size(const at::Tensor& pixel_values) const {
     ITEM3D_CHECK(pixel_values.dim() == 4 && pixel_values.size(2) == config_.image_size &&
                      pixel_values.size(3) == config_.image_size,
                  "pixel_values must be [N, C, image_size, image_size]");
-    const at::Tensor patches =  // [N, S - 1, D]
-        patch_embedding_(pixel_values.to(class_embedding_.scalar_type()))
-            .flatten(2)
-            .transpose(1, 2);
+}
+
+at::Tensor ClipVisionModelImpl::positions(std::int64_t rows, std::int64_t columns) const {
+    const std::int64_t side = config_.image_size / config_.patch_size;
+    const at::Tensor& all = position_embedding_->weight;
+    if (rows == side && columns == side) return all;
+    const at::Tensor map = all.slice(0, 1).view({1, side, side, -1}).permute({0, 3, 1, 2});
+    const at::Tensor resized = at::upsample_bicubic2d(map, {rows, columns}, false);
+    return at::cat({all.slice(0, 0, 1), resized[0].flatten(1).t()});
+}
+
+at::Tensor ClipVisionModelImpl::embed(const at::Tensor& pixel_values) {
+    const at::Tensor map = patch_embedding_(pixel_values.to(class_embedding_.scalar_type()));
+    const at::Tensor patches = map.flatten(2).transpose(1, 2);  // [N, S - 1, D]
     const at::Tensor token = class_embedding_.expand({patches.size(0), 1, -1});
-    return pre_norm_(at::cat({token, patches}, 1) + position_embedding_->weight);
+    return pre_norm_(at::cat({token, patches}, 1) + positions(map.size(2), map.size(3)));
+}
+
+std::vector<at::Tensor> ClipVisionModelImpl::first_layers(const at::Tensor& pixel_values,
+                                                          int count) {
+    ITEM3D_CHECK(count <= static_cast<int>(layers_.size()), "there are not so many layers");
+    at::Tensor x = embed(pixel_values);
+    std::vector<at::Tensor> states;
+    for (int i = 0; i < count; ++i) {
+        x = layers_[static_cast<std::size_t>(i)](x);
+        states.push_back(x);
+    }
+    return states;
 }
 
 ClipVisionOutput ClipVisionModelImpl::forward(const at::Tensor& pixel_values) {
+    check_size(pixel_values);
     at::Tensor x = embed(pixel_values);
     ClipVisionOutput output;
     output.hidden_states.push_back(x);
@@ -60,6 +83,7 @@ ClipVisionOutput ClipVisionModelImpl::forward(const at::Tensor& pixel_values) {
 }
 
 at::Tensor ClipVisionModelImpl::pooled(const at::Tensor& pixel_values) {
+    check_size(pixel_values);
     at::Tensor x = embed(pixel_values);
     for (std::size_t i = 0; i + 1 < layers_.size(); ++i)
         x = layers_[i](x);

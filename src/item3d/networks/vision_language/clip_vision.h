@@ -40,11 +40,16 @@ class ClipVisionModelImpl : public torch::nn::Module {
     ClipVisionOutput forward(const at::Tensor& pixel_values);
     /// The `pooled` of forward() alone, which needs one token of the last layer.
     at::Tensor pooled(const at::Tensor& pixel_values);
+    /// What each of the first `count` layers gives, [N, S, D]. pixel_values [N, 3, H, W] of any
+    /// size: positions are interpolated as transformers' CLIPSeg does it, S = 1 + the patches.
+    std::vector<at::Tensor> first_layers(const at::Tensor& pixel_values, int count);
     const ClipVisionConfig& config() const { return config_; }
 
   private:
     /// What the layers read, [N, S, D].
     at::Tensor embed(const at::Tensor& pixel_values);
+    void check_size(const at::Tensor& pixel_values) const;
+    at::Tensor positions(std::int64_t rows, std::int64_t columns) const;  ///< [S, D]
 
     ClipVisionConfig config_;
     at::Tensor class_embedding_;

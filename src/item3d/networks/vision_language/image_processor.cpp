@@ -5,6 +5,8 @@
 #include "item3d/core/parallel.h"
 #include "item3d/tensors/tensor.h"
 
+#include <ATen/ops/_upsample_bilinear2d_aa.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,6 +24,15 @@ double bicubic(double x) {
     return 0;
 }
 
+/// Half the filter's width, in samples of the coarser side.
+double support_of(ResizeFilter filter) {
+    return filter == ResizeFilter::bicubic ? 2 : 1;
+}
+
+double weight_at(ResizeFilter filter, double x) {
+    return filter == ResizeFilter::bicubic ? bicubic(x) : std::max(0.0, 1 - std::abs(x));
+}
+
 /// For each output sample the first input sample and the weights of those from there on.
 struct Filter {
     int taps = 0;  ///< weights a sample, unused ones zero
@@ -29,10 +40,10 @@ struct Filter {
     std::vector<std::int32_t> weights;
 };
 
-Filter make_filter(int input, int output) {
+Filter make_filter(int input, int output, ResizeFilter kind) {
     const double scale = static_cast<double>(input) / output;
     const double width = std::max(scale, 1.0);
-    const double support = 2 * width;
+    const double support = support_of(kind) * width;
     Filter filter;
     filter.taps = static_cast<int>(std::ceil(support)) * 2 + 1;
     filter.weights.assign(static_cast<std::size_t>(output) * filter.taps, 0);
@@ -43,7 +54,7 @@ Filter make_filter(int input, int output) {
         const int count = std::min(input, static_cast<int>(center + support + 0.5)) - first;
         double sum = 0;
         for (int k = 0; k < count; ++k) {
-            values[k] = bicubic((k + first - center + 0.5) / width);
+            values[k] = weight_at(kind, (k + first - center + 0.5) / width);
             sum += values[k];
         }
         for (int k = 0; k < count; ++k) {
@@ -58,11 +69,11 @@ Filter make_filter(int input, int output) {
 }
 
 /// Resamples the middle dimension of [outer, input, inner] bytes.
-at::Tensor resample(const at::Tensor& bytes, int output) {
+at::Tensor resample(const at::Tensor& bytes, int output, ResizeFilter kind) {
     const auto outer = bytes.size(0), inner = bytes.size(2);
     const int input = static_cast<int>(bytes.size(1));
     if (input == output) return bytes;
-    const Filter filter = make_filter(input, output);
+    const Filter filter = make_filter(input, output, kind);
     at::Tensor result = at::empty({outer, output, inner}, at::kByte);
     const std::uint8_t* from = bytes.const_data_ptr<std::uint8_t>();
     std::uint8_t* to = result.mutable_data_ptr<std::uint8_t>();
@@ -81,12 +92,12 @@ at::Tensor resample(const at::Tensor& bytes, int output) {
     return result;
 }
 
-/// Grey to three channels, alpha composed over white, in bytes as Pillow does.
-at::Tensor to_rgb(const at::Tensor& bytes) {
+/// Grey to three channels, alpha left out or composed over white, in bytes as Pillow does.
+at::Tensor to_rgb(const at::Tensor& bytes, bool alpha_over_white) {
     const auto channels = bytes.size(2);
     const at::Tensor color =
         channels < 3 ? bytes.narrow(2, 0, 1).expand({-1, -1, 3}) : bytes.narrow(2, 0, 3);
-    if (channels != 2 && channels != 4) return color;
+    if (!alpha_over_white || (channels != 2 && channels != 4)) return color;
     const at::Tensor alpha = bytes.narrow(2, channels - 1, 1).to(at::kLong);
     // Division by 255 as (x + (x >> 8)) >> 8, with seven bits more than bytes have.
     const at::Tensor sum = 128 * (color * alpha + 255 * (255 - alpha)) + (0x80 << 7);
@@ -113,12 +124,18 @@ int edge(const Config& config, const std::string& key, int fallback) {
 }  // namespace
 
 at::Tensor resize_bicubic(const at::Tensor& bytes, int height, int width) {
+    return resize_picture(bytes, height, width, ResizeFilter::bicubic);
+}
+
+at::Tensor resize_picture(const at::Tensor& bytes, int height, int width, ResizeFilter filter) {
     ITEM3D_CHECK(bytes.dim() == 3 && bytes.scalar_type() == at::kByte, "wanted bytes [H, W, C]");
     ITEM3D_CHECK(bytes.numel() > 0 && height > 0 && width > 0, "an empty picture has no size");
     const auto lost_rows = bytes.size(0) - height, lost_columns = bytes.size(1) - width;
-    const auto horizontally = [&](const at::Tensor& picture) { return resample(picture, width); };
+    const auto horizontally = [&](const at::Tensor& picture) {
+        return resample(picture, width, filter);
+    };
     const auto vertically = [&](const at::Tensor& picture) {
-        return resample(picture.view({1, picture.size(0), -1}), height)
+        return resample(picture.view({1, picture.size(0), -1}), height, filter)
             .view({height, picture.size(1), picture.size(2)});
     };
     const at::Tensor picture = bytes.cpu().contiguous();
@@ -130,7 +147,14 @@ ImageProcessorConfig ImageProcessorConfig::from_config(const Config& config) {
     ImageProcessorConfig result;
     for (const char* flag : {"do_resize", "do_rescale", "do_normalize"})
         config.expect(flag, true);
-    config.expect("resample", 3);
+    // ViTImageProcessor has other defaults, and a number as its size means both edges.
+    const bool vit = config.text("image_processor_type", config.text("feature_extractor_type", ""))
+                         .starts_with("ViT");
+    const int resample = config.integer("resample", vit ? 2 : 3);
+    if (resample != 2 && resample != 3) config.fail("resample", "2 (bilinear) or 3 (bicubic)");
+    result.filter = static_cast<ResizeFilter>(resample);
+    if (vit) result.mean = result.deviation = {.5, .5, .5};
+    result.alpha_over_white = !vit;
     // Old files hold a number where newer ones hold an object.
     if (config.has("size") && config.json().at("size").is_object()) {
         const Config size(config.json().at("size"), config.subject() + ": size");
@@ -142,6 +166,8 @@ ImageProcessorConfig ImageProcessorConfig::from_config(const Config& config) {
             result.height = edge(size, "height", 224);
             result.width = edge(size, "width", 224);
         }
+    } else if (vit) {
+        result.height = result.width = edge(config, "size", 224);
     } else {
         result.shortest_edge = edge(config, "size", result.shortest_edge);
     }
@@ -195,7 +221,7 @@ at::Tensor ImageProcessor::resize(const at::Tensor& bytes) const {
     ITEM3D_CHECK(bytes.dim() == 3, "a picture must be [H, W, C]");
     const auto [height, width] =
         resized_size(static_cast<int>(bytes.size(0)), static_cast<int>(bytes.size(1)));
-    return resize_bicubic(to_rgb(bytes), height, width);
+    return resize_picture(to_rgb(bytes, config_.alpha_over_white), height, width, config_.filter);
 }
 
 at::Tensor ImageProcessor::process(const at::Tensor& bytes) const {
@@ -209,7 +235,10 @@ at::Tensor ImageProcessor::process_differentiably(const at::Tensor& images) cons
         resized_size(static_cast<int>(images.size(2)), static_cast<int>(images.size(3)));
     // The filter overshoots at edges; bytes cannot.
     const at::Tensor resized =
-        at::_upsample_bicubic2d_aa(images, {height, width}, /*align_corners=*/false).clamp(0, 1);
+        (config_.filter == ResizeFilter::bicubic
+             ? at::_upsample_bicubic2d_aa(images, {height, width}, /*align_corners=*/false)
+             : at::_upsample_bilinear2d_aa(images, {height, width}, /*align_corners=*/false))
+            .clamp(0, 1);
     return crop_and_normalize(resized * (255 * config_.rescale_factor));
 }
 

@@ -193,6 +193,11 @@ Example draw_example(Random& random, const ShapeView& view,
     example.facts = facts_of(shape, material, light, own);
     example.material = material.kind;
     example.light = light.kind;
+    example.view = &view;
+    example.mirrored = mirrored;
+    example.own_part = part_index;
+    example.phrases = material.phrases;
+    if (part) example.part_phrases = part->material.phrases;
     return example;
 }
 

@@ -23,8 +23,14 @@ struct Example {
     at::Tensor covered;  ///< [S, S] float32, part of the pixel that is object
     std::string caption;
     PictureFacts facts;
-    std::string material;  ///< ProceduralMaterial::kind
-    std::string light;     ///< TrainingLight::kind
+    std::string material;             ///< ProceduralMaterial::kind
+    std::string light;                ///< TrainingLight::kind
+    const ShapeView* view = nullptr;  ///< what it was drawn from
+    bool mirrored = false;
+    /// Index into view->parts of the part with a material of its own; 0: there is none.
+    std::size_t own_part = 0;
+    std::vector<std::string> phrases;       ///< of the material of the rest, ProceduralMaterial's
+    std::vector<std::string> part_phrases;  ///< and of that part
 };
 
 /// What an example should show; what is not said is drawn at random.

@@ -1,5 +1,5 @@
-// What lies in a prior's folder beside the networks: prior.json, and the folders of CLIP and the
-// captioner.
+// What lies in a prior's folder beside the networks: prior.json, and the folders of CLIP, the
+// captioner and the segmenter.
 #pragma once
 
 #include "item3d/text/clip_tokenizer.h"
@@ -15,6 +15,7 @@ namespace item3d {
 /// Sub-folders of the prior's.
 inline constexpr const char* clip_folder = "clip";
 inline constexpr const char* captioner_folder = "captioner";
+inline constexpr const char* segmenter_folder = "segmenter";
 
 /// The folder's prior.json; an empty object where there is none or no object in it.
 nlohmann::json read_prior_json(const std::filesystem::path& folder);

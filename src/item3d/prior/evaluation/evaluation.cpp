@@ -10,6 +10,7 @@
 #include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/evaluation/classifier.h"
 #include "item3d/prior/evaluation/evaluation_pictures.h"
+#include "item3d/prior/evaluation/part_accuracy.h"
 #include "item3d/prior/evaluation/vision_language_accuracy.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
@@ -52,10 +53,19 @@ void stop_if_asked() {
     if (interrupted()) throw Interrupted("nothing was written");
 }
 
-/// What its own CLIP and captioner make of held-out pictures.
+/// What its own segmenter makes of them.
+nlohmann::json measure_segmenter(const fs::path& folder, const EvaluationOptions& options) {
+    const Segmenter segmenter = Segmenter::load(folder / segmenter_folder);
+    return measure_parts(segmenter, draw_held_out_parts(mix_bits(options.seed + 8),
+                                                        options.part_pictures, options.threads));
+}
+
+/// What its own CLIP, captioner and segmenter make of held-out pictures.
 nlohmann::json measure_readers(const fs::path& folder, const std::optional<Clip>& clip,
                                const EvaluationOptions& options) {
     nlohmann::json measured = nlohmann::json::object();
+    if (fs::exists(folder / segmenter_folder / "config.json"))
+        measured["parts"] = measure_segmenter(folder, options);
     const bool captioner = fs::exists(folder / captioner_folder / "config.json");
     if (!clip && !captioner) return measured;
     const LabeledPictures pictures =
@@ -81,10 +91,11 @@ nlohmann::json readers_record(const fs::path& folder, const nlohmann::json& read
     nlohmann::json record = nlohmann::json::object();
     for (const auto& [part, reached] :
          {std::pair{"clip", "retrieval"}, std::pair{"captioner", "captions"},
-          std::pair{"captioner", "model_captions"}}) {
+          std::pair{"captioner", "model_captions"}, std::pair{"segmenter", "parts"}}) {
         if (!readers.contains(reached)) continue;
         if (!record.contains(part)) record[part] = prior.value(part, nlohmann::json::object());
-        record[part][reached] = readers[reached];
+        record[part][reached] =
+            reached == std::string("parts") ? part_summary(readers[reached]) : readers[reached];
     }
     return record;
 }
@@ -118,6 +129,14 @@ std::string word_bars(const nlohmann::json& words) {
                              : ""});
     std::stable_sort(parts.begin(), parts.end(),
                      [](const auto& a, const auto& b) { return a.value < b.value; });
+    return html_parts(parts);
+}
+
+/// Parts by name, those that the segmenter finds least first.
+std::string part_bars(const nlohmann::json& worst_first) {
+    std::vector<ReportPart> parts;
+    for (const nlohmann::json& part : worst_first)
+        parts.push_back({part.at(0), part.at(1), ""});
     return html_parts(parts);
 }
 
@@ -159,6 +178,15 @@ TableRows summary_rows(const nlohmann::json& evaluation) {
                                     "; object and the material's name of " +
                                     percent(named.at("object_and_name")));
     }
+    if (readers.contains("parts")) {
+        const nlohmann::json& found = readers["parts"];
+        rows.emplace_back(
+            "segmenter",
+            fmt::format("intersection over union {:.2f} of parts by their names, "
+                        "{:.2f} on classes never trained on, {:.2f} of the object",
+                        found.at("part_iou").get<double>(), found.at("new_class_iou").get<double>(),
+                        found.at("object_iou").get<double>()));
+    }
     if (!evaluation.contains("edits")) return rows;
     for (const auto& [group, total] : evaluation["edits"].at("groups").items())
         rows.emplace_back(
@@ -183,7 +211,16 @@ std::string evaluation_page(const nlohmann::json& evaluation,
     body += html_section("In pictures", html_gallery(pictures, one_a_row));
     for (const auto& [kind, words] : evaluation.at("vocabulary").items())
         body += html_section("Words: " + kind, word_bars(words));
+    if (evaluation.at("readers").contains("parts"))
+        body += html_section("Parts, by intersection over union",
+                             part_bars(evaluation["readers"]["parts"].at("worst")));
     return html_page("What " + prior + " knows", body);
+}
+
+nlohmann::json evaluate_segmenter(const fs::path& folder, const EvaluationOptions& options) {
+    const nlohmann::json measured{{"parts", measure_segmenter(folder, options)}};
+    update_prior_json(folder, readers_record(folder, measured));
+    return measured["parts"];
 }
 
 nlohmann::json evaluate_prior(const fs::path& folder, const fs::path& output,

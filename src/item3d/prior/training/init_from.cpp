@@ -141,4 +141,8 @@ void begin_with_clip(const fs::path& folder, ClipModel& model) {
     copy_weights(folder, *load_clip_model(folder), *model, reader_hint);
 }
 
+void begin_with_segmenter(const fs::path& folder, ClipSegModel& model) {
+    copy_weights(folder, *load_clip_seg(folder), *model, reader_hint);
+}
+
 }  // namespace item3d

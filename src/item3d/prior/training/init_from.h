@@ -5,6 +5,7 @@
 #include "item3d/networks/diffusion/unet.h"
 #include "item3d/networks/vision_language/blip.h"
 #include "item3d/networks/vision_language/clip_model.h"
+#include "item3d/networks/vision_language/clip_seg.h"
 #include "item3d/networks/vision_language/clip_text.h"
 
 #include <nlohmann/json.hpp>
@@ -35,17 +36,18 @@ nlohmann::json begin_with_record(const std::filesystem::path& folder);
 void begin_with_weights(const std::filesystem::path& folder, UNet2DCondition& unet,
                         ClipTextModel& text);
 
-/// The captioner's or CLIP's folder of the prior that a training begins with; empty where it begins
-/// with none, or with one that has no such part.
+/// The captioner's, CLIP's or segmenter's folder of the prior that a training begins with; empty
+/// where it begins with none, or with one that has no such part.
 std::filesystem::path begin_with_part(const TrainSettings& settings, const char* part);
 
 /// Throws InputError where these parts of the prior in settings.begin_with do not fit: before the
 /// pictures are drawn.
 void check_begin_with_readers(const TrainSettings& settings, bool clip, bool captioner);
 
-/// Copy the weights of a captioner's or CLIP's folder. Throw InputError where it is of another
-/// size.
+/// Copy the weights of a captioner's, CLIP's or segmenter's folder. Throw InputError where it is of
+/// another size.
 void begin_with_captioner(const std::filesystem::path& folder, BlipModel& model);
 void begin_with_clip(const std::filesystem::path& folder, ClipModel& model);
+void begin_with_segmenter(const std::filesystem::path& folder, ClipSegModel& model);
 
 }  // namespace item3d

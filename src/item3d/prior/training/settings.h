@@ -27,6 +27,9 @@ struct TrainSettings {
     std::int64_t clip_samples = 120000;       ///< that CLIP sees, repetitions counted
     std::int64_t captioner_samples = 800000;  ///< and the captioner
     std::int64_t labeled_samples = 240000;    ///< different pictures for these two
+    std::int64_t segmenter_samples = 29000;   ///< that the segmenter sees, repetitions counted
+    std::int64_t part_samples = 12000;        ///< different pictures for it
+    int part_variants = 16;                   ///< shapes of each class on those
     int labeled_variants = 60;                ///< shapes of each class on those
     int shape_variants = 30;
     int views_each = 4;

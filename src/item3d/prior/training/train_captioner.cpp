@@ -159,7 +159,7 @@ nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings&
                             }});
     }
     LoopOptions options =
-        vision_language_loop("captioner", settings, settings.captioner_samples, data);
+        vision_language_loop("captioner", settings, settings.captioner_samples, data.count());
     options.batch = captioner_batch;
     options.learning_rate *= captioner_rate;
     TrainingLoop loop(options, std::move(replicas));

@@ -40,18 +40,6 @@ ClipModel make_clip(const TrainSettings& settings, const ClipConfig& config) {
     return model;
 }
 
-/// [N, S] int64, S as long as the longest needs.
-at::Tensor read_sentences(const ClipTokenizer& tokenizer, const std::vector<std::string>& texts) {
-    std::vector<std::vector<int>> rows;
-    std::size_t longest = 0;
-    for (const std::string& text : texts) {
-        rows.push_back(tokenizer.encode(text));
-        longest = std::max(longest, rows.back().size());
-    }
-    const auto length = std::min<std::int64_t>(static_cast<std::int64_t>(longest), text_length);
-    return tokenizer.encode_batch(texts, static_cast<int>(length));
-}
-
 at::Tensor unit(const at::Tensor& features) {
     const at::Tensor x = features.to(at::kFloat);
     return x / x.norm(2, {-1}, true).clamp_min(1e-6);
@@ -187,7 +175,8 @@ nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& sett
                                 return clip_loss(model, data, tokenizer, rows, random);
                             }});
     }
-    LoopOptions options = vision_language_loop("clip", settings, settings.clip_samples, data);
+    LoopOptions options =
+        vision_language_loop("clip", settings, settings.clip_samples, data.count());
     options.batch = clip_batch;
     if (warm) note("clip: its vision transformer starts as the captioner's");
     TrainingLoop loop(options, std::move(replicas));

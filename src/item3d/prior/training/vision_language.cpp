@@ -4,6 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/prior/data/captions.h"
 #include "item3d/prior/data/prior_folder.h"
 #include "item3d/prior/evaluation/vision_language_accuracy.h"
 #include "item3d/prior/training/init_from.h"
@@ -35,12 +36,6 @@ nlohmann::json labeled_fingerprint(const TrainSettings& s) {
             {"shape_variants", s.labeled_variants},
             {"views_each", s.views_each},
             {"lights", s.lights}};
-}
-
-void stop_here_if_interrupted(const TrainSettings& settings) {
-    if (interrupted())
-        throw Interrupted("what was finished is in " + settings.work.string() +
-                          "; the same command with --resume goes on");
 }
 
 /// Draws the pictures, or keeps those of an interrupted run.
@@ -91,6 +86,20 @@ void note_begin(const TrainSettings& settings, const char* folder, const char* m
 
 }  // namespace
 
+void stop_here_if_interrupted(const TrainSettings& settings) {
+    if (interrupted())
+        throw Interrupted("what was finished is in " + settings.work.string() +
+                          "; the same command with --resume goes on");
+}
+
+at::Tensor read_sentences(const ClipTokenizer& tokenizer, const std::vector<std::string>& texts) {
+    std::size_t longest = 0;
+    for (const std::string& text : texts)
+        longest = std::max(longest, tokenizer.encode(text).size());
+    const auto length = std::min<std::int64_t>(static_cast<std::int64_t>(longest), text_length);
+    return tokenizer.encode_batch(texts, static_cast<int>(length));
+}
+
 at::Tensor augment(const at::Tensor& pixel_values, Random& random) {
     std::vector<std::uint8_t> mirrored;
     for (std::int64_t i = 0; i < pixel_values.size(0); ++i)
@@ -107,10 +116,10 @@ at::Tensor augment(const at::Tensor& pixel_values, Random& random) {
 }
 
 LoopOptions vision_language_loop(const std::string& name, const TrainSettings& settings,
-                                 std::int64_t samples, const LabeledPictures& data) {
+                                 std::int64_t samples, std::int64_t rows) {
     LoopOptions options = loop_options(settings, name, name + "_checkpoint.safetensors");
     options.samples = samples;
-    options.rows = data.count();
+    options.rows = rows;
     options.rise = std::min(30000.0, static_cast<double>(samples) / 8);
     options.orthogonal = settings.optimizer == "muon";
     return options;
@@ -125,12 +134,12 @@ nlohmann::json loop_summary(const LoopRecord& record, std::int64_t parameters,
             {"parameters", parameters}};
 }
 
-void write_preprocessor(const fs::path& folder, const std::string& processor_class) {
+void write_preprocessor(const fs::path& folder, const std::string& processor_class, int size) {
     const nlohmann::json config{
         {"image_processor_type", processor_class},
         {"do_convert_rgb", true},
         {"do_resize", true},
-        {"size", {{"height", read_size}, {"width", read_size}}},
+        {"size", {{"height", size}, {"width", size}}},
         {"resample", 3},
         {"do_center_crop", false},
         {"do_rescale", true},

@@ -7,12 +7,14 @@
 #include "item3d/prior/training/settings.h"
 #include "item3d/prior/training/training_loop.h"
 #include "item3d/tensors/tensor.h"
+#include "item3d/text/clip_tokenizer.h"
 
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -38,10 +40,15 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
 at::Tensor augment(const at::Tensor& pixel_values, Random& random);
 /// As loop_options(), with the rise that these networks want.
 LoopOptions vision_language_loop(const std::string& name, const TrainSettings& settings,
-                                 std::int64_t samples, const LabeledPictures& data);
+                                 std::int64_t samples, std::int64_t rows);
 nlohmann::json loop_summary(const LoopRecord& record, std::int64_t parameters,
                             const TrainSettings& settings);
-/// preprocessor_config.json of networks that read pictures of read_size in [-1, 1].
-void write_preprocessor(const std::filesystem::path& folder, const std::string& processor_class);
+/// preprocessor_config.json of networks that read squares of `size` pixels in [-1, 1].
+void write_preprocessor(const std::filesystem::path& folder, const std::string& processor_class,
+                        int size = read_size);
+/// [N, S] int64, S as long as the longest needs, at most text_length.
+at::Tensor read_sentences(const ClipTokenizer& tokenizer, const std::vector<std::string>& texts);
+/// Throws Interrupted, with what to do next, after an interrupt.
+void stop_here_if_interrupted(const TrainSettings& settings);
 
 }  // namespace item3d

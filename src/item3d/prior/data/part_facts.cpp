@@ -1,0 +1,224 @@
+#include "item3d/prior/data/part_facts.h"
+
+#include "item3d/core/error.h"
+#include "item3d/prior/data/captions.h"
+#include "item3d/prior/data/materials/colors.h"
+#include "item3d/prior/data/shapes/shapes.h"
+
+#include <algorithm>
+#include <set>
+
+namespace item3d {
+namespace {
+
+const std::string& one_of(Random& random, const std::vector<std::string>& from) {
+    return from[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(from.size())))];
+}
+
+bool listed(const std::vector<std::string>& list, const std::string& text) {
+    return std::find(list.begin(), list.end(), text) != list.end();
+}
+
+/// "wooden" of "wooden {o}"; those that end otherwise are left out, repeated ones kept.
+std::vector<std::string> adjectives(const std::vector<std::string>& phrases) {
+    std::vector<std::string> result;
+    for (const std::string& phrase : adjective_phrases(phrases))
+        result.push_back(phrase.substr(0, phrase.size() - 4));
+    return result;
+}
+
+/// "wheel" for "wheels" and the other way round, now and then.
+std::string either_number(Random& random, const std::string& noun) {
+    if (!random.chance(.15)) return noun;
+    return noun.ends_with("s") ? noun.substr(0, noun.size() - 1) : noun + "s";
+}
+
+/// "wheel" of "wheels".
+std::string one_of_them(const std::string& noun) {
+    return noun.ends_with("s") ? noun.substr(0, noun.size() - 1) : noun;
+}
+
+/// "red handle", "the red handle", "a red handle of a mug".
+std::string asked(Random& random, const std::string& thing, const std::string& object = "") {
+    const double form = random.uniform();
+    if (form < .4) return thing;
+    if (form < .7) return "the " + thing;
+    if (form < .85 || object.empty()) return mend_articles("a " + thing);
+    return mend_articles("the " + thing + " of a " + object);
+}
+
+/// Whether a material's plainest name is a colour: of wood nobody can say that it is not brown.
+const std::string* color_of(const std::vector<std::string>& phrases) {
+    if (phrases.empty()) return nullptr;
+    for (const PlainColor& color : plain_colors())
+        if (phrases.front() == color.name || phrases.front().ends_with(" " + color.name))
+            return &color.name;
+    return nullptr;
+}
+
+std::vector<std::string> all_object_nouns() {
+    std::vector<std::string> nouns;
+    for (const ShapeClass& shape : shape_classes())
+        if (!shape.held_out)
+            for (const std::string& noun : shape.nouns)
+                if (noun != "object") nouns.push_back(noun);
+    return nouns;
+}
+
+/// What is not on the picture; an empty text where none was found.
+PartPrompt absent_prompt(Random& random, const PartFacts& facts) {
+    const double kind = random.uniform();
+    if (kind < .55) {
+        const std::string& noun = one_of(random, all_part_nouns());
+        if (!has_named(facts, noun)) return {asked(random, either_number(random, noun)), 0};
+    } else if (kind < .8) {
+        static const std::vector<std::string> nouns = all_object_nouns();
+        const std::string& noun = one_of(random, nouns);
+        // Nobody says what a held-out object is not.
+        if (!has_named(facts, noun) && !has_named(facts, "object")) return {asked(random, noun), 0};
+    } else {
+        const std::string* rest = color_of(facts.phrases);
+        const std::string* own = facts.own ? color_of(facts.own_phrases) : rest;
+        if (!rest || !own) return {};
+        const auto& colors = plain_colors();
+        const PlainColor& color = colors[static_cast<std::size_t>(
+            random.index(static_cast<std::int64_t>(colors.size())))];
+        const auto clashes = [&](const std::string& there) {
+            return there == color.name || colors_alike(there, color.name);
+        };
+        if (!clashes(*rest) && !clashes(*own))
+            return {asked(random, color.name + (random.chance(.7) ? " part" : "")), 0};
+    }
+    return {};
+}
+
+/// The material of the rest or of the part that has another.
+PartPrompt material_prompt(Random& random, const PartFacts& facts) {
+    if (facts.phrases.empty() || (facts.own && facts.own_phrases.empty())) return {};
+    const std::uint32_t whole = whole_object(facts);
+    if (!facts.own) {
+        const std::string& word = one_of(random, facts.phrases);
+        return {asked(random, word + " " + (random.chance(.5) ? facts.nouns[0] : "part")), whole};
+    }
+    const bool of_part = random.chance(.6);
+    const std::string& word = one_of(random, of_part ? facts.own_phrases : facts.phrases);
+    const std::uint32_t parts = of_part ? facts.own : whole & ~facts.own;
+    if (random.chance(.25)) return {word, parts};
+    return {asked(random, word + " part", facts.nouns[0]), parts};
+}
+
+PartPrompt named_prompt(Random& random, const PartFacts& facts,
+                        const std::vector<std::string>& names) {
+    const std::string& noun = one_of(random, names);
+    const std::uint32_t parts = parts_named(facts, noun);
+    std::string thing = either_number(random, noun);
+    const auto& phrases = facts.own == parts ? facts.own_phrases : facts.phrases;
+    const bool of_one_material = facts.own == parts || (facts.own & parts) == 0;
+    if (!phrases.empty() && of_one_material && random.chance(facts.own ? .3 : .1))
+        thing = one_of(random, phrases) + " " + thing;
+    return {asked(random, thing, facts.nouns[0]), parts};
+}
+
+}  // namespace
+
+void to_json(nlohmann::json& json, const PartFacts& facts) {
+    json = nlohmann::json::array({facts.shape_class, facts.nouns, facts.parts, facts.seen,
+                                  facts.own, facts.phrases, facts.own_phrases});
+}
+
+void from_json(const nlohmann::json& json, PartFacts& facts) {
+    json.at(0).get_to(facts.shape_class);
+    json.at(1).get_to(facts.nouns);
+    json.at(2).get_to(facts.parts);
+    json.at(3).get_to(facts.seen);
+    json.at(4).get_to(facts.own);
+    json.at(5).get_to(facts.phrases);
+    json.at(6).get_to(facts.own_phrases);
+}
+
+PartFacts part_facts_of(const Example& example) {
+    const ShapeView& view = *example.view;
+    const ShapeClass& shape = shape_classes()[static_cast<std::size_t>(view.shape_class)];
+    ITEM3D_CHECK(view.parts.size() <= most_parts, "a shape has too many parts");
+    PartFacts facts;
+    facts.shape_class = shape.name;
+    facts.nouns = shape.held_out ? std::vector<std::string>{"object"} : shape.nouns;
+    facts.parts = view.parts;
+    std::vector<std::size_t> counts(view.parts.size(), 0);
+    for (const std::uint8_t part : view.part)
+        ++counts[part];
+    for (const std::size_t count : counts)
+        facts.seen.push_back(count == 0 ? 0 : count * 80 < view.count() ? 1 : 2);
+    if (example.own_part > 0) facts.own = 1u << example.own_part;
+    facts.phrases = adjectives(example.phrases);
+    facts.own_phrases = adjectives(example.part_phrases);
+    return facts;
+}
+
+at::Tensor part_map_of(const Example& example) {
+    const ShapeView& view = *example.view;
+    const int size = view.size / view_samples;
+    at::Tensor map = at::zeros({size, size}, at::kByte);
+    auto* out = map.mutable_data_ptr<std::uint8_t>();
+    for (std::size_t i = 0; i < view.count(); ++i) {
+        const int y = view.pixel[i] / view.size, x = view.pixel[i] % view.size;
+        if (y % view_samples != 0 || x % view_samples != 0) continue;  // one of a pixel's samples
+        const int column = x / view_samples;
+        out[y / view_samples * size + (example.mirrored ? size - 1 - column : column)] =
+            static_cast<std::uint8_t>(view.part[i] + 1);
+    }
+    return map;
+}
+
+std::uint32_t parts_named(const PartFacts& facts, const std::string& noun) {
+    std::uint32_t parts = 0;
+    for (std::size_t i = 0; i < facts.parts.size(); ++i)
+        if (facts.parts[i] == noun) parts |= 1u << i;
+    return parts;
+}
+
+std::uint32_t whole_object(const PartFacts& facts) {
+    const std::size_t count = facts.parts.size();
+    return count >= most_parts ? ~0u : (1u << count) - 1;
+}
+
+std::vector<std::string> named_parts(const PartFacts& facts) {
+    std::vector<std::string> names;
+    for (std::size_t i = 1; i < facts.parts.size(); ++i)
+        if (facts.seen[i] == 2 && !facts.parts[i].empty() && !listed(names, facts.parts[i]))
+            names.push_back(facts.parts[i]);
+    return names;
+}
+
+bool has_named(const PartFacts& facts, const std::string& noun) {
+    const auto is = [&](const std::string& name) { return one_of_them(name) == one_of_them(noun); };
+    return std::any_of(facts.parts.begin(), facts.parts.end(), is) ||
+           std::any_of(facts.nouns.begin(), facts.nouns.end(), is);
+}
+
+const std::vector<std::string>& all_part_nouns() {
+    static const std::vector<std::string> nouns = [] {
+        std::set<std::string> all;
+        for (const ShapeClass& shape : shape_classes())
+            all.insert(part_nouns(shape.name).begin(), part_nouns(shape.name).end());
+        return std::vector<std::string>(all.begin(), all.end());
+    }();
+    return nouns;
+}
+
+PartPrompt draw_part_prompt(Random& random, const PartFacts& facts) {
+    const std::vector<std::string> names = named_parts(facts);
+    PartPrompt prompt;
+    const double kind = random.uniform();
+    if (kind < .45 && !names.empty())
+        prompt = named_prompt(random, facts, names);
+    else if (kind < .68)
+        prompt = material_prompt(random, facts);
+    else if (kind < .88)
+        prompt = absent_prompt(random, facts);
+    if (!prompt.text.empty()) return prompt;
+    const bool unnamed = random.chance(.2);
+    return {asked(random, unnamed ? "object" : one_of(random, facts.nouns)), whole_object(facts)};
+}
+
+}  // namespace item3d

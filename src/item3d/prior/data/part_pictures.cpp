@@ -1,0 +1,97 @@
+#include "item3d/prior/data/part_pictures.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/progress.h"
+#include "item3d/tensors/safetensors.h"
+#include "item3d/tensors/workers.h"
+
+#include <array>
+#include <atomic>
+#include <mutex>
+
+namespace item3d {
+namespace {
+
+std::filesystem::path tensors_file(const std::filesystem::path& folder, const std::string& name) {
+    return folder / (name + ".safetensors");
+}
+
+std::filesystem::path json_file(const std::filesystem::path& folder, const std::string& name) {
+    return folder / (name + ".json");
+}
+
+}  // namespace
+
+at::Tensor PartPictures::pixel_values(const std::vector<std::int64_t>& rows) const {
+    return images.index_select(0, at::tensor(rows))
+        .permute({0, 3, 1, 2})
+        .to(at::kFloat)
+        .div(127.5)
+        .sub(1);
+}
+
+at::Tensor PartPictures::mask(std::int64_t row, std::uint32_t set) const {
+    std::array<float, 256> value{};
+    for (std::size_t i = 0; i < most_parts; ++i)
+        value[i + 1] = (set >> i & 1u) != 0 ? 1.0f : 0.0f;
+    const at::Tensor map = parts[row];
+    at::Tensor result = at::empty(map.sizes(), at::kFloat);
+    const auto* part = map.const_data_ptr<std::uint8_t>();
+    auto* out = result.mutable_data_ptr<float>();
+    for (std::int64_t i = 0; i < map.numel(); ++i)
+        out[i] = value[part[i]];
+    return result;
+}
+
+PartPictures draw_part_pictures(const ExampleSource& source, std::int64_t count, int threads) {
+    PartPictures result;
+    const std::int64_t size = source.views().front().size / view_samples;
+    result.images = at::empty({count, size, size, 3}, at::kByte);
+    result.parts = at::empty({count, size, size}, at::kByte);
+    result.facts.resize(static_cast<std::size_t>(count));
+    Progress progress("pictures", count);
+    std::atomic<std::int64_t> done = 0;
+    std::mutex mutex;
+    run_workers(count, threads, [&](std::int64_t i) {
+        const Example example = source.draw(i);
+        result.images[i].copy_((example.image * 255).round());
+        result.parts[i].copy_(part_map_of(example));
+        result.facts[static_cast<std::size_t>(i)] = part_facts_of(example);
+        const std::lock_guard lock(mutex);
+        progress.update(++done);
+    });
+    return result;
+}
+
+void save_part_pictures(const std::filesystem::path& folder, const std::string& name,
+                        const PartPictures& pictures) {
+    std::filesystem::remove(json_file(folder, name));
+    save_safetensors(tensors_file(folder, name),
+                     {{"images", pictures.images}, {"parts", pictures.parts}});
+    write_atomically(json_file(folder, name), nlohmann::json(pictures.facts).dump() + "\n");
+}
+
+bool has_part_pictures(const std::filesystem::path& folder, const std::string& name) {
+    return std::filesystem::exists(json_file(folder, name));
+}
+
+PartPictures load_part_pictures(const std::filesystem::path& folder, const std::string& name) {
+    PartPictures result;
+    const SafeTensors file = SafeTensors::open(tensors_file(folder, name));
+    result.images = file.tensor("images");
+    result.parts = file.tensor("parts");
+    const std::filesystem::path facts = json_file(folder, name);
+    try {
+        nlohmann::json::parse(read_text(facts)).get_to(result.facts);
+    } catch (const nlohmann::json::exception& error) {
+        throw InputError(facts.string(), error.what(), "train without --resume");
+    }
+    if (static_cast<std::int64_t>(result.facts.size()) != result.count() ||
+        result.parts.size(0) != result.count())
+        throw InputError(facts.string(), "does not belong to the pictures beside it",
+                         "train without --resume");
+    return result;
+}
+
+}  // namespace item3d

@@ -1,0 +1,39 @@
+// Training pictures with what each pixel belongs to, kept in a file.
+#pragma once
+
+#include "item3d/prior/data/dataset.h"
+#include "item3d/prior/data/part_facts.h"
+#include "item3d/tensors/tensor.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// Edge of these pictures in pixels, a little more than the embedded segmenter reads.
+inline constexpr int part_picture_size = 96;
+
+struct PartPictures {
+    at::Tensor images;             ///< [N, S, S, 3] uint8 sRGB
+    at::Tensor parts;              ///< [N, S, S] uint8, as part_map_of()
+    std::vector<PartFacts> facts;  ///< N
+
+    std::int64_t count() const { return images.size(0); }
+    /// Rows [R] as networks want them: [R, 3, S, S] float32 in [-1, 1].
+    at::Tensor pixel_values(const std::vector<std::int64_t>& rows) const;
+    /// [S, S] float32, 1 on the pixels of that set of parts.
+    at::Tensor mask(std::int64_t row, std::uint32_t parts) const;
+};
+
+/// The source's first `count` examples, on `threads` threads. Incomplete after an interrupt.
+PartPictures draw_part_pictures(const ExampleSource& source, std::int64_t count, int threads);
+
+/// FOLDER/NAME.safetensors and FOLDER/NAME.json; the json last, so that both are whole where it is.
+void save_part_pictures(const std::filesystem::path& folder, const std::string& name,
+                        const PartPictures& pictures);
+bool has_part_pictures(const std::filesystem::path& folder, const std::string& name);
+/// Throws InputError for files that do not belong together.
+PartPictures load_part_pictures(const std::filesystem::path& folder, const std::string& name);
+
+}  // namespace item3d
