@@ -7,6 +7,7 @@
 #include "item3d/region/part_selectors.h"
 #include "item3d/region/picture_selectors.h"
 #include "item3d/region/space_selectors.h"
+#include "item3d/region/words_selector.h"
 
 #include <cmath>
 #include <functional>
@@ -42,6 +43,7 @@ const std::vector<Kind>& kinds() {
           "where people would call the base colour so: black, white, gray, red, green, blue, "
           "yellow, orange, purple, pink or brown"},
          select_named},
+        {{"words=TEXT", "what the segmenter calls so (\"the handle\")"}, select_words},
     };
     return all;
 }

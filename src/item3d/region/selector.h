@@ -14,12 +14,15 @@
 
 namespace item3d {
 
+class Segmenter;
+
 /// The model that is selected on. All must outlive the selectors.
 struct RegionScene {
     const Model& model;
     const Geometry& geometry;
     const TexturedMaterials& textured;
     const FieldSpace& space;
+    const Segmenter* segmenter = nullptr;  ///< for words; null: there is none
 };
 
 /// Weights in [0, 1] of places of a surface.
