@@ -144,6 +144,7 @@ void run_edit(EditCommandOptions& options) {
     request.prior = find_prior(options.prior);
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
     if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
+    if (request.segmenter.empty()) request.segmenter = find_in_prior(request.prior, "segmenter");
     const nlohmann::json summary =
         options.plan_file.empty() ? edit_once(options) : edit_by_plan(options);
     if (options.json) {
@@ -176,6 +177,9 @@ void add_edit_command(CLI::App& app) {
     command->add_option("--captioner", request.captioner,
                         "BLIP or BLIP-2 in the transformers layout, for --adjust caption; without "
                         "it, the one that the prior brings along");
+    command->add_option("--segmenter", request.segmenter,
+                        "CLIPSeg in the transformers layout, for --region words=...; without it, "
+                        "the one that the prior brings along");
     command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
     add_texture_folders(*command, request.texture_folders);
     command->add_flag(

@@ -10,13 +10,16 @@
 #include "item3d/core/format.h"
 #include "item3d/edit/material_source.h"
 #include "item3d/field/atlas/atlas.h"
+#include "item3d/hub/find_prior.h"
 #include "item3d/io/file_names.h"
 #include "item3d/io/load.h"
 #include "item3d/io/load_light.h"
 #include "item3d/io/part_names.h"
 #include "item3d/io/save.h"
+#include "item3d/networks/vision_language/segmenter.h"
 #include "item3d/region/masks.h"
 #include "item3d/region/preview.h"
+#include "item3d/region/words_selector.h"
 #include "item3d/render/pictures.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
@@ -41,6 +44,7 @@ struct RegionCommand : CommonOptions {
     RegionRequest request;
     std::vector<std::string> materials;
     std::vector<fs::path> texture_folders;
+    fs::path segmenter;
     std::string output;
     int size = 384;
     int texture_size = 0;
@@ -122,9 +126,15 @@ class RegionOutput {
         const std::vector<int> materials = select_materials(model_, options_.materials);
         const FieldSpace space(model_, materials, geometry_.positions.device());
         std::unique_ptr<Region> region;
+        const auto segmenter = load_wanted_segmenter(
+            options_.request,
+            options_.segmenter.empty() ? find_in_prior(find_prior(""), "segmenter")
+                                       : options_.segmenter,
+            geometry_.positions.device());
         if (!options_.request.is_everything())
-            region = std::make_unique<Region>(options_.request,
-                                              RegionScene{model_, geometry_, textured_, space});
+            region = std::make_unique<Region>(
+                options_.request,
+                RegionScene{model_, geometry_, textured_, space, segmenter.get()});
         make_output_folder(folder_);
         write_views();
         if (!region) return record;
@@ -231,6 +241,9 @@ void add_region_command(CLI::App& app) {
                      "size")
         ->check(CLI::Range(0.0, 50.0));
     command->add_option("--material", options->materials, "Only the materials of these names");
+    command->add_option("--segmenter", options->segmenter,
+                        "CLIPSeg in the transformers layout, for words=; without it, the one that "
+                        "the embedded prior brings along");
     add_texture_folders(*command, options->texture_folders);
     command->add_option("--size", options->size, "Pixels of a view's side")
         ->check(CLI::Range(32, 4096))

@@ -5,6 +5,8 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/words.h"
 #include "item3d/metrics/color.h"
+#include "item3d/networks/vision_language/segmenter.h"
+#include "item3d/region/words_selector.h"
 
 #include <algorithm>
 
@@ -33,10 +35,11 @@ std::vector<std::string> other_words(const std::string& sentence, const KnownWor
     return words;
 }
 
-std::unique_ptr<Region> make_region(const RegionRequest& request, const EditScene& scene) {
+std::unique_ptr<Region> make_region(const RegionRequest& request, const EditScene& scene,
+                                    const Segmenter* segmenter = nullptr) {
     const FieldSpace space(scene.model, scene.materials, scene.device);
-    return std::make_unique<Region>(
-        request, RegionScene{scene.model, scene.geometry, *scene.source_textures, space});
+    return std::make_unique<Region>(request, RegionScene{scene.model, scene.geometry,
+                                                         *scene.source_textures, space, segmenter});
 }
 
 /// Null where the colour is nearly everywhere or hardly anywhere.
@@ -66,7 +69,8 @@ std::optional<std::string> color_to_change(const EditPlan& plan,
     return basic_colors()[nearest_color(*from->base_color, basic_colors())].name;
 }
 
-void choose_region(const EditPlan& plan, const PriorVocabulary& vocabulary, EditScene& scene) {
+void choose_region(const EditRequest& edit, const PriorVocabulary& vocabulary, EditScene& scene) {
+    const EditPlan& plan = edit.plan;
     RegionRequest request{plan.region, plan.exclude, plan.feather};
     const bool is_automatic =
         plan.region.empty() || plan.region == std::vector<std::string>{"auto"};
@@ -78,7 +82,8 @@ void choose_region(const EditPlan& plan, const PriorVocabulary& vocabulary, Edit
     if (color) scene.region = region_of_color(*color, request, scene);
     if (!scene.region) {
         if (request.is_everything()) return;
-        scene.region = make_region(request, scene);
+        const auto segmenter = load_wanted_segmenter(request, edit.segmenter, scene.device);
+        scene.region = make_region(request, scene, segmenter.get());
         note(fmt::format("the region is {:.1f} % of what is edited", 100 * scene.region->share()));
     }
     scene.region_views =

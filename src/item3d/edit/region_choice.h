@@ -17,6 +17,6 @@ std::optional<std::string> color_to_change(const EditPlan& plan, const PriorVoca
 /// Sets the scene's region and its views, and leaves the materials that have a part in it. Without
 /// selectors, or with "auto", it is what has the colour to change, if that is a part of the
 /// surface; with "all", or where nothing is to be told apart, there is none. Throws InputError.
-void choose_region(const EditPlan& plan, const PriorVocabulary& vocabulary, EditScene& scene);
+void choose_region(const EditRequest& edit, const PriorVocabulary& vocabulary, EditScene& scene);
 
 }  // namespace item3d

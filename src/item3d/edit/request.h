@@ -15,6 +15,7 @@ struct EditRequest {
     std::filesystem::path prior;      ///< folder in the diffusers layout
     std::filesystem::path output;     ///< folder, made when it is not there
     std::filesystem::path clip;       ///< CLIP model that scores the result; empty: none
+    std::filesystem::path segmenter;  ///< CLIPSeg, for regions by words; read where one is
     std::filesystem::path captioner;  ///< BLIP or BLIP-2; read where the plan asks it
     EditPlan plan;
     bool resume = false;

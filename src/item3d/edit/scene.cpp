@@ -71,7 +71,7 @@ EditScene load_scene(const EditRequest& request) {
     check_looks(request, scene.model, scene.materials);
     scene.geometry = Geometry::from_model(scene.model, device);
     scene.sphere = bounding_sphere(scene.model);
-    if (plan.edits_texture) choose_region(plan, vocabulary, scene);
+    if (plan.edits_texture) choose_region(request, vocabulary, scene);
     scene.losses = prepare_materials(scene.model, scene.materials, plan);
     if (plan.edits_texture) note_variants(scene.model, scene.materials);
     scene.start = choose_start(plan, vocabulary, scene.model, scene.materials);

@@ -9,8 +9,8 @@
 namespace item3d {
 namespace {
 
-constexpr float crease = 0.77f;      ///< cosine of the angle between normals: 40 degrees
-constexpr float color_edge = 12;     ///< CIELAB distance between neighbours' mean colours
+constexpr float crease = 0.77f;   ///< cosine of the angle between normals: 40 degrees
+constexpr float color_edge = 12;  ///< CIELAB distance between neighbours' mean colours
 /// Where the colour is looked up in a triangle: weights of its vertices 0 and 1.
 constexpr float inner[3][2] = {{0.6f, 0.2f}, {0.2f, 0.6f}, {0.2f, 0.2f}};
 
@@ -37,10 +37,8 @@ at::Tensor triangle_colors(const RegionScene& scene) {
     const at::Tensor triangle = at::arange(count, at::kLong).to(scene.geometry.positions.device());
     at::Tensor sum = at::zeros({count, 3});
     for (const auto& place : inner) {
-        const at::Tensor weights = at::tensor({place[0], place[1]})
-                                       .expand({count, 2})
-                                       .contiguous()
-                                       .to(triangle.device());
+        const at::Tensor weights =
+            at::tensor({place[0], place[1]}).expand({count, 2}).contiguous().to(triangle.device());
         const Surface surface = surface_at(scene.geometry, triangle, weights);
         sum += lab_of(scene.textured.sample(surface).base_color.cpu());
     }

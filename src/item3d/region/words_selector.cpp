@@ -25,11 +25,11 @@ constexpr float view_width = 0.6f;  ///< field of view, radians
 /// Elevations of rings of cameras, radians, and how many each has.
 constexpr std::pair<float, int> rings[] = {{0.3f, 8}, {-0.5f, 3}, {1.1f, 3}};
 constexpr std::int64_t point_count = 1 << 16;
-constexpr float enough = 0.5f;
+constexpr float enough = 0.4f;
 /// A patch of which less is named, or more, is not, or is, in the region as a whole.
 constexpr double least_part = 0.25, largest_part = 0.75;
 /// Mean probability of what is taken, below which it is called unsure.
-constexpr double sure = 0.65;
+constexpr double sure = 0.6;
 
 std::vector<Camera> cameras_around(const Model& model) {
     std::vector<Camera> cameras;
@@ -41,8 +41,8 @@ std::vector<Camera> cameras_around(const Model& model) {
 
 /// What the network says of points of the surface.
 struct Votes {
-    at::Tensor triangle;  ///< [K] int64
-    at::Tensor position;  ///< [K, 3]
+    at::Tensor triangle;             ///< [K] int64
+    at::Tensor position;             ///< [K, 3]
     std::vector<float> probability;  ///< [K]; -1: no view sees the point
 };
 
@@ -73,9 +73,9 @@ class Gathering {
                 const Vec4 clip = to_clip * Vec4(position, 1);
                 if (clip.w <= 0 || facing < 0.1f) return;
                 const auto pixel = [&](float at) {
-                    return std::clamp(static_cast<int>((0.5f + 0.5f * at / clip.w) *
-                                                       static_cast<float>(size)),
-                                      0, size - 1);
+                    return std::clamp(
+                        static_cast<int>((0.5f + 0.5f * at / clip.w) * static_cast<float>(size)), 0,
+                        size - 1);
                 };
                 const int at = (size - 1 - pixel(clip.y)) * size + pixel(clip.x);
                 // A pixel's slant, and a hundredth of the way for its neighbours.
@@ -99,8 +99,7 @@ class Gathering {
 
 Votes gather_votes(const std::string& prompt, const RegionScene& scene) {
     Random random(0, RandomStream::region);
-    const Surface points =
-        SurfaceSampler(scene.geometry, scene.space).sample(point_count, random);
+    const Surface points = SurfaceSampler(scene.geometry, scene.space).sample(point_count, random);
     const EnvironmentLight light =
         prefilter(make_light_preset("studio", 128), light_size, scene.geometry.positions.device());
     Gathering gathering(points);
@@ -152,7 +151,9 @@ class PointField {
   private:
     std::uint64_t cell_of(Vec3 place) const {
         const glm::ivec3 cell(glm::floor(place / cell_));
-        const auto part = [](int value) { return std::uint64_t{static_cast<std::uint32_t>(value)}; };
+        const auto part = [](int value) {
+            return std::uint64_t{static_cast<std::uint32_t>(value)};
+        };
         return mix_bits((part(cell.x) << 32) ^ mix_bits((part(cell.y) << 32) ^ part(cell.z)));
     }
     float cell_;
@@ -220,10 +221,11 @@ std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionSce
         confidence += probability;
     }
     if (taken == 0)
-        throw InputError(text.whole, "nothing of the kind is seen on the model",
-                         fmt::format("the likeliest place reaches {:.0f} %, 50 are needed; try other "
-                                     "words, or view= or sphere=",
-                                     100 * highest));
+        throw InputError(
+            text.whole, "nothing of the kind is seen on the model",
+            fmt::format("the likeliest place reaches {:.0f} %, {:.0f} are needed; try other "
+                        "words, or view= or sphere=",
+                        100 * highest, 100 * enough));
     std::vector<WordsSelector::Verdict> verdicts;
     for (std::size_t i = 0; i < count; ++i) {
         const double part = seen[i] > 0 ? named[i] / seen[i] : 0;
@@ -231,20 +233,31 @@ std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionSce
                            : part > largest_part ? WordsSelector::Verdict::inside
                                                  : WordsSelector::Verdict::by_place);
     }
-    // A large patch is cut even where little of it is named: a handle may be of one piece with a cup.
+    // A large patch is cut even where little of it is named: a handle may be of one piece with a
+    // cup.
     const double all = static_cast<double>(votes.probability.size());
     for (std::size_t i = 0; i < count; ++i)
         if (seen[i] > 0.1 * all && named[i] > 0.005 * all &&
             verdicts[i] == WordsSelector::Verdict::outside)
             verdicts[i] = WordsSelector::Verdict::by_place;
     const double mean = confidence / taken;
-    note(fmt::format("{}: {:.1f} % of what is seen, {:.0f} % sure{}", text.whole,
-                     100 * taken / all, 100 * mean,
-                     mean < sure ? "; look at it by item3d region" : ""));
+    note(fmt::format("{}: {:.1f} % of what is seen, {:.0f} % sure{}", text.whole, 100 * taken / all,
+                     100 * mean, mean < sure ? "; look at it by item3d region" : ""));
     const auto [low, high] = scene.model.bounds();
     const float cell = 1.5f * glm::length(high - low) / std::sqrt(static_cast<float>(point_count));
     return std::make_unique<WordsSelector>(std::move(patches), std::move(verdicts),
                                            PointField(votes, 3 * cell));
+}
+
+std::unique_ptr<Segmenter> load_wanted_segmenter(const RegionRequest& request,
+                                                 const std::filesystem::path& folder,
+                                                 at::Device device) {
+    const auto is_by_words = [](const std::string& text) { return text.starts_with("words="); };
+    const auto asks = [&](const std::vector<std::string>& selectors) {
+        return std::any_of(selectors.begin(), selectors.end(), is_by_words);
+    };
+    if (folder.empty() || !(asks(request.include) || asks(request.exclude))) return nullptr;
+    return std::make_unique<Segmenter>(Segmenter::load_to_run(folder, device, at::kFloat));
 }
 
 }  // namespace item3d
