@@ -4,9 +4,12 @@
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
 #include "item3d/metrics/color.h"
+#include "item3d/networks/vision_language/segmenter.h"
 #include "item3d/region/color_selector.h"
 #include "item3d/region/feather.h"
 #include "item3d/region/region.h"
+#include "item3d/region/surface_patches.h"
+#include "item3d/region/words_selector.h"
 #include "item3d/scene/model_view.h"
 
 #include <gtest/gtest.h>
@@ -267,6 +270,44 @@ TEST_F(RegionTest, NodesMeshesAndAttributesOfAGltf) {
     EXPECT_NEAR(region({"attribute=_GLOVE"}).share(), 1.0 / 3, 0.01);
     expect_error("node=head", "arm, foot, hand");
     expect_error("attribute=_SHOE", "_GLOVE");
+}
+
+TEST_F(RegionTest, PatchesEndAtCreasesAndAtEdgesOfColor) {
+    // Two squares that share no edge, and a third that stands on the second.
+    Model model = two_squares();
+    Primitive wall = square(-1, 1);
+    wall.positions = {{-1, -1, -1}, {-1, 1, -1}, {-1, 1, 1}, {-1, -1, 1}};
+    wall.normals.assign(4, Vec3(1, 0, 0));
+    wall.uvs.assign(4, Vec2(0.25f, 0.5f));
+    model.primitives.push_back(wall);
+    use(model);
+    const SurfacePatches patches = find_patches(scene());
+    ASSERT_EQ(patches.of_triangle.size(), 6u);
+    EXPECT_EQ(patches.of_triangle[0], patches.of_triangle[1]);
+    EXPECT_NE(patches.of_triangle[0], patches.of_triangle[2]);
+    EXPECT_NE(patches.of_triangle[2], patches.of_triangle[4]);
+    EXPECT_EQ(patches.of_triangle[4], patches.of_triangle[5]);
+}
+
+TEST_F(RegionTest, WordsNeedASegmenterThatSeesThem) {
+    expect_error("words=the handle", "--segmenter");
+    // Of random weights: whatever it sees is a weight, and what it does not see is told.
+    const Segmenter segmenter =
+        Segmenter::load(fs::path(ITEM3D_TEST_DATA) / "models" / "clip_seg" / "plain");
+    RegionScene seen = scene();
+    seen.segmenter = &segmenter;
+    try {
+        const Region region({{"words=the handle"}, {}, 0}, seen);
+        EXPECT_GT(region.share(), 0);
+        EXPECT_LE(region.share(), 1);
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("nothing of"), std::string::npos) << error.what();
+    }
+    RegionRequest request;
+    request.include = {"words=the handle"};
+    EXPECT_THROW(load_wanted_segmenter(request, folder_, at::kCPU), InputError);
+    request.include = {"named=red"};
+    EXPECT_EQ(load_wanted_segmenter(request, folder_, at::kCPU), nullptr);
 }
 
 TEST_F(RegionTest, WhatIsNoSelectorIsTold) {
