@@ -39,7 +39,7 @@ void Slot::open(int channels, bool in_part) {
 }
 
 void Slot::keep_source() {
-    if (!weight.empty()) source = image;
+    source = image;
 }
 
 void Slot::cover(int x, int y, float edited) {
@@ -49,8 +49,9 @@ void Slot::cover(int x, int y, float edited) {
 }
 
 void Slot::blend_with_source(bool is_copied, int padding) {
-    if (weight.empty()) return;
+    if (source.empty()) return;
     if (!is_copied) fill_uncovered(source, covered, ~0u, padding);
+    if (weight.empty()) return;
     // Beyond the padding nothing shows a texel: it stays.
     const std::vector<int> steps = steps_to(covered, image.width, image.height);
     fill_uncovered(weight, covered, 1u, padding);
@@ -64,6 +65,7 @@ void Slot::blend_with_source(bool is_copied, int padding) {
                     static_cast<std::size_t>(x);
                 const float edited =
                     steps[i] <= padding ? std::clamp(weight.pixels[i], 0.0f, 1.0f) : 0.0f;
+                weight.pixels[i] = edited;
                 if (edited == 1) continue;
                 for (int c = 0; c < image.channels; ++c) {
                     const float was = source.at(x, y, c);
