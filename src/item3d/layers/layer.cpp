@@ -91,10 +91,10 @@ class LayerReader {
             throw InputError(file_.path().string(), "is no layer of an edit",
                              "name the layer.safetensors of an edit's folder");
         if (format->second != layer_format)
-            throw InputError(file_.path().string(),
-                             "is of another version: '" + format->second + "', expected '" +
-                                 layer_format + "'",
-                             "use the item3d that made it");
+            throw InputError(
+                file_.path().string(),
+                "is of another version: '" + format->second + "', expected '" + layer_format + "'",
+                "use the item3d that made it");
         EditLayer layer;
         layer.path = file_.path();
         try {
@@ -141,8 +141,8 @@ class LayerReader {
 
     LayerPicture read_picture(const json& from, std::size_t index) const {
         LayerPicture picture;
-        const auto slot = std::find(slot_names.begin(), slot_names.end(),
-                                    from.at("slot").get<std::string>());
+        const auto slot =
+            std::find(slot_names.begin(), slot_names.end(), from.at("slot").get<std::string>());
         require(slot != slot_names.end(), "a picture's slot");
         picture.slot = static_cast<LayerSlot>(slot - slot_names.begin());
         picture.width = from.at("size").at(0).get<int>();
@@ -269,15 +269,17 @@ void save_layer(const std::filesystem::path& path, const EditLayer& layer) {
         tensors.emplace_back(prefix + "uvs", at::tensor(uvs, at::kFloat).view({-1, 2}));
         tensors.emplace_back(prefix + "indices", to_tensor(edit.indices));
     }
-    const json header = {{"version", version()},         {"model", layer.model},
-                         {"model_hash", layer.model_hash}, {"settings", layer.settings},
-                         {"field", layer.field},         {"pictures", std::move(pictures)},
+    const json header = {{"version", version()},
+                         {"model", layer.model},
+                         {"model_hash", layer.model_hash},
+                         {"settings", layer.settings},
+                         {"field", layer.field},
+                         {"pictures", std::move(pictures)},
                          {"materials", std::move(materials)},
                          {"primitives", std::move(primitives)}};
-    save_safetensors(
-        path, tensors,
-        {{"format", layer_format},
-         {"layer", header.dump(-1, ' ', false, json::error_handler_t::replace)}});
+    save_safetensors(path, tensors,
+                     {{"format", layer_format},
+                      {"layer", header.dump(-1, ' ', false, json::error_handler_t::replace)}});
 }
 
 EditLayer load_layer(const std::filesystem::path& path) {

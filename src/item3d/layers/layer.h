@@ -36,7 +36,8 @@ struct LayerPicture {
     /// The picture before, [height, width, channels] uint8 or int32, where it does not follow from
     /// the model (source_picture.h). Undefined where it does.
     at::Tensor source;
-    /// How much of the edit each texel takes, [height, width] uint8 of 255; undefined: all of it.
+    /// How much of the edit each texel takes, [height, width] uint8 of 255, of the first picture of
+    /// materials of which a part was edited; else undefined.
     at::Tensor mask;
     /// Of the model's texture in that slot, and of its occlusion's beside metallic_roughness.
     std::optional<PictureSize> source_size, occlusion_size;
@@ -64,11 +65,11 @@ struct EditLayer {
     std::string model_hash;      ///< hash_of_file()
     nlohmann::json settings;     ///< "from", "to" and all others, as in edit.json
     std::vector<LayerPicture> pictures;
-    std::map<int, LayerMaterial> materials;    ///< by index into Model::materials
-    std::map<int, PrimitiveEdit> primitives;   ///< by index into Model::primitives
-    std::map<int, int> primitive_materials;    ///< material of each of them
-    nlohmann::json field;                      ///< options of the neural textures
-    NamedTensors parameters;                   ///< theirs (layer_field.h)
+    std::map<int, LayerMaterial> materials;   ///< by index into Model::materials
+    std::map<int, PrimitiveEdit> primitives;  ///< by index into Model::primitives
+    std::map<int, int> primitive_materials;   ///< material of each of them
+    nlohmann::json field;                     ///< options of the neural textures
+    NamedTensors parameters;                  ///< theirs (layer_field.h)
 };
 
 /// Writes the file atomically. Throws ResourceError on a full disk.

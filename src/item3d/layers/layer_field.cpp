@@ -114,10 +114,11 @@ EditFields get_fields(const EditLayer& layer) {
         parameter.copy_(fields.fitted->table());
         const at::Tensor rows = find("field.rows").to(at::kLong);
         const at::Tensor values = find("field.values").to(at::kFloat);
-        const bool fits = rows.dim() == 1 && values.dim() == 2 && values.size(0) == rows.size(0) &&
-                          values.size(1) == parameter.size(1) &&
-                          (rows.numel() == 0 || (rows.min().item<std::int64_t>() >= 0 &&
-                                                 rows.max().item<std::int64_t>() < parameter.size(0)));
+        const bool fits =
+            rows.dim() == 1 && values.dim() == 2 && values.size(0) == rows.size(0) &&
+            values.size(1) == parameter.size(1) &&
+            (rows.numel() == 0 || (rows.min().item<std::int64_t>() >= 0 &&
+                                   rows.max().item<std::int64_t>() < parameter.size(0)));
         if (!fits) fail("rows of its neural texture do not fit");
         parameter.detach().index_copy_(0, rows, values);
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace item3d {
@@ -65,8 +66,7 @@ void crop(const at::Tensor& change, LayerPicture& picture) {
     picture.y = static_cast<int>(top);
     const at::Tensor cut = change.slice(0, top, bottom).slice(1, left, right);
     constexpr std::int64_t largest = std::numeric_limits<std::int16_t>::max();
-    const bool is_short =
-        picture.bits == 8 || cut.abs().max().item<std::int64_t>() <= largest;
+    const bool is_short = picture.bits == 8 || cut.abs().max().item<std::int64_t>() <= largest;
     picture.change = cut.to(is_short ? at::kShort : at::kInt).contiguous();
 }
 
@@ -99,7 +99,7 @@ class LayerMaker {
         LayerMaterial& material = layer_.materials[index];
         const auto place = static_cast<std::size_t>(index);
         const Material& begun = baked_.model.materials[place];
-        const Material& read = baked_.file.materials[place];
+        const Material& read = baked_.file_materials[place];
         material.name = begun.name;
         material.changes = edit;
         const EditedTexture* textures[] = {&edit.base_color, &edit.metallic_roughness,
@@ -113,19 +113,19 @@ class LayerMaker {
         if (begun.base_color_texture != read.base_color_texture ||
             begun.base_color_factor != read.base_color_factor ||
             begun.metallic_factor != read.metallic_factor)
-            material.beginning = MaterialBeginning{
-                begun.base_color_texture, begun.base_color_factor, begun.metallic_factor};
+            material.beginning = MaterialBeginning{begun.base_color_texture,
+                                                   begun.base_color_factor, begun.metallic_factor};
     }
 
     /// Materials that share a picture share it here.
     int picture_of(int material, LayerSlot slot, const EditedTexture& texture) {
-        const auto [known, is_new] = seen_.emplace(
-            texture.identity(), static_cast<int>(layer_.pictures.size()));
+        const auto [known, is_new] =
+            seen_.emplace(texture.identity(), static_cast<int>(layer_.pictures.size()));
         if (is_new) layer_.pictures.push_back(make_picture(material, slot, texture));
         return known->second;
     }
 
-    LayerPicture make_picture(int material, LayerSlot slot, const EditedTexture& texture) const {
+    LayerPicture make_picture(int material, LayerSlot slot, const EditedTexture& texture) {
         LayerPicture picture;
         picture.slot = slot;
         picture.width = texture->width;
@@ -153,15 +153,18 @@ class LayerMaker {
             picture.source = source.to(picture.bits > 8 ? at::kInt : at::kByte);
         }
         crop(file_values(*texture, picture.bits) - source, picture);
-        if (unedited != nullptr && unedited->weight.width == picture.width &&
-            unedited->weight.height == picture.height)
+        if (unedited != nullptr && !has_mask_.contains(unedited) &&
+            unedited->weight.width == picture.width && unedited->weight.height == picture.height) {
             picture.mask = file_values(unedited->weight, 8).squeeze(2).to(at::kByte);
+            has_mask_.insert(unedited);
+        }
         return picture;
     }
 
     const BakedEdit& baked_;
     EditLayer layer_;
     std::map<const void*, int> seen_;
+    std::set<const void*> has_mask_;  ///< a texture set's is stored with its first picture
 };
 
 }  // namespace

@@ -6,13 +6,14 @@
 #include "item3d/scene/model.h"
 
 #include <map>
+#include <vector>
 
 namespace item3d {
 
 /// What an edit was made of, and what came of it. All must live as long as the call.
 struct BakedEdit {
-    const Model& file;   ///< as load_model() reads it
-    const Model& model;  ///< as the edit began from it: the materials alone may differ
+    const std::vector<Material>& file_materials;  ///< as load_model() reads them
+    const Model& model;                           ///< as the edit began from it
     const ModelEdit& edit;
     const std::map<int, UneditedPictures>& unedited;  ///< of bake()
 };

@@ -3,6 +3,7 @@
 #include "item3d/field/bake/source_texels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace item3d {
@@ -28,11 +29,6 @@ void fill(Image& image, const std::array<float, 4>& values) {
     const auto channels = static_cast<std::size_t>(image.channels);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
         image.pixels[i] = values[i % channels];
-}
-
-std::optional<PictureSize> size_of(const Image* texels) {
-    if (texels == nullptr) return std::nullopt;
-    return PictureSize(texels->width, texels->height);
 }
 
 }  // namespace
@@ -99,15 +95,21 @@ Image source_picture(const Model& model, int index, const LayerPicture& picture,
     return image;
 }
 
+std::optional<PictureSize> texture_size(const Model& model, int texture) {
+    if (texture < 0) return std::nullopt;
+    const Image& texels = *texels_at(model, texture);
+    return PictureSize(texels.width, texels.height);
+}
+
 std::optional<PictureSize> source_size(const Model& model, int index, LayerSlot slot) {
     const Material& material = model.materials[static_cast<std::size_t>(index)];
-    return size_of(texels_at(model, texture_in(material, slot)));
+    return texture_size(model, texture_in(material, slot));
 }
 
 std::optional<PictureSize> occlusion_size(const Model& model, int index, LayerSlot slot) {
     if (slot != LayerSlot::metallic_roughness) return std::nullopt;
     const Material& material = model.materials[static_cast<std::size_t>(index)];
-    return size_of(texels_at(model, material.occlusion_texture));
+    return texture_size(model, material.occlusion_texture);
 }
 
 }  // namespace item3d
