@@ -42,7 +42,7 @@ json picture_json(const LayerPicture& picture) {
     return {{"slot", name_of(picture.slot)},
             {"size", {picture.width, picture.height, picture.channels}},
             {"bits", picture.bits},
-            {"at", {picture.x, picture.y}},
+            {"at", {picture.x, picture.y, picture.channel}},
             {"texture", size_json(picture.source_size)},
             {"occlusion_texture", size_json(picture.occlusion_size)}};
 }
@@ -151,13 +151,15 @@ class LayerReader {
         picture.bits = from.at("bits").get<int>();
         picture.x = from.at("at").at(0).get<int>();
         picture.y = from.at("at").at(1).get<int>();
+        picture.channel = from.at("at").at(2).get<int>();
         picture.source_size = size_from(from.at("texture"));
         picture.occlusion_size = size_from(from.at("occlusion_texture"));
         const bool has_alpha = picture.slot == LayerSlot::base_color && picture.channels == 4;
         require(std::clamp(picture.width, 1, largest_edge) == picture.width &&
                     std::clamp(picture.height, 1, largest_edge) == picture.height &&
                     (picture.channels == 3 || has_alpha) &&
-                    (picture.bits == 8 || picture.bits == 16) && picture.x >= 0 && picture.y >= 0,
+                    (picture.bits == 8 || picture.bits == 16) && picture.x >= 0 && picture.y >= 0 &&
+                    picture.channel >= 0,
                 "a picture's size");
         const std::string prefix = picture_prefix(index);
         picture.change = optional_tensor(prefix + "change");
@@ -169,7 +171,7 @@ class LayerReader {
             require(is_integer && change.dim() == 3 && change.numel() > 0 &&
                         change.size(0) <= picture.height - picture.y &&
                         change.size(1) <= picture.width - picture.x &&
-                        change.size(2) == picture.channels,
+                        change.size(2) <= picture.channels - picture.channel,
                     prefix + "change");
         }
         const at::ScalarType type = picture.bits > 8 ? at::kInt : at::kByte;

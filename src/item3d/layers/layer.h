@@ -28,10 +28,11 @@ struct LayerPicture {
     LayerSlot slot = LayerSlot::base_color;
     int width = 0, height = 0, channels = 0;
     int bits = 8;  ///< a channel: 8 or 16
-    /// Left and top of `change`.
-    int x = 0, y = 0;
-    /// The edited picture - the one before, [h, w, channels] of the rectangle beyond which nothing
-    /// changed: int16, or int32 where 16 bits moved farther than that holds. Undefined: no change.
+    /// Left, top and first channel of `change`.
+    int x = 0, y = 0, channel = 0;
+    /// The edited picture - the one before, [h, w, c] of the rectangle and the channels beyond
+    /// which nothing changed: int16, or int32 where 16 bits moved farther than that holds.
+    /// Undefined: no change.
     at::Tensor change;
     /// The picture before, [height, width, channels] uint8 or int32, where it does not follow from
     /// the model (source_picture.h). Undefined where it does.

@@ -40,7 +40,7 @@ std::pair<std::int64_t, std::int64_t> used_columns(const std::int32_t* row, std:
     return used;
 }
 
-/// Sets `change` to the rectangle that holds all that is not 0.
+/// Sets the picture's change to the rectangle and the channels that hold all that is not 0.
 void crop(const at::Tensor& change, LayerPicture& picture) {
     const std::int64_t height = change.size(0), width = change.size(1), channels = change.size(2);
     const auto* values = change.const_data_ptr<std::int32_t>();
@@ -62,9 +62,12 @@ void crop(const at::Tensor& change, LayerPicture& picture) {
         bottom = y + 1;
     }
     if (right == 0) return;
+    at::Tensor cut = change.slice(0, top, bottom).slice(1, left, right);
+    const at::Tensor used = cut.ne(0).flatten(0, 1).any(0).nonzero();
     picture.x = static_cast<int>(left);
     picture.y = static_cast<int>(top);
-    const at::Tensor cut = change.slice(0, top, bottom).slice(1, left, right);
+    picture.channel = static_cast<int>(used.min().item<std::int64_t>());
+    cut = cut.slice(2, picture.channel, used.max().item<std::int64_t>() + 1);
     constexpr std::int64_t largest = std::numeric_limits<std::int16_t>::max();
     const bool is_short = picture.bits == 8 || cut.abs().max().item<std::int64_t>() <= largest;
     picture.change = cut.to(is_short ? at::kShort : at::kInt).contiguous();

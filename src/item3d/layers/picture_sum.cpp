@@ -19,6 +19,7 @@ at::Tensor enlarged(const LayerPicture& picture, int width, int height) {
     at::Tensor whole = at::zeros({picture.height, picture.width, picture.channels}, at::kInt);
     whole.slice(0, picture.y, picture.y + picture.change.size(0))
         .slice(1, picture.x, picture.x + picture.change.size(1))
+        .slice(2, picture.channel, picture.channel + picture.change.size(2))
         .copy_(picture.change);
     at::Tensor result = at::empty({height, width, picture.channels}, at::TensorOptions(at::kInt));
     const auto* from = whole.const_data_ptr<std::int32_t>();
@@ -58,16 +59,18 @@ at::Tensor enlarged(const LayerPicture& picture, int width, int height) {
 struct Rows {
     at::Tensor change;
     std::int64_t x, y, width, height;
+    int first_channel;
     std::int64_t strength;
     unsigned channels;
 
     template <typename T>
     void add_row(std::int64_t row, int count, std::vector<std::int64_t>& sums) const {
-        const T* values = change.const_data_ptr<T>() + (row - y) * width * count;
-        std::int64_t* out = sums.data() + x * count;
-        for (std::int64_t column = 0; column < width; ++column)
-            for (int c = 0; c < count; ++c, ++values, ++out)
-                if (channels >> c & 1u) *out += strength * *values;
+        const int own = static_cast<int>(change.size(2));
+        const T* values = change.const_data_ptr<T>() + (row - y) * width * own;
+        std::int64_t* out = sums.data() + x * count + first_channel;
+        for (std::int64_t column = 0; column < width; ++column, values += own, out += count)
+            for (int c = 0; c < own; ++c)
+                if (channels >> (first_channel + c) & 1u) out[c] += strength * values[c];
     }
     void add(std::int64_t row, int count, std::vector<std::int64_t>& sums) const {
         if (row < y || row >= y + height) return;
@@ -134,11 +137,11 @@ EditedTexture picture_sum(const std::vector<PictureTerm>& terms, const Model& mo
         if (!own.change.defined()) continue;
         if (own.width == shape.width && own.height == shape.height) {
             const at::Tensor change = own.change.contiguous();
-            rows.push_back({change, own.x, own.y, change.size(1), change.size(0), term.strength,
-                            term.channels});
+            rows.push_back({change, own.x, own.y, change.size(1), change.size(0), own.channel,
+                            term.strength, term.channels});
         } else {
             rows.push_back({enlarged(own, shape.width, shape.height), 0, 0, shape.width,
-                            shape.height, term.strength, term.channels});
+                            shape.height, 0, term.strength, term.channels});
         }
     }
     constexpr std::int64_t one = LayerUse::strength_steps;
