@@ -166,8 +166,9 @@ class LayerReader {
         picture.source = optional_tensor(prefix + "source");
         picture.mask = optional_tensor(prefix + "mask");
         if (const at::Tensor& change = picture.change; change.defined()) {
-            const bool is_integer =
-                change.scalar_type() == at::kShort || change.scalar_type() == at::kInt;
+            const bool is_integer = change.scalar_type() == at::kChar ||
+                                    change.scalar_type() == at::kShort ||
+                                    change.scalar_type() == at::kInt;
             require(is_integer && change.dim() == 3 && change.numel() > 0 &&
                         change.size(0) <= picture.height - picture.y &&
                         change.size(1) <= picture.width - picture.x &&

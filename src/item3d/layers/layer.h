@@ -31,8 +31,8 @@ struct LayerPicture {
     /// Left, top and first channel of `change`.
     int x = 0, y = 0, channel = 0;
     /// The edited picture - the one before, [h, w, c] of the rectangle and the channels beyond
-    /// which nothing changed: int16, or int32 where 16 bits moved farther than that holds.
-    /// Undefined: no change.
+    /// which nothing changed: int8, int16 or int32, the narrowest that holds it. Undefined: no
+    /// change.
     at::Tensor change;
     /// The picture before, [height, width, channels] uint8 or int32, where it does not follow from
     /// the model (source_picture.h). Undefined where it does.

@@ -68,9 +68,11 @@ void crop(const at::Tensor& change, LayerPicture& picture) {
     picture.y = static_cast<int>(top);
     picture.channel = static_cast<int>(used.min().item<std::int64_t>());
     cut = cut.slice(2, picture.channel, used.max().item<std::int64_t>() + 1);
-    constexpr std::int64_t largest = std::numeric_limits<std::int16_t>::max();
-    const bool is_short = picture.bits == 8 || cut.abs().max().item<std::int64_t>() <= largest;
-    picture.change = cut.to(is_short ? at::kShort : at::kInt).contiguous();
+    const auto farthest = cut.abs().max().item<std::int64_t>();
+    const at::ScalarType type = farthest <= std::numeric_limits<std::int8_t>::max()    ? at::kChar
+                                : farthest <= std::numeric_limits<std::int16_t>::max() ? at::kShort
+                                                                                       : at::kInt;
+    picture.change = cut.to(type).contiguous();
 }
 
 class LayerMaker {

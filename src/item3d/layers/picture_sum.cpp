@@ -55,7 +55,7 @@ at::Tensor enlarged(const LayerPicture& picture, int width, int height) {
     return result;
 }
 
-/// A term with its change as int32 or int16 rows of a rectangle.
+/// A term with its change as rows of a rectangle.
 struct Rows {
     at::Tensor change;
     std::int64_t x, y, width, height;
@@ -74,7 +74,9 @@ struct Rows {
     }
     void add(std::int64_t row, int count, std::vector<std::int64_t>& sums) const {
         if (row < y || row >= y + height) return;
-        if (change.scalar_type() == at::kShort)
+        if (change.scalar_type() == at::kChar)
+            add_row<std::int8_t>(row, count, sums);
+        else if (change.scalar_type() == at::kShort)
             add_row<std::int16_t>(row, count, sums);
         else
             add_row<std::int32_t>(row, count, sums);
