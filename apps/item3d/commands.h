@@ -23,6 +23,7 @@ inline constexpr std::array commands = {
     CommandEntry{"caption", "edit", "Describe a picture or a model in words"},
     CommandEntry{"score", "edit", "Measure by CLIP how well an edit follows its sentences"},
     CommandEntry{"region", "edit", "Show what part of a model selectors take, before an edit"},
+    CommandEntry{"layers", "edit", "Apply what edits changed to a model, at any strength"},
     CommandEntry{"prior", "train", "Train, fetch and inspect priors"},
     CommandEntry{"bench", "bench", "Measure how fast this machine is"},
 };

@@ -25,7 +25,7 @@ TEST_F(EditTest, leaves_every_promised_file_and_a_full_summary) {
     const nlohmann::json summary = edit_model(edit);
     for (const char* name :
          {"model.glb", "before.png", "after.png", "turntable.webp", "report.html", "edit.json",
-          "checkpoint.safetensors", "textures/paint_base_color.png"}) {
+          "checkpoint.safetensors", "layer.safetensors", "textures/paint_base_color.png"}) {
         EXPECT_TRUE(fs::is_regular_file(edit.output / name)) << name;
     }
     for (const char* key :

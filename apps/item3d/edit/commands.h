@@ -13,5 +13,6 @@ void add_generate_command(CLI::App& app);
 void add_caption_command(CLI::App& app);
 void add_score_command(CLI::App& app);
 void add_region_command(CLI::App& app);
+void add_layers_command(CLI::App& app);
 
 }  // namespace item3d

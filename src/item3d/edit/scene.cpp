@@ -72,6 +72,7 @@ EditScene load_scene(const EditRequest& request) {
     scene.geometry = Geometry::from_model(scene.model, device);
     scene.sphere = bounding_sphere(scene.model);
     if (plan.edits_texture) choose_region(request, vocabulary, scene);
+    scene.file_materials = scene.model.materials;
     scene.losses = prepare_materials(scene.model, scene.materials, plan);
     if (plan.edits_texture) note_variants(scene.model, scene.materials);
     scene.start = choose_start(plan, vocabulary, scene.model, scene.materials);

@@ -18,12 +18,14 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
 struct EditScene {
     std::string from, to;  ///< the sentences as the prior reads them, PriorVocabulary::reading()
     Model model;
+    std::vector<Material> file_materials;  ///< of the model before they were prepared
     Geometry geometry;
     BoundingSphere sphere;
     std::vector<int> materials;            ///< edited ones, indices into model.materials

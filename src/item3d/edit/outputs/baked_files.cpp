@@ -2,6 +2,7 @@
 
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
+#include "item3d/edit/outputs/layer_file.h"
 #include "item3d/field/bake/bake.h"
 #include "item3d/io/file_names.h"
 #include "item3d/io/gltf/light.h"
@@ -14,6 +15,7 @@
 #include "item3d/scene/far_origin.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -77,7 +79,8 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
     BakeScene bake_scene{scene.model, scene.geometry, *scene.textured, *scene.space, scene.atlas};
     if (scene.region)
         bake_scene.weight = [&](const Surface& surface) { return scene.region->weight(surface); };
-    ModelEdit edit = bake(bake_scene, state.fitted, state.field, options);
+    std::map<int, UneditedPictures> unedited;
+    ModelEdit edit = bake(bake_scene, state.fitted, state.field, options, &unedited);
     apply_losses(scene.losses, edit);
     note_vertex_colors(scene.model, edit);
     choose_codings(scene.model, request.plan.texture_format, edit);
@@ -85,6 +88,8 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
     EditedModel edited;
     const auto path = request.output / model_file_name(request);
     save_model(path, scene.model, edit);
+    write_layer_file(request, scene, state, edit, unedited);
+    unedited.clear();
     make_output_folder(request.output / "textures");
     TextureFolder folder(request.output / "textures", scene.model, edited.textures);
     FileNames names;

@@ -1,4 +1,4 @@
-// The files that an edited model is in: model.glb, textures/, and its light.
+// The files that an edited model is in: model.glb, its layer, textures/, and its light.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -24,8 +24,8 @@ struct EditedModel {
 /// "model.glb", or "model.vrm" for an avatar.
 std::string model_file_name(const EditRequest& request);
 
-/// Writes model.glb and textures/; where the texture is not edited, model.glb alone, with all its
-/// bytes. Where the light is, light.hdr and light.exr.
+/// Writes model.glb, layer.safetensors and textures/; where the texture is not edited, model.glb
+/// alone, with all its bytes. Where the light is, light.hdr and light.exr.
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state);
 
 }  // namespace item3d

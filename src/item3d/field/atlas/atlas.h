@@ -12,14 +12,15 @@
 
 namespace item3d {
 
+/// --uv names the first three, in this order.
 enum class UvPolicy {
     automatic,  ///< keep for a material with textures, own_texels for one without
+    keep,       ///< own UVs wherever there are any
+    make_new,
     /// As automatic, and keep for materials without textures too: of a change of colour alone
     /// each place shows the same, whatever texels it shares. Vertex colours are such places'
     /// own, so where these differ the UVs are as of own_texels.
     recolored,
-    keep,  ///< own UVs wherever there are any
-    make_new,
     own_texels,  ///< own UVs where each place of the surface has texels of its own, else new ones
 };
 

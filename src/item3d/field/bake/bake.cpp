@@ -1,12 +1,12 @@
 #include "item3d/field/bake/bake.h"
 
-#include "item3d/core/parallel.h"
 #include "item3d/core/progress.h"
 #include "item3d/field/bake/fill.h"
 #include "item3d/field/bake/keep_flat.h"
 #include "item3d/field/bake/residual_gain.h"
 #include "item3d/field/bake/shrink.h"
 #include "item3d/field/bake/slot.h"
+#include "item3d/field/bake/source_texels.h"
 #include "item3d/field/bake/texel_values.h"
 
 #include <algorithm>
@@ -43,7 +43,9 @@ using Size = TextureSize;
 /// Bakes the images of one texture set.
 class SetBaker {
   public:
-    SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options);
+    /// unedited: null where nobody asks for it.
+    SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options,
+             UneditedPictures* unedited);
 
     /// on_progress: takes the share that is done.
     MaterialEdit run(NeuralTexture& fitted, NeuralTexture& now,
@@ -57,6 +59,7 @@ class SetBaker {
     const Image* texels_of(int texture_index, int uvs, Size size) const;
     bool copies_texels(Size size) const;
     bool needs_source(Size size) const;
+    bool shows_source(const Slot& slot) const;
     void plan();
     void open(Slot& slot, int texture, Size size);
     void start();
@@ -70,10 +73,12 @@ class SetBaker {
                      const std::function<void(double)>& on_progress);
     bool is_new(const Slot& slot) const;
     bool finish(Slot& slot, EditedTexture& edited);
+    void hand_over(Slot& slot, const EditedTexture& edited);
 
     const BakeScene& scene_;
     const TextureSet& set_;
     const BakeOptions& options_;
+    UneditedPictures* unedited_;
     int index_;
     const Material& material_;
     bool in_part_;  ///< a part of the surface alone is edited
@@ -89,10 +94,12 @@ class SetBaker {
     const Image* normal_texels_ = nullptr;
 };
 
-SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options)
+SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options,
+                   UneditedPictures* unedited)
     : scene_(scene),
       set_(set),
       options_(options),
+      unedited_(unedited),
       index_(set.materials.front()),
       material_(scene.model.materials[static_cast<std::size_t>(index_)]),
       in_part_(scene.weight != nullptr) {
@@ -147,6 +154,19 @@ bool SetBaker::needs_source(Size size) const {
            (!keeps_occlusion_ && lacks(orm_, occlusion_texels_)) || lacks(normal_, normal_texels_);
 }
 
+/// Whether without the edit the image has the source's texels and factors, as it is started.
+bool SetBaker::shows_source(const Slot& slot) const {
+    const auto is_copied = [&](const Image* texels, int source) {
+        return texels != nullptr || texture(source) == nullptr;
+    };
+    if (&slot == &base_color_)
+        return is_copied(base_color_texels_, material_.base_color_texture) && !has_vertex_colors_ &&
+               !has_vertex_alpha_;
+    if (&slot == &normal_) return is_copied(normal_texels_, material_.normal_texture);
+    return is_copied(orm_texels_, material_.metallic_roughness_texture) &&
+           (keeps_occlusion_ || is_copied(occlusion_texels_, material_.occlusion_texture));
+}
+
 void SetBaker::open(Slot& slot, int texture_index, Size size) {
     slot.texture = texture_index;
     slot.wanted = true;
@@ -182,8 +202,10 @@ void SetBaker::start() {
     if (base_color_.wanted) start_base_color();
     if (orm_.wanted) start_orm();
     if (normal_.wanted) start_normal();
-    for (Slot* slot : {&base_color_, &orm_, &normal_})
-        if (slot->wanted) slot->keep_source();
+    for (Slot* slot : {&base_color_, &orm_, &normal_}) {
+        if (slot->wanted && (in_part_ || (unedited_ != nullptr && !shows_source(*slot))))
+            slot->keep_source();
+    }
 }
 
 void SetBaker::start_base_color() {
@@ -195,27 +217,8 @@ void SetBaker::start_base_color() {
                            (source != nullptr && shows_alpha(source->image));
     base_color_.open(has_alpha ? 4 : 3, in_part_);
     base_color_.filled_channels = set_.is_own() && base_color_texels_ != nullptr ? 0u : ~0u;
-    if (base_color_texels_ == nullptr) return;
-    const Image& texels = *base_color_texels_;
-    const Vec4 factor = material_.base_color_factor;
-    parallel_for(
-        "texels", texels.height,
-        [&](std::int64_t row) {
-            const int y = static_cast<int>(row);
-            for (int x = 0; x < texels.width; ++x) {
-                for (int c = 0; c < 3; ++c) {
-                    const float value = texels.at(x, y, texels.channels >= 3 ? c : 0);
-                    base_color_.image.at(x, y, c) =
-                        factor[c] == 1.0f ? value
-                                          : linear_to_srgb(srgb_to_linear(value) * factor[c]);
-                }
-                if (!has_alpha) continue;
-                base_color_.image.at(x, y, 3) =
-                    factor.w *
-                    (texels.channels % 2 == 0 ? texels.at(x, y, texels.channels - 1) : 1.0f);
-            }
-        },
-        16);
+    if (base_color_texels_ != nullptr)
+        copy_base_color(*base_color_texels_, material_.base_color_factor, base_color_.image);
 }
 
 void SetBaker::start_orm() {
@@ -229,16 +232,7 @@ void SetBaker::start_orm() {
         occlusion_texels_ == nullptr && material_.occlusion_texture >= 0 && !keeps_occlusion_;
     orm_.filled_channels = (fills_occlusion ? 1u : 0u) | (orm_texels_ != nullptr ? 0u : 6u);
     const float strength = keeps_occlusion_ ? 1.0f : material_.occlusion_strength;
-    for (int y = 0; y < orm_.image.height; ++y) {
-        for (int x = 0; x < orm_.image.width; ++x) {
-            float& occlusion = orm_.image.at(x, y, 0);
-            occlusion = occlusion_texels_ != nullptr ? occlusion_texels_->at(x, y, 0) : 1.0f;
-            if (strength != 1.0f) occlusion = 1.0f + strength * (occlusion - 1.0f);
-            if (orm_texels_ == nullptr) continue;
-            orm_.image.at(x, y, 1) = orm_texels_->at(x, y, 1) * material_.roughness_factor;
-            orm_.image.at(x, y, 2) = orm_texels_->at(x, y, 2) * material_.metallic_factor;
-        }
-    }
+    copy_orm({occlusion_texels_, orm_texels_, strength}, material_, orm_.image);
 }
 
 void SetBaker::start_normal() {
@@ -249,14 +243,7 @@ void SetBaker::start_normal() {
         normal_texels_ = nullptr;
     }
     normal_.filled_channels = normal_texels_ != nullptr ? 0u : 7u;
-    for (int y = 0; y < normal_.image.height; ++y) {
-        for (int x = 0; x < normal_.image.width; ++x) {
-            for (int c = 0; c < 3; ++c) {
-                normal_.image.at(x, y, c) = normal_texels_ != nullptr ? normal_texels_->at(x, y, c)
-                                                                      : (c == 2 ? 1.0f : 0.5f);
-            }
-        }
-    }
+    copy_normal(normal_texels_, normal_.image);
 }
 
 void SetBaker::write_base_color(const TexelValue& texel, const RemainderGain& gain) {
@@ -271,7 +258,7 @@ void SetBaker::write_base_color(const TexelValue& texel, const RemainderGain& ga
         for (int c = 0; c < 3; ++c)
             image.at(texel.x, texel.y, c) = source[c];
         if (image.channels == 4) image.at(texel.x, texel.y, 3) = texel.source.alpha;
-        for (int c = 0; in_part_ && c < image.channels; ++c)
+        for (int c = 0; !base_color_.source.empty() && c < image.channels; ++c)
             base_color_.source.at(texel.x, texel.y, c) = image.at(texel.x, texel.y, c);
     }
     if (!options_.channels.base_color) return;
@@ -298,7 +285,7 @@ void SetBaker::write_orm(const TexelValue& texel) {
         const bool copied = c == 0 ? occlusion_texels_ != nullptr : orm_texels_ != nullptr;
         if (c == 0 && keeps_occlusion_) continue;
         if (!copied) value = texel.source.orm[c];
-        if (!copied && in_part_) orm_.source.at(texel.x, texel.y, c) = value;
+        if (!copied && !orm_.source.empty()) orm_.source.at(texel.x, texel.y, c) = value;
         const float change = texel.now.orm[c] - texel.fitted.orm[c];
         if (!edited[c] || change == 0.0f) continue;
         orm_.filled_channels |= 1u << c;
@@ -321,7 +308,7 @@ void SetBaker::write_normal(const TexelValue& texel) {
     normal = length > 1e-6f ? normal / length : Vec3(0.0f, 0.0f, 1.0f);
     for (int c = 0; c < 3; ++c) {
         normal_.image.at(texel.x, texel.y, c) = 0.5f + 0.5f * normal[c];
-        if (in_part_ && normal_texels_ == nullptr)
+        if (!normal_.source.empty() && normal_texels_ == nullptr)
             normal_.source.at(texel.x, texel.y, c) = 0.5f + 0.5f * texel.source.normal[c];
     }
 }
@@ -385,6 +372,16 @@ bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
     return true;
 }
 
+/// What there is without the edit, and the weight, to who asked for it.
+void SetBaker::hand_over(Slot& slot, const EditedTexture& edited) {
+    if (unedited_ == nullptr || !edited) return;
+    Image& picture = &slot == &base_color_ ? unedited_->base_color
+                     : &slot == &orm_      ? unedited_->metallic_roughness
+                                           : unedited_->normal;
+    if (!shows_source(slot)) picture = halved_to(std::move(slot.source), *edited);
+    if (unedited_->weight.empty()) unedited_->weight = std::move(slot.weight);
+}
+
 MaterialEdit SetBaker::run(NeuralTexture& fitted, NeuralTexture& now,
                            const std::function<void(double)>& on_progress) {
     MaterialEdit edit;
@@ -397,6 +394,7 @@ MaterialEdit SetBaker::run(NeuralTexture& fitted, NeuralTexture& now,
         const auto take = [&](Slot& slot, EditedTexture& edited) {
             if (!slot.wanted) return;
             slot.wanted = (&slot != &normal_ || normal_changed_) && !finish(slot, edited);
+            hand_over(slot, edited);
             slot.size = slot.full_size;
             is_done = is_done && !slot.wanted;
         };
@@ -417,7 +415,7 @@ MaterialEdit SetBaker::run(NeuralTexture& fitted, NeuralTexture& now,
 }  // namespace
 
 ModelEdit bake(const BakeScene& scene, NeuralTexture& fitted, NeuralTexture& now,
-               const BakeOptions& options) {
+               const BakeOptions& options, std::map<int, UneditedPictures>* unedited) {
     ModelEdit edit;
     edit.primitives = scene.atlas.primitives;
     std::optional<Progress> progress;
@@ -426,10 +424,12 @@ ModelEdit bake(const BakeScene& scene, NeuralTexture& fitted, NeuralTexture& now
     for (std::size_t i = 0; i < scene.atlas.sets.size(); ++i) {
         const TextureSet& set = scene.atlas.sets[i];
         const MaterialEdit baked =
-            SetBaker(scene, set, options).run(fitted, now, [&](double share) {
-                if (progress)
-                    progress->update(std::lround(100 * (static_cast<double>(i) + share) / count));
-            });
+            SetBaker(scene, set, options, unedited ? &(*unedited)[set.materials.front()] : nullptr)
+                .run(fitted, now, [&](double share) {
+                    if (progress)
+                        progress->update(
+                            std::lround(100 * (static_cast<double>(i) + share) / count));
+                });
         for (const int material : set.materials)
             edit.materials[material] = baked;
     }

@@ -17,6 +17,7 @@
 #include "item3d/render/textured_materials.h"
 
 #include <functional>
+#include <map>
 
 namespace item3d {
 
@@ -62,12 +63,24 @@ struct BakeScene {
     std::function<at::Tensor(const Surface&)> weight = nullptr;
 };
 
+/// Of one texture set: its pictures as they were without the edit, each of the edited one's size.
+/// Empty where those are the source's own texels with the factors multiplied in (source_texels.h),
+/// or the factors alone where the source has no texture.
+struct UneditedPictures {
+    Image base_color, metallic_roughness, normal;
+    /// How much of the edit each texel takes, one channel, of the first of the pictures; empty
+    /// without BakeScene::weight.
+    Image weight;
+};
+
 /// fitted: the field before the edit (`snapshot`), now: after it. Returns images for all edited
 /// materials of the atlas and the atlas's new UVs, ready for save_model. Texels that no triangle
 /// covers continue their neighbours, so that filtering finds no seam. A normal image is only made
-/// where the field's normals changed. Vertex colours become part of the base colour's image. Throws
+/// where the field's normals changed. Vertex colours become part of the base colour's image. unedited:
+/// takes what there was before, by the first material of each set; null: nobody asks. Throws
 /// Interrupted after Ctrl-C.
 ModelEdit bake(const BakeScene& scene, NeuralTexture& fitted, NeuralTexture& now,
-               const BakeOptions& options = {});
+               const BakeOptions& options = {},
+               std::map<int, UneditedPictures>* unedited = nullptr);
 
 }  // namespace item3d

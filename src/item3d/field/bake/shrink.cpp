@@ -86,4 +86,10 @@ Image shrink(Image image, UvWrap wrap, float tolerance) {
     return smallest;
 }
 
+Image halved_to(Image image, const Image& size) {
+    while (image.width > size.width || image.height > size.height)
+        image = halve(image);
+    return image;
+}
+
 }  // namespace item3d

@@ -11,4 +11,7 @@ namespace item3d {
 /// difference below four times as much; values in [0, 1].
 Image shrink(Image image, UvWrap wrap, float tolerance = 1.0f / 255);
 
+/// The image halved as shrink() halves until it is no wider and no higher than `size`.
+Image halved_to(Image image, const Image& size);
+
 }  // namespace item3d

@@ -13,7 +13,7 @@ void Slot::open(int channels, bool in_part) {
 }
 
 void Slot::keep_source() {
-    if (!weight.empty()) source = image;
+    source = image;
 }
 
 void Slot::cover(int x, int y, float edited) {
@@ -23,8 +23,9 @@ void Slot::cover(int x, int y, float edited) {
 }
 
 void Slot::blend_with_source(bool is_copied, int padding) {
-    if (weight.empty()) return;
+    if (source.empty()) return;
     if (!is_copied) fill_uncovered(source, covered, ~0u, padding);
+    if (weight.empty()) return;
     continue_weights(weight, covered, padding);
     parallel_for(
         "blend_source", image.height,
@@ -34,7 +35,8 @@ void Slot::blend_with_source(bool is_copied, int padding) {
                 const std::size_t i =
                     static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                     static_cast<std::size_t>(x);
-                const float edited = std::clamp(weight.pixels[i], 0.0f, 1.0f);
+                float& edited = weight.pixels[i];
+                edited = std::clamp(edited, 0.0f, 1.0f);
                 if (edited == 1) continue;
                 for (int c = 0; c < image.channels; ++c) {
                     const float was = source.at(x, y, c);

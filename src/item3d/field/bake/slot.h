@@ -22,11 +22,13 @@ struct Slot {
     std::vector<std::uint8_t> covered;
     /// Bit c: channel c is baked or resampled, so texels beyond the triangles are filled too.
     std::atomic<unsigned> filled_channels = 0;
-    /// Where a part of the surface alone is edited: the image without the edit, and how much of the
-    /// edit each texel takes, one channel. Else empty.
-    Image source, weight;
+    /// The image without the edit, where it is kept; else empty.
+    Image source;
+    /// Where a part of the surface alone is edited: how much of the edit each texel takes, one
+    /// channel. Else empty.
+    Image weight;
 
-    /// An image of `channels` channels; nothing is covered. in_part: with source and weight.
+    /// An image of `channels` channels; nothing is covered. in_part: with a weight.
     void open(int channels, bool in_part);
     /// The image as it is becomes what there is without the edit.
     void keep_source();

@@ -1,0 +1,71 @@
+// item3d layers: what edits changed, applied to a model together and at any strength.
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/model_options.h"
+#include "item3d/core/format.h"
+#include "item3d/layers/layered_model.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+struct LayersCommand : CommonOptions {
+    LayeredModelRequest request;
+    std::vector<std::string> layers;
+    std::string texture_format;
+};
+
+const std::vector<std::pair<std::string, TextureFormat>> layer_formats = {
+    {"keep", TextureFormat::keep},
+    {"png", TextureFormat::png},
+    {"jpeg", TextureFormat::jpeg},
+    {"webp", TextureFormat::webp},
+    {"ktx2", TextureFormat::ktx2}};
+
+void run_layers(LayersCommand& options) {
+    LayeredModelRequest& request = options.request;
+    for (const std::string& text : options.layers)
+        request.layers.push_back(parse_layer_use(text));
+    for (const auto& [name, format] : layer_formats)
+        if (name == options.texture_format) request.texture_format = format;
+    start_command(options);
+    const nlohmann::json record = write_layered_model(request);
+    if (options.json)
+        print_json(record);
+    else
+        fmt::print("{}\n", request.output.string());
+}
+
+}  // namespace
+
+void add_layers_command(CLI::App& app) {
+    auto options = std::make_shared<LayersCommand>();
+    CLI::App* command = add_command(app, "layers", *options);
+    LayeredModelRequest& request = options->request;
+    command->add_option("MODEL", request.model, "The model that was edited: .glb, .gltf or .obj")
+        ->required();
+    command
+        ->add_option("LAYER", options->layers,
+                     "LAYER[:STRENGTH[:CHANNEL,...]]: a layer.safetensors, or the folder of an "
+                     "edit; how much of it, from -1 to 2 (1: as the edit, 0: nothing); and which "
+                     "of base_color, occlusion, roughness, metallic, normal (all of them). May be "
+                     "given several times")
+        ->required();
+    command->add_option("-o,--output", request.output, "The .glb, .vrm, .gltf or .obj to write")
+        ->required();
+    add_texture_folders(*command, request.texture_folders);
+    command
+        ->add_option("--texture-format", options->texture_format,
+                     "Of the textures that are written; without it, as the edits wrote them")
+        ->check(CLI::IsMember({"keep", "png", "jpeg", "webp", "ktx2"}));
+    command->footer(
+        "\nThe result is the model's textures plus the sum of strength times difference, rounded "
+        "once.\nOne layer at strength 1 gives the edit's own model.glb, strength 0 the model as it "
+        "is.\n\n  item3d layers mug.glb golden:0.5 rusty:1:roughness,metallic -o mixed.glb\n");
+    command->callback([options] { run_layers(*options); });
+}
+
+}  // namespace item3d

@@ -1,0 +1,17 @@
+// The layer that an edit leaves: what it changed, to be applied again at any strength.
+#pragma once
+
+#include "item3d/edit/request.h"
+#include "item3d/edit/scene.h"
+#include "item3d/edit/state.h"
+#include "item3d/field/bake/bake.h"
+
+#include <map>
+
+namespace item3d {
+
+/// Writes layer.safetensors (docs/formats.md) into the edit's folder. unedited: of the bake.
+void write_layer_file(const EditRequest& request, const EditScene& scene, const EditState& state,
+                      const ModelEdit& edit, const std::map<int, UneditedPictures>& unedited);
+
+}  // namespace item3d

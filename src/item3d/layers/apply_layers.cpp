@@ -1,0 +1,238 @@
+#include "item3d/layers/apply_layers.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/layers/picture_sum.h"
+#include "item3d/layers/source_picture.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace item3d {
+namespace {
+
+unsigned used_channels(const LayerUse& use, LayerSlot slot) {
+    const LayerChannels& channels = use.channels;
+    if (slot == LayerSlot::base_color) return channels.base_color ? ~0u : 0u;
+    if (slot == LayerSlot::normal) return channels.normal ? ~0u : 0u;
+    return (channels.occlusion ? 1u : 0u) | (channels.roughness ? 2u : 0u) |
+           (channels.metallic ? 4u : 0u);
+}
+
+bool is_equal(const PrimitiveEdit& a, const PrimitiveEdit& b) {
+    return a.source_vertices == b.source_vertices && a.uvs == b.uvs && a.indices == b.indices;
+}
+
+class LayerStack {
+  public:
+    LayerStack(std::span<const AppliedLayer> layers, Model& model)
+        : layers_(layers), model_(model) {}
+
+    ModelEdit edit() {
+        for (const AppliedLayer& applied : layers_) {
+            if (applied.use.strength == 0) continue;
+            for (const auto& [index, material] : applied.layer.materials)
+                if (changes_anything(applied, material)) of_material_[index].push_back(&applied);
+        }
+        for (const auto& [index, layers] : of_material_)
+            require_same_uvs(index, layers);
+        for (const auto& [index, layers] : of_material_)
+            edit_material(index, layers);
+        return std::move(edit_);
+    }
+
+  private:
+    using Layers = std::vector<const AppliedLayer*>;
+
+    static bool changes_anything(const AppliedLayer& applied, const LayerMaterial& material) {
+        return std::any_of(layer_slots.begin(), layer_slots.end(), [&](LayerSlot slot) {
+            return material.pictures[static_cast<std::size_t>(slot)] >= 0 &&
+                   used_channels(applied.use, slot) != 0;
+        });
+    }
+
+    static std::map<int, const PrimitiveEdit*> uvs_of(const EditLayer& layer, int material) {
+        std::map<int, const PrimitiveEdit*> found;
+        for (const auto& [index, edit] : layer.primitives)
+            if (layer.primitive_materials.at(index) == material) found[index] = &edit;
+        return found;
+    }
+
+    const std::string& name_of(int material) const {
+        return model_.materials[static_cast<std::size_t>(material)].name;
+    }
+
+    /// Takes the new UV map, where there is one.
+    void require_same_uvs(int material, const Layers& layers) {
+        const auto first = uvs_of(layers.front()->layer, material);
+        for (const AppliedLayer* other : layers) {
+            const auto own = uvs_of(other->layer, material);
+            const bool same =
+                std::equal(own.begin(), own.end(), first.begin(), first.end(),
+                           [](const auto& a, const auto& b) {
+                               return a.first == b.first && is_equal(*a.second, *b.second);
+                           });
+            if (!same)
+                throw InputError(other->layer.path.string(),
+                                 "its texels of material '" + name_of(material) +
+                                     "' lie by another UV map than those of " +
+                                     layers.front()->layer.path.string(),
+                                 "edit with the same --uv and --texture-size for layers of one "
+                                 "material");
+        }
+        for (const auto& [index, edit] : first)
+            edit_.primitives[index] = *edit;
+    }
+
+    void edit_material(int index, const Layers& layers) {
+        // A picture with more of the source in it is the one to begin from.
+        const AppliedLayer* first = layers.front();
+        for (const AppliedLayer* other : layers)
+            if (!flags_of(*other, index).keeps_occlusion) {
+                first = other;
+                break;
+            }
+        begin(index, layers);
+        MaterialEdit edit = flags_of(*first, index);
+        for (const AppliedLayer* other : layers)
+            join(flags_of(*other, index), edit);
+        keep_channels(index, layers, edit);
+        edit.base_color = picture(index, LayerSlot::base_color, layers, first);
+        edit.metallic_roughness = picture(index, LayerSlot::metallic_roughness, layers, first);
+        edit.normal = picture(index, LayerSlot::normal, layers, first);
+        edit_.materials[index] = std::move(edit);
+    }
+
+    static const MaterialEdit& flags_of(const AppliedLayer& applied, int material) {
+        return applied.layer.materials.at(material).changes;
+    }
+
+    static void join(const MaterialEdit& other, MaterialEdit& edit) {
+        edit.keeps_orm_texels = edit.keeps_orm_texels && other.keeps_orm_texels;
+        edit.keeps_texels = edit.keeps_texels && other.keeps_texels;
+        edit.keeps_occlusion = edit.keeps_occlusion && other.keeps_occlusion;
+        edit.removes_emission = edit.removes_emission || other.removes_emission;
+        edit.makes_opaque = edit.makes_opaque || other.makes_opaque;
+        for (const std::string& name : other.removed_extensions) {
+            auto& all = edit.removed_extensions;
+            if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+        }
+    }
+
+    /// A channel of a texture that nobody chose stays as the source has it.
+    void keep_channels(int index, const Layers& layers, MaterialEdit& edit) const {
+        const Material& material = model_.materials[static_cast<std::size_t>(index)];
+        if (material.metallic_roughness_texture < 0) return;
+        unsigned used = 0;
+        for (const AppliedLayer* layer : layers)
+            used |= used_channels(layer->use, LayerSlot::metallic_roughness);
+        if ((used & 6u) != 6u) edit.keeps_orm_texels = true;
+    }
+
+    void begin(int index, const Layers& layers) {
+        Material& material = model_.materials[static_cast<std::size_t>(index)];
+        for (const AppliedLayer* layer : layers) {
+            const auto& beginning = layer->layer.materials.at(index).beginning;
+            if (!beginning) continue;
+            material.base_color_texture = beginning->base_color_texture;
+            material.base_color_factor = beginning->base_color_factor;
+            material.metallic_factor = beginning->metallic_factor;
+        }
+        for (const AppliedLayer* layer : layers) {
+            const MaterialEdit& flags = flags_of(*layer, index);
+            if (flags.makes_opaque) material.alpha = Material::Alpha::opaque;
+            if (!flags.removes_emission) continue;
+            material.unlit = false;
+            material.emissive_factor = Vec3(0.0f);
+            material.emissive_texture = -1;
+        }
+    }
+
+    EditedTexture picture(int index, LayerSlot slot, const Layers& layers,
+                          const AppliedLayer* first) {
+        std::vector<PictureTerm> terms;
+        std::vector<const void*> key;
+        const AppliedLayer* base = nullptr;
+        for (const AppliedLayer* layer : layers) {
+            const unsigned channels = used_channels(layer->use, slot);
+            const int picture =
+                layer->layer.materials.at(index).pictures[static_cast<std::size_t>(slot)];
+            if (picture < 0 || channels == 0) continue;
+            terms.push_back({&layer->layer.pictures[static_cast<std::size_t>(picture)],
+                             layer->use.strength, channels, layer->layer.path.string()});
+            key.push_back(terms.back().picture);
+            if (base == nullptr || layer == first) {
+                base = layer;
+                std::swap(terms.front(), terms.back());
+            }
+        }
+        if (terms.empty()) return {};
+        EditedTexture& made = made_[std::move(key)];
+        if (!made) {
+            const bool remakes_uvs = !uvs_of(base->layer, index).empty();
+            made = picture_sum(terms, model_, index, flags_of(*base, index), remakes_uvs);
+        }
+        return made;
+    }
+
+    std::span<const AppliedLayer> layers_;
+    Model& model_;
+    std::map<int, Layers> of_material_;  ///< those that change it
+    std::map<std::vector<const void*>, EditedTexture> made_;
+    ModelEdit edit_;
+};
+
+std::string shown(const std::optional<PictureSize>& size) {
+    return size ? fmt::format("{} x {}", size->first, size->second) : "none";
+}
+
+}  // namespace
+
+ModelEdit apply_layers(std::span<const AppliedLayer> layers, Model& model) {
+    for (const AppliedLayer& applied : layers) {
+        const std::string problem = misfit(applied.layer, model);
+        if (!problem.empty())
+            throw InputError(applied.layer.path.string(), problem,
+                             "apply it to " + applied.layer.model + ", of which it was made");
+    }
+    return LayerStack(layers, model).edit();
+}
+
+std::string misfit(const EditLayer& layer, const Model& model) {
+    for (const auto& [index, material] : layer.materials) {
+        const auto place = static_cast<std::size_t>(index);
+        if (place >= model.materials.size())
+            return fmt::format("is of a model with a material '{}' that this one has not",
+                               material.name);
+        const int texture = material.beginning ? material.beginning->base_color_texture : -1;
+        if (texture >= static_cast<int>(model.textures.size()))
+            return "is of a model with more textures than this one";
+        for (const int picture : material.pictures) {
+            if (picture < 0) continue;
+            const LayerPicture& own = layer.pictures[static_cast<std::size_t>(picture)];
+            const bool moved = material.beginning && own.slot == LayerSlot::base_color;
+            const auto size =
+                moved ? texture_size(model, texture) : source_size(model, index, own.slot);
+            if (size != own.source_size)
+                return fmt::format("is of a model whose texture of material '{}' is {}, not {}",
+                                   material.name, shown(own.source_size), shown(size));
+            const auto occlusion = occlusion_size(model, index, own.slot);
+            if (occlusion != own.occlusion_size)
+                return fmt::format("is of a model whose occlusion of material '{}' is {}, not {}",
+                                   material.name, shown(own.occlusion_size), shown(occlusion));
+        }
+    }
+    for (const auto& [index, edit] : layer.primitives) {
+        const auto place = static_cast<std::size_t>(index);
+        const auto count =
+            place < model.primitives.size() ? model.primitives[place].positions.size() : 0;
+        const bool fits = count > 0 &&
+                          model.primitives[place].material == layer.primitive_materials.at(index) &&
+                          std::all_of(edit.source_vertices.begin(), edit.source_vertices.end(),
+                                      [&](std::uint32_t vertex) { return vertex < count; });
+        if (!fits) return "has a new UV map of a mesh that this model has not";
+    }
+    return {};
+}
+
+}  // namespace item3d

@@ -1,0 +1,292 @@
+#include "item3d/layers/layer.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/core/version.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace item3d {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* layer_format = "item3d layer 1";
+constexpr int largest_edge = 1 << 16;
+constexpr std::array<const char*, 3> slot_names = {"base_color", "metallic_roughness", "normal"};
+const std::string field_prefixes[] = {"fitted.", "field."};
+
+const char* name_of(LayerSlot slot) {
+    return slot_names[static_cast<std::size_t>(slot)];
+}
+
+std::string picture_prefix(std::size_t picture) {
+    return fmt::format("picture.{}.", picture);
+}
+
+std::string primitive_prefix(int primitive) {
+    return fmt::format("primitive.{}.", primitive);
+}
+
+json size_json(const std::optional<PictureSize>& size) {
+    return size ? json{size->first, size->second} : json();
+}
+
+std::optional<PictureSize> size_from(const json& from) {
+    if (from.is_null()) return std::nullopt;
+    return PictureSize(from.at(0).get<int>(), from.at(1).get<int>());
+}
+
+json picture_json(const LayerPicture& picture) {
+    return {{"slot", name_of(picture.slot)},
+            {"size", {picture.width, picture.height, picture.channels}},
+            {"bits", picture.bits},
+            {"at", {picture.x, picture.y, picture.channel}},
+            {"texture", size_json(picture.source_size)},
+            {"occlusion_texture", size_json(picture.occlusion_size)}};
+}
+
+json material_json(int index, const LayerMaterial& material) {
+    const MaterialEdit& changes = material.changes;
+    json result = {{"index", index},
+                   {"name", material.name},
+                   {"pictures", material.pictures},
+                   {"keeps_orm_texels", changes.keeps_orm_texels},
+                   {"keeps_texels", changes.keeps_texels},
+                   {"includes_vertex_colors", changes.includes_vertex_colors},
+                   {"keeps_occlusion", changes.keeps_occlusion},
+                   {"removes_emission", changes.removes_emission},
+                   {"makes_opaque", changes.makes_opaque},
+                   {"removed_extensions", changes.removed_extensions}};
+    if (material.beginning) {
+        const MaterialBeginning& beginning = *material.beginning;
+        const Vec4& factor = beginning.base_color_factor;
+        result["beginning"] = {{"base_color_texture", beginning.base_color_texture},
+                               {"base_color_factor", {factor.x, factor.y, factor.z, factor.w}},
+                               {"metallic_factor", beginning.metallic_factor}};
+    }
+    return result;
+}
+
+/// Integers of four bytes, from the vector's own.
+at::Tensor to_tensor(const std::vector<std::uint32_t>& values) {
+    return at::tensor(std::vector<std::int32_t>(values.begin(), values.end()), at::kInt);
+}
+
+std::vector<std::uint32_t> to_indices(const at::Tensor& tensor) {
+    const auto* first = tensor.const_data_ptr<std::int32_t>();
+    return {first, first + tensor.numel()};
+}
+
+class LayerReader {
+  public:
+    explicit LayerReader(const std::filesystem::path& path) : file_(SafeTensors::open(path)) {}
+
+    EditLayer read() {
+        const auto format = file_.metadata().find("format");
+        const auto text = file_.metadata().find("layer");
+        if (format == file_.metadata().end() || text == file_.metadata().end() ||
+            !format->second.starts_with("item3d layer "))
+            throw InputError(file_.path().string(), "is no layer of an edit",
+                             "name the layer.safetensors of an edit's folder");
+        if (format->second != layer_format)
+            throw InputError(
+                file_.path().string(),
+                "is of another version: '" + format->second + "', expected '" + layer_format + "'",
+                "use the item3d that made it");
+        EditLayer layer;
+        layer.path = file_.path();
+        try {
+            read_header(json::parse(text->second), layer);
+        } catch (const json::exception&) {
+            fail("its header lacks something");
+        }
+        for (const std::string& name : file_.names()) {
+            if (name.starts_with(field_prefixes[0]) || name.starts_with(field_prefixes[1]))
+                layer.parameters.emplace_back(name, file_.tensor(name));
+        }
+        return layer;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& problem) const {
+        throw InputError(file_.path().string(), problem, "the file is damaged");
+    }
+    void require(bool condition, const std::string& what) const {
+        if (!condition) fail(what + " does not fit the rest");
+    }
+
+    /// Undefined where the file has none.
+    at::Tensor optional_tensor(const std::string& name) const {
+        return file_.contains(name) ? file_.tensor(name) : at::Tensor();
+    }
+
+    void read_header(const json& header, EditLayer& layer) const {
+        header.at("model").get_to(layer.model);
+        header.at("model_hash").get_to(layer.model_hash);
+        layer.settings = header.at("settings");
+        layer.field = header.at("field");
+        for (const json& picture : header.at("pictures"))
+            layer.pictures.push_back(read_picture(picture, layer.pictures.size()));
+        for (const json& material : header.at("materials"))
+            read_material(material, layer);
+        for (const json& primitive : header.at("primitives")) {
+            const int index = primitive.at("index").get<int>();
+            require(index >= 0, "a primitive");
+            layer.primitive_materials[index] = primitive.at("material").get<int>();
+            layer.primitives[index] = read_primitive(index);
+        }
+    }
+
+    LayerPicture read_picture(const json& from, std::size_t index) const {
+        LayerPicture picture;
+        const auto slot =
+            std::find(slot_names.begin(), slot_names.end(), from.at("slot").get<std::string>());
+        require(slot != slot_names.end(), "a picture's slot");
+        picture.slot = static_cast<LayerSlot>(slot - slot_names.begin());
+        picture.width = from.at("size").at(0).get<int>();
+        picture.height = from.at("size").at(1).get<int>();
+        picture.channels = from.at("size").at(2).get<int>();
+        picture.bits = from.at("bits").get<int>();
+        picture.x = from.at("at").at(0).get<int>();
+        picture.y = from.at("at").at(1).get<int>();
+        picture.channel = from.at("at").at(2).get<int>();
+        picture.source_size = size_from(from.at("texture"));
+        picture.occlusion_size = size_from(from.at("occlusion_texture"));
+        const bool has_alpha = picture.slot == LayerSlot::base_color && picture.channels == 4;
+        require(std::clamp(picture.width, 1, largest_edge) == picture.width &&
+                    std::clamp(picture.height, 1, largest_edge) == picture.height &&
+                    (picture.channels == 3 || has_alpha) &&
+                    (picture.bits == 8 || picture.bits == 16) && picture.x >= 0 && picture.y >= 0 &&
+                    picture.channel >= 0,
+                "a picture's size");
+        const std::string prefix = picture_prefix(index);
+        picture.change = optional_tensor(prefix + "change");
+        picture.source = optional_tensor(prefix + "source");
+        picture.mask = optional_tensor(prefix + "mask");
+        if (const at::Tensor& change = picture.change; change.defined()) {
+            const bool is_integer = change.scalar_type() == at::kChar ||
+                                    change.scalar_type() == at::kShort ||
+                                    change.scalar_type() == at::kInt;
+            require(is_integer && change.dim() == 3 && change.numel() > 0 &&
+                        change.size(0) <= picture.height - picture.y &&
+                        change.size(1) <= picture.width - picture.x &&
+                        change.size(2) <= picture.channels - picture.channel,
+                    prefix + "change");
+        }
+        const at::ScalarType type = picture.bits > 8 ? at::kInt : at::kByte;
+        require(!picture.source.defined() ||
+                    (picture.source.scalar_type() == type &&
+                     picture.source.sizes() ==
+                         at::IntArrayRef({picture.height, picture.width, picture.channels})),
+                prefix + "source");
+        require(!picture.mask.defined() ||
+                    (picture.mask.scalar_type() == at::kByte && picture.mask.dim() == 2),
+                prefix + "mask");
+        return picture;
+    }
+
+    void read_material(const json& from, EditLayer& layer) const {
+        const int index = from.at("index").get<int>();
+        LayerMaterial& material = layer.materials[index];
+        from.at("name").get_to(material.name);
+        from.at("pictures").get_to(material.pictures);
+        for (std::size_t slot = 0; slot < material.pictures.size(); ++slot) {
+            const int picture = material.pictures[slot];
+            require(picture >= -1 && picture < static_cast<int>(layer.pictures.size()),
+                    "a material");
+            require(picture < 0 ||
+                        layer.pictures[static_cast<std::size_t>(picture)].slot == layer_slots[slot],
+                    "a material");
+        }
+        require(index >= 0, "a material");
+        MaterialEdit& changes = material.changes;
+        from.at("keeps_orm_texels").get_to(changes.keeps_orm_texels);
+        from.at("keeps_texels").get_to(changes.keeps_texels);
+        from.at("includes_vertex_colors").get_to(changes.includes_vertex_colors);
+        from.at("keeps_occlusion").get_to(changes.keeps_occlusion);
+        from.at("removes_emission").get_to(changes.removes_emission);
+        from.at("makes_opaque").get_to(changes.makes_opaque);
+        from.at("removed_extensions").get_to(changes.removed_extensions);
+        if (!from.contains("beginning")) return;
+        const json& beginning = from.at("beginning");
+        material.beginning.emplace();
+        beginning.at("base_color_texture").get_to(material.beginning->base_color_texture);
+        beginning.at("metallic_factor").get_to(material.beginning->metallic_factor);
+        for (int c = 0; c < 4; ++c)
+            material.beginning->base_color_factor[c] =
+                beginning.at("base_color_factor").at(static_cast<std::size_t>(c)).get<float>();
+    }
+
+    PrimitiveEdit read_primitive(int index) const {
+        const std::string prefix = primitive_prefix(index);
+        const at::Tensor source = file_.tensor(prefix + "source_vertices");
+        const at::Tensor uvs = file_.tensor(prefix + "uvs").contiguous();
+        const at::Tensor indices = file_.tensor(prefix + "indices");
+        require(source.scalar_type() == at::kInt && source.dim() == 1 &&
+                    uvs.scalar_type() == at::kFloat && uvs.dim() == 2 && uvs.size(1) == 2 &&
+                    uvs.size(0) == source.size(0) && indices.scalar_type() == at::kInt &&
+                    indices.dim() == 1 && indices.size(0) % 3 == 0,
+                prefix + "uvs");
+        PrimitiveEdit edit{to_indices(source), {}, to_indices(indices)};
+        const auto* values = uvs.const_data_ptr<float>();
+        for (std::int64_t i = 0; i < uvs.size(0); ++i)
+            edit.uvs.emplace_back(values[2 * i], values[2 * i + 1]);
+        require(std::all_of(values, values + uvs.numel(), [](float v) { return std::isfinite(v); }),
+                prefix + "uvs");
+        const auto count = edit.uvs.size();
+        require(std::all_of(edit.indices.begin(), edit.indices.end(),
+                            [&](std::uint32_t vertex) { return vertex < count; }),
+                prefix + "indices");
+        return edit;
+    }
+
+    SafeTensors file_;
+};
+
+}  // namespace
+
+void save_layer(const std::filesystem::path& path, const EditLayer& layer) {
+    NamedTensors tensors = layer.parameters;
+    json pictures = json::array(), materials = json::array(), primitives = json::array();
+    for (std::size_t i = 0; i < layer.pictures.size(); ++i) {
+        const LayerPicture& picture = layer.pictures[i];
+        pictures.push_back(picture_json(picture));
+        const auto add = [&](const char* name, const at::Tensor& tensor) {
+            if (tensor.defined()) tensors.emplace_back(picture_prefix(i) + name, tensor);
+        };
+        add("change", picture.change);
+        add("source", picture.source);
+        add("mask", picture.mask);
+    }
+    for (const auto& [index, material] : layer.materials)
+        materials.push_back(material_json(index, material));
+    for (const auto& [index, edit] : layer.primitives) {
+        primitives.push_back({{"index", index}, {"material", layer.primitive_materials.at(index)}});
+        const std::string prefix = primitive_prefix(index);
+        std::vector<float> uvs;
+        for (const Vec2& uv : edit.uvs)
+            uvs.insert(uvs.end(), {uv.x, uv.y});
+        tensors.emplace_back(prefix + "source_vertices", to_tensor(edit.source_vertices));
+        tensors.emplace_back(prefix + "uvs", at::tensor(uvs, at::kFloat).view({-1, 2}));
+        tensors.emplace_back(prefix + "indices", to_tensor(edit.indices));
+    }
+    const json header = {{"version", version()},
+                         {"model", layer.model},
+                         {"model_hash", layer.model_hash},
+                         {"settings", layer.settings},
+                         {"field", layer.field},
+                         {"pictures", std::move(pictures)},
+                         {"materials", std::move(materials)},
+                         {"primitives", std::move(primitives)}};
+    save_safetensors(path, tensors,
+                     {{"format", layer_format},
+                      {"layer", header.dump(-1, ' ', false, json::error_handler_t::replace)}});
+}
+
+EditLayer load_layer(const std::filesystem::path& path) {
+    return LayerReader(path).read();
+}
+
+}  // namespace item3d

@@ -1,0 +1,81 @@
+#include "item3d/layers/layer_use.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ChannelName {
+    const char* name;
+    bool LayerChannels::*channel;
+};
+constexpr ChannelName channel_names[] = {{"base_color", &LayerChannels::base_color},
+                                         {"occlusion", &LayerChannels::occlusion},
+                                         {"roughness", &LayerChannels::roughness},
+                                         {"metallic", &LayerChannels::metallic},
+                                         {"normal", &LayerChannels::normal}};
+
+/// The end of the longest part before a colon that is there, else of that before the first one.
+std::size_t end_of_path(const std::string& text) {
+    std::error_code ignored;
+    for (std::size_t end = text.size(); end != std::string::npos && end > 0;
+         end = text.rfind(':', end - 1)) {
+        if (fs::exists(text.substr(0, end), ignored)) return end;
+    }
+    return std::min(text.find(':'), text.size());
+}
+
+std::int64_t parse_strength(const std::string& text, const std::string& subject) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    // The comparisons are false for NaN.
+    const bool is_number = !text.empty() && *end == '\0';
+    if (!is_number || !(value >= LayerUse::lowest && value <= LayerUse::highest))
+        throw UsageError(fmt::format("{}: '{}' is no strength, expected a number from {:g} to {:g}",
+                                     subject, text, LayerUse::lowest, LayerUse::highest));
+    return std::llround(value * LayerUse::strength_steps);
+}
+
+LayerChannels parse_channels(const std::string& text, const std::string& subject) {
+    LayerChannels channels{false, false, false, false, false};
+    std::size_t begin = 0;
+    while (begin <= text.size()) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        const std::string name = text.substr(begin, end - begin);
+        bool is_known = false;
+        for (const ChannelName& known : channel_names) {
+            if (name != known.name) continue;
+            channels.*known.channel = is_known = true;
+        }
+        if (!is_known)
+            throw UsageError(subject + ": there is no channel '" + name +
+                             "'; channels are base_color, occlusion, roughness, metallic, normal");
+        begin = end + 1;
+    }
+    return channels;
+}
+
+}  // namespace
+
+LayerUse parse_layer_use(const std::string& text) {
+    LayerUse use;
+    const std::size_t end = end_of_path(text);
+    use.layer = text.substr(0, end);
+    std::error_code ignored;
+    if (fs::is_directory(use.layer, ignored)) use.layer /= "layer.safetensors";
+    if (end >= text.size()) return use;
+    const std::size_t second = text.find(':', end + 1);
+    use.strength = parse_strength(
+        text.substr(end + 1, second == std::string::npos ? second : second - end - 1), text);
+    if (second != std::string::npos) use.channels = parse_channels(text.substr(second + 1), text);
+    return use;
+}
+
+}  // namespace item3d

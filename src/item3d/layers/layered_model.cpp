@@ -1,0 +1,109 @@
+#include "item3d/layers/layered_model.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/progress.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/io/text.h"
+#include "item3d/layers/apply_layers.h"
+#include "item3d/tensors/checkpoint.h"
+
+#include <algorithm>
+#include <span>
+
+namespace item3d {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::pair<const char*, TextureFormat> formats[] = {{"keep", TextureFormat::keep},
+                                                             {"png", TextureFormat::png},
+                                                             {"jpeg", TextureFormat::jpeg},
+                                                             {"webp", TextureFormat::webp},
+                                                             {"ktx2", TextureFormat::ktx2}};
+
+std::string setting_of(const EditLayer& layer, const char* name) {
+    const json& settings = layer.settings;
+    const auto found = settings.is_object() ? settings.find(name) : settings.end();
+    return found != settings.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+TextureFormat format_of(const std::vector<AppliedLayer>& layers) {
+    std::optional<std::string> agreed;
+    for (const AppliedLayer& applied : layers) {
+        if (applied.use.strength == 0) continue;
+        const std::string own = setting_of(applied.layer, "texture_format");
+        if (agreed && *agreed != own) return TextureFormat::keep;
+        agreed = own;
+    }
+    for (const auto& [name, format] : formats)
+        if (agreed == name) return format;
+    return TextureFormat::keep;
+}
+
+/// Says of layers that were made of another file that they are applied all the same; apply_layers()
+/// refuses those that do not fit.
+void warn_of_others(const LayeredModelRequest& request, const Model& model,
+                    const std::vector<AppliedLayer>& layers) {
+    const std::string hash = hash_of_file(request.model);
+    for (const AppliedLayer& applied : layers) {
+        const EditLayer& layer = applied.layer;
+        if (layer.model_hash == hash || !misfit(layer, model).empty()) continue;
+        warn(layer.path.string() + ": was made of another file, " + layer.model +
+             "; its textures have the sizes of this one's, so it is applied");
+    }
+}
+
+/// A copy, where the file stays one of its kind and refers to no other.
+void write_unchanged(const LayeredModelRequest& request, const Model& model) {
+    const std::string from = to_lower(request.model.extension().string());
+    const std::string to = to_lower(request.output.extension().string());
+    if (from == to && (from == ".glb" || from == ".vrm")) {
+        const Bytes bytes = read_bytes(request.model);
+        write_atomically(request.output, std::span<const std::uint8_t>(bytes));
+    } else {
+        save_model(request.output, model);
+    }
+}
+
+json record_of(const LayeredModelRequest& request, const Model& model,
+               const std::vector<AppliedLayer>& layers, const ModelEdit& edit) {
+    json record{{"model", request.model.string()},
+                {"output", request.output.string()},
+                {"layers", json::array()},
+                {"materials", json::array()}};
+    for (const AppliedLayer& applied : layers)
+        record["layers"].push_back(
+            {{"file", applied.layer.path.string()},
+             {"strength", static_cast<double>(applied.use.strength) / LayerUse::strength_steps},
+             {"from", setting_of(applied.layer, "from")},
+             {"to", setting_of(applied.layer, "to")}});
+    for (const auto& [index, material] : edit.materials)
+        record["materials"].push_back(model.materials[static_cast<std::size_t>(index)].name);
+    return record;
+}
+
+}  // namespace
+
+json write_layered_model(const LayeredModelRequest& request) {
+    std::vector<AppliedLayer> layers;
+    std::string variant;
+    for (const LayerUse& use : request.layers) {
+        layers.push_back({load_layer(use.layer), use});
+        if (variant.empty()) variant = setting_of(layers.back().layer, "variant");
+    }
+    Model model =
+        load_model(request.model, {.texture_folders = request.texture_folders, .variant = variant});
+    warn_of_others(request, model, layers);
+    ModelEdit edit = apply_layers(layers, model);
+    if (edit.materials.empty()) {
+        write_unchanged(request, model);
+    } else {
+        choose_codings(model, request.texture_format.value_or(format_of(layers)), edit);
+        save_model(request.output, model, edit);
+    }
+    return record_of(request, model, layers, edit);
+}
+
+}  // namespace item3d

@@ -1,0 +1,31 @@
+// item3d layers on the command line: what cannot be applied, and what the help says.
+#include "tests/support/program.h"
+
+namespace item3d::testing {
+namespace {
+
+TEST_F(Program, LayersThatCannotBeAppliedAreNamed) {
+    const std::string to = " -o " + quoted(folder_ / "out.glb");
+    const fs::path file = folder_ / "layer.safetensors";
+    const std::string layers = "layers " + quoted(cube_) + " ";
+    expect_error(layers + quoted(file) + to, 3, "layer.safetensors");
+    const std::string header = R"({"__metadata__":{"format":"pt"}})";
+    std::ofstream(file, std::ios::binary)
+        << static_cast<char>(header.size()) << std::string(7, '\0') << header;
+    expect_error(layers + quoted(file) + to, 3, "is no layer of an edit");
+    expect_error(layers + quoted(file) + ":nan" + to, 2, "'nan' is no strength");
+    expect_error(layers + quoted(file) + ":1:colour" + to, 2, "there is no channel 'colour'");
+    EXPECT_FALSE(fs::exists(folder_ / "out.glb"));
+}
+
+TEST_F(EditProgram, LayersGiveTheEditAgain) {
+    ASSERT_EQ(run(edit(to("out"))).code, 0);
+    const Result result = run("layers " + quoted(cube_) + " " + quoted(folder_ / "out") +
+                              " --json -o " + quoted(folder_ / "again.glb"));
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_NE(result.out.find("a blue cube"), std::string::npos) << result.out;
+    EXPECT_EQ(read_file(folder_ / "again.glb"), read_file(folder_ / "out" / "model.glb"));
+}
+
+}  // namespace
+}  // namespace item3d::testing

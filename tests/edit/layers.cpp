@@ -1,0 +1,167 @@
+// The layer that an edit leaves: applied again it gives the edit's own bytes, and layers add up.
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/layers/layer_field.h"
+#include "item3d/layers/layered_model.h"
+#include "item3d/layers/source_picture.h"
+#include "tests/support/edit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace item3d {
+namespace {
+
+class LayersTest : public testing::EditTest {
+  protected:
+    std::filesystem::path apply(const std::vector<std::string>& layers,
+                                const std::string& name = "layered.glb") const {
+        LayeredModelRequest request;
+        request.model = folder_ / "cube.glb";
+        request.output = folder_ / name;
+        for (const std::string& layer : layers)
+            request.layers.push_back(parse_layer_use((folder_ / layer).string()));
+        write_layered_model(request);
+        return request.output;
+    }
+    EditLayer layer_of(const EditRequest& edit) const {
+        return load_layer(edit.output / "layer.safetensors");
+    }
+    static void expect_fields(EditLayer layer) {
+        EXPECT_EQ(layer.settings.at("to"), "a blue cube");
+        const EditFields fields = get_fields(layer);
+        const at::NoGradGuard no_grad;
+        const at::Tensor places = at::rand({64, 3}) - 0.5;
+        const at::Tensor change =
+            fields.field->forward(places).base_color - fields.fitted->forward(places).base_color;
+        EXPECT_GT(change.abs().max().item<float>(), 0.0f);
+        layer.parameters.pop_back();
+        EXPECT_THROW(get_fields(layer), InputError);
+    }
+    /// With another edit, in either order.
+    void expect_layers_add_up(const EditRequest& a) const {
+        const EditRequest b = request("b", 1, {{"seed", 5}});
+        edit_model(b);
+        const auto one = apply({"a:0.3", "b:0.7"}, "one.glb");
+        EXPECT_EQ(read_bytes(one), read_bytes(apply({"b:0.7", "a:0.3"}, "two.glb")));
+        const std::vector<int> before = base_color_bytes(a.model);
+        const std::vector<int> first = base_color_bytes(a.output / "model.glb");
+        const std::vector<int> second = base_color_bytes(b.output / "model.glb");
+        const std::vector<int> sum = base_color_bytes(one);
+        for (std::size_t i = 0; i < sum.size(); ++i) {
+            const double exact =
+                before[i] + 0.3 * (first[i] - before[i]) + 0.7 * (second[i] - before[i]);
+            ASSERT_LE(std::abs(sum[i] - std::clamp(exact, 0.0, 255.0)), 0.501) << i;
+        }
+    }
+    /// Of another texture, and of another size; the cube is another one afterwards.
+    void expect_others_are_told(const EditRequest& edit) const {
+        Model other = load_model(edit.model);
+        other.textures.at(0).file = nullptr;
+        other.source = nullptr;
+        other.textures.at(0).image.pixels.at(0) = 0.5f;
+        save_model(edit.model, other);
+        ::testing::internal::CaptureStderr();
+        apply({"a"});
+        EXPECT_NE(::testing::internal::GetCapturedStderr().find("another file"), std::string::npos);
+        other.textures.at(0).image = Image(32, 64, 3, 0.5f);
+        save_model(edit.model, other);
+        try {
+            apply({"a"});
+            FAIL() << "a layer of a larger texture was applied";
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("64 x 64, not 32 x 64"), std::string::npos)
+                << error.what();
+        }
+    }
+    std::vector<int> base_color_bytes(const std::filesystem::path& path) const {
+        std::vector<int> bytes;
+        for (const float value : base_color_of(path).pixels)
+            bytes.push_back(to_file_value(value, 8));
+        return bytes;
+    }
+};
+
+TEST_F(LayersTest, a_layer_gives_its_edit_again_and_adds_up_with_others) {
+    const EditRequest edit = request("a", 2);
+    edit_model(edit);
+    const Bytes edited = read_bytes(edit.output / "model.glb");
+    EXPECT_EQ(read_bytes(apply({"a"})), edited);
+    const Bytes source = read_bytes(edit.model);
+    EXPECT_NE(edited, source);
+    EXPECT_EQ(read_bytes(apply({"a:0"})), source);
+    EXPECT_EQ(read_bytes(apply({"a:0", "a:1"})), edited);
+
+    // Half of it lies halfway, to the rounding; twice as much lies beyond, as far as there is room.
+    const std::vector<int> before = base_color_bytes(edit.model);
+    const std::vector<int> after = base_color_bytes(edit.output / "model.glb");
+    const std::vector<int> half = base_color_bytes(apply({"a:0.5:base_color"}));
+    const std::vector<int> twice = base_color_bytes(apply({"a:2"}));
+    ASSERT_EQ(half.size(), before.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        ASSERT_EQ(2 * half[i] - (before[i] + after[i]), (before[i] + after[i]) & 1) << i;
+        ASSERT_EQ(twice[i], std::clamp(2 * after[i] - before[i], 0, 255)) << i;
+    }
+    const Model model = load_model(apply({"a:0.5:base_color"}));
+    EXPECT_LT(model.materials.at(0).metallic_roughness_texture, 0);
+    expect_fields(layer_of(edit));
+    expect_layers_add_up(edit);
+    expect_others_are_told(edit);
+}
+
+TEST_F(LayersTest, a_region_has_its_mask_and_a_new_uv_map_comes_along) {
+    const EditRequest part = request("part", 1, {{"region", {"box=-1,-1,-1,0,1,1"}}});
+    edit_model(part);
+    EXPECT_EQ(read_bytes(apply({"part"})), read_bytes(part.output / "model.glb"));
+    const LayerPicture picture = layer_of(part).pictures.at(0);
+    ASSERT_TRUE(picture.mask.defined());
+    EXPECT_EQ(picture.mask.sizes(), at::IntArrayRef({picture.height, picture.width}));
+    ASSERT_TRUE(picture.change.defined());
+    const at::Tensor mask = picture.mask.slice(0, picture.y, picture.y + picture.change.size(0))
+                                .slice(1, picture.x, picture.x + picture.change.size(1));
+    EXPECT_TRUE(at::all(picture.change.index({mask.eq(0)}).eq(0)).item<bool>());
+
+    Model model = load_model(part.model);
+    for (Vec2& uv : model.primitives.at(0).uvs)
+        uv.x = 0.5f;  // a line: no place of the surface has texels of its own
+    model.source = nullptr;
+    save_model(part.model, model);
+    const EditRequest anew = request("anew", 1, {{"uv", "new"}, {"texture_size", 64}});
+    edit_model(anew);
+    EXPECT_EQ(layer_of(anew).primitives.size(), 1u);
+    EXPECT_EQ(read_bytes(apply({"anew"})), read_bytes(anew.output / "model.glb"));
+    EXPECT_THROW(apply({"anew", "part"}), InputError);
+}
+
+TEST_F(LayersTest, sixteen_bits_lossy_formats_and_resampling_are_exact) {
+    Model model = load_model(folder_ / "cube.glb");
+    model.textures.at(0).bits_per_channel = 16;
+    model.textures.at(0).file = nullptr;
+    model.source = nullptr;
+    model.materials.at(0).base_color_factor = Vec4(0.9f, 1.0f, 0.8f, 1.0f);
+    save_model(folder_ / "cube.glb", model);
+    edit_model(request("deep", 1));
+    EXPECT_EQ(read_bytes(apply({"deep"})), read_bytes(folder_ / "deep" / "model.glb"));
+    const EditRequest small =
+        request("small", 1, {{"texture_size", 32}, {"texture_format", "jpeg"}});
+    edit_model(small);
+    EXPECT_TRUE(layer_of(small).pictures.at(0).source.defined());
+    EXPECT_EQ(read_bytes(apply({"small"})), read_bytes(small.output / "model.glb"));
+    EXPECT_THROW(apply({"small", "deep"}), InputError);
+}
+
+TEST(LayerUse, is_read_from_its_end) {
+    EXPECT_EQ(parse_layer_use("a").strength, LayerUse::strength_steps);
+    EXPECT_EQ(parse_layer_use("a:-0.5").strength, -LayerUse::strength_steps / 2);
+    const LayerUse use = parse_layer_use("b/a.safetensors:2:roughness,metallic");
+    EXPECT_EQ(use.layer, "b/a.safetensors");
+    EXPECT_TRUE(use.channels.roughness && use.channels.metallic);
+    EXPECT_FALSE(use.channels.base_color || use.channels.normal || use.channels.occlusion);
+    for (const char* wrong : {"a:nan", "a:inf", "a:2.1", "a:-1.5", "a:", "a:x", "a:1:", "a:1:blue",
+                              "a:1:normal,", "a:1 "})
+        EXPECT_THROW(parse_layer_use(wrong), UsageError) << wrong;
+}
+
+}  // namespace
+}  // namespace item3d
