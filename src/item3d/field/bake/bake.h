@@ -76,9 +76,9 @@ struct UneditedPictures {
 /// fitted: the field before the edit (`snapshot`), now: after it. Returns images for all edited
 /// materials of the atlas and the atlas's new UVs, ready for save_model. Texels that no triangle
 /// covers continue their neighbours, so that filtering finds no seam. A normal image is only made
-/// where the field's normals changed. Vertex colours become part of the base colour's image. unedited:
-/// takes what there was before, by the first material of each set; null: nobody asks. Throws
-/// Interrupted after Ctrl-C.
+/// where the field's normals changed. Vertex colours become part of the base colour's image.
+/// unedited: takes what there was before, by the first material of each set; null: nobody asks.
+/// Throws Interrupted after Ctrl-C.
 ModelEdit bake(const BakeScene& scene, NeuralTexture& fitted, NeuralTexture& now,
                const BakeOptions& options = {},
                std::map<int, UneditedPictures>* unedited = nullptr);
