@@ -93,7 +93,7 @@ TEST_F(Program, MalformedFilesAreRefusedOrWarnedAbout) {
         const std::string extension = entry.path().extension().string();
         std::string arguments;
         if (extension == ".glb" || extension == ".gltf" || extension == ".obj") {
-            arguments = "render " + quoted(entry.path()) + to;
+            arguments = "render " + quoted(entry.path()) + to + small_light();
         } else if (extension == ".hdr" || extension == ".exr" || extension == ".png") {
             arguments = "render " + quoted(cube_) + to + " --light " + quoted(entry.path());
         } else {

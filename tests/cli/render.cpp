@@ -16,7 +16,7 @@ class RenderProgram : public Program {
     }
     std::string picture(const std::string& name, const std::string& options) const {
         const fs::path path = folder_ / (name + ".exr");
-        const Result result = run("render " + options + " " + quoted(corner_) +
+        const Result result = run("render " + options + " " + quoted(corner_) + small_light() +
                                   " --size 32x32 --quiet -o " + quoted(path));
         EXPECT_EQ(result.code, 0) << result.error;
         EXPECT_EQ(result.error, "");

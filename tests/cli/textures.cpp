@@ -43,7 +43,8 @@ TEST_F(TexturesProgram, AnEditAsksBeforeItGoesOnWithoutOne) {
 }
 
 TEST_F(TexturesProgram, OtherCommandsWarnAndDrawTheFactor) {
-    const std::string draw = "render " + quoted(quad_) + " --size 32x32 --quiet -o ";
+    const std::string draw =
+        "render " + quoted(quad_) + small_light() + " --size 32x32 --quiet -o ";
     const Result plain = run(draw + quoted(folder_ / "plain.png"));
     EXPECT_EQ(plain.code, 0) << plain.error;
     EXPECT_NE(plain.error.find("warning"), std::string::npos) << plain.error;
@@ -53,12 +54,12 @@ TEST_F(TexturesProgram, OtherCommandsWarnAndDrawTheFactor) {
     EXPECT_NE(read_file(folder_ / "plain.png"), read_file(folder_ / "found.png"));
 
     for (const std::string& command :
-         {"relight " + quoted(quad_) + " --light noon --size 32 --views 1 --frames 1 --quiet -o " +
+         {"relight " + quoted(quad_) + " --size 32 --views 1 --frames 1 --quiet -o " +
               quoted(folder_ / "relit"),
           "score " + quoted(quad_) + " " + quoted(quad_) +
               " --from 'a red wall' --to 'a blue wall' --views 1 --quiet",
           "caption " + quoted(quad_) + " --views 1 --quiet"}) {
-        const Result allowing = run(command + allowed());
+        const Result allowing = run(command + small_light() + allowed());
         EXPECT_EQ(allowing.code, 0) << allowing.error;
         EXPECT_EQ(allowing.error.find("brick.png"), std::string::npos) << allowing.error;
     }

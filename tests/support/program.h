@@ -34,6 +34,10 @@ class Program : public ::testing::Test {
         folder_ = fs::temp_directory_path() / ("item3d_cli_" + std::to_string(::getpid()));
         fs::create_directories(folder_);
         cube_ = folder_ / "cube.obj";
+        std::ofstream light(folder_ / "small.hdr", std::ios::binary);
+        light << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";
+        for (int texel = 0; texel < 32; ++texel)
+            light << (texel % 8 < 3 ? "\xff\xf0\xe0\x82" : "\x50\x60\x70\x80");
         std::ofstream(cube_) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
     }
     void TearDown() override { fs::remove_all(folder_); }
@@ -60,6 +64,8 @@ class Program : public ::testing::Test {
         EXPECT_EQ(line.find('\n'), line.size() - 1) << "more than one line: " << line;
     }
 
+    /// For pictures of which the light does not matter: the whole studio takes half a second.
+    std::string small_light() const { return " --light " + quoted(folder_ / "small.hdr") + " "; }
     std::string quoted(const fs::path& path) const { return "'" + path.string() + "'"; }
 
     fs::path folder_;
