@@ -16,7 +16,7 @@ namespace item3d {
 struct RegularizerWeights {
     double mask = 1.0;           ///< coverage
     double smoothness = 0.005;   ///< base colour, roughness and metallic vary little
-    double whiteness = 0.03;     ///< the light has little colour
+    double whiteness = 0.003;    ///< the light has little colour
     double brightness = 0.03;    ///< white is like paper, see brightness_loss()
     double decision = 0.01;      ///< metallic is 0 or 1, after decision_begin
     double crumpling = 0.05;     ///< vertices move together
