@@ -64,6 +64,12 @@ TEST_F(RegionProgram, PlansRunInOrderAndGoOn) {
 
     std::ofstream(plan) << R"({"edits": [{"from": "a red cube", "too": "a blue cube"}]})";
     expect_error(line, 3, "edit 1");
+    // A value that does not fit is told before the first edit.
+    fs::remove_all(folder_ / "out");
+    std::ofstream(plan) << R"({"edits": [{"from": "a red cube", "to": "a blue cube"},
+        {"from": "a blue cube", "to": "a green cube", "feather": 90}]})";
+    expect_error(line, 3, "--feather");
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "1"));
     std::ofstream(plan) << "[";
     expect_error(line, 3, "plan.json");
     EXPECT_EQ(run("edit " + quoted(cube_) + " -o " + quoted(folder_ / "none")).code, 2);

@@ -101,6 +101,13 @@ void warn_of_options(const EditPlan& plan, const nlohmann::json& overrides) {
         warn("--adjust has no effect: only rdl has a source to adjust");
 }
 
+EditPlan plan_of(const EditCommandOptions& options) {
+    nlohmann::json overrides = options.overrides;
+    if (overrides.get<EditSettings>().keep == std::vector<std::string>{"nothing"})
+        overrides["keep"] = nlohmann::json::array();
+    return resolve_plan(options.request.prior, overrides);
+}
+
 /// One edit by request and overrides.
 nlohmann::json edit_once(EditCommandOptions& options) {
     refuse_contradictions(options.overrides);
@@ -108,25 +115,30 @@ nlohmann::json edit_once(EditCommandOptions& options) {
     nlohmann::json& overrides = options.overrides;
     const auto said = overrides.get<EditSettings>();
     if (said.optimize == Optimize::light) require_light_words(request.prior, said.to);
-    if (said.keep == std::vector<std::string>{"nothing"})
-        overrides["keep"] = nlohmann::json::array();
     take_found_light(options);
-    request.plan = resolve_plan(request.prior, overrides);
+    request.plan = plan_of(options);
     warn_of_words(request);
     warn_of_options(request.plan, overrides);
     return edit_model(request);
 }
 
 nlohmann::json edit_by_plan(const EditCommandOptions& options) {
-    return run_plan(options.request.model, options.request.output,
-                    read_plan_file(options.plan_file), options.request.resume,
+    const std::vector<nlohmann::json> edits = read_plan_file(options.plan_file);
+    // An option of the command line holds for all edits that do not set it themselves.
+    const auto with = [&](const nlohmann::json& settings) {
+        EditCommandOptions one = options;
+        one.overrides.update(settings);
+        return one;
+    };
+    // A value that does not fit is told before the first edit takes its minutes.
+    for (const nlohmann::json& settings : edits)
+        plan_of(with(settings));
+    return run_plan(options.request.model, options.request.output, edits, options.request.resume,
                     [&](const PlannedEdit& planned) {
-                        EditCommandOptions one = options;
+                        EditCommandOptions one = with(planned.settings);
                         one.request.model = planned.model;
                         one.request.output = planned.output;
                         one.request.resume = planned.is_begun;
-                        // What the command line says is of all edits that do not say it themselves.
-                        one.overrides.update(planned.settings);
                         return edit_once(one);
                     });
 }

@@ -1,10 +1,10 @@
 #include "apps/item3d/edit/plan_file.h"
 
-#include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/edit/outputs/baked_files.h"
 #include "item3d/edit/settings_table.h"
 #include "item3d/report/html.h"
 
@@ -24,17 +24,15 @@ json read_json(const fs::path& path) {
     return json::parse(read_text(path), nullptr, /*allow_exceptions=*/false);
 }
 
-std::string model_name(const fs::path& model) {
-    return lower_extension(model) == ".vrm" ? "model.vrm" : "model.glb";
-}
-
-/// What an edit was asked, to know it again.
+/// Model and settings of an edit, to know it again.
 json question_of(const PlannedEdit& planned) {
     return {{"model", planned.model.string()}, {"settings", planned.settings}};
 }
 
-std::string page_of(const json& record, const fs::path& output) {
-    std::string body = html_header("item3d edit", fmt::format("{} edits", record["edits"].size()));
+std::string page_of(const json& record, const fs::path& output, const std::string& model) {
+    std::string body =
+        html_header("item3d edit", fmt::format("{} edits", record["edits"].size()),
+                    fmt::format("<p><a href=\"{0}\">{0}</a> has all of them.</p>\n", model));
     for (std::size_t i = 0; i < record["edits"].size(); ++i) {
         const json& edit = record["edits"][i];
         const std::string folder = std::to_string(i + 1);
@@ -50,7 +48,7 @@ std::string page_of(const json& record, const fs::path& output) {
                 100 * edit["region"]["share"].get<double>(),
                 edit["region"]["outside"]["changed"].get<std::int64_t>(),
                 edit["region"]["outside"]["texels"].get<std::int64_t>());
-        content += "<p><a href=\"" + folder + "/report.html\">Its report</a></p>\n";
+        content += "<p><a href=\"" + folder + "/report.html\">Report of this edit</a></p>\n";
         body += html_section(fmt::format("{}. {} \u2192 {}", i + 1, edit["from"].get<std::string>(),
                                          edit["to"].get<std::string>()),
                              content);
@@ -95,13 +93,13 @@ json run_plan(const fs::path& model, const fs::path& output, const std::vector<j
         const json question = question_of(planned);
         const fs::path asked = planned.output / settings_file;
         const bool is_same = is_kept && fs::exists(asked) && read_json(asked) == question;
-        const fs::path result = planned.output / model_name(planned.model);
+        const fs::path result = planned.output / model_file_name(planned.model);
         const fs::path done = planned.output / "edit.json";
         if (is_same && fs::exists(result) && fs::exists(done)) {
             record["edits"].push_back(read_json(done));
             note(fmt::format("edit {} of {} is there already", i + 1, edits.size()));
         } else {
-            // What follows was made of another model.
+            // The edits behind it were made of another model.
             is_kept = false;
             note(fmt::format("edit {} of {}: {} -> {}", i + 1, edits.size(),
                              edits[i]["from"].get<std::string>(),
@@ -116,7 +114,8 @@ json run_plan(const fs::path& model, const fs::path& output, const std::vector<j
     }
     const Bytes bytes = read_bytes(planned.model);
     write_atomically(output / planned.model.filename(), std::span<const std::uint8_t>(bytes));
-    write_atomically(output / "report.html", std::string_view(page_of(record, output)));
+    write_atomically(output / "report.html",
+                     std::string_view(page_of(record, output, planned.model.filename().string())));
     write_atomically(output / "edit.json", std::string_view(record.dump(2) + "\n"));
     return record;
 }

@@ -50,7 +50,7 @@ struct RegionCommand : CommonOptions {
     int texture_size = 0;
 };
 
-/// What a model can be selected by: the names that its file gives.
+/// The names in the file that a model can be selected by.
 json names_of(const Model& model) {
     std::set<std::string> materials, nodes, meshes, groups;
     for (const Primitive& primitive : model.primitives) {
@@ -126,11 +126,11 @@ class RegionOutput {
         const std::vector<int> materials = select_materials(model_, options_.materials);
         const FieldSpace space(model_, materials, geometry_.positions.device());
         std::unique_ptr<Region> region;
-        const auto segmenter = load_wanted_segmenter(
-            options_.request,
-            options_.segmenter.empty() ? find_in_prior(find_prior(""), "segmenter")
-                                       : options_.segmenter,
-            geometry_.positions.device());
+        fs::path segmenter_folder = options_.segmenter;
+        if (segmenter_folder.empty() && options_.request.needs_segmenter())
+            segmenter_folder = find_in_prior(find_prior(""), "segmenter");
+        const auto segmenter =
+            load_wanted_segmenter(options_.request, segmenter_folder, geometry_.positions.device());
         if (!options_.request.is_everything())
             region = std::make_unique<Region>(
                 options_.request,

@@ -36,7 +36,7 @@ std::vector<std::string> other_words(const std::string& sentence, const KnownWor
 }
 
 std::unique_ptr<Region> make_region(const RegionRequest& request, const EditScene& scene,
-                                    const Segmenter* segmenter = nullptr) {
+                                    const Segmenter* segmenter) {
     const FieldSpace space(scene.model, scene.materials, scene.device);
     return std::make_unique<Region>(request, RegionScene{scene.model, scene.geometry,
                                                          *scene.source_textures, space, segmenter});
@@ -44,12 +44,12 @@ std::unique_ptr<Region> make_region(const RegionRequest& request, const EditScen
 
 /// Null where the colour is nearly everywhere or hardly anywhere.
 std::unique_ptr<Region> region_of_color(const std::string& color, const RegionRequest& request,
-                                        const EditScene& scene) {
+                                        const EditScene& scene, const Segmenter* segmenter) {
     RegionRequest colored = request;
     colored.include = {"named=" + color};
     std::unique_ptr<Region> region;
     try {
-        region = make_region(colored, scene);
+        region = make_region(colored, scene, segmenter);
     } catch (const InputError&) {
         return nullptr;
     }
@@ -77,12 +77,12 @@ void choose_region(const EditRequest& edit, const PriorVocabulary& vocabulary, E
     if (is_automatic || plan.region == std::vector<std::string>{"all"}) request.include.clear();
     const auto color = is_automatic ? color_to_change(plan, vocabulary) : std::nullopt;
     if (request.is_everything() && !color) return;
-    // Of the model as it is in the file: its own base colour is selected by.
+    // The textures as they are in the file: selectors by colour look at them.
     scene.source_textures = std::make_unique<TexturedMaterials>(scene.model, scene.device);
-    if (color) scene.region = region_of_color(*color, request, scene);
+    const auto segmenter = load_wanted_segmenter(request, edit.segmenter, scene.device);
+    if (color) scene.region = region_of_color(*color, request, scene, segmenter.get());
     if (!scene.region) {
         if (request.is_everything()) return;
-        const auto segmenter = load_wanted_segmenter(request, edit.segmenter, scene.device);
         scene.region = make_region(request, scene, segmenter.get());
         note(fmt::format("the region is {:.1f} % of what is edited", 100 * scene.region->share()));
     }

@@ -15,7 +15,7 @@ constexpr std::int64_t most_looks = 128;
 constexpr int tries = 12;            ///< directions around a place's normal
 constexpr float widest_turn = 0.9f;  ///< of the normal: its tangent
 constexpr float clearance = 1e-4f;   ///< of the model's radius
-/// Of the model's radius: a close-up shows so much at least, and at most around one place.
+/// Radius of a close-up, least, and largest around one place, in parts of the model's.
 constexpr float least_radius = 0.12f, largest_radius = 0.45f;
 constexpr float margin = 1.3f;
 
@@ -41,7 +41,7 @@ RegionViews::RegionViews(const RegionPoints& points, const Model& model, const G
     float region_radius = 0;
     for (std::int64_t i = 0; i < count; ++i)
         region_radius = std::max(region_radius, glm::length(row_of(positions, i) - centre));
-    // What is small is seen as a whole; of what is large or scattered, one place at a time.
+    // A small region is seen as a whole; a large or scattered one, one place at a time.
     const bool is_small = margin * region_radius <= largest_radius * model_radius_;
     const float radius =
         std::clamp(is_small ? margin * region_radius : largest_radius * model_radius_,

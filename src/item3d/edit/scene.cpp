@@ -12,6 +12,8 @@
 #include "item3d/tensors/checkpoint.h"
 #include "item3d/tensors/precision.h"
 
+#include <algorithm>
+
 namespace item3d {
 
 namespace {
@@ -85,7 +87,15 @@ EditScene load_scene(const EditRequest& request) {
             scene.space->share(std::make_shared<SharedTexels>(scene.model, scene.atlas,
                                                               plan.texture_size, device));
     }
-    scene.textured = std::make_unique<TexturedMaterials>(scene.model, device);
+    const bool is_prepared =
+        std::any_of(scene.losses.begin(), scene.losses.end(), [](const auto& entry) {
+            const MaterialLosses& lost = entry.second;
+            return lost.emission || lost.transparency || !lost.extensions.empty();
+        });
+    // A region's textures are the same ones, unless the materials had to be prepared.
+    scene.textured = scene.source_textures && !is_prepared
+                         ? std::make_unique<TexturedMaterials>(*scene.source_textures)
+                         : std::make_unique<TexturedMaterials>(scene.model, device);
     scene.source = std::make_unique<MaterialSource>(scene.model, *scene.textured, *scene.space,
                                                     scene.materials, scene.start.channels,
                                                     scene.region.get(), device);

@@ -5,8 +5,8 @@
 
 namespace item3d {
 
-/// "FILE" or "FILE@MATERIAL": white times alpha of a picture in the first UV map, looked up as
-/// textures are; of all materials with UVs, or of one. A note where its size is not the texture's.
+/// "FILE" or "FILE@MATERIAL": white times alpha of a picture in the first UV map, repeated
+/// beyond it; of all materials with UVs, or of one. A note where its size is not the texture's.
 /// Throws InputError, also where nothing of it is white.
 std::unique_ptr<Selector> select_mask(const SelectorText& text, const RegionScene& scene);
 

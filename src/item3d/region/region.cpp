@@ -4,6 +4,9 @@
 #include "item3d/core/format.h"
 #include "item3d/core/random.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace item3d {
 namespace {
 
@@ -20,6 +23,12 @@ at::Tensor united(const std::vector<std::unique_ptr<Selector>>& selectors, const
 
 }  // namespace
 
+bool RegionRequest::needs_segmenter() const {
+    const auto is_by_words = [](const std::string& text) { return text.starts_with("words="); };
+    return std::any_of(include.begin(), include.end(), is_by_words) ||
+           std::any_of(exclude.begin(), exclude.end(), is_by_words);
+}
+
 Region::Region(const RegionRequest& request, const RegionScene& scene) {
     const at::NoGradGuard no_grad;
     for (const std::string& text : request.include)
@@ -27,13 +36,15 @@ Region::Region(const RegionRequest& request, const RegionScene& scene) {
     for (const std::string& text : request.exclude)
         exclude_.push_back(make_selector(text, scene));
     Random random(0, RandomStream::region);
-    const Surface surface =
-        SurfaceSampler(scene.geometry, scene.space).sample(sampled_points, random);
+    const SurfaceSampler sampler(scene.geometry, scene.space);
+    const Surface surface = sampler.sample(sampled_points, random);
     const at::Tensor inside = unfeathered(surface);
     const at::Tensor positions = surface.position.cpu();
     if (request.feather > 0) {
         const auto [low, high] = scene.model.bounds();
-        feather_.emplace(positions.index({inside.le(0)}),
+        const auto spacing =
+            static_cast<float>(std::sqrt(sampler.area() / static_cast<double>(sampled_points)));
+        feather_.emplace(positions.index({inside.le(0)}), positions.index({inside.gt(0)}), spacing,
                          request.feather / 100 * glm::length(high - low));
     }
     share_ = weight(surface).mean().item<double>();

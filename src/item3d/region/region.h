@@ -17,6 +17,8 @@ struct RegionRequest {
     float feather = 0;  ///< width of the border, in percent of the diagonal of the model's box
 
     bool is_everything() const { return include.empty() && exclude.empty(); }
+    /// Whether a selector is by words.
+    bool needs_segmenter() const;
 };
 
 /// Points of a region, drawn by area: for cameras that look at it.

@@ -7,6 +7,7 @@
 #include "item3d/core/random.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/networks/vision_language/segmenter.h"
+#include "item3d/region/point_grid.h"
 #include "item3d/region/surface_patches.h"
 #include "item3d/render/render.h"
 #include "item3d/render/srgb.h"
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 namespace item3d {
 namespace {
@@ -119,45 +119,29 @@ Votes gather_votes(const std::string& prompt, const RegionScene& scene) {
             gathering.probabilities()};
 }
 
-/// Probabilities of points, looked up between them.
+/// Probabilities of points that a view sees, looked up between them.
 class PointField {
   public:
-    PointField(const Votes& votes, float cell) : cell_(cell) {
-        const float* p = votes.position.const_data_ptr<float>();
-        for (std::size_t i = 0; i < votes.probability.size(); ++i) {
-            if (votes.probability[i] < 0) continue;
-            const Vec3 position(p[3 * i], p[3 * i + 1], p[3 * i + 2]);
-            cells_[cell_of(position)].push_back({position, votes.probability[i]});
-        }
-    }
+    PointField(const Votes& votes, float reach)
+        : probability_(votes.probability), grid_(votes.position, reach) {}
+
     /// Mean around the place, the nearest counting most; -1 where there is no point.
     float at(Vec3 place) const {
         float sum = 0, weights = 0;
-        for (int x = -1; x <= 1; ++x)
-            for (int y = -1; y <= 1; ++y)
-                for (int z = -1; z <= 1; ++z) {
-                    const auto found = cells_.find(cell_of(place + cell_ * Vec3(x, y, z)));
-                    if (found == cells_.end()) continue;
-                    for (const auto& [position, probability] : found->second) {
-                        const Vec3 apart = (position - place) / cell_;
-                        const float weight = std::exp(-4 * glm::dot(apart, apart));
-                        sum += weight * probability;
-                        weights += weight;
-                    }
-                }
+        grid_.for_each_near(place, [&](std::int64_t i, Vec3 point) {
+            const float probability = probability_[static_cast<std::size_t>(i)];
+            if (probability < 0) return;
+            const Vec3 apart = (point - place) / grid_.reach();
+            const float weight = std::exp(-4 * glm::dot(apart, apart));
+            sum += weight * probability;
+            weights += weight;
+        });
         return weights > 1e-6f ? sum / weights : -1.0f;
     }
 
   private:
-    std::uint64_t cell_of(Vec3 place) const {
-        const glm::ivec3 cell(glm::floor(place / cell_));
-        const auto part = [](int value) {
-            return std::uint64_t{static_cast<std::uint32_t>(value)};
-        };
-        return mix_bits((part(cell.x) << 32) ^ mix_bits((part(cell.y) << 32) ^ part(cell.z)));
-    }
-    float cell_;
-    std::unordered_map<std::uint64_t, std::vector<std::pair<Vec3, float>>> cells_;
+    std::vector<float> probability_;
+    PointGrid grid_;
 };
 
 class WordsSelector : public Selector {
@@ -252,11 +236,7 @@ std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionSce
 std::unique_ptr<Segmenter> load_wanted_segmenter(const RegionRequest& request,
                                                  const std::filesystem::path& folder,
                                                  at::Device device) {
-    const auto is_by_words = [](const std::string& text) { return text.starts_with("words="); };
-    const auto asks = [&](const std::vector<std::string>& selectors) {
-        return std::any_of(selectors.begin(), selectors.end(), is_by_words);
-    };
-    if (folder.empty() || !(asks(request.include) || asks(request.exclude))) return nullptr;
+    if (folder.empty() || !request.needs_segmenter()) return nullptr;
     return std::make_unique<Segmenter>(Segmenter::load_to_run(folder, device, at::kFloat));
 }
 

@@ -67,7 +67,7 @@ std::string region(const EditReport& report) {
     std::vector<std::string> figures;
     for (const ReportImage& picture : report.region)
         figures.push_back(html_figure(picture));
-    return "<p>" + html_escape(report.region_note) + "</p>\n" + html_gallery(figures, 180);
+    return "<p>" + html_escape(report.region_note) + "</p>\n" + html_gallery(figures, 140);
 }
 
 std::string scores(const EditReport& report) {

@@ -86,7 +86,7 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
     choose_codings(scene.model, request.plan.texture_format, edit);
 
     EditedModel edited;
-    const auto path = request.output / model_file_name(request);
+    const auto path = request.output / model_file_name(request.model);
     save_model(path, scene.model, edit);
     write_layer_file(request, scene, state, edit, unedited);
     unedited.clear();
@@ -111,8 +111,8 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
 
 }  // namespace
 
-std::string model_file_name(const EditRequest& request) {
-    return to_lower(request.model.extension().string()) == ".vrm" ? "model.vrm" : "model.glb";
+std::string model_file_name(const std::filesystem::path& source) {
+    return to_lower(source.extension().string()) == ".vrm" ? "model.vrm" : "model.glb";
 }
 
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state) {
@@ -121,7 +121,7 @@ EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, Ed
     if (request.plan.edits_texture) {
         edited = bake_textures(request, scene, state);
     } else {
-        save_lit_model(request.output / model_file_name(request), scene.model);
+        save_lit_model(request.output / model_file_name(request.model), scene.model);
         edited.model = scene.model;
     }
     if (state.light) {

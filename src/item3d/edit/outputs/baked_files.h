@@ -21,8 +21,8 @@ struct EditedModel {
     std::optional<Image> light;  ///< the new one, where the light was optimised
 };
 
-/// "model.glb", or "model.vrm" for an avatar.
-std::string model_file_name(const EditRequest& request);
+/// Name of the edited model's file: "model.glb", or "model.vrm" for an avatar.
+std::string model_file_name(const std::filesystem::path& source);
 
 /// Writes model.glb, layer.safetensors and textures/; where the texture is not edited, model.glb
 /// alone, with all its bytes. Where the light is, light.hdr and light.exr.

@@ -2,12 +2,10 @@
 
 #include "item3d/region/masks.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace item3d {
 namespace {
-
-constexpr float half_step = 0.5f / 255;
 
 const Image* image_of(const Model& model, int texture) {
     return texture >= 0 ? &model.textures[static_cast<std::size_t>(texture)].image : nullptr;
@@ -26,7 +24,7 @@ void compare(const Image* was, const Image* now, const Image& mask, unsigned cha
             bool is_same = true;
             for (int c = 0; c < std::min(was->channels, now->channels); ++c)
                 if ((channels >> c & 1u) != 0)
-                    is_same = is_same && std::abs(was->at(x, y, c) - now->at(x, y, c)) < half_step;
+                    is_same = is_same && was->at(x, y, c) == now->at(x, y, c);
             outside.changed += is_same ? 0 : 1;
         }
     }

@@ -11,7 +11,7 @@ namespace item3d {
 /// Texels of edited textures whose weight in the region is 0.
 struct OutsideTexels {
     std::int64_t compared = 0;
-    std::int64_t changed = 0;  ///< of those, different from the source's in 8 bits or more
+    std::int64_t changed = 0;  ///< of those, not the source's to the bit
 };
 
 /// edited: the model as it was read back. Textures that the source lacks, that are multiplied by a

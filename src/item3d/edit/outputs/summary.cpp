@@ -232,7 +232,7 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     if (scene.region) {
         report.region = pictures.region;
         report.region_note = fmt::format(
-            "What was to change, in orange: {:.1f} % of the edited materials' surface. Outside of "
+            "The region, in orange, is {:.1f} % of the edited materials' surface. Outside of "
             "it {} of {} texels changed.",
             100 * scene.region->share(), pictures.outside.changed, pictures.outside.compared);
     }
@@ -249,12 +249,14 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     if (!state.adjustment.failure.empty())
         report.warnings.push_back("The captioner was not asked to the end: " +
                                   state.adjustment.failure);
-    const std::string model_file = model_file_name(request);
+    const std::string model_file = model_file_name(request.model);
     report.files = {{model_file, model_file},
                     {"edit.json", "edit.json"},
                     {"turntable.webp", "turntable.webp"},
                     {"before.png", "before.png"},
                     {"after.png", "after.png"}};
+    if (request.plan.edits_texture)
+        report.files.emplace_back("layer.safetensors", "layer.safetensors");
     if (edited.light) report.files.push_back({"light.exr", "light.exr"});
     report.command = request.command;
     report.version = version();

@@ -372,7 +372,7 @@ bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
     return true;
 }
 
-/// What there is without the edit, and the weight, to who asked for it.
+/// Pictures without the edit, and the weight, for the caller that asked for them.
 void SetBaker::hand_over(Slot& slot, const EditedTexture& edited) {
     if (unedited_ == nullptr || !edited) return;
     Image& picture = &slot == &base_color_ ? unedited_->base_color
