@@ -69,7 +69,10 @@ TEST_F(RegionProgram, PlansRunInOrderAndGoOn) {
     std::ofstream(plan) << R"({"edits": [{"from": "a red cube", "to": "a blue cube"},
         {"from": "a blue cube", "to": "a green cube", "feather": 90}]})";
     expect_error(line, 3, "--feather");
+    std::ofstream(plan) << R"({"edits": [{"from": "a", "to": "b", "region": "named=black"}]})";
+    expect_error(line, 3, "edit 1: region cannot be \"named=black\"");
     EXPECT_FALSE(fs::exists(folder_ / "out" / "1"));
+    EXPECT_EQ(run(line + " --from a --to b").code, 2);
     std::ofstream(plan) << "[";
     expect_error(line, 3, "plan.json");
     EXPECT_EQ(run("edit " + quoted(cube_) + " -o " + quoted(folder_ / "none")).code, 2);

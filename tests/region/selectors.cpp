@@ -155,6 +155,7 @@ TEST_F(RegionTest, ExcludedPlacesAreTakenOff) {
     EXPECT_EQ(weight(rest, 1, 0, 0), 0);
     EXPECT_EQ(weight(rest, 1, 0.9f, 0), 1);
     EXPECT_THROW(region({"material=back"}, {"material=back"}), InputError);
+    EXPECT_THROW(region({"color=#bf1a1a~10"}, {"color=#bf1a1a~10"}), InputError);
 }
 
 TEST_F(RegionTest, MasksLieInTheUvMap) {

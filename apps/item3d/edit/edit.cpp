@@ -131,8 +131,14 @@ nlohmann::json edit_by_plan(const EditCommandOptions& options) {
         return one;
     };
     // A value that does not fit is told before the first edit takes its minutes.
-    for (const nlohmann::json& settings : edits)
-        plan_of(with(settings));
+    for (std::size_t i = 0; i < edits.size(); ++i) {
+        try {
+            plan_of(with(edits[i]));
+        } catch (const InputError& error) {
+            throw InputError(fmt::format("{}: edit {}", options.plan_file.string(), i + 1),
+                             error.what());
+        }
+    }
     return run_plan(options.request.model, options.request.output, edits, options.request.resume,
                     [&](const PlannedEdit& planned) {
                         EditCommandOptions one = with(planned.settings);
@@ -152,6 +158,9 @@ void run_edit(EditCommandOptions& options) {
     if (options.plan_file.empty() &&
         !(options.overrides.contains("from") && options.overrides.contains("to")))
         throw UsageError("--from and --to are required, or --plan");
+    if (!options.plan_file.empty() &&
+        (options.overrides.contains("from") || options.overrides.contains("to")))
+        throw UsageError("--plan has the sentences of its edits: without --from and --to");
     request.device = start_command(options);
     request.prior = find_prior(options.prior);
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");

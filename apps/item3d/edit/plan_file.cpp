@@ -24,6 +24,19 @@ json read_json(const fs::path& path) {
     return json::parse(read_text(path), nullptr, /*allow_exceptions=*/false);
 }
 
+/// Throws InputError where a value is of another type than its setting.
+void check_types(const std::string& place, const json& edit) {
+    for (const auto& [name, value] : edit.items()) {
+        EditSettings settings;
+        try {
+            setting_named(name).set(settings, value);
+        } catch (const json::exception&) {
+            throw InputError(place, fmt::format("{} cannot be {}", name, value.dump()),
+                             "its value is as " + setting_named(name).get(EditSettings()).dump());
+        }
+    }
+}
+
 /// Model and settings of an edit, to know it again.
 json question_of(const PlannedEdit& planned) {
     return {{"model", planned.model.string()}, {"settings", planned.settings}};
@@ -66,8 +79,7 @@ std::vector<json> read_plan_file(const fs::path& path) {
     std::vector<json> edits;
     for (const json& edit : document["edits"]) {
         const std::string place = fmt::format("{}: edit {}", path.string(), edits.size() + 1);
-        if (!edit.is_object() || !edit.contains("from") || !edit.contains("to"))
-            throw InputError(place, "\"from\" and \"to\" are missing", example);
+        if (!edit.is_object()) throw InputError(place, "an object was expected", example);
         for (const auto& [name, value] : edit.items()) {
             const auto& table = settings_table();
             if (std::none_of(table.begin(), table.end(),
@@ -75,6 +87,10 @@ std::vector<json> read_plan_file(const fs::path& path) {
                 throw InputError(place, "'" + name + "' is no setting",
                                  "docs/reference/settings.md lists them");
         }
+        for (const char* key : {"from", "to"})
+            if (!edit.contains(key))
+                throw InputError(place, fmt::format("\"{}\" is missing", key), example);
+        check_types(place, edit);
         edits.push_back(edit);
     }
     return edits;

@@ -147,7 +147,7 @@ class RegionOutput {
         sheet.title = fmt::format("{:.1f} % of the surface", 100 * region->share());
         save_image(folder_ / "region.png", contact_sheet(tiles, sheet));
         record["share"] = region->share();
-        record["materials"] = write_masks(*region, space, materials);
+        record["materials"] = write_masks(*region, space);
         return record;
     }
 
@@ -160,9 +160,8 @@ class RegionOutput {
         save_cameras(folder_ / "transforms.json", cameras_, model_);
     }
 
-    json write_masks(const Region& region, const FieldSpace& space,
-                     const std::vector<int>& materials) const {
-        const Atlas atlas = choose_uvs(model_, space, materials, UvPolicy::keep);
+    json write_masks(const Region& region, const FieldSpace& space) const {
+        const Atlas atlas = choose_uvs(model_, space, region.materials(), UvPolicy::keep);
         const auto masks = region_masks(region, model_, geometry_, atlas, options_.texture_size);
         json records = json::array();
         FileNames names;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::int64_t sampled_points = 1 << 16;
 constexpr std::int64_t kept_points = 4096;
+constexpr double least_share = 1e-7;  ///< of the surface: less is nothing
 
 /// The largest of the selectors' weights.
 at::Tensor united(const std::vector<std::unique_ptr<Selector>>& selectors, const Surface& surface) {
@@ -49,11 +50,12 @@ Region::Region(const RegionRequest& request, const RegionScene& scene) {
     }
     share_ = weight(surface).mean().item<double>();
     const at::Tensor indices = inside.gt(0).nonzero().squeeze(1);
-    if (indices.size(0) == 0) {
+    if (indices.size(0) == 0 || share_ < least_share) {
         std::vector<std::string> all = request.include;
         if (all.empty()) all.emplace_back("everything");
         throw InputError(fmt::format("{}", fmt::join(all, ", ")),
-                         request.exclude.empty()
+                         indices.size(0) > 0 ? "nothing is left of this region within its feather"
+                         : request.exclude.empty()
                              ? "nothing of what is edited is in this region"
                              : "nothing is left of this region without what is excluded",
                          "item3d region MODEL --region ... -o FOLDER shows what a selector takes");
@@ -69,7 +71,7 @@ Region::Region(const RegionRequest& request, const RegionScene& scene) {
 
 at::Tensor Region::unfeathered(const Surface& surface) const {
     at::Tensor weights = include_.empty() ? at::ones({surface.count()}) : united(include_, surface);
-    if (!exclude_.empty()) weights = weights * (1 - united(exclude_, surface));
+    if (!exclude_.empty()) weights = (weights - united(exclude_, surface)).clamp_min(0);
     return weights;
 }
 

@@ -28,7 +28,7 @@ constexpr std::int64_t point_count = 1 << 16;
 constexpr float enough = 0.4f;
 /// A patch of which less is named, or more, is not, or is, in the region as a whole.
 constexpr double least_part = 0.25, largest_part = 0.75;
-/// Mean probability of what is taken, below which it is called unsure.
+/// Mean probability of what is taken, below which a look is recommended.
 constexpr double sure = 0.6;
 
 std::vector<Camera> cameras_around(const Model& model) {
@@ -225,8 +225,9 @@ std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionSce
             verdicts[i] == WordsSelector::Verdict::outside)
             verdicts[i] = WordsSelector::Verdict::by_place;
     const double mean = confidence / taken;
-    note(fmt::format("{}: {:.1f} % of what is seen, {:.0f} % sure{}", text.whole, 100 * taken / all,
-                     100 * mean, mean < sure ? "; look at it by item3d region" : ""));
+    note(fmt::format("{}: {:.1f} % of what is seen, mean probability {:.0f} %{}", text.whole,
+                     100 * taken / all, 100 * mean,
+                     mean < sure ? "; look at it by item3d region" : ""));
     const auto [low, high] = scene.model.bounds();
     const float cell = 1.5f * glm::length(high - low) / std::sqrt(static_cast<float>(point_count));
     return std::make_unique<WordsSelector>(std::move(patches), std::move(verdicts),
