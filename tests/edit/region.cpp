@@ -69,6 +69,24 @@ TEST_F(EditTest, decoded_texels_of_a_jpeg_are_kept_too) {
     EXPECT_GT(inside, 0.5);
 }
 
+TEST_F(EditTest, a_device_edits_a_region_as_the_cpu_does) {
+    if (!has_device)
+        GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with";
+    std::vector<Image> colors;
+    for (const at::Device device : {at::Device(at::kCPU), at::Device(at::kCUDA, 0)}) {
+        EditRequest edit = request(device.is_cuda() ? "cuda" : "cpu", 2,
+                                   {{"region", {"box=-1,-1,-1,0,1,1"}}, {"feather", 5}});
+        edit.device = device;
+        EXPECT_EQ(edit_model(edit)["region"]["outside"]["changed"], 0);
+        colors.push_back(base_color_of(edit.output / "model.glb"));
+    }
+    ASSERT_EQ(colors[0].pixels.size(), colors[1].pixels.size());
+    double apart = 0;
+    for (std::size_t i = 0; i < colors[0].pixels.size(); ++i)
+        apart += std::abs(colors[0].pixels[i] - colors[1].pixels[i]);
+    EXPECT_LT(apart / static_cast<double>(colors[0].pixels.size()), 0.01);
+}
+
 TEST_F(EditTest, regions_that_nothing_is_in_are_refused) {
     EXPECT_THROW(edit_model(request("out", 1, {{"region", {"sphere=0,0,0,0.2"}}})), InputError);
     EXPECT_THROW(edit_model(request("out", 1, {{"region", {"material=wood"}}})), InputError);

@@ -2,6 +2,7 @@
 #include "item3d/prior/training/replicas.h"
 
 #include "item3d/prior/training/training_loop.h"
+#include "item3d/render/cuda/module.h"
 #include "item3d/tensors/workers.h"
 
 #include <gtest/gtest.h>
@@ -29,6 +30,27 @@ struct Network : torch::nn::Module {
         return linear(at::tanh(convolution(x)).flatten(1)).square().mean();
     }
 };
+
+/// Asked before any test has LibTorch look for a device, which it does once.
+const bool has_device = cuda::cuda_available();
+
+/// Values after some steps of a network with matrices, computed on `device`.
+at::Tensor train_matrices(at::Device device, bool orthogonal) {
+    at::manual_seed(4);
+    torch::nn::Linear first(24, 32), second(32, 24);
+    const at::Tensor batch = at::randn({8, 24});
+    first->to(device);
+    second->to(device);
+    std::vector<std::unique_ptr<FlatModel>> flat;
+    flat.push_back(std::make_unique<FlatModel>(
+        std::vector<std::shared_ptr<torch::nn::Module>>{first.ptr(), second.ptr()}));
+    ReplicaGroup group(std::move(flat), OptimizerOptions{.orthogonal = orthogonal});
+    for (int step = 0; step < 4; ++step) {
+        second->forward(at::tanh(first->forward(batch.to(device)))).square().mean().backward();
+        group.step(0, {.learning_rate = 1e-2f, .ema_decay = .9f});
+    }
+    return at::stack({group.replica(0).values.cpu(), group.average().cpu()});
+}
 
 /// Trains `ranks` replicas for some steps on equal parts of the same batches.
 at::Tensor train_toy(int ranks, int steps) {
@@ -62,6 +84,17 @@ TEST(PriorReplicas, AveragedGradientsAreThoseOfTheWholeBatch) {
     EXPECT_LT((one - two).abs().max().item<float>(), 1e-5);
     EXPECT_LT((one - four).abs().max().item<float>(), 1e-5);
     EXPECT_TRUE(at::equal(two, train_toy(2, 5)));  // no trace of timing
+}
+
+TEST(PriorReplicas, ADeviceStepsAsTheCpu) {
+    if (!has_device)
+        GTEST_SKIP() << "no CUDA device, or no libtorch_cuda.so: nothing to compare the CPU with";
+    for (const bool orthogonal : {false, true}) {
+        const at::Tensor ours = train_matrices(at::kCPU, orthogonal);
+        const at::Tensor theirs = train_matrices({at::kCUDA, 0}, orthogonal);
+        // A device makes matrices orthogonal in bf16.
+        EXPECT_LT((ours - theirs).abs().max().item<float>(), orthogonal ? 5e-3 : 1e-4);
+    }
 }
 
 TEST(PriorReplicas, StepIsAdamW) {

@@ -28,6 +28,7 @@ struct TrainOptions : CommonOptions {
     std::string work;
     std::string part = "all";
     std::string recipe = "embedded";
+    CLI::Option* replicas = nullptr;
     /// Each puts an option that was given into a recipe's settings.
     std::vector<std::function<void(TrainSettings&)>> given;
 
@@ -53,8 +54,15 @@ CLI::Option* add_setting(CLI::App& command, TrainOptions& options, const std::st
     return option;
 }
 
-void run_train(const TrainOptions& options) {
+void run_train(const TrainOptions& options, at::Device device) {
     TrainSettings settings = options.chosen();
+    settings.device = device;
+    if (!device.is_cpu()) {
+        if (options.replicas->count() > 0 && settings.replicas > 1)
+            throw InputError("--replicas", "a CUDA device trains one copy",
+                             "give one process for each device, or --device cpu");
+        settings.replicas = 1;
+    }
     settings.processes = ProcessGroup::from_environment();
     if (settings.processes.size() > 1)
         note(fmt::format("process {} of {} has joined the others", settings.processes.rank(),
@@ -95,10 +103,11 @@ void add_network_settings(CLI::App& command, TrainOptions& options) {
                 "Pictures a step and replica that the U-Net learns from")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
-    add_setting(command, options, "--replicas", &TrainSettings::replicas,
-                "Copies of the model that each process trains in parallel")
-        ->check(CLI::Range(1, 256))
-        ->capture_default_str();
+    options.replicas =
+        add_setting(command, options, "--replicas", &TrainSettings::replicas,
+                    "Copies of the model that each process trains in parallel; 1 on a CUDA device")
+            ->check(CLI::Range(1, 256))
+            ->capture_default_str();
     add_setting(command, options, "--learning-rate", &TrainSettings::learning_rate,
                 "Highest learning rate; the captioner's is twice that")
         ->check(CLI::PositiveNumber)
@@ -118,6 +127,9 @@ void add_count_settings(CLI::App& command, TrainOptions& options) {
     add("--segmenter-samples", &TrainSettings::segmenter_samples,
         "Pictures that the segmenter learns from, repetitions counted")
         ->check(CLI::PositiveNumber);
+    add("--segmenter-batch", &TrainSettings::segmenter_batch,
+        "Pictures a step and replica that the segmenter learns from")
+        ->check(CLI::Range(1, 4096));
     add("--part-data", &TrainSettings::part_samples, "Different pictures for the segmenter")
         ->check(CLI::Range(16, 10000000));
     add("--part-variants", &TrainSettings::part_variants, "Shapes of each class for it")
@@ -194,10 +206,7 @@ void add_train(CLI::App& app) {
     command->footer(
         "Several processes or machines train one prior where RANK, WORLD_SIZE, MASTER_ADDR and "
         "MASTER_PORT are set, as torchrun does.");
-    command->callback([options] {
-        start_command(*options);
-        run_train(*options);
-    });
+    command->callback([options] { run_train(*options, start_command(*options)); });
 }
 
 struct PicturesOptions : CommonOptions {

@@ -11,8 +11,8 @@
 
 namespace item3d {
 
-/// Edge of these pictures in pixels, a little more than the embedded segmenter reads.
-inline constexpr int part_picture_size = 96;
+/// Edge of these pictures in pixels: what the embedded segmenter reads.
+inline constexpr int part_picture_size = 112;
 
 struct PartPictures {
     at::Tensor images;             ///< [N, S, S, 3] uint8 sRGB

@@ -110,7 +110,8 @@ nlohmann::json measure_parts(const Segmenter& segmenter, const PartPictures& pic
         for (const PartQuestion& question : questions)
             prompts.push_back(question.prompt);
         const at::Tensor masks =
-            segmenter.masks(pictures.pixel_values({i}) * .5 + .5, prompts)[0].gt(.5).to(at::kFloat);
+            segmenter.masks(pictures.pixel_values({i}) * .5 + .5, prompts)[0].cpu().gt(.5).to(
+                at::kFloat);
         for (std::size_t k = 0; k < questions.size(); ++k) {
             const PartQuestion& question = questions[k];
             const at::Tensor found = masks[static_cast<std::int64_t>(k)];

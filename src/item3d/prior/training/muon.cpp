@@ -14,7 +14,7 @@ at::Tensor orthogonalized(const at::Tensor& matrix) {
     const bool tall = matrix.size(0) > matrix.size(1);
     const at::Tensor wide = tall ? matrix.t() : matrix;
     at::Tensor x =
-        (wide / (wide.norm() + 1e-7)).to(choose_precision("auto", at::kCPU)).contiguous();
+        (wide / (wide.norm() + 1e-7)).to(choose_precision("auto", matrix.device())).contiguous();
     for (int i = 0; i < 5; ++i) {
         const at::Tensor square = x.mm(x.t());
         const at::Tensor mixed = square * -4.7750 + square.mm(square) * 2.0315;

@@ -49,8 +49,10 @@ FlatModel::FlatModel(const std::vector<std::shared_ptr<torch::nn::Module>>& modu
             total += parameter.numel();
         }
     }
-    values = at::zeros({total});
-    gradients = at::zeros({total});
+    ITEM3D_CHECK(!parameters_.empty(), "a model needs parameters");
+    const at::Device device = parameters_.front().device();
+    values = at::zeros({total}, device);
+    gradients = at::zeros({total}, device);
     const at::NoGradGuard no_grad;
     std::int64_t offset = 0;
     for (at::Tensor& parameter : parameters_) {
@@ -78,13 +80,14 @@ ReplicaGroup::ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas,
       barrier_(static_cast<std::ptrdiff_t>(replicas_.size())) {
     ITEM3D_CHECK(!replicas_.empty(), "a group needs a replica");
     const at::Tensor& values = replicas_[0]->values;
+    ITEM3D_CHECK(values.is_cpu() || replicas_.size() == 1, "a device trains one replica");
     for (auto& replica : replicas_)
         replica->values.copy_(values);
     first_moment_ = at::zeros_like(values);
     second_moment_ = at::zeros_like(values);
     average_ = values.clone();
     changes_ = at::zeros_like(values);
-    sum_ = at::zeros({values.numel() + 1});
+    sum_ = at::zeros({values.numel() + 1}, values.options());
     square_sums_.resize(static_cast<std::size_t>(block_count(values.numel())));
 }
 
@@ -104,7 +107,41 @@ void ReplicaGroup::fail() {
     barrier_.arrive_and_drop();
 }
 
+ReplicaGroup::Result ReplicaGroup::step_on_device(const Request& request) {
+    const at::NoGradGuard no_grad;
+    FlatModel& model = *replicas_[0];
+    const std::int64_t total = model.size();
+    sum_.narrow(0, 0, total).copy_(model.gradients);
+    bool stop = request.stop;
+    if (processes_.size() > 1) {
+        sum_[total].fill_(stop ? 1 : 0);
+        at::Tensor sum = sum_.cpu();
+        processes_.sum(sum);
+        stop = sum[total].item<float>() > 0;
+        sum_.copy_(sum);
+    }
+    const at::Tensor gradient = sum_.narrow(0, 0, total);
+    gradient.mul_(1.0 / processes_.size());
+    const auto norm = gradient.norm().item<float>();
+    const float clip = norm > options_.clip_norm ? options_.clip_norm / norm : 1.0f;
+    gradient.mul_(clip);
+    first_moment_.lerp_(gradient, 1 - options_.beta1);
+    second_moment_.mul_(options_.beta2).addcmul_(gradient, gradient, 1 - options_.beta2);
+    const auto time = static_cast<double>(steps_ + 1);
+    const double correction1 = 1 - std::pow(double{options_.beta1}, time);
+    const double correction2 = 1 - std::pow(double{options_.beta2}, time);
+    changes_.copy_(first_moment_ / correction1 /
+                   (second_moment_ / correction2).sqrt_().add_(options_.epsilon));
+    if (options_.orthogonal) orthogonalize(0, 1);
+    model.values.sub_((changes_ + model.values * options_.weight_decay) * request.learning_rate);
+    average_.lerp_(model.values, 1 - request.ema_decay);
+    model.gradients.zero_();
+    ++steps_;
+    return {norm, stop};
+}
+
 ReplicaGroup::Result ReplicaGroup::step(int rank, const Request& request) {
+    if (!sum_.is_cpu()) return step_on_device(request);
     const std::int64_t ranks = size();
     const std::int64_t total = replicas_[0]->size(), blocks = block_count(total);
     // Each rank looks after some of the blocks of the vector.
@@ -197,10 +234,10 @@ void ReplicaGroup::orthogonalize(int rank, float clip) {
 }
 
 std::vector<std::pair<std::string, at::Tensor>> ReplicaGroup::state() const {
-    return {{"values", replicas_[0]->values},
-            {"average", average_},
-            {"first_moment", first_moment_},
-            {"second_moment", second_moment_},
+    return {{"values", replicas_[0]->values.cpu()},
+            {"average", average_.cpu()},
+            {"first_moment", first_moment_.cpu()},
+            {"second_moment", second_moment_.cpu()},
             {"steps", at::tensor({steps_}, at::kLong)}};
 }
 
@@ -224,18 +261,19 @@ void ReplicaGroup::load_state(const std::vector<std::pair<std::string, at::Tenso
     }
 }
 
-Autocast::Autocast()
-    : enabled_before_(at::autocast::is_autocast_enabled(at::kCPU)),
+Autocast::Autocast(at::Device device)
+    : device_(device.type()),
+      enabled_before_(at::autocast::is_autocast_enabled(device_)),
       cache_before_(at::autocast::is_autocast_cache_enabled()) {
-    const at::ScalarType precision = choose_precision("auto", at::kCPU);
-    at::autocast::set_autocast_enabled(at::kCPU, precision != at::kFloat);
-    at::autocast::set_autocast_dtype(at::kCPU, at::kBFloat16);
+    const at::ScalarType precision = choose_precision("auto", device);
+    at::autocast::set_autocast_enabled(device_, precision != at::kFloat);
+    at::autocast::set_autocast_dtype(device_, at::kBFloat16);
     // The cache of converted weights is shared by all threads; each weight is used once anyway.
     at::autocast::set_autocast_cache_enabled(false);
 }
 
 Autocast::~Autocast() {
-    at::autocast::set_autocast_enabled(at::kCPU, enabled_before_);
+    at::autocast::set_autocast_enabled(device_, enabled_before_);
     at::autocast::set_autocast_cache_enabled(cache_before_);
 }
 

@@ -20,7 +20,7 @@
 namespace item3d {
 
 /// All parameters of some modules as views of one vector, and their gradients of another.
-/// Convolution weights are laid out channels-last.
+/// Convolution weights are laid out channels-last. The vectors are where the parameters were.
 class FlatModel {
   public:
     explicit FlatModel(const std::vector<std::shared_ptr<torch::nn::Module>>& modules);
@@ -56,7 +56,8 @@ struct OptimizerOptions {
 class ReplicaGroup {
   public:
     /// All replicas get the first one's values. Each process has a group of the same size; their
-    /// values and states must be the same when they begin, and stay so, byte by byte.
+    /// values and states must be the same when they begin, and stay so, byte by byte. On a CUDA
+    /// device a group has one replica.
     ReplicaGroup(std::vector<std::unique_ptr<FlatModel>> replicas, const OptimizerOptions& options,
                  ProcessGroup processes = {});
 
@@ -85,11 +86,13 @@ class ReplicaGroup {
     std::int64_t steps() const { return steps_; }
     const at::Tensor& average() const { return average_; }  ///< [P] moving average
 
-    /// Everything but gradients, by name; load_state takes what state gave.
+    /// Everything but gradients, by name, on the CPU; load_state takes what state gave.
     std::vector<std::pair<std::string, at::Tensor>> state() const;
     void load_state(const std::vector<std::pair<std::string, at::Tensor>>& state);
 
   private:
+    /// step() of the one replica on a CUDA device.
+    Result step_on_device(const Request& request);
     void wait();
     /// Makes changes_ orthogonal, of those matrices that this rank looks after. clip: what the
     /// newest gradient was scaled by.
@@ -109,16 +112,17 @@ class ReplicaGroup {
     std::barrier<> barrier_;
 };
 
-/// bfloat16 autocast on this thread for as long as it lives (CPU operations), on a CPU that
-/// computes in it; others would only convert there and back.
+/// bfloat16 autocast of a device's operations on this thread for as long as it lives, where the
+/// device computes in it; others would only convert there and back.
 class Autocast {
   public:
-    Autocast();
+    explicit Autocast(at::Device device);
     ~Autocast();
     Autocast(const Autocast&) = delete;
     Autocast& operator=(const Autocast&) = delete;
 
   private:
+    at::DeviceType device_;
     bool enabled_before_;
     bool cache_before_;
 };

@@ -22,13 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t held_out_part_pictures = 500;
-constexpr int part_views_each = 2;
+constexpr int part_views_each = 4;
 constexpr int part_lights = 96;  ///< at most: more would take longer to prefilter than to draw by
 constexpr const char* part_pictures_name = "parts";
 
 /// What the pictures depend on: those made with other settings are not gone on with.
 nlohmann::json part_fingerprint(const TrainSettings& s) {
-    return {{"version", 1},
+    return {{"version", 3},
             {"seed", s.seed},
             {"part_samples", s.part_samples},
             {"part_variants", s.part_variants},
@@ -45,15 +45,15 @@ PartPictures prepare_part_pictures(const TrainSettings& settings) {
         write_atomically(file, part_fingerprint(settings).dump(2) + "\n");
         const std::uint64_t seed = mix_bits(settings.seed * 1000 + 41);
         std::vector<TrainingLight> lights = make_training_lights(
-            mix_bits(seed + 1), std::min(settings.lights, part_lights), settings.replicas);
+            mix_bits(seed + 1), std::min(settings.lights, part_lights), drawing_threads(settings));
         stop_here_if_interrupted(settings);
         std::vector<ShapeView> views =
             make_view_pool(false, settings.part_variants, part_views_each, mix_bits(seed + 2),
-                           settings.replicas, part_picture_size);
+                           drawing_threads(settings), part_picture_size);
         stop_here_if_interrupted(settings);
         const ExampleSource source(std::move(views), std::move(lights), mix_bits(seed + 3));
         const PartPictures drawn =
-            draw_part_pictures(source, settings.part_samples, settings.replicas);
+            draw_part_pictures(source, settings.part_samples, drawing_threads(settings));
         stop_here_if_interrupted(settings);
         save_part_pictures(settings.work, part_pictures_name, drawn);
     }
@@ -113,8 +113,9 @@ void train_segmenter_part(const TrainSettings& settings) {
     nlohmann::json record = train_segmenter(data, settings, tokenizer, config, begin);
     if (processes.first()) {
         const PartPictures held_out = draw_held_out_parts(
-            mix_bits(settings.seed * 1000 + 42), held_out_part_pictures, settings.replicas);
-        const Segmenter segmenter = Segmenter::load(settings.output / segmenter_folder);
+            mix_bits(settings.seed * 1000 + 42), held_out_part_pictures, drawing_threads(settings));
+        const Segmenter segmenter =
+            Segmenter::load(settings.output / segmenter_folder, settings.device);
         record["parts"] = part_summary(measure_parts(segmenter, held_out));
         note("segmenter: " + record["parts"].dump());
         update_prior_json(settings.output, {{"segmenter", record}});

@@ -5,6 +5,8 @@
 #include "item3d/core/format.h"
 #include "item3d/tensors/precision.h"
 
+#include <ATen/Parallel.h>
+
 #include <map>
 
 namespace item3d {
@@ -48,6 +50,10 @@ TrainSettings train_recipe(const std::string& name) {
     return found->second;
 }
 
+int drawing_threads(const TrainSettings& settings) {
+    return settings.device.is_cpu() ? settings.replicas : at::get_num_threads();
+}
+
 int global_rank(const TrainSettings& settings, int rank) {
     return settings.processes.rank() * settings.replicas + rank;
 }
@@ -75,6 +81,7 @@ nlohmann::json settings_json(const TrainSettings& settings) {
                 {"clip_samples", settings.clip_samples},
                 {"captioner_samples", settings.captioner_samples},
                 {"segmenter_samples", settings.segmenter_samples},
+                {"segmenter_batch", settings.segmenter_batch},
                 {"part_samples", settings.part_samples},
                 {"part_variants", settings.part_variants},
                 {"labeled_samples", settings.labeled_samples},
@@ -85,7 +92,7 @@ nlohmann::json settings_json(const TrainSettings& settings) {
                 {"optimizer", settings.optimizer},
                 {"learning_rate", as_written(settings.learning_rate)},
                 // Each process steps its own copy of the weights: rounded otherwise, they part.
-                {"precision", precision_name(choose_precision("auto", at::kCPU))},
+                {"precision", precision_name(choose_precision("auto", settings.device))},
                 {"resume", settings.resume},
                 {"stop_after", settings.stop_after}});
     return all;

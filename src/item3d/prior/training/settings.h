@@ -3,6 +3,7 @@
 
 #include "item3d/prior/data/views.h"
 #include "item3d/prior/training/process_group.h"
+#include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>
 
@@ -30,6 +31,7 @@ struct TrainSettings {
     std::int64_t segmenter_samples = 29000;   ///< that the segmenter sees, repetitions counted
     std::int64_t part_samples = 12000;        ///< different pictures for it
     int part_variants = 16;                   ///< shapes of each class on those
+    int segmenter_batch = 8;                  ///< pictures a step and replica that it learns from
     int labeled_variants = 60;                ///< shapes of each class on those
     int shape_variants = 30;
     int views_each = 4;
@@ -42,7 +44,7 @@ struct TrainSettings {
     std::string condition = "surface";             ///< what it is told: or "depth", or "none"
     std::string prediction_type = "v_prediction";  ///< or "epsilon"
     std::string optimizer = "muon";                ///< of all but the autoencoder; or "adamw"
-    int replicas = 2;                              ///< of each process
+    int replicas = 2;                              ///< of each process; 1 on a CUDA device
     int batch = 32;                                ///< pictures a step and replica
     float learning_rate = 1e-3f;
     int word_pictures = 12;  ///< that each word is asked about at the end
@@ -52,12 +54,17 @@ struct TrainSettings {
     double checkpoint_seconds = 120;
     double export_seconds = 600;
     ProcessGroup processes;  ///< that train together
+    /// What the networks learn on, but for the autoencoder; pictures are drawn on the CPU.
+    at::Device device = at::kCPU;
 };
 
 /// "embedded" (what is trained without a recipe) or "embedded-xl" (128 pixels, a wider U-Net).
 /// Throws InputError for other names.
 TrainSettings train_recipe(const std::string& name);
 const std::vector<std::string>& train_recipe_names();
+
+/// Threads that pictures are drawn on.
+int drawing_threads(const TrainSettings& settings);
 
 /// Which of all processes' replicas this process's replica of that number is.
 int global_rank(const TrainSettings& settings, int rank);

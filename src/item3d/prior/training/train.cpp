@@ -51,7 +51,7 @@ ExampleSource make_source(const TrainSettings& settings, std::vector<TrainingLig
     std::vector<ShapeView> views =
         make_view_pool(held_out, settings.shape_variants, settings.views_each,
                        seed_of(settings, held_out ? held_out_stream : view_stream),
-                       settings.replicas, settings.resolution);
+                       drawing_threads(settings), settings.resolution);
     stop_if_interrupted(settings);
     return ExampleSource(std::move(views), std::move(lights),
                          seed_of(settings, held_out ? held_out_stream : example_stream),
@@ -67,7 +67,7 @@ PictureData draw_pictures(const ExampleSource& source, std::int64_t count,
     Progress progress("pictures", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
-    run_workers(count, settings.replicas, [&](std::int64_t i) {
+    run_workers(count, drawing_threads(settings), [&](std::int64_t i) {
         const Example example = source.draw(i);
         data.images[i].copy_((example.image * 255).round());
         data.covered[i].copy_((example.covered * 255).round());
@@ -90,7 +90,7 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
     Progress progress("examples", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
-    run_workers(count / at_once, settings.replicas, [&](std::int64_t job) {
+    run_workers(count / at_once, drawing_threads(settings), [&](std::int64_t job) {
         std::vector<at::Tensor> images, cells;
         std::vector<std::string> captions;
         for (std::int64_t i = job * at_once; i < (job + 1) * at_once; ++i) {
@@ -103,7 +103,7 @@ LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencode
         const at::Tensor pictures = at::stack(images).permute({0, 3, 1, 2}) * 2 - 1;
         at::Tensor latents;
         {
-            const Autocast autocast;
+            const Autocast autocast(at::kCPU);
             latents = autoencoder.encode(pictures);
         }
         latents = latents.to(at::kFloat) * autoencoder.scaling_factor();
@@ -174,8 +174,8 @@ TrainedAutoencoder draw_and_train_autoencoder(const ExampleSource& source,
 }
 
 Prepared prepare(const TrainSettings& settings, const ClipTokenizer& tokenizer) {
-    const std::vector<TrainingLight> lights =
-        make_training_lights(seed_of(settings, light_stream), settings.lights, settings.replicas);
+    const std::vector<TrainingLight> lights = make_training_lights(
+        seed_of(settings, light_stream), settings.lights, drawing_threads(settings));
     stop_if_interrupted(settings);
     const ExampleSource source = make_source(settings, lights, false);
     Prepared prepared;
@@ -279,7 +279,7 @@ void train_prior(const TrainSettings& settings) {
     train_diffusion(prepared.data, settings, {prior_unet_config(settings), prepared.text},
                     prepared.record);
     if (processes.first())
-        write_measurement(settings.output, settings.word_pictures, settings.replicas);
+        write_measurement(settings.output, settings.word_pictures, drawing_threads(settings));
     processes.wait_for_first();
 }
 

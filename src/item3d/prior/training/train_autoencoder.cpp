@@ -54,7 +54,7 @@ at::Tensor reconstruction_loss(AutoencoderTiny& model, const Batch& data, double
                                const at::Tensor& noise) {
     at::Tensor latents, images;
     {
-        const Autocast autocast;
+        const Autocast autocast(at::kCPU);
         latents = model.encode(data.images);
         images = model.decode(latents + noise * .05);
     }

@@ -99,10 +99,14 @@ at::Tensor caption_loss(BlipModel model, const LabeledPictures& data,
             target[k] = texts[i][k + 1];
         }
     }
+    const at::Device device = model->parameters().front().device();
+    tokens = tokens.to(device);
+    next = next.to(device);
     at::Tensor logits;
     {
-        const Autocast autocast;
-        const at::Tensor image = model->image_embeds(augment(data.pixel_values(rows), random));
+        const Autocast autocast(device);
+        const at::Tensor image =
+            model->image_embeds(augment(data.pixel_values(rows).to(device), random));
         // A token sees those before it alone, so padding behind a text needs no mask.
         const at::Tensor states =
             model->decode(tokens, at::ones_like(tokens), model->read_image(image));
@@ -151,6 +155,7 @@ nlohmann::json train_captioner(const LabeledPictures& data, const TrainSettings&
     for (int rank = 0; rank < settings.replicas; ++rank) {
         BlipModel model = make_captioner(settings, config);
         if (!begin.empty()) begin_with_captioner(begin, model);
+        model->to(settings.device);
         const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));
         replicas.push_back({{model.ptr()}, [&, model, stream](const auto& rows, auto step) {
                                 const Random random(settings.seed, 0xb11900 + stream,

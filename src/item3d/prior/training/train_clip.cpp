@@ -74,10 +74,12 @@ at::Tensor clip_loss(ClipModel model, const LabeledPictures& data, const ClipTok
 
     at::Tensor images, sentences;
     {
-        const Autocast autocast;
-        images = model->image_features(augment(data.pixel_values(rows), random));
-        sentences = model->text_features(read_sentences(tokenizer, texts));
+        const at::Device device = model->logit_scale().device();
+        const Autocast autocast(device);
+        images = model->image_features(augment(data.pixel_values(rows).to(device), random));
+        sentences = model->text_features(read_sentences(tokenizer, texts).to(device));
     }
+    truth = truth.to(images.device());
     const at::Tensor logits =
         model->logit_scale().clamp_max(100) * unit(images).mm(unit(sentences).t());
     const auto of_pictures = [&](const at::Tensor& all) { return all.narrow(1, 0, pictures).t(); };
@@ -168,6 +170,7 @@ nlohmann::json train_clip(const LabeledPictures& data, const TrainSettings& sett
         ClipModel model = make_clip(settings, config);
         if (!begin.empty()) begin_with_clip(begin, model);
         if (captioner) warm = copy_vision(captioner, model, sample);
+        model->to(settings.device);
         const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));
         replicas.push_back({{model.ptr()}, [&, model, stream](const auto& rows, auto step) {
                                 const Random random(settings.seed, 0xc11900 + stream,

@@ -81,16 +81,17 @@ at::Tensor diffusion_loss(Networks networks, const LatentData& data, const Noise
     const at::Tensor noise = at::randn(latents.sizes(), generator);
     at::Tensor input = schedule.add_noise(latents, noise, timesteps);
     if (more > 0) input = at::cat({input, condition}, 1);
-    input = input.contiguous(at::MemoryFormat::ChannelsLast);
+    const at::Device device = networks.unet->parameters().front().device();
+    input = input.to(device).contiguous(at::MemoryFormat::ChannelsLast);
     at::Tensor prediction;
     {
-        const Autocast autocast;
-        const at::Tensor text = networks.text->forward(tokens).last_hidden_state;
-        prediction = networks.unet->forward(input, timesteps, text);
+        const Autocast autocast(device);
+        const at::Tensor text = networks.text->forward(tokens.to(device)).last_hidden_state;
+        prediction = networks.unet->forward(input, timesteps.to(device), text);
     }
     const at::Tensor wanted =
         schedule.predicts_velocity() ? schedule.get_velocity(latents, noise, timesteps) : noise;
-    return ((prediction.to(at::kFloat) - wanted).square() * weights).mean();
+    return ((prediction.to(at::kFloat) - wanted.to(device)).square() * weights.to(device)).mean();
 }
 
 }  // namespace
@@ -195,6 +196,8 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
         // The loop copies the first replica's values to all others.
         if (rank == 0 && settings.processes.first() && !settings.begin_with.empty())
             begin_with_weights(settings.begin_with, networks.unet, networks.text);
+        for (const auto& module : networks.modules())
+            module->to(settings.device);
         const int stream = global_rank(settings, rank);
         replicas.push_back({networks.modules(), [&, networks, stream](const auto& rows, auto step) {
                                 return diffusion_loss(networks, data, schedule, rows, settings.seed,

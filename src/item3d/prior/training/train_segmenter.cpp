@@ -12,7 +12,11 @@
 #include "item3d/prior/training/training_loop.h"
 #include "item3d/prior/training/vision_language.h"
 
+#include <ATen/ops/affine_grid_generator.h>
+#include <ATen/ops/grid_sampler.h>
+
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -21,15 +25,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int segmenter_batch = 8;
 /// Of each picture: the vision transformer reads it once for all of them.
 constexpr int prompts_a_picture = 6;
-/// Pixels a side that the network reads: seven patches, two more than CLIP's, so that what CLIP has
-/// learnt of patches holds for these.
-constexpr int segmenter_read_size = 84;
-/// Times the U-Net's highest learning rate, which it reaches after so many pictures.
+/// Pixels a side that the network reads, and of its patches: 14 of them a side, so that a handle
+/// fills some.
+constexpr int segmenter_read_size = 112;
+constexpr int segmenter_patch = 8;
+/// Times the U-Net's highest learning rate, which it reaches after so many steps.
 constexpr float segmenter_rate = 1.5f;
-constexpr double segmenter_rise = 800;
+constexpr int segmenter_rise = 60;
 
 ClipSegModel make_segmenter(const TrainSettings& settings, const ClipSegConfig& config) {
     at::manual_seed(static_cast<std::int64_t>(settings.seed) + 4);
@@ -62,39 +66,59 @@ at::Tensor mask_loss(const at::Tensor& logits, const at::Tensor& truth) {
     return entropy + .5 * ((1 - dice) * named).sum() / named.sum().clamp_min(1);
 }
 
+/// One random change of place for each picture, [N, 2, 3] for affine_grid_generator: mirrored,
+/// turned a little, nearer or farther, moved. Shapes that training never had stand otherwise in
+/// their pictures.
+at::Tensor random_places(Random& random, std::int64_t count) {
+    at::Tensor places = at::empty({count, 2, 3});
+    auto* place = places.mutable_data_ptr<float>();
+    for (std::int64_t i = 0; i < count; ++i, place += 6) {
+        const double angle = random.normal(0, .15), size = std::exp(random.normal(0, .2));
+        const double mirror = random.chance(.5) ? -1 : 1;
+        const double c = std::cos(angle) / size, s = std::sin(angle) / size;
+        place[0] = static_cast<float>(mirror * c);
+        place[1] = static_cast<float>(-s);
+        place[2] = static_cast<float>(random.normal(0, .08));
+        place[3] = static_cast<float>(mirror * s);
+        place[4] = static_cast<float>(c);
+        place[5] = static_cast<float>(random.normal(0, .08));
+    }
+    return places;
+}
+
 at::Tensor segmenter_loss(ClipSegModel model, const PartPictures& data,
                           const ClipTokenizer& tokenizer, const std::vector<std::int64_t>& rows,
                           Random random) {
     std::vector<std::string> texts;
-    std::vector<at::Tensor> masks, pictures;
-    for (const std::int64_t row : rows) {
-        const bool mirrored = random.chance(.5);
-        const at::Tensor picture = data.pixel_values({row});
-        pictures.push_back(mirrored ? picture.flip(3) : picture);
+    std::vector<at::Tensor> masks;
+    for (const std::int64_t row : rows)
         for (int i = 0; i < prompts_a_picture; ++i) {
             const PartPrompt prompt =
                 draw_part_prompt(random, data.facts[static_cast<std::size_t>(row)]);
             texts.push_back(prompt.text);
-            const at::Tensor mask = data.mask(row, prompt.parts);
-            masks.push_back(mirrored ? mask.flip(1) : mask);
+            masks.push_back(data.mask(row, prompt.parts));
         }
-    }
     const auto count = static_cast<std::int64_t>(rows.size());
+    const at::Device device = model->parameters().front().device();
+    const at::Tensor pictures = data.pixel_values(rows).to(device);
+    const std::int64_t size = model->config().clip.vision.image_size;
+    const at::Tensor grid = at::affine_grid_generator(random_places(random, count).to(device),
+                                                      {count, 3, size, size}, false);
+    constexpr int bilinear = 0, zeros = 0, border = 1;
+    const at::Tensor read = at::grid_sampler(pictures, grid, bilinear, border, false);
+    const at::Tensor placed =
+        at::grid_sampler(at::stack(masks).to(device).view(
+                             {count, prompts_a_picture, pictures.size(2), pictures.size(3)}),
+                         grid, bilinear, zeros, false);
     at::Tensor logits;
     {
-        const Autocast autocast;
-        const at::Tensor asked = model->conditional_embeddings(read_sentences(tokenizer, texts))
-                                     .view({count, prompts_a_picture, -1});
-        const std::int64_t size = model->config().clip.vision.image_size;
-        at::Tensor read = at::cat(pictures);
-        if (read.size(2) != size)
-            read = at::_upsample_bicubic2d_aa(read, {size, size}, false).clamp(-1, 1);
+        const Autocast autocast(device);
+        const at::Tensor asked =
+            model->conditional_embeddings(read_sentences(tokenizer, texts).to(device))
+                .view({count, prompts_a_picture, -1});
         logits = model->forward(read, asked);
     }
-    const at::Tensor truth =
-        at::adaptive_avg_pool2d(at::stack(masks), {logits.size(2), logits.size(3)})
-            .view(logits.sizes());
-    return mask_loss(logits, truth);
+    return mask_loss(logits, at::adaptive_avg_pool2d(placed, {logits.size(2), logits.size(3)}));
 }
 
 }  // namespace
@@ -103,8 +127,8 @@ ClipSegConfig prior_segmenter_config(int vocabulary, int start_of_text, int end_
     ClipSegConfig config;
     config.clip = prior_clip_config(vocabulary, start_of_text, end_of_text);
     config.clip.vision.image_size = segmenter_read_size;
-    config.clip.vision.num_hidden_layers = 4;
-    config.extract_layers = {0, 1, 3};
+    config.clip.vision.patch_size = segmenter_patch;
+    config.extract_layers = {1, 3, 5};
     config.reduce_dim = 64;
     config.decoder_num_attention_heads = 4;
     config.decoder_intermediate_size = 256;
@@ -165,6 +189,7 @@ nlohmann::json train_segmenter(const PartPictures& data, const TrainSettings& se
             begin_with_segmenter(begin, model);
         else if (has_begin)
             warm = copy_clip(load_clip_model(begin), model);
+        model->to(settings.device);
         const auto stream = static_cast<std::uint64_t>(global_rank(settings, rank));
         replicas.push_back({{model.ptr()}, [&, model, stream](const auto& rows, auto step) {
                                 const Random random(settings.seed, 0xd11900 + stream,
@@ -174,8 +199,9 @@ nlohmann::json train_segmenter(const PartPictures& data, const TrainSettings& se
     }
     LoopOptions options =
         vision_language_loop("segmenter", settings, settings.segmenter_samples, data.count());
-    options.batch = segmenter_batch;
-    options.rise = segmenter_rise;
+    options.batch = settings.segmenter_batch;
+    options.rise = static_cast<double>(segmenter_rise) * options.batch * settings.replicas *
+                   settings.processes.size();
     options.learning_rate *= segmenter_rate;
     if (warm) note("segmenter: it starts with what CLIP has learnt of words and pictures");
     TrainingLoop loop(options, std::move(replicas));

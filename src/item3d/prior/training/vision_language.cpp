@@ -49,18 +49,20 @@ void prepare_labeled(const TrainSettings& settings) {
         return;
     write_atomically(file, labeled_fingerprint(settings).dump(2) + "\n");
     const std::uint64_t seed = mix_bits(settings.seed * 1000 + 31);
-    save_labeled(settings.work, held_out_name,
-                 draw_held_out(seed, held_out_pictures, settings.views_each,
-                               std::min(settings.lights, held_out_lights), settings.replicas));
+    save_labeled(
+        settings.work, held_out_name,
+        draw_held_out(seed, held_out_pictures, settings.views_each,
+                      std::min(settings.lights, held_out_lights), drawing_threads(settings)));
     std::vector<TrainingLight> lights =
-        make_training_lights(mix_bits(seed + 11), settings.lights, settings.replicas);
+        make_training_lights(mix_bits(seed + 11), settings.lights, drawing_threads(settings));
     stop_here_if_interrupted(settings);
     std::vector<ShapeView> views =
         make_view_pool(false, settings.labeled_variants, settings.views_each, mix_bits(seed + 12),
-                       settings.replicas);
+                       drawing_threads(settings));
     stop_here_if_interrupted(settings);
     const ExampleSource source(std::move(views), std::move(lights), mix_bits(seed + 13));
-    const LabeledPictures seen = draw_labeled(source, settings.labeled_samples, settings.replicas);
+    const LabeledPictures seen =
+        draw_labeled(source, settings.labeled_samples, drawing_threads(settings));
     stop_here_if_interrupted(settings);
     save_labeled(settings.work, seen_name, seen);
 }
@@ -104,7 +106,8 @@ at::Tensor augment(const at::Tensor& pixel_values, Random& random) {
     std::vector<std::uint8_t> mirrored;
     for (std::int64_t i = 0; i < pixel_values.size(0); ++i)
         mirrored.push_back(random.chance(.5));
-    const at::Tensor chosen = at::tensor(mirrored).to(at::kBool).view({-1, 1, 1, 1});
+    const at::Tensor chosen =
+        at::tensor(mirrored).to(pixel_values.device(), at::kBool).view({-1, 1, 1, 1});
     const at::Tensor turned = at::where(chosen, pixel_values.flip(3), pixel_values);
     if (random.chance(.5)) {
         constexpr std::array<std::int64_t, 2> size{read_size, read_size};
@@ -171,8 +174,9 @@ void train_vision_language(const TrainSettings& settings, bool clip, bool captio
             data, settings, words, prior_captioner_config(static_cast<int>(words.size())));
         if (processes.first()) {
             note_begin(settings, captioner_folder, "captioner", record);
-            record["captions"] = measure_captions(
-                *load_captioner(settings.output / captioner_folder), held_out, settings.replicas);
+            record["captions"] =
+                measure_captions(*load_captioner(settings.output / captioner_folder), held_out,
+                                 drawing_threads(settings));
             note("captioner: " + record["captions"].dump());
             update_prior_json(settings.output, {{"captioner", record}});
         }
