@@ -6,8 +6,7 @@
 
 #include <ATen/CPUGeneratorImpl.h>
 
-#include <algorithm>
-#include <cmath>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -55,17 +54,10 @@ at::Tensor prediction_difference(const DiffusionModel& model, const GuidanceInpu
     return mean_of_draws((predictions[1] - predictions[0]).abs().mean(1), options.noises);
 }
 
-at::Tensor normalize_quantiles(const at::Tensor& values, double low, double high) {
-    ITEM3D_CHECK(values.dim() == 1 && values.size(0) > 0 && low >= 0 && low < high && high <= 1,
-                 "quantiles of values in a row");
-    const at::Tensor sorted = std::get<0>(values.sort());
-    const auto at_quantile = [&](double quantile) {
-        const auto last = static_cast<double>(sorted.size(0) - 1);
-        return sorted[static_cast<std::int64_t>(std::lround(quantile * last))].item<float>();
-    };
-    const float bottom = at_quantile(low), top = at_quantile(high);
-    if (!(top > bottom)) return at::zeros_like(values);
-    return ((values - bottom) / (top - bottom)).clamp(0, 1);
+at::Tensor normalize_difference(const at::Tensor& difference, double mean, double outlier) {
+    ITEM3D_CHECK(outlier > 0, "outliers lie above 0");
+    if (!(mean > 0)) return at::zeros_like(difference);
+    return (difference / (outlier * mean)).clamp(0, 1);
 }
 
 at::Tensor mean_attention(const DiffusionModel& model, const GuidanceInput& input,

@@ -24,9 +24,9 @@ at::Tensor prediction_difference(const DiffusionModel& model, const GuidanceInpu
                                  const TextEmbedding& source, const TextEmbedding& target,
                                  const ReadingOptions& options);
 
-/// Values [K] from 0 at their quantile `low` to 1 at their quantile `high`, clamped; 0 where the
-/// two are the same.
-at::Tensor normalize_quantiles(const at::Tensor& values, double low, double high);
+/// Differences as [0, 1]: divided by `outlier` times `mean`, and clipped there. 0 where the mean
+/// is.
+at::Tensor normalize_difference(const at::Tensor& difference, double mean, double outlier);
 
 /// Cross-attention of the model's U-Net, averaged over draws: [N, S, h, w], see
 /// DiffusionModel::cross_attention().

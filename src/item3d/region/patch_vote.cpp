@@ -10,10 +10,10 @@
 namespace item3d {
 namespace {
 
-/// A patch of which less is named, or more, is not, or is, in the region as a whole.
+/// A patch of which less is in is out as a whole, one of which more is in is in as a whole.
 constexpr double least_part = 0.25, largest_part = 0.75;
-/// A patch this large is cut even where little of it is in: a handle may be of one piece with a
-/// cup.
+/// Part of the surface above which a patch is cut: a handle may be of one piece with a cup, so that
+/// little of the patch is in. Smaller ones are taken whole from least_part on.
 constexpr double large_patch = 0.1, little_of_it = 0.005;
 
 /// Values of points that a view sees, looked up between them.
@@ -106,11 +106,13 @@ PatchVote vote_by_patch(const RegionScene& scene, const SurfaceReading& reading,
     std::vector<Verdict> verdicts;
     for (std::size_t i = 0; i < count; ++i) {
         const double part = seen[i] > 0 ? named[i] / seen[i] : 0;
-        const bool is_cut =
-            part >= least_part || (seen[i] > large_patch * all && named[i] > little_of_it * all);
-        verdicts.push_back(part > largest_part ? Verdict::inside
-                           : is_cut            ? Verdict::by_place
-                                               : Verdict::outside);
+        const bool is_large = seen[i] > large_patch * all;
+        const bool is_named = part >= least_part;
+        const bool is_whole = part > largest_part || (is_named && !is_large);
+        const bool is_cut = is_named || (is_large && named[i] > little_of_it * all);
+        verdicts.push_back(is_whole ? Verdict::inside
+                           : is_cut ? Verdict::by_place
+                                    : Verdict::outside);
     }
     vote.taken = vote.inside.to(at::kFloat).mean().item<double>();
     if (vote.taken > 0) vote.mean = value.index({vote.inside}).mean().item<double>();

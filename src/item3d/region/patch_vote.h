@@ -7,8 +7,9 @@
 
 namespace item3d {
 
-/// A vote by the pieces of surface_patches.h: one of which most points are in is taken whole, so
-/// that borders are the model's own; one that is in part in is cut where the points say.
+/// A vote by the pieces of surface_patches.h, so that borders are the model's own: one is taken
+/// whole where most of its points are in, a small one where a quarter of them is; a large one that
+/// is in part in is cut where the points say.
 struct PatchVote {
     std::unique_ptr<Selector> selector;
     double taken = 0;   ///< part of the points that are in, unseen ones counted as out

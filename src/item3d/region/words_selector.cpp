@@ -3,46 +3,120 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
-#include "item3d/networks/vision_language/segmenter.h"
+#include "item3d/core/words.h"
+#include "item3d/region/attention_reading.h"
 #include "item3d/region/patch_vote.h"
+#include "item3d/region/region_readers.h"
+
+#include <algorithm>
+#include <set>
 
 namespace item3d {
 namespace {
 
-constexpr int picture_size = 192;
-constexpr float enough = 0.4f;
-/// Mean probability of what is taken, below which a look is recommended.
-constexpr double sure = 0.6;
+constexpr int segmenter_pixels = 192;
+constexpr float enough_probability = 0.4f;
+/// Mean probability of what is taken, below which the answer is unsure.
+constexpr double sure_probability = 0.6;
+/// What says nothing: where one of these gets so much of the phrase's probability, the answer is
+/// none about the phrase.
+constexpr const char* neutral_phrases[] = {"something", "a thing"};
+constexpr double largest_neutral_part = 0.5;
+/// Standard deviations above the mean from which attention counts.
+constexpr float enough_attention = 1.25f;
 
-}  // namespace
+constexpr const char* look = "look at it by item3d region before an edit";
 
-std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionScene& scene) {
-    if (scene.segmenter == nullptr)
-        throw InputError(text.whole, "the prior has no segmenter that could find it",
-                         "give one by --segmenter, or choose another selector");
-    const at::NoGradGuard no_grad;
-    scene.segmenter->warn_of_lost_words(text.whole, text.value);
-    const SurfaceReading reading = read_surface(scene, picture_size, [&](const ModelView& view) {
-        return scene.segmenter->masks(view.picture, {text.value})[0];
-    });
-    PatchVote vote = vote_by_patch(scene, reading, reading.values[0], enough);
+void check_words(const SelectorText& text, const PriorVocabulary& vocabulary) {
+    const UnknownWords unknown = unknown_words(vocabulary, text.value);
+    if (unknown.all.empty()) return;
+    const std::string list = fmt::format("\"{}\"", fmt::join(unknown.all, "\", \""));
+    if (unknown.names_nothing)
+        throw InputError(text.whole, "the prior was never shown what is called " + list,
+                         "item3d prior info lists the words that it knows; or use view=, sphere= "
+                         "or named=");
+    warn(fmt::format("{}: the prior does not know {}", text.whole, list));
+}
+
+/// The segmenter's answer, and what neutral phrases get where it is.
+std::unique_ptr<Selector> ask_segmenter(const SelectorText& text, const RegionScene& scene) {
+    const Segmenter& segmenter = *scene.readers->segmenter;
+    segmenter.warn_of_lost_words(text.whole, text.value);
+    std::vector<std::string> prompts{text.value};
+    prompts.insert(prompts.end(), std::begin(neutral_phrases), std::end(neutral_phrases));
+    const SurfaceReading reading = read_surface(
+        scene, segmenter_pixels,
+        [&](const ModelView& view) { return segmenter.masks(view.picture, prompts)[0]; });
+    PatchVote vote = vote_by_patch(scene, reading, reading.values[0], enough_probability);
     if (vote.taken == 0)
         throw InputError(
             text.whole, "nothing of the kind is seen on the model",
             fmt::format("the likeliest place reaches {:.0f} %, {:.0f} are needed; try other "
                         "words, or view= or sphere=",
-                        100 * vote.highest, 100 * enough));
-    note(fmt::format("{}: {:.1f} % of what is seen, mean probability {:.0f} %{}", text.whole,
-                     100 * vote.taken, 100 * vote.mean,
-                     vote.mean < sure ? "; look at it by item3d region" : ""));
+                        100 * vote.highest, 100 * enough_probability));
+    std::size_t loudest = 1;
+    double neutral = 0;
+    for (std::size_t i = 1; i < prompts.size(); ++i) {
+        const double mean =
+            reading.values[static_cast<std::int64_t>(i)].index({vote.inside}).mean().item<double>();
+        if (mean > neutral) loudest = i, neutral = mean;
+    }
+    const std::string line = fmt::format("{}: {:.1f} % of what is seen, mean probability {:.0f} %",
+                                         text.whole, 100 * vote.taken, 100 * vote.mean);
+    if (neutral > largest_neutral_part * vote.mean)
+        warn(fmt::format("{}: unsure, \"{}\" gets {:.0f} % there; {}", line, prompts[loudest],
+                         100 * neutral, look));
+    else if (vote.mean < sure_probability)
+        warn(fmt::format("{}: unsure; {}", line, look));
+    else
+        note(line);
     return std::move(vote.selector);
 }
 
-std::unique_ptr<Segmenter> load_wanted_segmenter(const RegionRequest& request,
-                                                 const std::filesystem::path& folder,
-                                                 at::Device device) {
-    if (folder.empty() || !request.needs_segmenter()) return nullptr;
-    return std::make_unique<Segmenter>(Segmenter::load_to_run(folder, device, at::kFloat));
+std::unique_ptr<Selector> ask_attention(const SelectorText& text, const RegionScene& scene) {
+    const SurfaceReading reading = read_attention(scene, *scene.readers->prior, text.value);
+    PatchVote vote = vote_by_patch(scene, reading, reading.values[0], enough_attention);
+    if (vote.taken == 0)
+        throw InputError(text.whole, "the prior reads these words alike all over the model",
+                         "give a segmenter by --segmenter, or choose another selector");
+    warn(
+        fmt::format("{}: {:.1f} % of what is seen, {:.1f} standard deviations above the mean: by "
+                    "the prior's cross-attention, as no segmenter is there; it is seldom right, {}",
+                    text.whole, 100 * vote.taken, vote.mean, look));
+    return std::move(vote.selector);
+}
+
+}  // namespace
+
+UnknownWords unknown_words(const PriorVocabulary& vocabulary, const std::string& phrase) {
+    static const std::set<std::string> prepositions{"at", "by", "from", "in",    "made", "of",
+                                                    "on", "to", "that", "under", "with"};
+    const auto is_known = [&](const std::string& word) {
+        const std::string other =
+            word.ends_with("s") ? word.substr(0, word.size() - 1) : word + "s";
+        return vocabulary.unknown_words(word).empty() || vocabulary.unknown_words(other).empty();
+    };
+    UnknownWords unknown;
+    bool has_thing = false;
+    for (const std::string& word : prompt_words(phrase)) {
+        // The thing is the last word before "of", "on" and the like.
+        has_thing = has_thing || prepositions.count(word) > 0;
+        const bool known = word == "part" || word == "parts" || is_known(word);
+        if (!has_thing) unknown.names_nothing = !known;
+        if (!known && std::find(unknown.all.begin(), unknown.all.end(), word) == unknown.all.end())
+            unknown.all.push_back(word);
+    }
+    return unknown;
+}
+
+std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionScene& scene) {
+    const RegionReaders* readers = scene.readers;
+    if (readers == nullptr || (!readers->segmenter && !readers->prior))
+        throw InputError(text.whole, "there is neither a segmenter nor a prior that could find it",
+                         "give one by --segmenter, or choose another selector");
+    const at::NoGradGuard no_grad;
+    check_words(text, readers->vocabulary);
+    return readers->segmenter ? ask_segmenter(text, scene) : ask_attention(text, scene);
 }
 
 }  // namespace item3d
