@@ -85,8 +85,8 @@ TEST(Attention, MapsAreTheSoftmaxOnOneGrid) {
     AttentionMaps maps(2, 2);
     maps.set_layer(2, 2);
     // One head of one channel: the second place reads the second token alone.
-    const at::Tensor query = at::tensor({0.0f, 40.0f, 0.0f, 0.0f}).view({1, 4, 1});
-    maps.add(query, at::tensor({-1.0f, 1.0f}).view({1, 2, 1}), 1);
+    const at::Tensor asking = at::tensor({0.0f, 40.0f, 0.0f, 0.0f}).view({1, 4, 1});
+    maps.add(asking, at::tensor({-1.0f, 1.0f}).view({1, 2, 1}), 1);
     EXPECT_LT(largest_difference(maps.mean()[0][1], at::tensor({.5f, 1.f, .5f, .5f}).view({2, 2})),
               1e-6);
     // And a coarser layer that reads the first token everywhere.

@@ -10,11 +10,9 @@
 namespace item3d {
 namespace {
 
-constexpr int difference_noises = 4;
+constexpr int difference_noises = 3;
 /// Differences above so many times the mean are outliers; half of that is in the region.
 constexpr double outlier = 4, enough_difference = 0.5;
-/// Times the mean, on average over what is taken, below which a look is recommended.
-constexpr double sure_difference = 2.5;
 /// Priors made for pictures of at most so many pixels are shown them at twice that size: a cell of
 /// their latents is as large as an eye.
 constexpr int small_native_size = 128;
@@ -69,14 +67,10 @@ std::unique_ptr<Selector> select_auto(const SelectorText& text, const RegionScen
                         times_mean(difference.masked_fill(reading.seen.logical_not(), 0).max()),
                         outlier * enough_difference));
     const double times = times_mean(difference.index({vote.inside}).mean());
-    const std::string line = fmt::format(
-        "{}: {:.1f} % of what is seen, where the sentences differ {:.1f} times as much "
-        "as on average",
-        text.whole, 100 * vote.taken, times);
-    if (times < sure_difference)
-        warn(line + ": unsure; look at it by item3d region");
-    else
-        note(line);
+    note(
+        fmt::format("{}: {:.1f} % of what is seen, where the sentences differ {:.1f} times as much "
+                    "as on average; look at it by item3d region",
+                    text.whole, 100 * vote.taken, times));
     return std::move(vote.selector);
 }
 

@@ -61,8 +61,9 @@ std::unique_ptr<Selector> ask_segmenter(const SelectorText& text, const RegionSc
             reading.values[static_cast<std::int64_t>(i)].index({vote.inside}).mean().item<double>();
         if (mean > neutral) loudest = i, neutral = mean;
     }
-    const std::string line = fmt::format("{}: {:.1f} % of what is seen, mean probability {:.0f} %",
-                                         text.whole, 100 * vote.taken, 100 * vote.mean);
+    const std::string line =
+        fmt::format("{}: named on {:.1f} % of what is seen, mean probability {:.0f} %", text.whole,
+                    100 * vote.taken, 100 * vote.mean);
     if (neutral > largest_neutral_part * vote.mean)
         warn(fmt::format("{}: unsure, \"{}\" gets {:.0f} % there; {}", line, prompts[loudest],
                          100 * neutral, look));
@@ -79,10 +80,10 @@ std::unique_ptr<Selector> ask_attention(const SelectorText& text, const RegionSc
     if (vote.taken == 0)
         throw InputError(text.whole, "the prior reads these words alike all over the model",
                          "give a segmenter by --segmenter, or choose another selector");
-    warn(
-        fmt::format("{}: {:.1f} % of what is seen, {:.1f} standard deviations above the mean: by "
-                    "the prior's cross-attention, as no segmenter is there; it is seldom right, {}",
-                    text.whole, 100 * vote.taken, vote.mean, look));
+    warn(fmt::format(
+        "{}: named on {:.1f} % of what is seen, {:.1f} standard deviations above the mean: by "
+        "the prior's cross-attention, as no segmenter is there; it is seldom right, {}",
+        text.whole, 100 * vote.taken, vote.mean, look));
     return std::move(vote.selector);
 }
 
