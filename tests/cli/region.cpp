@@ -39,6 +39,11 @@ TEST_F(RegionProgram, MistakesAreThreeAndWriteNothing) {
     expect_error(region("--region material=wood"), 3, "no material with a name");
     expect_error(region("--region sphere=0,0,9,1"), 3, "outside the model");
     expect_error(region("--region mask=/nowhere.png"), 3, "/nowhere.png");
+    expect_error(region("--region 'words=the flux capacitor'"), 3, "never shown");
+    expect_error(region("--region auto"), 2, "--from and --to");
+    expect_error(region("--region auto --from 'a cube'"), 2, "--from and --to");
+    expect_error(region("--region named=red --from a --to b"), 2, "--region auto");
+    expect_error(region("--region auto --from 'a zorp' --to 'a qwix'"), 3, "both sentences");
     EXPECT_FALSE(fs::exists(folder_ / "region"));
     EXPECT_EQ(run(region("--feather -1")).code, 2);
     expect_error(edit(to("out") + " --region named=purple"), 3, "nothing of what is edited");

@@ -93,6 +93,14 @@ TEST_F(EditTest, regions_that_nothing_is_in_are_refused) {
     EXPECT_FALSE(fs::exists(folder_ / "out" / "model.glb"));
 }
 
+TEST_F(EditTest, auto_is_where_the_sentences_differ) {
+    // Not the colour that is to change, which a plain edit takes: the prior is asked.
+    EXPECT_THROW(
+        edit_model(request("out", 1,
+                           {{"region", {"auto"}}, {"to", "a red cube"}, {"from", "a red cube"}})),
+        InputError);
+}
+
 TEST(RegionChoice, AChangeOfColorIsAboutWhatHasIt) {
     const auto color = [](const char* word, std::vector<float> linear) {
         return nlohmann::json{{"word", word}, {"base_color", linear}};

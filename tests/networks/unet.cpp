@@ -81,6 +81,22 @@ TEST(Attention, PlainAndFusedFormsAgree) {
     }
 }
 
+TEST(Attention, MapsAreTheSoftmaxOnOneGrid) {
+    AttentionMaps maps(2, 2);
+    maps.set_layer(2, 2);
+    // One head of one channel: the second place reads the second token alone.
+    const at::Tensor asking = at::tensor({0.0f, 40.0f, 0.0f, 0.0f}).view({1, 4, 1});
+    maps.add(asking, at::tensor({-1.0f, 1.0f}).view({1, 2, 1}), 1);
+    EXPECT_LT(largest_difference(maps.mean()[0][1], at::tensor({.5f, 1.f, .5f, .5f}).view({2, 2})),
+              1e-6);
+    // And a coarser layer that reads the first token everywhere.
+    maps.set_layer(1, 1);
+    maps.add(at::tensor({-40.0f}).view({1, 1, 1}), at::tensor({-1.0f, 1.0f}).view({1, 2, 1}), 1);
+    EXPECT_LT(
+        largest_difference(maps.mean()[0][1], at::tensor({.25f, .5f, .25f, .25f}).view({2, 2})),
+        1e-6);
+}
+
 TEST(UNet, GradientReachesTheTextEmbedding) {
     at::manual_seed(4);
     UNet2DCondition unet(small_config());

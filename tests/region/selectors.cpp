@@ -4,10 +4,13 @@
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
 #include "item3d/metrics/color.h"
-#include "item3d/networks/vision_language/segmenter.h"
+#include "item3d/networks/diffusion/pipeline.h"
+#include "item3d/region/attention_reading.h"
 #include "item3d/region/color_selector.h"
 #include "item3d/region/feather.h"
+#include "item3d/region/patch_vote.h"
 #include "item3d/region/region.h"
+#include "item3d/region/region_readers.h"
 #include "item3d/region/surface_patches.h"
 #include "item3d/region/words_selector.h"
 #include "item3d/scene/model_view.h"
@@ -293,22 +296,136 @@ TEST_F(RegionTest, PatchesEndAtCreasesAndAtEdgesOfColor) {
 TEST_F(RegionTest, WordsNeedASegmenterThatSeesThem) {
     expect_error("words=the handle", "--segmenter");
     // Of random weights: whatever it sees is a weight, and what it does not see is told.
-    const Segmenter segmenter =
-        Segmenter::load(fs::path(ITEM3D_TEST_DATA) / "models" / "clip_seg" / "plain");
+    const fs::path folder = fs::path(ITEM3D_TEST_DATA) / "models" / "clip_seg" / "plain";
+    const RegionRequest request{{"words=the handle"}, {}, 0};
+    const RegionReaders readers = load_readers(request, folder, {}, at::kCPU);
     RegionScene seen = scene();
-    seen.segmenter = &segmenter;
+    seen.readers = &readers;
     try {
-        const Region region({{"words=the handle"}, {}, 0}, seen);
+        const Region region(request, seen);
         EXPECT_GT(region.share(), 0);
         EXPECT_LE(region.share(), 1);
     } catch (const InputError& error) {
         EXPECT_NE(std::string(error.what()).find("nothing of"), std::string::npos) << error.what();
     }
-    RegionRequest request;
-    request.include = {"words=the handle"};
-    EXPECT_THROW(load_wanted_segmenter(request, folder_, at::kCPU), InputError);
-    request.include = {"named=red"};
-    EXPECT_EQ(load_wanted_segmenter(request, folder_, at::kCPU), nullptr);
+    EXPECT_THROW(load_readers(request, folder_, {}, at::kCPU), InputError);
+    EXPECT_EQ(load_readers({{"named=red"}, {}, 0}, folder_, {}, at::kCPU).segmenter, nullptr);
+}
+
+TEST_F(RegionTest, AnswersAboutPicturesAreGatheredWhereTheyAreSeen) {
+    // A small square within a closed cube, which no view sees.
+    Model model = two_squares();
+    for (const float side : {-1.0f, 1.0f})
+        for (int axis = 0; axis < 2; ++axis) {
+            Primitive wall = square(side, 0);
+            for (Vec3& p : wall.positions)
+                p = axis == 0 ? Vec3(p.z, p.x, p.y) : Vec3(p.x, p.z, p.y);
+            wall.normals.assign(4, axis == 0 ? Vec3(side, 0, 0) : Vec3(0, side, 0));
+            model.primitives.push_back(wall);
+        }
+    Primitive inner = square(0, 0);
+    for (Vec3& p : inner.positions)
+        p *= 0.3f;
+    model.primitives.push_back(inner);
+    use(model);
+    int views = 0;
+    const SurfaceReading reading = read_surface(scene(), 48, [&](const ModelView& view) {
+        ++views;
+        EXPECT_EQ(view.picture.size(3), 48);
+        // Is it red? And a second question, which is answered with yes everywhere.
+        const at::Tensor red = (view.picture[0][0] - view.picture[0][2]).gt(0.3);
+        return at::stack({red.to(at::kFloat), at::ones({48, 48})});
+    });
+    EXPECT_EQ(views, reading_views());
+    EXPECT_GE(views, 8);
+    const at::Tensor is_inner = reading.triangle.ge(12);
+    EXPECT_GT(is_inner.sum().item<std::int64_t>(), 100);
+    EXPECT_FALSE(reading.seen.index({is_inner}).any().item<bool>());
+    EXPECT_GT(reading.seen.index({is_inner.logical_not()}).to(at::kFloat).mean().item<float>(),
+              .9f);
+    const at::Tensor back = reading.triangle.ge(2).logical_and(reading.triangle.lt(4));
+    const at::Tensor x = reading.position.select(1, 0);
+    const at::Tensor left = back.logical_and(x.lt(-0.1)).logical_and(reading.seen);
+    const at::Tensor right = back.logical_and(x.gt(0.1)).logical_and(reading.seen);
+    EXPECT_GT(reading.values[0].index({left}).mean().item<float>(), 0.8f);
+    EXPECT_LT(reading.values[0].index({right}).mean().item<float>(), 0.1f);
+    EXPECT_NEAR(reading.values[1].index({reading.seen}).min().item<float>(), 1, 1e-4);
+    EXPECT_EQ(reading.values[1].index({is_inner}).max().item<float>(), 0);
+}
+
+TEST_F(RegionTest, SmallPatchesAreTakenWholeAndLargeOnesCut) {
+    Model model = two_squares();
+    model.primitives.push_back(square(3, 0));
+    for (Vec3& p : model.primitives.back().positions)
+        p = Vec3(0.4f * p.x, 0.4f * p.y, p.z);
+    use(model);
+    const SurfaceReading reading = read_surface(scene(), 48, [](const ModelView&) {
+        return at::ones({1, 4, 4});
+    });
+    // A third of the large front square, and of the small one before it.
+    const at::Tensor x = reading.position.select(1, 0), z = reading.position.select(1, 2);
+    const at::Tensor is_small = z.gt(2), is_front = z.gt(0).logical_and(z.lt(2));
+    const at::Tensor value = is_front.logical_and(x.gt(0.33))
+                                 .logical_or(is_small.logical_and(x.gt(0.132)))
+                                 .to(at::kFloat);
+    const PatchVote vote = vote_by_patch(scene(), reading, value, 0.5f);
+    const at::Tensor weights = vote.selector->weight(surface_at(
+        geometry_, at::tensor({0, 0, 4, 4, 2}, at::kLong),
+        at::tensor({.9f, .05f, .05f, .9f, .9f, .05f, .05f, .9f, .05f, .9f}).view({5, 2})));
+    // Left and right of the large one, of the small one, and the back.
+    EXPECT_TRUE(weights.equal(at::tensor({0.0f, 1.0f, 1.0f, 1.0f, 0.0f}))) << weights;
+    EXPECT_EQ(vote.mean, 1);
+}
+
+TEST_F(RegionTest, AutoNeedsTwoSentencesThatDiffer) {
+    expect_error("auto", "--from and --to");
+    expect_error("auto=red", "takes no value");
+    RegionReaders readers;
+    readers.prior = std::make_shared<Pipeline>(
+        Pipeline::load(fs::path(ITEM3D_TEST_DATA) / "models" / "pipeline_sd"));
+    readers.from = "a red cube";
+    readers.to = "a red cube";
+    RegionScene asked = scene();
+    asked.readers = &readers;
+    const auto message = [&](const std::string& selector) {
+        try {
+            const Region region({{selector}, {}, 0}, asked);
+            return std::string(region.share() > 0 ? "taken" : "empty");
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+    };
+    EXPECT_NE(message("auto").find("both sentences are the same"), std::string::npos);
+    // Of random weights, which see about the same difference everywhere.
+    readers.to = "a blue cube";
+    const std::string differs = message("auto");
+    EXPECT_TRUE(differs == "taken" || differs.find("as much everywhere") != std::string::npos)
+        << differs;
+    // Without a segmenter the same prior is asked for words.
+    const std::string words = message("words=the handle");
+    EXPECT_TRUE(words == "taken" || words.find("alike all over") != std::string::npos) << words;
+}
+
+TEST(RegionWords, AttentionIsComparedWithinThePhrase) {
+    EXPECT_EQ(attention_prompt("A Horn"), "the horn");
+    EXPECT_EQ(attention_prompt("the red handle"), "the red handle");
+    EXPECT_EQ(attention_prompt("anvil"), "the anvil");
+    // Start, "the", "red", "handle", end at one place.
+    const at::Tensor attention = at::tensor({.5f, .1f, .2f, .1f, .1f}).view({5, 1, 1});
+    EXPECT_NEAR(share_of_words(attention, 3).item<float>(), .75, 1e-6);
+}
+
+TEST(RegionWords, WhatTheVocabularyLacksIsFound) {
+    const PriorVocabulary vocabulary({{"words", {"the", "of", "a", "red", "horns", "mug"}}}, "x");
+    const auto unknown = [&](const char* phrase) { return unknown_words(vocabulary, phrase); };
+    EXPECT_TRUE(unknown("the horn of a mug").all.empty());
+    EXPECT_TRUE(unknown("the red part").all.empty());
+    EXPECT_TRUE(unknown("the flux capacitor").names_nothing);
+    EXPECT_EQ(unknown("the flux capacitor").all, (std::vector<std::string>{"flux", "capacitor"}));
+    EXPECT_TRUE(unknown("the red muzzle").names_nothing);
+    EXPECT_FALSE(unknown("the dark horns of the cow").names_nothing);
+    EXPECT_EQ(unknown("the dark horns of the cow").all, (std::vector<std::string>{"dark", "cow"}));
+    EXPECT_TRUE(unknown_words(PriorVocabulary(), "the flux capacitor").all.empty());
 }
 
 TEST_F(RegionTest, WhatIsNoSelectorIsTold) {

@@ -200,7 +200,7 @@ void add_edit_command(CLI::App& app) {
                         "it, the one that the prior brings along");
     command->add_option("--segmenter", request.segmenter,
                         "CLIPSeg in the transformers layout, for --region words=...; without it, "
-                        "the one that the prior brings along");
+                        "the one that the prior brings along, else the prior's cross-attention");
     command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
     add_texture_folders(*command, request.texture_folders);
     command->add_flag(

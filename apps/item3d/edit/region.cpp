@@ -8,6 +8,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/progress.h"
 #include "item3d/edit/material_source.h"
 #include "item3d/field/atlas/atlas.h"
 #include "item3d/hub/find_prior.h"
@@ -16,10 +17,11 @@
 #include "item3d/io/load_light.h"
 #include "item3d/io/part_names.h"
 #include "item3d/io/save.h"
-#include "item3d/networks/vision_language/segmenter.h"
+#include "item3d/networks/diffusion/running_pipeline.h"
+#include "item3d/networks/vocabulary.h"
 #include "item3d/region/masks.h"
 #include "item3d/region/preview.h"
-#include "item3d/region/words_selector.h"
+#include "item3d/region/region_readers.h"
 #include "item3d/render/pictures.h"
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
@@ -45,6 +47,8 @@ struct RegionCommand : CommonOptions {
     std::vector<std::string> materials;
     std::vector<fs::path> texture_folders;
     fs::path segmenter;
+    std::string prior;     ///< folder or name, see find_prior()
+    std::string from, to;  ///< for auto
     std::string output;
     int size = 384;
     int texture_size = 0;
@@ -106,6 +110,35 @@ void save_cameras(const fs::path& path, const std::vector<Camera>& cameras, cons
     write_atomically(path, std::string_view(document.dump(2)));
 }
 
+RegionReaders load_wanted_readers(const RegionCommand& options, at::Device device) {
+    const RegionRequest& request = options.request;
+    if (!request.needs_segmenter() && !request.needs_sentences()) return {};
+    const fs::path prior =
+        request.needs_sentences() || options.segmenter.empty() ? find_prior(options.prior) : "";
+    const fs::path segmenter =
+        options.segmenter.empty() ? find_in_prior(prior, "segmenter") : options.segmenter;
+    RegionReaders readers = load_readers(request, segmenter, prior, device);
+    if (!needs_prior(request, readers.segmenter != nullptr)) return readers;
+    RunNeeds needs;
+    needs.decoder = false;
+    if (request.needs_sentences()) {
+        const PriorVocabulary vocabulary = PriorVocabulary::load(prior);
+        for (const std::string& sentence : {options.from, options.to}) {
+            const std::string warning = vocabulary.warning(sentence, /*shape_is_given=*/true);
+            if (!warning.empty()) warn(warning);
+        }
+        readers.from = vocabulary.reading(options.from);
+        readers.to = vocabulary.reading(options.to);
+        needs.prompts = {readers.from, readers.to};
+    }
+    if (!readers.segmenter)
+        for (const std::string& prompt : prompts_of_words(request))
+            needs.prompts.push_back(prompt);
+    readers.prior = std::make_shared<RunningPipeline>(
+        RunningPipeline::load(prior, device, at::kFloat, {}, needs));
+    return readers;
+}
+
 class RegionOutput {
   public:
     RegionOutput(const RegionCommand& options, at::Device device)
@@ -126,15 +159,10 @@ class RegionOutput {
         const std::vector<int> materials = select_materials(model_, options_.materials);
         const FieldSpace space(model_, materials, geometry_.positions.device());
         std::unique_ptr<Region> region;
-        fs::path segmenter_folder = options_.segmenter;
-        if (segmenter_folder.empty() && options_.request.needs_segmenter())
-            segmenter_folder = find_in_prior(find_prior(""), "segmenter");
-        const auto segmenter =
-            load_wanted_segmenter(options_.request, segmenter_folder, geometry_.positions.device());
+        const RegionReaders readers = load_wanted_readers(options_, geometry_.positions.device());
         if (!options_.request.is_everything())
             region = std::make_unique<Region>(
-                options_.request,
-                RegionScene{model_, geometry_, textured_, space, segmenter.get()});
+                options_.request, RegionScene{model_, geometry_, textured_, space, &readers});
         make_output_folder(folder_);
         write_views();
         if (!region) return record;
@@ -192,7 +220,17 @@ class RegionOutput {
     std::vector<Camera> cameras_;
 };
 
+/// Throws UsageError where auto lacks its sentences, or they have nothing to do.
+void check_sentences(const RegionCommand& options) {
+    const bool both = !options.from.empty() && !options.to.empty();
+    if (options.request.needs_sentences() && !both)
+        throw UsageError("--region auto finds where two sentences differ: give --from and --to");
+    if (!options.request.needs_sentences() && !(options.from.empty() && options.to.empty()))
+        throw UsageError("--from and --to are the sentences of --region auto: give that too");
+}
+
 void run_region(const RegionCommand& options, at::Device device) {
+    check_sentences(options);
     const at::NoGradGuard no_grad;
     const json record = RegionOutput(options, device).write();
     write_atomically(fs::path(options.output) / "region.json", std::string_view(record.dump(2)));
@@ -242,7 +280,12 @@ void add_region_command(CLI::App& app) {
     command->add_option("--material", options->materials, "Only the materials of these names");
     command->add_option("--segmenter", options->segmenter,
                         "CLIPSeg in the transformers layout, for words=; without it, the one that "
-                        "the embedded prior brings along");
+                        "the prior brings along, if any");
+    command->add_option("--prior", options->prior,
+                        "Diffusion model, for auto, and for words= where there is no segmenter: a "
+                        "folder in the diffusers layout, or a name; without it, the embedded one");
+    command->add_option("--from", options->from, "The sentence before an edit, for auto");
+    command->add_option("--to", options->to, "And the one after it");
     add_texture_folders(*command, options->texture_folders);
     command->add_option("--size", options->size, "Pixels of a view's side")
         ->check(CLI::Range(32, 4096))

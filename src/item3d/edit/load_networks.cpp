@@ -62,6 +62,8 @@ std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request,
     RunNeeds needs;
     needs.prompts = {prior_needs.from, prior_needs.to, plan.negative_prompt,
                      default_negative_prompt()};
+    needs.prompts.insert(needs.prompts.end(), prior_needs.prompts.begin(),
+                         prior_needs.prompts.end());
     needs.decoder = plan.paints_detail;
     return std::make_shared<RunningPipeline>(RunningPipeline::load(
         request.prior, prior_needs.device, prior_needs.precision, plan, needs));

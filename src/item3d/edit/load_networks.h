@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -21,7 +22,8 @@ struct PriorNeeds {
     at::ScalarType precision = at::kFloat;
     bool any_sentence = false;  ///< some are not known yet: a captioner will say them
     bool low_memory = false;
-    std::string from, to;  ///< as the prior reads them
+    std::string from, to;              ///< as the prior reads them
+    std::vector<std::string> prompts;  ///< what else it will be asked
 };
 
 /// Loads the prior with what the settings add to it; warns of words of the sentences that it cuts

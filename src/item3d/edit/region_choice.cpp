@@ -5,8 +5,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/words.h"
 #include "item3d/metrics/color.h"
-#include "item3d/networks/vision_language/segmenter.h"
-#include "item3d/region/words_selector.h"
+#include "item3d/region/region_readers.h"
 
 #include <algorithm>
 
@@ -36,20 +35,20 @@ std::vector<std::string> other_words(const std::string& sentence, const KnownWor
 }
 
 std::unique_ptr<Region> make_region(const RegionRequest& request, const EditScene& scene,
-                                    const Segmenter* segmenter) {
+                                    const RegionReaders& readers) {
     const FieldSpace space(scene.model, scene.materials, scene.device);
-    return std::make_unique<Region>(request, RegionScene{scene.model, scene.geometry,
-                                                         *scene.source_textures, space, segmenter});
+    return std::make_unique<Region>(
+        request, RegionScene{scene.model, scene.geometry, *scene.source_textures, space, &readers});
 }
 
 /// Null where the colour is nearly everywhere or hardly anywhere.
 std::unique_ptr<Region> region_of_color(const std::string& color, const RegionRequest& request,
-                                        const EditScene& scene, const Segmenter* segmenter) {
+                                        const EditScene& scene, const RegionReaders& readers) {
     RegionRequest colored = request;
     colored.include = {"named=" + color};
     std::unique_ptr<Region> region;
     try {
-        region = make_region(colored, scene, segmenter);
+        region = make_region(colored, scene, readers);
     } catch (const InputError&) {
         return nullptr;
     }
@@ -72,18 +71,20 @@ std::optional<std::string> color_to_change(const EditPlan& plan,
 void choose_region(const EditRequest& edit, const PriorVocabulary& vocabulary, EditScene& scene) {
     const EditPlan& plan = edit.plan;
     RegionRequest request{plan.region, plan.exclude, plan.feather};
-    const bool is_automatic =
-        plan.region.empty() || plan.region == std::vector<std::string>{"auto"};
+    const bool is_automatic = plan.region.empty();
     if (is_automatic || plan.region == std::vector<std::string>{"all"}) request.include.clear();
     const auto color = is_automatic ? color_to_change(plan, vocabulary) : std::nullopt;
     if (request.is_everything() && !color) return;
     // The textures as they are in the file: selectors by colour look at them.
     scene.source_textures = std::make_unique<TexturedMaterials>(scene.model, scene.device);
-    const auto segmenter = load_wanted_segmenter(request, edit.segmenter, scene.device);
-    if (color) scene.region = region_of_color(*color, request, scene, segmenter.get());
+    RegionReaders readers = load_readers(request, edit.segmenter, edit.prior, scene.device);
+    if (needs_prior(request, readers.segmenter != nullptr)) readers.prior = scene.prior();
+    readers.from = scene.from;
+    readers.to = scene.to;
+    if (color) scene.region = region_of_color(*color, request, scene, readers);
     if (!scene.region) {
         if (request.is_everything()) return;
-        scene.region = make_region(request, scene, segmenter.get());
+        scene.region = make_region(request, scene, readers);
         note(fmt::format("the region is {:.1f} % of what is edited", 100 * scene.region->share()));
     }
     scene.region_views =

@@ -15,8 +15,9 @@ namespace item3d {
 std::optional<std::string> color_to_change(const EditPlan& plan, const PriorVocabulary& vocabulary);
 
 /// Sets the scene's region and its views, and leaves the materials that have a part in it. Without
-/// selectors, or with "auto", it is what has the colour to change, if that is a part of the
-/// surface; with "all", or where nothing is to be told apart, there is none. Throws InputError.
+/// selectors it is what has the colour to change, if that is a part of the surface; with "all", or
+/// where nothing is to be told apart, there is none. Selectors that ask the prior wait until
+/// scene.loading_prior is done. Throws InputError.
 void choose_region(const EditRequest& edit, const PriorVocabulary& vocabulary, EditScene& scene);
 
 }  // namespace item3d

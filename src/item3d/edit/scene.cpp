@@ -8,6 +8,7 @@
 #include "item3d/field/atlas/shared_texels.h"
 #include "item3d/io/load.h"
 #include "item3d/networks/vocabulary.h"
+#include "item3d/region/region_readers.h"
 #include "item3d/scene/visibility.h"
 #include "item3d/tensors/checkpoint.h"
 #include "item3d/tensors/precision.h"
@@ -62,10 +63,10 @@ EditScene load_scene(const EditRequest& request) {
     scene.precision = choose_precision(request.precision, device);
     const bool low_memory = wants_low_memory(request, scene.precision, device);
     scene.captioner = load_wanted_captioner(request, scene.precision);
-    scene.loading_prior = std::async(std::launch::async, load_prior, request,
-                                     PriorNeeds{device, scene.precision, scene.captioner != nullptr,
-                                                low_memory, scene.from, scene.to})
-                              .share();
+    PriorNeeds needs{
+        device, scene.precision, scene.captioner != nullptr, low_memory, scene.from, scene.to, {}};
+    if (request.segmenter.empty()) needs.prompts = prompts_of_words({plan.region, plan.exclude});
+    scene.loading_prior = std::async(std::launch::async, load_prior, request, needs).share();
     scene.hashing_weights = std::async(std::launch::async, hash_of_weights, request.prior).share();
     scene.model = load_model(request.model,
                              {.texture_folders = request.texture_folders, .variant = plan.variant});

@@ -171,8 +171,9 @@ std::vector<Setting> region_rows() {
     return {
         repeated(setting("region", &S::region, "--region",
                          "Edit only what this selector takes (item3d region --help lists them); "
-                         "may be given several times, for their union. auto, the default: of a "
-                         "change from one colour to another, what has the first; all: everything")),
+                         "may be given several times, for their union. auto: where the "
+                         "sentences differ to the prior; all: everything. Without it: of a change "
+                         "from one colour to another, what has the first; else everything")),
         repeated(setting("exclude", &S::exclude, "--exclude",
                          "Leave alone what this selector takes; may be given several times")),
         setting("feather", &S::feather, between(0, 50), "--feather",

@@ -26,17 +26,6 @@ Vec3 linear_background(const std::string& text) {
 
 }  // namespace
 
-BoundingSphere bounding_sphere(const Model& model) {
-    const auto [low, high] = model.bounds();
-    BoundingSphere sphere{0.5f * (low + high), 0.0f};
-    for (const Primitive& primitive : model.primitives) {
-        for (const Vec3& position : primitive.positions) {
-            sphere.radius = std::max(sphere.radius, glm::length(position - sphere.center));
-        }
-    }
-    return sphere;
-}
-
 std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std::uint64_t seed,
                                    std::int64_t iteration) {
     Random random = iteration_random(seed, IndexedStream::cameras, iteration);

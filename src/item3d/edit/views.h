@@ -3,9 +3,9 @@
 
 #include "item3d/edit/settings.h"
 #include "item3d/render/prefilter/environment_light.h"
+#include "item3d/scene/bounding_sphere.h"
 #include "item3d/scene/camera.h"
 #include "item3d/scene/image.h"
-#include "item3d/scene/model.h"
 #include "item3d/tensors/tensor.h"
 
 #include <cstdint>
@@ -13,13 +13,6 @@
 #include <vector>
 
 namespace item3d {
-
-/// Centre and radius of a sphere around the model, world units.
-struct BoundingSphere {
-    Vec3 center{0.0f};
-    float radius = 1.0f;
-};
-BoundingSphere bounding_sphere(const Model& model);
 
 /// The cameras of one iteration: all azimuths, elevation -10 to 45 degrees, horizontal field of
 /// view 25.7 to 45 degrees (ITEM3D's settings), the model filling the picture. They depend on the

@@ -22,12 +22,20 @@ at::Tensor united(const std::vector<std::unique_ptr<Selector>>& selectors, const
     return weights;
 }
 
+template <typename Condition>
+bool has_selector(const RegionRequest& request, const Condition& condition) {
+    return std::any_of(request.include.begin(), request.include.end(), condition) ||
+           std::any_of(request.exclude.begin(), request.exclude.end(), condition);
+}
+
 }  // namespace
 
 bool RegionRequest::needs_segmenter() const {
-    const auto is_by_words = [](const std::string& text) { return text.starts_with("words="); };
-    return std::any_of(include.begin(), include.end(), is_by_words) ||
-           std::any_of(exclude.begin(), exclude.end(), is_by_words);
+    return has_selector(*this, [](const std::string& text) { return text.starts_with("words="); });
+}
+
+bool RegionRequest::needs_sentences() const {
+    return has_selector(*this, [](const std::string& text) { return text == "auto"; });
 }
 
 Region::Region(const RegionRequest& request, const RegionScene& scene) {

@@ -19,6 +19,8 @@ struct RegionRequest {
     bool is_everything() const { return include.empty() && exclude.empty(); }
     /// Whether a selector is by words.
     bool needs_segmenter() const;
+    /// Whether a selector is "auto".
+    bool needs_sentences() const;
 };
 
 /// Points of a region, drawn by area: for cameras that look at it.

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/io/text.h"
+#include "item3d/region/auto_selector.h"
 #include "item3d/region/color_selector.h"
 #include "item3d/region/part_selectors.h"
 #include "item3d/region/picture_selectors.h"
@@ -44,6 +45,8 @@ const std::vector<Kind>& kinds() {
           "yellow, orange, purple, pink or brown"},
          select_named},
         {{"words=TEXT", "what the segmenter calls so (\"the handle\")"}, select_words},
+        {{"auto", "where the sentences of --from and --to make the prior see another thing"},
+         select_auto},
     };
     return all;
 }
@@ -58,7 +61,11 @@ std::unique_ptr<Selector> make_selector(const std::string& text, const RegionSce
         if (kind != form.substr(0, form.find('='))) continue;
         const SelectorText parts{
             text, equals == std::string::npos ? std::string() : text.substr(equals + 1), form};
-        if (parts.value.empty()) throw InputError(text, "a value is missing", "as in " + form);
+        const bool takes_value = form.find('=') != std::string::npos;
+        if (!takes_value && equals != std::string::npos)
+            throw InputError(text, "takes no value", "as in " + form);
+        if (takes_value && parts.value.empty())
+            throw InputError(text, "a value is missing", "as in " + form);
         return candidate.make(parts, scene);
     }
     std::vector<std::string> forms;

@@ -14,7 +14,7 @@
 
 namespace item3d {
 
-class Segmenter;
+struct RegionReaders;  // region_readers.h
 
 /// The model that is selected on. All must outlive the selectors.
 struct RegionScene {
@@ -22,7 +22,7 @@ struct RegionScene {
     const Geometry& geometry;
     const TexturedMaterials& textured;
     const FieldSpace& space;
-    const Segmenter* segmenter = nullptr;  ///< for words; null: there is none
+    const RegionReaders* readers = nullptr;  ///< for words and auto; null: there are none
 };
 
 /// Weights in [0, 1] of places of a surface.
@@ -33,7 +33,7 @@ class Selector {
     virtual at::Tensor weight(const Surface& surface) const = 0;
 };
 
-/// KIND=VALUE, one of selector_kinds(). Throws InputError whose subject is `text`.
+/// KIND=VALUE or KIND, one of selector_kinds(). Throws InputError whose subject is `text`.
 std::unique_ptr<Selector> make_selector(const std::string& text, const RegionScene& scene);
 
 struct SelectorKind {

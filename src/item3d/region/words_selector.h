@@ -1,25 +1,27 @@
-// A selector by words: what a segmentation network sees in pictures of the model.
+// A selector by words: what a network sees in pictures of the model.
 #pragma once
 
-#include "item3d/region/region.h"
+#include "item3d/networks/vocabulary.h"
 #include "item3d/region/selector.h"
 
-#include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace item3d {
 
-/// What `text.value` names ("the handle"). The scene's segmenter looks at pictures from all around;
-/// its answers are gathered on the surface, by how squarely each place is seen, and voted by patch
-/// (surface_patches.h), so that borders are the model's own; within a patch that is in part named,
-/// the border is the network's. Notes what it took and how sure it is. Throws InputError where
-/// there is no segmenter, and where it sees nothing of the kind.
+/// What `text.value` names ("the handle"). The readers' segmenter looks at pictures from all
+/// around; without one, the prior's cross-attention is read instead, which is told. The answers are
+/// gathered on the surface (surface_reading.h) and voted by patch (patch_vote.h). Notes what it
+/// took, and warns where the answer is unsure. Throws InputError where there is no network, where
+/// the vocabulary has no such thing, and where nothing of the kind is seen.
 std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionScene& scene);
 
-/// The network in `folder`, where a selector of the request is by words; null else, and for an
-/// empty path. Throws InputError.
-std::unique_ptr<Segmenter> load_wanted_segmenter(const RegionRequest& request,
-                                                 const std::filesystem::path& folder,
-                                                 at::Device device);
+/// The words of a phrase that a vocabulary does not have in either number ("horn", "horns").
+struct UnknownWords {
+    std::vector<std::string> all;  ///< in their order
+    bool names_nothing = false;  ///< the thing itself is among them: "muzzle" of "the dark muzzle"
+};
+UnknownWords unknown_words(const PriorVocabulary& vocabulary, const std::string& phrase);
 
 }  // namespace item3d

@@ -1,6 +1,7 @@
 #include "item3d/edit/optimize/render_view.h"
 
 #include "item3d/core/random.h"
+#include "item3d/region/seen_shape.h"
 #include "item3d/render/antialias.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/scatter.h"
@@ -24,18 +25,6 @@ at::Tensor offsets(const at::Tensor& positions, const EditScene& scene, const Ed
 }
 
 }  // namespace
-
-SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere) {
-    const at::NoGradGuard no_grad;
-    const auto options = surface.position.options();
-    const at::Tensor center =
-        at::tensor({sphere.center.x, sphere.center.y, sphere.center.z}, options);
-    const auto pixels = [&](const at::Tensor& values) {
-        return scatter(values, surface, raster, at::zeros({3}, options));
-    };
-    return {raster.depth, pixels((surface.position - center) / sphere.radius),
-            pixels(surface.normal)};
-}
 
 GBuffer rasterize_views(const EditScene& scene, const EditPlan& plan,
                         const std::vector<Camera>& cameras) {

@@ -39,9 +39,6 @@ struct ViewOptions {
     const EnvironmentLight* light = nullptr;  ///< null: what the scene's lights have for it
 };
 
-/// Depth, position and normal of these views, as a prior is told them; sphere: of the model.
-SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere);
-
 EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture& field,
                      const GBuffer& gbuffer, const ViewOptions& options);
 

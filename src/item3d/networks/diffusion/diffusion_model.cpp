@@ -47,6 +47,19 @@ at::Tensor DiffusionModel::decode_image(const at::Tensor& latents) const {
 
 at::Tensor DiffusionModel::predict(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                                    const TextEmbedding& text, const at::Tensor& condition) const {
+    return run_unet(noisy_latents, timesteps, text, condition, false);
+}
+
+at::Tensor DiffusionModel::cross_attention(const at::Tensor& noisy_latents,
+                                           const at::Tensor& timesteps, const TextEmbedding& text,
+                                           const at::Tensor& condition) const {
+    const at::NoGradGuard no_grad;
+    return run_unet(noisy_latents, timesteps, text, condition, true);
+}
+
+at::Tensor DiffusionModel::run_unet(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
+                                    const TextEmbedding& text, const at::Tensor& condition,
+                                    bool wants_attention) const {
     const auto rows = noisy_latents.size(0);
     at::Tensor sample = noisy_latents;
     const TextEmbedding each = text.expand(rows);
@@ -70,10 +83,11 @@ at::Tensor DiffusionModel::predict(const at::Tensor& noisy_latents, const at::Te
     UNet2DCondition network = networks_->unet;
     const auto run = [&](const at::Tensor& samples, const at::Tensor& times,
                          const at::Tensor& states) {
-        return network
-            ->forward(samples.contiguous(at::MemoryFormat::ChannelsLast), times, states, added,
-                      residuals)
-            .to(at::kFloat);
+        AttentionMaps maps(samples.size(2), samples.size(3));
+        const at::Tensor output =
+            network->forward(samples.contiguous(at::MemoryFormat::ChannelsLast), times, states,
+                             added, residuals, wants_attention ? &maps : nullptr);
+        return wants_attention ? maps.mean() : output.to(at::kFloat);
     };
     const bool alone = added.text_embeds.defined() || residuals.mid.defined() ||
                        sample.requires_grad() || !runs_in_row_groups(*network);

@@ -42,6 +42,12 @@ class DiffusionModel {
     at::Tensor predict(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                        const TextEmbedding& text, const at::Tensor& condition = {}) const;
 
+    /// Where the U-Net reads which token of the text: [N, S, h, w] float32 on the latents' grid,
+    /// the mean of its cross-attention over heads and layers (AttentionMaps). Inputs as
+    /// predict_noise.
+    at::Tensor cross_attention(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
+                               const TextEmbedding& text, const at::Tensor& condition = {}) const;
+
     const NoiseSchedule& schedule() const;
     const ClipTokenizer& tokenizer() const { return *tokenizer_; }
     bool is_sdxl() const { return sdxl_; }  ///< with a second text encoder
@@ -66,6 +72,9 @@ class DiffusionModel {
     bool force_zeros_for_empty_prompt_ = false;
 
   private:
+    at::Tensor run_unet(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
+                        const TextEmbedding& text, const at::Tensor& condition,
+                        bool wants_attention) const;
     at::Tensor sizes_of(const at::Tensor& latents) const;
 };
 

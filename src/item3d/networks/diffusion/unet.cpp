@@ -51,16 +51,16 @@ void UNet2DConditionImpl::make_up_blocks() {
 
 at::Tensor UNet2DConditionImpl::forward(const at::Tensor& sample, const at::Tensor& timesteps,
                                         const at::Tensor& encoder_hidden_states,
-                                        const AddedCondition& added,
-                                        const UNetResiduals& residuals) {
+                                        const AddedCondition& added, const UNetResiduals& residuals,
+                                        AttentionMaps* maps) {
     ITEM3D_CHECK(sample.dim() == 4 && sample.size(1) == config_.in_channels,
                  "sample must be [N, " + std::to_string(config_.in_channels) + ", H, W]");
     const at::Tensor context = encoder_hidden_states.to(dtype());
     const at::Tensor time = embed(timesteps, sample.size(0), added);
     at::Tensor x = sample.to(dtype());
     if (config_.center_input_sample) x = 2 * x - 1;
-    std::vector<at::Tensor> skips = descend(enter(x), time, context);
-    x = run_middle(skips.back(), time, context);
+    std::vector<at::Tensor> skips = descend(enter(x), time, context, maps);
+    x = run_middle(skips.back(), time, context, maps);
     if (residuals.mid.defined()) {
         ITEM3D_CHECK(residuals.down.size() == skips.size(), "one residual for each feature map");
         for (std::size_t i = 0; i < skips.size(); ++i)
@@ -71,7 +71,7 @@ at::Tensor UNet2DConditionImpl::forward(const at::Tensor& sample, const at::Tens
         for (std::size_t i = 0; i < level.resnets.size(); ++i) {
             x = level.resnets[i](at::cat({x, skips.back()}, 1), time);
             skips.pop_back();
-            if (!level.attentions.empty()) x = level.attentions[i](x, context);
+            if (!level.attentions.empty()) x = level.attentions[i](x, context, maps);
         }
         // To the size of the skip that comes next: odd sizes are not twice the smaller one.
         if (level.up) x = level.up(x, skips.back().size(2), skips.back().size(3));

@@ -25,10 +25,11 @@ class UNet2DConditionImpl : public UNetEncoderImpl {
 
     /// sample [N, in_channels, H, W] (any H and W); timesteps [N] or one, integers or not;
     /// encoder_hidden_states [N, S, cross_attention_dim] -> [N, out_channels, H, W] of the weights'
-    /// type (under autocast: what that gives). Inputs are converted to the weights' type.
+    /// type (under autocast: what that gives). Inputs are converted to the weights' type. maps:
+    /// takes the cross-attention of all layers, unless null.
     at::Tensor forward(const at::Tensor& sample, const at::Tensor& timesteps,
                        const at::Tensor& encoder_hidden_states, const AddedCondition& added = {},
-                       const UNetResiduals& residuals = {});
+                       const UNetResiduals& residuals = {}, AttentionMaps* maps = nullptr);
 
     const UNet2DConditionConfig& config() const { return config_; }
 

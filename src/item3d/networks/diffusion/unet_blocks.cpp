@@ -62,9 +62,12 @@ AttentionLayerImpl::AttentionLayerImpl(int channels, int context_channels, int h
     to_out_ = register_module("to_out", nn::ModuleList(PackableLinear(channels, channels)));
 }
 
-at::Tensor AttentionLayerImpl::forward(const at::Tensor& x, const at::Tensor& context) {
+at::Tensor AttentionLayerImpl::forward(const at::Tensor& x, const at::Tensor& context,
+                                       AttentionMaps* maps) {
     const at::Tensor& source = context.defined() ? context : x;
-    const at::Tensor result = attention(to_q_(x), to_k_(source), to_v_(source), heads_);
+    const at::Tensor query = to_q_(x), key = to_k_(source);
+    if (maps) maps->add(query, key, heads_);
+    const at::Tensor result = attention(query, key, to_v_(source), heads_);
     return to_out_[0]->as<PackableLinear>()->forward(result);
 }
 
@@ -91,9 +94,10 @@ TransformerBlockImpl::TransformerBlockImpl(int channels, int context_channels, i
     register_module("ff", feed_forward);
 }
 
-at::Tensor TransformerBlockImpl::forward(at::Tensor x, const at::Tensor& context) {
+at::Tensor TransformerBlockImpl::forward(at::Tensor x, const at::Tensor& context,
+                                         AttentionMaps* maps) {
     x = x + attn1_(norm1_(x));
-    x = x + attn2_(norm2_(x), context);
+    x = x + attn2_(norm2_(x), context, maps);
     return x + feed_out_(gated_gelu(feed_in_(norm3_(x))));
 }
 
@@ -114,14 +118,16 @@ SpatialTransformerImpl::SpatialTransformerImpl(const Options& options) : options
     register_module("transformer_blocks", list);
 }
 
-at::Tensor SpatialTransformerImpl::forward(const at::Tensor& x, const at::Tensor& context) {
+at::Tensor SpatialTransformerImpl::forward(const at::Tensor& x, const at::Tensor& context,
+                                           AttentionMaps* maps) {
     const auto rows = x.size(0), channels = x.size(1), height = x.size(2), width = x.size(3);
+    if (maps) maps->set_layer(height, width);
     at::Tensor hidden = group_norm(norm_, x);
     if (conv_in_) hidden = pointwise(conv_in_, hidden);
     hidden = hidden.permute({0, 2, 3, 1}).reshape({rows, height * width, channels});
     if (linear_in_) hidden = linear_in_(hidden);
     for (TransformerBlock& block : blocks_)
-        hidden = block(hidden, context);
+        hidden = block(hidden, context, maps);
     if (linear_out_) hidden = linear_out_(hidden);
     hidden = hidden.reshape({rows, height, width, channels}).permute({0, 3, 1, 2});
     if (conv_out_) hidden = pointwise(conv_out_, hidden);

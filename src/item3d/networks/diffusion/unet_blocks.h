@@ -2,6 +2,7 @@
 // own, so that weights load by name. Feature maps are [N, C, H, W], tokens [N, S, C].
 #pragma once
 
+#include "item3d/networks/diffusion/attention_maps.h"
 #include "item3d/networks/layers/conv3x3.h"
 #include "item3d/networks/layers/packable_linear.h"
 #include "item3d/tensors/tensor.h"
@@ -49,7 +50,9 @@ class AttentionLayerImpl : public torch::nn::Module {
   public:
     /// bias: of the query, key and value projections (the U-Net has none, the autoencoder does).
     AttentionLayerImpl(int channels, int context_channels, int heads, bool bias = false);
-    at::Tensor forward(const at::Tensor& x, const at::Tensor& context = {});
+    /// maps: takes what is attended to, unless null.
+    at::Tensor forward(const at::Tensor& x, const at::Tensor& context = {},
+                       AttentionMaps* maps = nullptr);
 
   private:
     int heads_;
@@ -62,7 +65,7 @@ TORCH_MODULE(AttentionLayer);
 class TransformerBlockImpl : public torch::nn::Module {
   public:
     TransformerBlockImpl(int channels, int context_channels, int heads);
-    at::Tensor forward(at::Tensor x, const at::Tensor& context);
+    at::Tensor forward(at::Tensor x, const at::Tensor& context, AttentionMaps* maps = nullptr);
 
   private:
     torch::nn::LayerNorm norm1_{nullptr}, norm2_{nullptr}, norm3_{nullptr};
@@ -83,7 +86,9 @@ class SpatialTransformerImpl : public torch::nn::Module {
         bool linear_projection = false;  ///< proj_in and proj_out are linear, not 1x1 convolutions
     };
     explicit SpatialTransformerImpl(const Options& options);
-    at::Tensor forward(const at::Tensor& x, const at::Tensor& context);
+    /// maps: takes the cross-attention of its blocks, unless null.
+    at::Tensor forward(const at::Tensor& x, const at::Tensor& context,
+                       AttentionMaps* maps = nullptr);
 
   private:
     Options options_;

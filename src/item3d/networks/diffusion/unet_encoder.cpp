@@ -130,12 +130,13 @@ at::Tensor UNetEncoderImpl::embed(const at::Tensor& timesteps, std::int64_t rows
 }
 
 std::vector<at::Tensor> UNetEncoderImpl::descend(at::Tensor x, const at::Tensor& time,
-                                                 const at::Tensor& context) {
+                                                 const at::Tensor& context,
+                                                 AttentionMaps* attention_maps) {
     std::vector<at::Tensor> maps{x};
     for (UNetLevel& level : down_) {
         for (std::size_t i = 0; i < level.resnets.size(); ++i) {
             x = level.resnets[i](x, time);
-            if (!level.attentions.empty()) x = level.attentions[i](x, context);
+            if (!level.attentions.empty()) x = level.attentions[i](x, context, attention_maps);
             maps.push_back(x);
         }
         if (level.down) {
@@ -147,9 +148,9 @@ std::vector<at::Tensor> UNetEncoderImpl::descend(at::Tensor x, const at::Tensor&
 }
 
 at::Tensor UNetEncoderImpl::run_middle(at::Tensor x, const at::Tensor& time,
-                                       const at::Tensor& context) {
+                                       const at::Tensor& context, AttentionMaps* maps) {
     x = mid_.resnets[0](x, time);
-    x = mid_.attentions[0](x, context);
+    x = mid_.attentions[0](x, context, maps);
     return mid_.resnets[1](x, time);
 }
 

@@ -47,9 +47,10 @@ class UNetEncoderImpl : public torch::nn::Module {
     at::Tensor enter(const at::Tensor& sample) { return conv_in_(sample); }
     /// x after the first convolution -> the feature map after every layer of the way down, x
     /// itself first; the last one is what goes into the middle.
-    std::vector<at::Tensor> descend(at::Tensor x, const at::Tensor& time,
-                                    const at::Tensor& context);
-    at::Tensor run_middle(at::Tensor x, const at::Tensor& time, const at::Tensor& context);
+    std::vector<at::Tensor> descend(at::Tensor x, const at::Tensor& time, const at::Tensor& context,
+                                    AttentionMaps* attention_maps = nullptr);
+    at::Tensor run_middle(at::Tensor x, const at::Tensor& time, const at::Tensor& context,
+                          AttentionMaps* maps = nullptr);
     at::ScalarType dtype() const { return conv_in_->weight.scalar_type(); }
 
   private:

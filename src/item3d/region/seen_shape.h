@@ -1,0 +1,14 @@
+// The shape in a render as a prior sees it.
+#pragma once
+
+#include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/render/interpolate.h"
+#include "item3d/render/rasterize.h"
+#include "item3d/scene/bounding_sphere.h"
+
+namespace item3d {
+
+/// sphere: around the whole model. No graph.
+SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere);
+
+}  // namespace item3d
