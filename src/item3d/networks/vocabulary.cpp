@@ -59,6 +59,10 @@ PriorVocabulary::PriorVocabulary(const nlohmann::json& prior_json, const std::st
     try {
         all_words_ = prior_json.value("words", std::vector<std::string>{});
         std::sort(all_words_.begin(), all_words_.end());
+        const nlohmann::json::json_pointer names("/segmenter/parts/names");
+        if (prior_json.contains(names))
+            for (const auto& [name, iou] : prior_json.at(names).items())
+                part_names_.push_back(name);
         if (!prior_json.contains("vocabulary")) return;
         for (const auto& [kind, entries] : prior_json.at("vocabulary").items())
             for (const auto& entry : entries)

@@ -39,6 +39,8 @@ class PriorVocabulary {
     /// True when nothing is known about what the prior knows.
     bool open() const { return all_words_.empty(); }
     const std::vector<KnownWord>& words() const { return words_; }
+    /// Parts of objects ("handle") that the prior's segmenter was measured on.
+    const std::vector<std::string>& part_names() const { return part_names_; }
     std::vector<KnownWord> words_of(const std::string& kind) const;
     /// Words of `kind` that the prompt names, in the order of the vocabulary.
     std::vector<KnownWord> named(const std::string& kind, const std::string& prompt) const;
@@ -64,6 +66,7 @@ class PriorVocabulary {
     const KnownWord* best_known(const std::string& spelling, bool shape_is_given) const;
 
     std::vector<KnownWord> words_;
+    std::vector<std::string> part_names_;
     std::vector<std::string> all_words_;  ///< sorted; every word of training captions
 };
 

@@ -18,10 +18,8 @@ constexpr int segmenter_pixels = 192;
 constexpr float enough_probability = 0.4f;
 /// Mean probability of what is taken, below which the answer is unsure.
 constexpr double sure_probability = 0.6;
-/// What says nothing: where one of these gets so much of the phrase's probability, the answer is
-/// none about the phrase.
-constexpr const char* neutral_phrases[] = {"something", "a thing"};
-constexpr double largest_neutral_part = 0.5;
+/// Of another part's mean probability at the same place: the answer is unsure, too.
+constexpr double clearly_more = 0.05;
 /// Standard deviations above the mean from which attention counts.
 constexpr float enough_attention = 1.25f;
 
@@ -38,12 +36,29 @@ void check_words(const SelectorText& text, const PriorVocabulary& vocabulary) {
     warn(fmt::format("{}: the prior does not know {}", text.whole, list));
 }
 
-/// The segmenter's answer, and what neutral phrases get where it is.
+bool same_in_either_number(const std::string& word, const std::string& other) {
+    return word == other || word + "s" == other || word == other + "s";
+}
+
+/// The phrase, and all parts that it does not name: what one of them gets more of is that part.
+std::vector<std::string> with_other_parts(const std::string& phrase,
+                                          const PriorVocabulary& vocabulary) {
+    std::vector<std::string> prompts{phrase};
+    const std::vector<std::string> said = prompt_words(phrase);
+    for (const std::string& name : vocabulary.part_names())
+        if (std::none_of(said.begin(), said.end(), [&](const std::string& word) {
+                return same_in_either_number(word, name);
+            }))
+            prompts.push_back("the " + name);
+    return prompts;
+}
+
+/// The segmenter's answer, and what other parts get where it is.
 std::unique_ptr<Selector> ask_segmenter(const SelectorText& text, const RegionScene& scene) {
     const Segmenter& segmenter = *scene.readers->segmenter;
     segmenter.warn_of_lost_words(text.whole, text.value);
-    std::vector<std::string> prompts{text.value};
-    prompts.insert(prompts.end(), std::begin(neutral_phrases), std::end(neutral_phrases));
+    const std::vector<std::string> prompts =
+        with_other_parts(text.value, scene.readers->vocabulary);
     const SurfaceReading reading = read_surface(
         scene, segmenter_pixels,
         [&](const ModelView& view) { return segmenter.masks(view.picture, prompts)[0]; });
@@ -54,19 +69,19 @@ std::unique_ptr<Selector> ask_segmenter(const SelectorText& text, const RegionSc
             fmt::format("the likeliest place reaches {:.0f} %, {:.0f} are needed; try other "
                         "words, or view= or sphere=",
                         100 * vote.highest, 100 * enough_probability));
-    std::size_t loudest = 1;
-    double neutral = 0;
+    std::size_t likeliest = 0;
+    double other = 0;
     for (std::size_t i = 1; i < prompts.size(); ++i) {
         const double mean =
             reading.values[static_cast<std::int64_t>(i)].index({vote.inside}).mean().item<double>();
-        if (mean > neutral) loudest = i, neutral = mean;
+        if (mean > other) likeliest = i, other = mean;
     }
     const std::string line =
         fmt::format("{}: named on {:.1f} % of what is seen, mean probability {:.0f} %", text.whole,
                     100 * vote.taken, 100 * vote.mean);
-    if (neutral > largest_neutral_part * vote.mean)
-        warn(fmt::format("{}: unsure, \"{}\" gets {:.0f} % there; {}", line, prompts[loudest],
-                         100 * neutral, look));
+    if (other > vote.mean + clearly_more)
+        warn(fmt::format("{}: unsure, \"{}\" gets {:.0f} % there; {}", line, prompts[likeliest],
+                         100 * other, look));
     else if (vote.mean < sure_probability)
         warn(fmt::format("{}: unsure; {}", line, look));
     else

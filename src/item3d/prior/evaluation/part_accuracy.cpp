@@ -143,6 +143,10 @@ nlohmann::json measure_parts(const Segmenter& segmenter, const PartPictures& pic
 
 nlohmann::json part_summary(const nlohmann::json& measured) {
     nlohmann::json summary = measured;
+    nlohmann::json names = nlohmann::json::object();
+    for (const auto& [name, word] : measured.at("words").items())
+        names[name] = word.at("iou");
+    summary["names"] = names;
     for (const char* member : {"worst", "words", "classes"})
         summary.erase(member);
     return summary;
