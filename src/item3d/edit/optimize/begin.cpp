@@ -3,6 +3,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/optimize/checkpoint_state.h"
+#include "item3d/edit/optimize/method_guidance.h"
 #include "item3d/edit/optimize/render_view.h"
 #include "item3d/field/fit.h"
 #include "item3d/lighting/environment.h"
@@ -89,9 +90,9 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     }
     state.fitted = snapshot(state.field);
     const auto begin_guidance = [&] {
-        state.guidance =
-            make_guidance(scene.prior(), scene.from, scene.to, plan.guidance_options());
+        state.guidance = guidance_of_method(request, scene);
         state.prior_weights = scene.hashing_weights.get();
+        state.networks = {scene.prior()};
     };
 
     if (request.resume) {

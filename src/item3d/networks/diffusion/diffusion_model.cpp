@@ -48,6 +48,7 @@ at::Tensor DiffusionModel::decode_image(const at::Tensor& latents) const {
 at::Tensor DiffusionModel::predict(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                                    const TextEmbedding& text, const at::Tensor& condition) const {
     const auto rows = noisy_latents.size(0);
+    *predicted_rows_ += rows;
     at::Tensor sample = noisy_latents;
     const TextEmbedding each = text.expand(rows);
     AddedCondition added;

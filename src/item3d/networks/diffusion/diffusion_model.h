@@ -6,6 +6,8 @@
 #include "item3d/tensors/tensor.h"
 #include "item3d/text/clip_tokenizer.h"
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,6 +44,9 @@ class DiffusionModel {
     at::Tensor predict(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                        const TextEmbedding& text, const at::Tensor& condition = {}) const;
 
+    /// Rows that the U-Net was asked for since it was loaded: what a method costs.
+    std::int64_t predicted_rows() const { return *predicted_rows_; }
+
     const NoiseSchedule& schedule() const;
     const ClipTokenizer& tokenizer() const { return *tokenizer_; }
     bool is_sdxl() const { return sdxl_; }  ///< with a second text encoder
@@ -67,6 +72,9 @@ class DiffusionModel {
 
   private:
     at::Tensor sizes_of(const at::Tensor& latents) const;
+
+    std::shared_ptr<std::atomic<std::int64_t>> predicted_rows_ =
+        std::make_shared<std::atomic<std::int64_t>>(0);
 };
 
 }  // namespace item3d
