@@ -55,7 +55,7 @@ TEST_P(EachPainter, PaintsAllTexelsAndLeavesThoseOutsideOfTheRegion) {
     sphere.load_prior();
     const at::Tensor left = sphere.scene.texels->surface().uv.select(1, 0) < 0.5;
     sphere.scene.weight = left.to(at::kFloat).unsqueeze(1);
-    const PainterOptions options{.steps = 5, .views = 3, .cfg = 3, .seed = 2};
+    const PainterOptions options{.steps = 3, .views = 2, .cfg = 3, .seed = 2};
     const Painted whole = paint(sphere, GetParam(), options);
     EXPECT_TRUE(at::isfinite(whole.colors).all().item<bool>());
     EXPECT_GE(whole.colors.min().item<float>(), -1e-4f);

@@ -97,6 +97,16 @@ TEST(TexelView, SamplesPicturesBilinearly) {
     }
 }
 
+TEST(TexelView, PixelsThatDoNotCountAreLeftOut) {
+    const at::Tensor picture = at::tensor({1.0f, 5.0f, 2.0f, 6.0f}).view({1, 2, 2});
+    const at::Tensor counts = at::tensor({1.0f, 0.0f, 1.0f, 0.0f}).view({1, 2, 2});
+    const at::Tensor places = at::tensor({0.5f, 0.5f, 0.9f, 0.5f}).view({2, 2});
+    const PictureSample sample = sample_pixels(picture, counts, places);
+    EXPECT_NEAR(sample.values[0][0].item<float>(), 1.5, 1e-5);  // the left column's mean
+    EXPECT_NEAR(sample.share[0].item<float>(), 0.5, 1e-5);
+    EXPECT_NEAR(sample.share[1].item<float>(), 0, 1e-5);  // in the right column alone
+}
+
 TEST(Leftovers, KnownTexelsStayAndOthersLieBetweenThem) {
     const SphereScene sphere(32);
     const TexelList& texels = *sphere.scene.texels;

@@ -1,4 +1,6 @@
 // Methods other than this project's own, as edits: files, resuming, regions, and what they lack.
+#include "item3d/baselines/methods.h"
+
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/networks/diffusion/pipeline.h"

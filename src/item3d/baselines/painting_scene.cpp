@@ -11,6 +11,7 @@ namespace {
 constexpr float degree = pi / 180.0f;
 constexpr float painting_field_of_view = 40.0f * degree;
 constexpr float background = 0.5f;  ///< sRGB
+constexpr double least_share = 0.25;
 /// Parts of the radius by which a texel may lie behind what a view sees.
 constexpr float tolerance = 0.01f;
 /// Pixels of masks along a pixel of the prior's pictures; small ones are drawn finer.
@@ -63,6 +64,15 @@ const TexelView& ViewRender::texels() const {
         texel_view_ = see_texels(scene_.texels->surface(), view_.camera, raster_.depth[0],
                                  tolerance * scene_.radius);
     return *texel_view_;
+}
+
+PictureSample ViewRender::colors_of(const at::Tensor& picture) const {
+    const at::Tensor covers =
+        (at::adaptive_avg_pool2d(covered_, {picture.size(2), picture.size(3)}) > 0.999)
+            .to(at::kFloat);
+    PictureSample sample = sample_pixels(picture[0], covers[0], texels().place);
+    sample.share = ((sample.share > least_share) & (texels().cosine > 0)).to(at::kFloat);
+    return sample;
 }
 
 at::Tensor ViewRender::pixels(const at::Tensor& values) const {

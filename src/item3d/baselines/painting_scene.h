@@ -67,6 +67,10 @@ class ViewRender {
     const TexelView& texels() const;                        ///< how it sees them
     const at::Tensor& covered() const { return covered_; }  ///< [1, 1, S, S] 0 or 1
     const at::Tensor& cosine() const { return cosine_; }    ///< [1, 1, S, S]
+    /// The colours of a picture [1, 3, R, R] at all texels, of pixels that the model covers wholly:
+    /// others are of the background too. share: 0 where it does not see the texel, or where those
+    /// pixels have less than a quarter of the weights; else 1.
+    PictureSample colors_of(const at::Tensor& picture) const;
     /// [1, 1, S, S] 0 or 1: pixels that take any of the edit.
     const at::Tensor& editable() const { return editable_; }
     /// values [T, C] as pixels [1, C, S, S]; 0 where no edited material is.

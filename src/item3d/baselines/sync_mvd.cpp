@@ -168,8 +168,10 @@ void SyncMvd::paint_views(const at::Tensor& latents) {
     for (std::size_t v = 0; v < views_.size(); ++v) {
         const ViewRender render(scene_, views_[v].view);
         pictures_.push_back(decode(latents.narrow(0, static_cast<std::int64_t>(v), 1)));
-        values.push_back(sample_picture(pictures_.back()[0], render.texels().place));
-        weights.push_back(view_weight(render.texels().cosine, options_.steps - 1, options_.steps));
+        const PictureSample sample = render.colors_of(pictures_.back());
+        values.push_back(sample.values);
+        weights.push_back(view_weight(render.texels().cosine, options_.steps - 1, options_.steps) *
+                          sample.share);
     }
     const MergedTexels merged = merge_views(values, weights);
     const at::Tensor here = merged.known & (scene_.weight.squeeze(1) > 0);

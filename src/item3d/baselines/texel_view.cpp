@@ -63,4 +63,11 @@ at::Tensor sample_picture(const at::Tensor& picture, const at::Tensor& places) {
     return sum;
 }
 
+PictureSample sample_pixels(const at::Tensor& picture, const at::Tensor& counts,
+                            const at::Tensor& places) {
+    const at::Tensor sum = sample_picture(at::cat({picture * counts, counts}), places);
+    const at::Tensor share = sum.select(1, picture.size(0));
+    return {sum.slice(1, 0, picture.size(0)) / share.clamp_min(1e-6).unsqueeze(1), share};
+}
+
 }  // namespace item3d

@@ -23,4 +23,12 @@ TexelView see_texels(const Surface& texels, const Camera& camera, const at::Tens
 /// outermost pixels their values go on.
 at::Tensor sample_picture(const at::Tensor& picture, const at::Tensor& places);
 
+/// The same of pixels that count alone: `counts` [1, R, R] of 0 and 1.
+struct PictureSample {
+    at::Tensor values;  ///< [T, C] weighted means of those
+    at::Tensor share;   ///< [T] of the bilinear weights that they have; values are 0 where it is 0
+};
+PictureSample sample_pixels(const at::Tensor& picture, const at::Tensor& counts,
+                            const at::Tensor& places);
+
 }  // namespace item3d

@@ -68,8 +68,8 @@ at::Tensor ViewPainter::decode(const at::Tensor& latents) const {
 void ViewPainter::paint(const ViewRender& render, const at::Tensor& picture,
                         const at::Tensor& share) {
     const at::NoGradGuard no_grad;
-    const at::Tensor seen = sample_picture(picture[0], render.texels().place);
-    const at::Tensor weight = (share * (scene_.weight.squeeze(1) > 0)).unsqueeze(1);
+    const auto [seen, counts] = render.colors_of(picture);
+    const at::Tensor weight = (share * counts * (scene_.weight.squeeze(1) > 0)).unsqueeze(1);
     // The first paint covers what waits for it wholly.
     const at::Tensor whole = (painted_ == 0).unsqueeze(1) & (weight > 0);
     colors_ = at::where(whole, seen, colors_.lerp(seen, weight));
