@@ -104,6 +104,8 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         }
         note("nothing to resume in " + request.output.string() + ": beginning anew");
     }
+    // What a method lacks is told before the fit takes its seconds.
+    if (!state.guidance && plan.method != "item3d") begin_guidance();
     if (plan.edits_texture) fit_field(scene, plan, state);
     if (!state.guidance) begin_guidance();  // the prior was loaded meanwhile
     if (plan.edits_texture) save_state(request, state);

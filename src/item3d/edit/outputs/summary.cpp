@@ -162,9 +162,12 @@ std::string timeline_note(const EditState& state) {
 std::vector<Chart> charts_of(const EditPlan& plan, const EditState& state) {
     if (state.direction_length.empty()) return {};
     std::vector<Chart> charts;
-    charts.push_back({plan.guidance == "sds" ? "Length of the score" : "Length of the direction",
+    const bool has_loss = plan.method == "clip" || plan.method == "in2n";
+    charts.push_back({has_loss                 ? "Loss"
+                      : plan.guidance == "sds" ? "Length of the score"
+                                               : "Length of the direction",
                       "iteration",
-                      {curve_of("direction", state.direction_length)},
+                      {curve_of(has_loss ? "loss" : "direction", state.direction_length)},
                       true});
     if (state.guidance->text_direction()) {
         charts.push_back({plan.adjust == Adjustment::off
