@@ -54,7 +54,7 @@ const std::vector<Method>& all_methods() {
             {"syncmvd", "SyncMVD: all views denoised at once, agreeing in a latent texture",
              "60 a view"},
             15.5f),
-        {{"in2n", "Instruct-NeRF2NeRF: views edited by InstructPix2Pix while the texture follows",
+        {{"in2n", "Instruct-NeRF2NeRF: InstructPix2Pix edits views, the texture follows them",
           "6 an iteration"},
          {{"adjust", "off"},
           {"evenness", 0},

@@ -17,6 +17,9 @@ constexpr double together = 0.8;  ///< of the steps, after which views go on alo
 constexpr double shuffled = 0.4;  ///< of the steps, in which backgrounds change their colour
 constexpr float latent_tolerance = 0.03f;  ///< of the radius, behind what a coarse view sees
 
+/// Of bilinear weights, that cells of the model have: others are of the background.
+constexpr double least_covered = 0.25;
+
 /// The network's output that means `clean` for a sample of that abar.
 at::Tensor output_of(const NoiseSchedule& schedule, const at::Tensor& sample,
                      const at::Tensor& clean, double alpha) {
@@ -144,9 +147,12 @@ void SyncMvd::step(std::int64_t index) {
         const at::Tensor clean = schedule.interpret(output, latents, alpha).clean;
         std::vector<at::Tensor> values, weights;
         for (std::int64_t v = 0; v < count; ++v) {
-            const TexelView& seen = views_[static_cast<std::size_t>(v)].texels;
-            values.push_back(sample_picture(clean[v], seen.place));
-            weights.push_back(view_weight(seen.cosine, i, options_.steps));
+            const LatentView& each = views_[static_cast<std::size_t>(v)];
+            const PictureSample sample =
+                sample_pixels(clean[v], each.covered[0], each.texels.place);
+            values.push_back(sample.values);
+            weights.push_back(view_weight(each.texels.cosine, i, options_.steps) *
+                              (sample.share > least_covered));
         }
         const MergedTexels merged = merge_views(values, weights);
         const at::Tensor spread =
