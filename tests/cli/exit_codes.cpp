@@ -25,6 +25,21 @@ TEST_F(Program, GuidanceHelpListsTheMethods) {
     EXPECT_EQ(help.error, "");
 }
 
+TEST_F(Program, MethodHelpListsThem) {
+    const Result help = run("edit --method help");
+    EXPECT_EQ(help.code, 0);
+    for (const char* method :
+         {"item3d", "sds", "controlnet-2d", "texture", "text2tex", "syncmvd", "in2n", "clip"})
+        EXPECT_NE(help.out.find(std::string("\n") + method + " "), std::string::npos) << method;
+    const std::string edit =
+        "edit " + quoted(cube_) + " --from a --to b -o " + quoted(folder_ / "out") + " --method ";
+    EXPECT_EQ(run(edit + "magic").code, 3);
+    EXPECT_EQ(run(edit + "texture --guidance sds").code, 2);
+    EXPECT_EQ(run(edit + "texture --optimize light").code, 2);
+    EXPECT_EQ(run(edit + "texture --clip-loss absolute").code, 2);
+    EXPECT_EQ(run(edit + "in2n").code, 3);  // the embedded prior follows no instructions
+}
+
 TEST_F(Program, WrongUsageIsTwo) {
     EXPECT_EQ(run("").code, 2);
     EXPECT_EQ(run("no_such_command").code, 2);

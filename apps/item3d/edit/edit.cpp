@@ -8,10 +8,12 @@
 #include "apps/item3d/edit/plan_file.h"
 #include "apps/item3d/edit/relight_words.h"
 #include "apps/item3d/edit/setting_options.h"
+#include "item3d/baselines/methods.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/reconstructed_light.h"
+#include "item3d/edit/settings_table.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/tensors/precision.h"
@@ -38,12 +40,20 @@ void print_guidance_kinds() {
         fmt::print("{:6}{:76}{}\n", kind.name, kind.description, kind.cost);
 }
 
-/// As an option of its own, answered before it is said that the model is missing.
-void add_guidance(CLI::App& command, nlohmann::json& overrides) {
-    add_setting(command, overrides, "guidance")
-        ->each([](const std::string& method) {
-            if (method != "help") return;
-            print_guidance_kinds();
+void print_methods() {
+    fmt::print("{:14}{:76}{}\n", "method", "", "U-Net rows");
+    for (const EditMethod& method : edit_methods())
+        fmt::print("{:14}{:76}{}\n", method.name, method.description, method.cost);
+}
+
+/// As an option of its own, whose value "help" is answered before it is said that the model is
+/// missing.
+void add_with_help(CLI::App& command, nlohmann::json& overrides, const char* setting,
+                   void (*print)()) {
+    add_setting(command, overrides, setting)
+        ->each([print](const std::string& value) {
+            if (value != "help") return;
+            print();
             throw CLI::Success();
         })
         ->trigger_on_parse();
@@ -63,6 +73,16 @@ void warn_of_words(const EditRequest& request) {
 void refuse_contradictions(const nlohmann::json& overrides) {
     const auto optimize = overrides.get<EditSettings>().optimize;
     const auto given = [&](const char* key) { return overrides.contains(key); };
+    const std::string method = overrides.value("method", "item3d");
+    if (method != "item3d" && given("guidance"))
+        throw UsageError("--guidance is that of --method item3d: leave out one of them");
+    if (method != "item3d" && optimize != Optimize::texture)
+        throw UsageError("--method " + method + " edits textures alone: without --optimize");
+    for (const auto& [key, owner] :
+         {std::pair("clip_loss", "clip"), {"instruction", "in2n"}, {"image_cfg", "in2n"}})
+        if (method != owner && given(key))
+            throw UsageError(
+                fmt::format("{} is that of --method {}", setting_named(key).flag, owner));
     if (optimize != Optimize::texture && given("light_augment"))
         throw UsageError("--light-augment varies a light that --optimize " +
                          overrides["optimize"].get<std::string>() +
@@ -198,6 +218,14 @@ void add_edit_command(CLI::App& app) {
     command->add_option("--captioner", request.captioner,
                         "BLIP or BLIP-2 in the transformers layout, for --adjust caption; without "
                         "it, the one that the prior brings along");
+    command->add_option("--inpainting", request.inpainting,
+                        "Prior with 9 input channels that inpaints, for --method texture; without "
+                        "it, latents are blended");
+    command->add_option("--instruct", request.instruct,
+                        "InstructPix2Pix in the diffusers layout, for --method in2n; without it, "
+                        "the prior must be one");
+    command->add_option("--teacher", request.teacher,
+                        "CLIP model that --method clip follows; without it, the one of --clip");
     command->add_option("--segmenter", request.segmenter,
                         "CLIPSeg in the transformers layout, for --region words=...; without it, "
                         "the one that the prior brings along, else the prior's cross-attention");
@@ -220,7 +248,8 @@ void add_edit_command(CLI::App& app) {
                      "Edge in pixels of the pictures in the report; its turntable has 3/4 of it")
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();
-    add_guidance(*command, options->overrides);
+    add_with_help(*command, options->overrides, "method", print_methods);
+    add_with_help(*command, options->overrides, "guidance", print_guidance_kinds);
     add_settings(*command, options->overrides);
     command->callback([options] {
         options->request.command = command_line();

@@ -26,6 +26,7 @@ enum class RandomStream : std::uint64_t {
     painting = 7,             ///< edit: which view the detail stage fits next
     color_points = 9,         ///< edit: where the colour regulariser looks
     reading = 10,             ///< guidance: noise under which a model reads pictures
+    baseline = 12,            ///< baselines: noise of what is sampled
     region = 0x726567696f6e,  ///< region: points that a part of a surface is measured at
     field = 0x6669656c64,     ///< field: first values of the neural texture
     fit = 0x666974,           ///< field: points that it is fitted at
@@ -59,6 +60,7 @@ constexpr bool is_listed(RandomStream stream) {
         case RandomStream::painting:
         case RandomStream::color_points:
         case RandomStream::reading:
+        case RandomStream::baseline:
         case RandomStream::region:
         case RandomStream::field:
         case RandomStream::fit:

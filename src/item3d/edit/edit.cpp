@@ -8,6 +8,7 @@
 #include "item3d/edit/outputs/baked_files.h"
 #include "item3d/edit/outputs/pictures.h"
 #include "item3d/edit/outputs/summary.h"
+#include "item3d/edit/painting/painting.h"
 #include "item3d/edit/scene.h"
 
 namespace item3d {
@@ -22,12 +23,21 @@ nlohmann::json edit_model(const EditRequest& request) {
     times.end_stage("load");
 
     std::future<Atlas> atlas = unwrap_meanwhile(request, scene);
-    EditState state = begin_or_resume(request, scene);
-    scene.atlas = atlas.get();
-    times.end_stage("fit");
-
-    const IterationTimes iteration_times = optimize(request, scene, state);
-    times.end_stage("optimize");
+    EditState state;
+    IterationTimes iteration_times;
+    if (request.plan.paints_views) {
+        scene.atlas = atlas.get();
+        state = begin_painting(request, scene);
+        times.end_stage("begin");
+        paint_views(request, scene, state);
+        times.end_stage("paint");
+    } else {
+        state = begin_or_resume(request, scene);
+        scene.atlas = atlas.get();
+        times.end_stage("fit");
+        iteration_times = optimize(request, scene, state);
+        times.end_stage("optimize");
+    }
 
     if (request.plan.paints_detail) {
         add_detail(request, scene, state);

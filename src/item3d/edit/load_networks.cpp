@@ -1,5 +1,7 @@
 #include "item3d/edit/load_networks.h"
 
+#include "item3d/baselines/masked_sampling.h"
+#include "item3d/baselines/view_painter.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
@@ -64,9 +66,14 @@ std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request,
                      default_negative_prompt()};
     needs.prompts.insert(needs.prompts.end(), prior_needs.prompts.begin(),
                          prior_needs.prompts.end());
-    needs.decoder = plan.paints_detail;
+    needs.decoder = plan.paints_detail || plan.paints_views || plan.method == "in2n";
+    if (plan.method == "in2n") needs.prompts.push_back(plan.dataset_options().instruction);
+    if (plan.paints_views)
+        for (const std::string& prompt : painting_prompts(prior_needs.to, plan.negative_prompt))
+            needs.prompts.push_back(prompt);
     return std::make_shared<RunningPipeline>(RunningPipeline::load(
-        request.prior, prior_needs.device, prior_needs.precision, plan, needs));
+        plan.method == "in2n" && !request.instruct.empty() ? request.instruct : request.prior,
+        prior_needs.device, prior_needs.precision, plan, needs));
 }
 
 }  // namespace
@@ -90,6 +97,25 @@ std::shared_ptr<const DiffusionModel> load_prior(const EditRequest& request,
         warn_of_lost_words(prior->tokenizer(), option, text);
     if (needs.low_memory) prior->recompute_in_backward(true);
     return prior;
+}
+
+std::shared_ptr<const DiffusionModel> load_inpainter(const EditRequest& request, at::Device device,
+                                                     at::ScalarType precision,
+                                                     const std::string& to) {
+    if (request.inpainting.empty()) return nullptr;
+    RunNeeds needs;
+    needs.prompts = painting_prompts(to, request.plan.negative_prompt);
+    needs.decoder = false;
+    auto model = std::make_shared<RunningPipeline>(
+        RunningPipeline::load(request.inpainting, device, precision, {}, needs));
+    if (!is_inpainter(*model))
+        throw InputError(request.inpainting.string(),
+                         fmt::format("does not inpaint: its U-Net has {} input channels, expected "
+                                     "{} (latents, mask, latents)",
+                                     model->latent_channels() + model->condition_channels(),
+                                     2 * model->latent_channels() + 1),
+                         "name a Stable Diffusion inpainting model, or leave --inpainting out");
+    return model;
 }
 
 bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::Device device) {

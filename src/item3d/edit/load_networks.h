@@ -31,6 +31,12 @@ struct PriorNeeds {
 std::shared_ptr<const DiffusionModel> load_prior(const EditRequest& request,
                                                  const PriorNeeds& needs);
 
+/// The network that inpaints for methods that paint views; null where the request names none. to:
+/// as the prior reads it. Throws InputError where it is none.
+std::shared_ptr<const DiffusionModel> load_inpainter(const EditRequest& request, at::Device device,
+                                                     at::ScalarType precision,
+                                                     const std::string& to);
+
 /// Whether to trade time for memory, as `--memory` says. "high" and "low" say it; "auto"
 /// looks at the prior's headers and at what is free, and says what it chose where that is not the
 /// usual. Warns where even the low estimate does not fit. Throws ResourceError when the weights

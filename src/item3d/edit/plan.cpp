@@ -1,8 +1,10 @@
 #include "item3d/edit/plan.h"
 
+#include "item3d/baselines/methods.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/words.h"
+#include "item3d/edit/setting.h"
 
 #include <algorithm>
 #include <array>
@@ -83,6 +85,10 @@ EditSettings merge_settings(const std::filesystem::path& prior, const nlohmann::
         merged.update(published_settings(merged["guidance"]));
     }
     merged.update(published_settings(overrides.value("guidance", "")));
+    if (overrides.contains("method")) {
+        rows::find_choice("--method", edit_method_names(), overrides.at("method"));
+        merged.update(method_settings(overrides.at("method")));
+    }
     merged.update(overrides);
     return merged.get<EditSettings>();
 }
@@ -92,14 +98,18 @@ EditSettings merge_settings(const std::filesystem::path& prior, const nlohmann::
 EditPlan::EditPlan(EditSettings settings) : EditSettings(std::move(settings)) {
     const bool small_prior = resolution <= small_prior_pixels;
     const bool target_names_detail = names_detail(*this);
+    paints_views = item3d::paints_views(method);
+    if (paints_views) iterations = 0;
     edits_texture = optimize != Optimize::light;
     edits_light = optimize != Optimize::texture;
-    asks_captioner = guidance == "rdl" && adjusts_by_captions(adjust);
-    regularizes_color = evenness > 0 && edits_texture && !target_names_detail;
+    asks_captioner = !paints_views && guidance == "rdl" && adjusts_by_captions(adjust);
+    regularizes_color = evenness > 0 && !paints_views && edits_texture && !target_names_detail;
     paints_detail = iterations > 0 && edits_texture && !has(keep, "base_color") &&
                     (detail == Detail::automatic ? target_names_detail : detail == Detail::always);
-    total_iterations = iterations + (paints_detail ? detail_views : 0);
+    total_iterations = paints_views ? painter_steps(method, painter_options())
+                                    : iterations + (paints_detail ? detail_views : 0);
     channels = edited_channels(*this);
+    if (paints_views) channels = {channels.base_color, false, false, false, false};
     light_kind = resolved_kind(light_model, small_prior);
     light_variation = edits_light ? LightAugment::off : light_augment;
     light_cube_size = small_prior ? 64 : 256;
@@ -120,6 +130,23 @@ GuidanceOptions EditPlan::guidance_options() const {
     options.timestep_schedule = timestep_schedule;
     options.iterations = iterations;
     options.weighting = weighting;
+    options.seed = seed;
+    return options;
+}
+
+PainterOptions EditPlan::painter_options() const {
+    return {steps, views, cfg, seed};
+}
+
+DatasetOptions EditPlan::dataset_options() const {
+    DatasetOptions options;
+    options.instruction = instruction.empty() ? "turn it into " + to : instruction;
+    options.negative_prompt = negative_prompt;
+    options.scales = {cfg, image_cfg};
+    if (views > 0) options.views = views;
+    if (steps > 0) options.steps = steps;
+    options.min_timestep = timesteps[0];
+    options.max_timestep = timesteps[1];
     options.seed = seed;
     return options;
 }

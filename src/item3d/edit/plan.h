@@ -1,6 +1,8 @@
 // The plan of an edit: its settings, and the decisions that follow from them.
 #pragma once
 
+#include "item3d/baselines/dataset_update.h"
+#include "item3d/baselines/view_painter.h"
 #include "item3d/edit/settings.h"
 #include "item3d/lighting/optimized/light_model.h"
 
@@ -30,10 +32,12 @@ struct EditPlan : EditSettings {
 
     bool edits_texture = false;
     bool edits_light = false;
-    bool asks_captioner = false;        ///< a captioner adjusts the direction
-    bool regularizes_color = false;     ///< see ColorRegularizer
-    bool paints_detail = false;         ///< the detail stage runs
-    std::int64_t total_iterations = 0;  ///< and views of the detail stage
+    bool paints_views = false;       ///< by a method that is a ViewPainter
+    bool asks_captioner = false;     ///< a captioner adjusts the direction
+    bool regularizes_color = false;  ///< see ColorRegularizer
+    bool paints_detail = false;      ///< the detail stage runs
+    /// And views of the detail stage; steps of a ViewPainter, which has no iterations.
+    std::int64_t total_iterations = 0;
     /// All but `keep`, and metallic only as its own setting allows.
     ChannelMask channels;
     LightKind light_kind = LightKind::texels;          ///< of a light that is optimised
@@ -42,6 +46,8 @@ struct EditPlan : EditSettings {
     int supersampling = 1;                             ///< of the pictures that the prior sees
 
     GuidanceOptions guidance_options() const;
+    PainterOptions painter_options() const;
+    DatasetOptions dataset_options() const;
 };
 
 /// "defaults" of PRIOR/prior.json; an empty object where it has none. Throws InputError.

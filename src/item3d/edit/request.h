@@ -12,11 +12,14 @@ namespace item3d {
 
 struct EditRequest {
     std::filesystem::path model;
-    std::filesystem::path prior;      ///< folder in the diffusers layout
-    std::filesystem::path output;     ///< folder, made when it is not there
-    std::filesystem::path clip;       ///< CLIP model that scores the result; empty: none
-    std::filesystem::path segmenter;  ///< CLIPSeg, for regions by words; read where one is
-    std::filesystem::path captioner;  ///< BLIP or BLIP-2; read where the plan asks it
+    std::filesystem::path prior;       ///< folder in the diffusers layout
+    std::filesystem::path output;      ///< folder, made when it is not there
+    std::filesystem::path clip;        ///< CLIP model that scores the result; empty: none
+    std::filesystem::path segmenter;   ///< CLIPSeg, for regions by words; read where one is
+    std::filesystem::path captioner;   ///< BLIP or BLIP-2; read where the plan asks it
+    std::filesystem::path inpainting;  ///< prior of 9 input channels, for texture; empty: none
+    std::filesystem::path instruct;    ///< InstructPix2Pix, for in2n; empty: the prior itself
+    std::filesystem::path teacher;     ///< CLIP model that clip follows; empty: `clip`
     EditPlan plan;
     bool resume = false;
     std::vector<std::filesystem::path> texture_folders;  ///< see LoadOptions

@@ -1,6 +1,7 @@
 // The settings of an edit: one value that goes into edit.json, the report, and the checkpoint.
 #pragma once
 
+#include "item3d/baselines/clip_guidance.h"
 #include "item3d/field/atlas/atlas.h"
 #include "item3d/guidance/guidance.h"
 #include "item3d/io/texture_format.h"
@@ -36,7 +37,8 @@ enum class LightAugment { off, rotate, all };
 struct EditSettings : PipelineExtras {
     std::string from;
     std::string to;
-    std::string guidance = "rdl";  ///< one of guidance_methods()
+    std::string method = "item3d";  ///< one of edit_method_names()
+    std::string guidance = "rdl";   ///< one of guidance_methods()
     Adjustment adjust = Adjustment::learned;
     int adjust_every = 25;
     float adjust_strength = 1;
@@ -46,6 +48,11 @@ struct EditSettings : PipelineExtras {
     float anchor = 0;
     float cfg = 7.5f;
     std::string negative_prompt;
+    int steps = 0;
+    int views = 0;
+    ClipLoss clip_loss = ClipLoss::absolute;
+    std::string instruction;
+    float image_cfg = 1.5f;
     int iterations = 600;
     int iterations_before_detail = 0;
     int fit_steps = 200;

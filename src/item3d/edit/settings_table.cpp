@@ -1,5 +1,6 @@
 #include "item3d/edit/settings_table.h"
 
+#include "item3d/baselines/methods.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 
@@ -38,11 +39,22 @@ Setting kept_channels() {
     return row;
 }
 
+Setting edit_method() {
+    Setting row = setting("method", &S::method, "--method",
+                          fmt::format("Of the edit: {}; help tells what each is and costs",
+                                      fmt::join(edit_method_names(), ", ")));
+    row.check = [](const S& settings) {
+        rows::find_choice("--method", edit_method_names(), settings.method);
+    };
+    return row;
+}
+
 /// The sentences, and what guides an edit from the one to the other.
 std::vector<Setting> guidance_rows() {
     return {
         setting("from", &S::from, "--from", "What the model looks like now"),
         setting("to", &S::to, "--to", "What it shall look like"),
+        edit_method(),
         setting("guidance", &S::guidance, "--guidance",
                 fmt::format("The method: {}; help tells what each is for and costs",
                             fmt::join(guidance_methods(), ", "))),
@@ -102,6 +114,24 @@ std::vector<Setting> optimization_rows() {
         choice<Weighting>(
             "weighting", &S::weighting, weighting_names(), parse_weighting, "--weighting",
             "omega(t) of rdl, sds, nfsd and csd: early, late, dreamfusion or uniform"),
+    };
+}
+
+/// What methods other than this project's own take.
+std::vector<Setting> method_rows() {
+    return {
+        setting("steps", &S::steps, between(0, 999, "between 1 and 999, or 0 for the method's own"),
+                "--steps", "Steps of sampling, of a --method that samples; 0: as it was published"),
+        setting("views", &S::views,
+                between(0, 1000, "between 1 and 1000, or 0 for the method's own"), "--views",
+                "Views that a --method paints or edits; 0: as many as were published"),
+        choice("clip_loss", &S::clip_loss, {"absolute", "directional"}, "--clip-loss",
+               "Of --method clip: absolute (as CLIP-NeRF's released code) or directional"),
+        setting("instruction", &S::instruction, "--instruction",
+                "Of --method in2n: what to do, in words (\"turn it into gold\"); without it, "
+                "\"turn it into\" and --to"),
+        setting("image_cfg", &S::image_cfg, between(0, 100), "--image-cfg",
+                "Of --method in2n: how much the unedited view counts"),
     };
 }
 
@@ -204,8 +234,8 @@ std::vector<Setting> extras_rows() {
 const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = [] {
         std::vector<Setting> all;
-        for (auto& rows : {guidance_rows(), optimization_rows(), light_rows(), texture_rows(),
-                           region_rows(), extras_rows()})
+        for (auto& rows : {guidance_rows(), optimization_rows(), method_rows(), light_rows(),
+                           texture_rows(), region_rows(), extras_rows()})
             all.insert(all.end(), rows.begin(), rows.end());
         return all;
     }();

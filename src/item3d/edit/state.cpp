@@ -20,6 +20,13 @@ void from_json(const nlohmann::json& json, AdjustmentRecord& record) {
     if (json.contains("source_loss")) record.source_loss = json.at("source_loss").get<double>();
 }
 
+std::int64_t EditState::unet_rows() const {
+    std::int64_t rows = earlier_unet_rows;
+    for (const auto& network : networks)
+        rows += network->predicted_rows();
+    return rows;
+}
+
 void DetailState::begin(const NeuralTexture& field) {
     before = snapshot(field);
     optimizer.add_group("table", {field->table()}, {});

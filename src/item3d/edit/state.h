@@ -1,6 +1,7 @@
 // Everything that an edit changes, which is what a checkpoint holds.
 #pragma once
 
+#include "item3d/baselines/view_painter.h"
 #include "item3d/field/adam.h"
 #include "item3d/field/neural_texture.h"
 #include "item3d/guidance/guidance.h"
@@ -55,10 +56,18 @@ struct DetailState {
 struct EditState {
     NeuralTexture fitted{nullptr};  ///< the field as fitted to the input, for the bake's residual
     NeuralTexture field{nullptr};
-    Adam optimizer;                     ///< of "table" and "network" of the field, and "light"
-    std::unique_ptr<LightModel> light;  ///< null where the light is not optimised
-    EnvironmentLight first_light;       ///< what `light` began as
-    std::unique_ptr<Guidance> guidance;
+    Adam optimizer;                      ///< of "table" and "network" of the field, and "light"
+    std::unique_ptr<LightModel> light;   ///< null where the light is not optimised
+    EnvironmentLight first_light;        ///< what `light` began as
+    std::unique_ptr<Guidance> guidance;  ///< null with a painter
+    std::unique_ptr<PaintingScene> painting;  ///< of a method that paints views; else null
+    std::unique_ptr<ViewPainter> painter;     ///< null with it; then there is no field
+    /// Diffusion models that the edit asks, and rows of their U-Nets that runs before this one
+    /// asked.
+    std::vector<std::shared_ptr<const DiffusionModel>> networks;
+    std::int64_t earlier_unet_rows = 0;
+    /// Of all runs of the edit together.
+    std::int64_t unet_rows() const;
     DetailState detail;
     AdjustmentState adjustment;
     std::string prior_weights;  ///< hash_of_weights() of what guides it

@@ -3,6 +3,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/optimize/checkpoint_state.h"
+#include "item3d/edit/optimize/method_guidance.h"
 #include "item3d/edit/optimize/render_view.h"
 #include "item3d/field/fit.h"
 #include "item3d/lighting/environment.h"
@@ -89,9 +90,9 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     }
     state.fitted = snapshot(state.field);
     const auto begin_guidance = [&] {
-        state.guidance =
-            make_guidance(scene.prior(), scene.from, scene.to, plan.guidance_options());
+        state.guidance = guidance_of_method(request, scene);
         state.prior_weights = scene.hashing_weights.get();
+        state.networks = {scene.prior()};
     };
 
     if (request.resume) {
@@ -103,6 +104,8 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         }
         note("nothing to resume in " + request.output.string() + ": beginning anew");
     }
+    // What a method lacks is told before the fit takes its seconds.
+    if (!state.guidance && plan.method != "item3d") begin_guidance();
     if (plan.edits_texture) fit_field(scene, plan, state);
     if (!state.guidance) begin_guidance();  // the prior was loaded meanwhile
     if (plan.edits_texture) save_state(request, state);

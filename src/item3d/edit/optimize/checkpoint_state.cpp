@@ -14,6 +14,10 @@ nlohmann::json identity_of(const EditRequest& request, const EditState& state) {
     identity["model"] = hash_of_file(request.model);
     identity["prior_weights"] = state.prior_weights;
     identity["precision"] = request.precision;
+    if (request.plan.method == "clip")
+        identity["teacher"] = (request.teacher.empty() ? request.clip : request.teacher).string();
+    if (!request.inpainting.empty()) identity["inpainting"] = request.inpainting.string();
+    if (!request.instruct.empty()) identity["instruct"] = request.instruct.string();
     if (request.plan.asks_captioner) identity["captioner"] = request.captioner.string();
     return identity;
 }
@@ -53,34 +57,42 @@ std::vector<float> to_floats(const at::Tensor& tensor) {
     return {flat.data_ptr<float>(), flat.data_ptr<float>() + flat.numel()};
 }
 
+void append_field(NamedTensors& tensors, const EditState& state) {
+    append_parameters(tensors, "fitted.", state.fitted->named_parameters());
+    append_parameters(tensors, "field.", state.field->named_parameters());
+    if (state.light) append_parameters(tensors, "light.", state.light->named_parameters());
+    for (const auto& [name, tensor] : state.optimizer.state()) {
+        tensors.emplace_back("optimizer." + name, tensor);
+    }
+    for (const auto& [name, tensor] : state.guidance->state()) {
+        tensors.emplace_back("guidance." + name, tensor);
+    }
+    if (state.detail.has_begun()) {
+        append_parameters(tensors, "detail.before.", state.detail.before->named_parameters());
+        for (const auto& [name, tensor] : state.detail.optimizer.state()) {
+            tensors.emplace_back("detail.optimizer." + name, tensor);
+        }
+        if (!state.detail.targets.empty())
+            tensors.emplace_back("detail.targets", at::cat(state.detail.targets));
+    }
+    tensors.emplace_back("curve.direction_length", at::tensor(state.direction_length));
+    tensors.emplace_back("curve.source_loss", at::tensor(state.source_loss));
+    append_adjustment(tensors, state.adjustment);
+}
+
 }  // namespace
 
 void save_state(const EditRequest& request, const EditState& state) {
     Checkpoint checkpoint;
     checkpoint.identity = identity_of(request, state);
     checkpoint.iteration = state.iteration;
-    append_parameters(checkpoint.tensors, "fitted.", state.fitted->named_parameters());
-    append_parameters(checkpoint.tensors, "field.", state.field->named_parameters());
-    if (state.light)
-        append_parameters(checkpoint.tensors, "light.", state.light->named_parameters());
-    for (const auto& [name, tensor] : state.optimizer.state()) {
-        checkpoint.tensors.emplace_back("optimizer." + name, tensor);
+    if (state.painter) {
+        for (const auto& [name, tensor] : state.painter->state())
+            checkpoint.tensors.emplace_back("painter." + name, tensor);
+    } else {
+        append_field(checkpoint.tensors, state);
     }
-    for (const auto& [name, tensor] : state.guidance->state()) {
-        checkpoint.tensors.emplace_back("guidance." + name, tensor);
-    }
-    if (state.detail.has_begun()) {
-        append_parameters(checkpoint.tensors, "detail.before.",
-                          state.detail.before->named_parameters());
-        for (const auto& [name, tensor] : state.detail.optimizer.state()) {
-            checkpoint.tensors.emplace_back("detail.optimizer." + name, tensor);
-        }
-        if (!state.detail.targets.empty())
-            checkpoint.tensors.emplace_back("detail.targets", at::cat(state.detail.targets));
-    }
-    checkpoint.tensors.emplace_back("curve.direction_length", at::tensor(state.direction_length));
-    checkpoint.tensors.emplace_back("curve.source_loss", at::tensor(state.source_loss));
-    append_adjustment(checkpoint.tensors, state.adjustment);
+    checkpoint.tensors.emplace_back("unet_rows", at::full({1}, state.unet_rows(), at::kLong));
     save_checkpoint(checkpoint_path(request), checkpoint);
 }
 
@@ -93,6 +105,16 @@ bool load_state(const EditRequest& request, EditState& state) {
                            {"prior_weights", "belongs to a prior of other weights"}});
 
     const CheckpointReader reader(checkpoint_path(request).string(), checkpoint->tensors);
+    state.iteration = checkpoint->iteration;
+    if (reader.has("unet_rows"))
+        state.earlier_unet_rows = reader.get("unet_rows").item<std::int64_t>();
+    if (state.painter) {
+        NamedTensors painted;
+        for (const auto& [name, tensor] : reader.with_prefix("painter."))
+            painted.emplace_back(name, tensor);
+        state.painter->load_state(CheckpointReader(checkpoint_path(request).string(), painted));
+        return true;
+    }
     reader.parameters("fitted.", state.fitted->named_parameters());
     reader.parameters("field.", state.field->named_parameters());
     if (state.light) reader.parameters("light.", state.light->named_parameters());
@@ -113,7 +135,6 @@ bool load_state(const EditRequest& request, EditState& state) {
     state.direction_length = to_floats(reader.get("curve.direction_length"));
     state.source_loss = to_floats(reader.get("curve.source_loss"));
     read_adjustment(reader, state.adjustment);
-    state.iteration = checkpoint->iteration;
     return true;
 }
 

@@ -28,9 +28,21 @@ Preview::Preview(std::filesystem::path path, const EditScene& scene)
 
 void Preview::update(NeuralTexture& field, const EnvironmentLight& light) {
     if (!enabled_) return;
-    const at::Tensor pictures = draw_field(scene_, field, light, cameras_, preview_size);
+    save(draw_field(scene_, field, light, cameras_, preview_size).unbind(0));
+}
+
+void Preview::show(const std::vector<at::Tensor>& pictures) {
+    if (!enabled_ || pictures.empty()) return;
+    std::vector<at::Tensor> last;
+    for (std::size_t i = pictures.size() - std::min(pictures.size(), cameras_.size());
+         i < pictures.size(); ++i)
+        last.push_back(pictures[i][0].permute({1, 2, 0}));
+    save(last);
+}
+
+void Preview::save(const std::vector<at::Tensor>& pictures) {
     try {
-        save_image(path_, to_image(at::cat(pictures.unbind(0), 1)));
+        save_image(path_, to_image(at::cat(pictures, 1)));
     } catch (const Error& error) {
         warn(std::string("no more previews: ") + error.what());
         enabled_ = false;
@@ -45,6 +57,10 @@ CheckpointWriter::CheckpointWriter(const EditRequest& request, const EditScene& 
       previewed_(checkpointed_) {}
 
 void CheckpointWriter::update_preview(EditState& state) {
+    if (state.painter) {
+        preview_.show(state.painter->pictures());
+        return;
+    }
     preview_.update(state.field, current_light(scene_, state));
 }
 

@@ -21,8 +21,12 @@ class Preview {
     /// Draws the field in that light from three sides and replaces the picture. A preview that
     /// cannot be written is not worth stopping an edit for: it warns once and gives up.
     void update(NeuralTexture& field, const EnvironmentLight& light);
+    /// The same of the last of these pictures, [1, 3, R, R] sRGB each.
+    void show(const std::vector<at::Tensor>& pictures);
 
   private:
+    void save(const std::vector<at::Tensor>& pictures);  ///< [H, W, 3] each, side by side
+
     std::filesystem::path path_;
     const EditScene& scene_;
     std::vector<Camera> cameras_;

@@ -8,6 +8,7 @@
 #include "item3d/edit/optimize/checkpoint_writer.h"
 #include "item3d/edit/optimize/color_regularizer.h"
 #include "item3d/edit/optimize/convergence.h"
+#include "item3d/edit/optimize/method_guidance.h"
 #include "item3d/edit/optimize/render_view.h"
 #include "item3d/guidance/noised_latents.h"
 #include "item3d/render/scatter.h"
@@ -58,8 +59,10 @@ void end_where_converged(const EditPlan& plan, EditState& state) {
 }
 
 GBuffer rasterize_iteration(const EditScene& scene, const EditPlan& plan, std::int64_t iteration) {
-    std::vector<Camera> cameras = sample_cameras(scene.sphere, plan.batch, plan.seed, iteration);
-    if (scene.region_views) scene.region_views->take_turns(cameras, plan.seed, iteration);
+    std::vector<Camera> cameras = cameras_of_method(scene, plan, iteration);
+    const bool is_fixed = plan.method == "in2n";
+    if (scene.region_views && !is_fixed)
+        scene.region_views->take_turns(cameras, plan.seed, iteration);
     return rasterize_views(scene, plan, cameras);
 }
 

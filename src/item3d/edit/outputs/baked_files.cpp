@@ -65,6 +65,14 @@ void note_vertex_colors(const Model& model, const ModelEdit& edit) {
     }
 }
 
+/// For a bake of colours that were painted: a field that changes nothing, and is soon asked.
+NeuralTexture empty_field() {
+    NeuralTextureOptions options;
+    options.levels = 1;
+    options.log2_table_size = 8;
+    return NeuralTexture(options);
+}
+
 constexpr int light_height = 256;
 /// See BakeOptions::blotch: of an edit that changes the same thing everywhere.
 constexpr float recoloured_blotch = 10.0f / 255;
@@ -80,7 +88,15 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
     if (scene.region)
         bake_scene.weight = [&](const Surface& surface) { return scene.region->weight(surface); };
     std::map<int, UneditedPictures> unedited;
-    ModelEdit edit = bake(bake_scene, state.fitted, state.field, options, &unedited);
+    std::map<int, Image> painted;
+    if (state.painter) {
+        painted = state.painting->texels->images(state.painter->colors());
+        bake_scene.painted = &painted;
+    }
+    NeuralTexture none = state.painter ? empty_field() : NeuralTexture(nullptr);
+    NeuralTexture& fitted = state.painter ? none : state.fitted;
+    NeuralTexture& field = state.painter ? none : state.field;
+    ModelEdit edit = bake(bake_scene, fitted, field, options, state.painter ? nullptr : &unedited);
     apply_losses(scene.losses, edit);
     note_vertex_colors(scene.model, edit);
     choose_codings(scene.model, request.plan.texture_format, edit);
@@ -88,7 +104,7 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
     EditedModel edited;
     const auto path = request.output / model_file_name(request.model);
     save_model(path, scene.model, edit);
-    write_layer_file(request, scene, state, edit, unedited);
+    if (!state.painter) write_layer_file(request, scene, state, edit, unedited);
     unedited.clear();
     make_output_folder(request.output / "textures");
     TextureFolder folder(request.output / "textures", scene.model, edited.textures);

@@ -4,6 +4,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/version.h"
+#include "item3d/edit/painting/painting.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/srgb.h"
 #include "item3d/report/animation.h"
@@ -79,6 +80,7 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
                     {"to", plan.to},
                     {"read_as", {{"from", scene.from}, {"to", scene.to}}},
                     {"prior", request.prior.string()},
+                    {"method", plan.method},
                     {"guidance", plan.guidance},
                     {"seed", plan.seed},
                     {"device", scene.device.is_cuda() ? "cuda" : "cpu"},
@@ -86,6 +88,7 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
                     {"threads", at::get_num_threads()},
                     {"iterations", plan.iterations},
                     {"iterations_done", state.direction_length.size()},
+                    {"unet_rows", state.unet_rows()},
                     {"adjustment", adjustment_json(request, state.adjustment)},
                     {"settings", plan},
                     {"new_uv_maps", remade},
@@ -99,6 +102,11 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
     if (!scene.model.variants.empty() && plan.edits_texture) {
         summary["variants"] = {{"changed", variants_with(scene.model, scene.materials, true)},
                                {"left", variants_with(scene.model, scene.materials, false)}};
+    }
+    if (state.painter) {
+        summary["views"] = json::array();
+        for (std::size_t i = 0; i < state.painter->pictures().size(); ++i)
+            summary["views"].push_back(painted_view_file(i));
     }
     if (scene.region)
         summary["region"] = {
@@ -141,6 +149,7 @@ Curve curve_of(const std::string& name, const std::vector<float>& values) {
 }
 
 std::string timeline_note(const EditState& state) {
+    if (state.painter) return "Views as the prior drew them, before they were put on the model.";
     std::string text = "direction: its mean length since the picture before";
     if (state.guidance->text_direction())
         text +=
@@ -153,9 +162,12 @@ std::string timeline_note(const EditState& state) {
 std::vector<Chart> charts_of(const EditPlan& plan, const EditState& state) {
     if (state.direction_length.empty()) return {};
     std::vector<Chart> charts;
-    charts.push_back({plan.guidance == "sds" ? "Length of the score" : "Length of the direction",
+    const bool has_loss = plan.method == "clip" || plan.method == "in2n";
+    charts.push_back({has_loss                 ? "Loss"
+                      : plan.guidance == "sds" ? "Length of the score"
+                                               : "Length of the direction",
                       "iteration",
-                      {curve_of("direction", state.direction_length)},
+                      {curve_of(has_loss ? "loss" : "direction", state.direction_length)},
                       true});
     if (state.guidance->text_direction()) {
         charts.push_back({plan.adjust == Adjustment::off
@@ -197,6 +209,19 @@ std::vector<TimelineEntry> timeline_of(const std::vector<AdjustmentRecord>& reco
     return timeline;
 }
 
+std::vector<TimelineEntry> painted_views(const ViewPainter& painter) {
+    constexpr std::size_t max_views = 12;
+    const auto& pictures = painter.pictures();
+    std::vector<TimelineEntry> timeline;
+    for (std::size_t i = 0; i < std::min(pictures.size(), max_views); ++i) {
+        TimelineEntry entry;
+        entry.title = fmt::format("view {}", i + 1);
+        entry.picture = {entry.title, encode_webp(to_image(pictures[i][0].permute({1, 2, 0})))};
+        timeline.push_back(std::move(entry));
+    }
+    return timeline;
+}
+
 TableRows settings_rows(const json& summary) {
     TableRows rows;
     for (const auto& [key, value] : summary["settings"].items()) {
@@ -223,7 +248,8 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     report.model = request.model.filename().string();
     report.from = request.plan.from;
     report.to = request.plan.to;
-    if (state.direction_length.size() < static_cast<std::size_t>(request.plan.iterations))
+    if (!state.painter &&
+        state.direction_length.size() < static_cast<std::size_t>(request.plan.iterations))
         report.summary = fmt::format("Settled after {} of {} iterations.",
                                      state.direction_length.size(), request.plan.iterations);
     report.before = pictures.before;
@@ -238,7 +264,8 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     }
     report.textures = edited.textures;
     report.scores = scores_of(pictures);
-    report.timeline = timeline_of(state.adjustment.records);
+    report.timeline =
+        state.painter ? painted_views(*state.painter) : timeline_of(state.adjustment.records);
     report.timeline_note = timeline_note(state);
     report.charts = charts_of(request.plan, state);
     report.settings = settings_rows(summary);
@@ -255,7 +282,7 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
                     {"turntable.webp", "turntable.webp"},
                     {"before.png", "before.png"},
                     {"after.png", "after.png"}};
-    if (request.plan.edits_texture)
+    if (request.plan.edits_texture && !state.painter)
         report.files.emplace_back("layer.safetensors", "layer.safetensors");
     if (edited.light) report.files.push_back({"light.exr", "light.exr"});
     report.command = request.command;

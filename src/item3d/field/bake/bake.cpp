@@ -3,6 +3,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/field/bake/fill.h"
 #include "item3d/field/bake/keep_flat.h"
+#include "item3d/field/bake/painted_color.h"
 #include "item3d/field/bake/residual_gain.h"
 #include "item3d/field/bake/shrink.h"
 #include "item3d/field/bake/slot.h"
@@ -66,7 +67,7 @@ class SetBaker {
     void start_base_color();
     void start_orm();
     void start_normal();
-    void write_base_color(const TexelValue& texel, const RemainderGain& gain);
+    void write_base_color(const TexelValue& texel, const RemainderGain* gain);
     void write_orm(const TexelValue& texel);
     void write_normal(const TexelValue& texel);
     void bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
@@ -92,6 +93,7 @@ class SetBaker {
     const Image* orm_texels_ = nullptr;
     const Image* occlusion_texels_ = nullptr;
     const Image* normal_texels_ = nullptr;
+    const Image* painted_ = nullptr;  ///< base colour in place of the fields'; null: theirs
 };
 
 SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options,
@@ -103,6 +105,7 @@ SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOpti
       index_(set.materials.front()),
       material_(scene.model.materials[static_cast<std::size_t>(index_)]),
       in_part_(scene.weight != nullptr) {
+    if (scene.painted != nullptr) painted_ = &scene.painted->at(index_);
     for (const Primitive& primitive : scene.model.primitives) {
         if (!set.has(primitive.material)) continue;
         has_uvs_ = has_uvs_ && !primitive.uvs.empty();
@@ -246,7 +249,7 @@ void SetBaker::start_normal() {
     copy_normal(normal_texels_, normal_.image);
 }
 
-void SetBaker::write_base_color(const TexelValue& texel, const RemainderGain& gain) {
+void SetBaker::write_base_color(const TexelValue& texel, const RemainderGain* gain) {
     Image& image = base_color_.image;
     base_color_.cover(texel.x, texel.y, texel.weight);
     Vec3 source;
@@ -262,6 +265,13 @@ void SetBaker::write_base_color(const TexelValue& texel, const RemainderGain& ga
             base_color_.source.at(texel.x, texel.y, c) = image.at(texel.x, texel.y, c);
     }
     if (!options_.channels.base_color) return;
+    if (painted_ != nullptr) {
+        base_color_.filled_channels |= 7u;
+        const Vec3 painted = color_at_texel(*painted_, texel.x, texel.y, base_color_.size);
+        for (int c = 0; c < 3; ++c)
+            image.at(texel.x, texel.y, c) = painted[c];
+        return;
+    }
     const Vec3 fitted = encode_srgb(texel.fitted.base_color);
     const Vec3 change = encode_srgb(texel.now.base_color) - fitted;
     if (change == Vec3(0.0f)) return;
@@ -270,7 +280,7 @@ void SetBaker::write_base_color(const TexelValue& texel, const RemainderGain& ga
     const Vec3 chroma = remainder - Vec3(glm::dot(remainder, luminance_weights));
     const float moved = std::max({std::abs(change.x), std::abs(change.y), std::abs(change.z)});
     const float fade = glm::smoothstep(options_.chroma_fade_begin, options_.chroma_fade_end, moved);
-    const Vec3 kept = gain.at(texel.x, texel.y) * (remainder - fade * chroma);
+    const Vec3 kept = gain->at(texel.x, texel.y) * (remainder - fade * chroma);
     const Vec3 baked = clamp_unit(source + change + (kept - remainder));
     for (int c = 0; c < 3; ++c)
         image.at(texel.x, texel.y, c) = baked[c];
@@ -328,11 +338,12 @@ void SetBaker::bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
             scene_, set_, width, height, samples,
             {.source = needs_source(sizes[i]), .normals = normal_.is_baked_at(sizes[i])});
         std::optional<RemainderGain> gain;
-        if (base_color_.is_baked_at(sizes[i]))
+        if (base_color_.is_baked_at(sizes[i]) && painted_ == nullptr)
             gain.emplace(scene_, set_, width, height, fitted, now);
         const auto write = [&](const std::vector<TexelValue>& texels) {
             for (const TexelValue& texel : texels) {
-                if (gain) write_base_color(texel, *gain);
+                if (base_color_.is_baked_at(sizes[i]))
+                    write_base_color(texel, gain ? &*gain : nullptr);
                 if (orm_.is_baked_at(sizes[i])) write_orm(texel);
                 if (normal_.is_baked_at(sizes[i])) write_normal(texel);
             }
@@ -353,7 +364,7 @@ bool SetBaker::is_new(const Slot& slot) const {
 /// False: it was tried too small.
 bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
     const Image* texels = &slot == &base_color_ ? base_color_texels_ : orm_texels_;
-    if (texels != nullptr && &slot != &normal_)
+    if (texels != nullptr && &slot != &normal_ && !(painted_ && &slot == &base_color_))
         keep_flat(slot.image, *texels, slot.covered, slot.filled_channels, options_.blotch);
     const bool hides = slot.image.channels == 4 && material_.alpha != Material::Alpha::opaque;
     (hides ? fill_invisible : fill_uncovered)(slot.image, slot.covered, slot.filled_channels,

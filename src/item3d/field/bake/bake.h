@@ -61,6 +61,9 @@ struct BakeScene {
     /// Of a place: how much of the edit it takes, [P, 1] in [0, 1]. Where it is 0 texels stay bit
     /// for bit, where they are the source's own. Null: all of it everywhere.
     std::function<at::Tensor(const Surface&)> weight = nullptr;
+    /// Base colours that were painted into UV space, in place of what the fields changed: sRGB, of
+    /// any size, by the first material of each texture set. Null: none.
+    const std::map<int, Image>* painted = nullptr;
 };
 
 /// Of one texture set: its pictures as they were without the edit, each of the edited one's size.

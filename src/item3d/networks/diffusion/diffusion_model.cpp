@@ -61,6 +61,7 @@ at::Tensor DiffusionModel::run_unet(const at::Tensor& noisy_latents, const at::T
                                     const TextEmbedding& text, const at::Tensor& condition,
                                     bool wants_attention) const {
     const auto rows = noisy_latents.size(0);
+    *predicted_rows_ += rows;
     at::Tensor sample = noisy_latents;
     const TextEmbedding each = text.expand(rows);
     AddedCondition added;

@@ -6,6 +6,8 @@
 #include "item3d/tensors/tensor.h"
 #include "item3d/text/clip_tokenizer.h"
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,6 +50,9 @@ class DiffusionModel {
     at::Tensor cross_attention(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                                const TextEmbedding& text, const at::Tensor& condition = {}) const;
 
+    /// Rows that the U-Net was asked for since it was loaded: what a method costs.
+    std::int64_t predicted_rows() const { return *predicted_rows_; }
+
     const NoiseSchedule& schedule() const;
     const ClipTokenizer& tokenizer() const { return *tokenizer_; }
     bool is_sdxl() const { return sdxl_; }  ///< with a second text encoder
@@ -76,6 +81,9 @@ class DiffusionModel {
                         const TextEmbedding& text, const at::Tensor& condition,
                         bool wants_attention) const;
     at::Tensor sizes_of(const at::Tensor& latents) const;
+
+    std::shared_ptr<std::atomic<std::int64_t>> predicted_rows_ =
+        std::make_shared<std::atomic<std::int64_t>>(0);
 };
 
 }  // namespace item3d

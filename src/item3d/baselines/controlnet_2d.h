@@ -1,0 +1,18 @@
+// ControlNet in two dimensions (Zhang et al. 2023): each view is drawn alone from its depth and the
+// target sentence, and nothing makes the views agree. Its pictures are the result; the texture, in
+// which each texel has the colour of the view that sees it most squarely, shows how they differ.
+#pragma once
+
+#include "item3d/baselines/view_painter.h"
+
+namespace item3d {
+
+class Controlnet2d : public ViewPainter {
+  public:
+    Controlnet2d(const PaintingScene& scene, const PainterOptions& options);
+    static std::int64_t step_count(const PainterOptions& options);
+    void step(std::int64_t index) override;
+    void finish() override;
+};
+
+}  // namespace item3d

@@ -1,0 +1,53 @@
+// SyncMVD (Liu et al. 2023, "Text-Guided Texturing by Synchronized Multi-View Diffusion"): one
+// denoising for all views, whose predictions meet in a latent texture. See docs/compare.md for what
+// differs from the published code.
+#pragma once
+
+#include "item3d/baselines/view_painter.h"
+
+namespace item3d {
+
+/// How much a view that sees a texel at `cosine` [T] counts in step `step` of `steps`: cosine^e, e
+/// from 0 to 6 in the course of the steps; 0 where it does not see it.
+at::Tensor view_weight(const at::Tensor& cosine, int step, int steps);
+
+/// Weighted means [T, C] of N views' values [T, C], and [T] bool where any view counts.
+struct MergedTexels {
+    at::Tensor values;
+    at::Tensor known;
+};
+MergedTexels merge_views(const std::vector<at::Tensor>& values,
+                         const std::vector<at::Tensor>& weights);
+
+class SyncMvd : public ViewPainter {
+  public:
+    SyncMvd(const PaintingScene& scene, const PainterOptions& options);
+    static std::int64_t step_count(const PainterOptions& options);
+    /// A step of denoising; the last one decodes the views and paints them.
+    void step(std::int64_t index) override;
+    void finish() override;
+    NamedTensors state() const override;
+    void load_state(const CheckpointReader& reader) override;
+
+  private:
+    /// One of the views on the grid of latents.
+    struct LatentView {
+        SideView view;
+        Raster raster;
+        Surface surface;
+        TexelView texels;    ///< of the latent texture
+        at::Tensor covered;  ///< [1, 1, h, w]
+    };
+    void begin();
+    at::Tensor background(std::int64_t index) const;
+    at::Tensor texture_to_views(const at::Tensor& behind) const;
+    at::Tensor noise(at::IntArrayRef sizes, BaselineDraw draw, std::uint64_t index) const;
+    void paint_views(const at::Tensor& latents);
+
+    std::vector<LatentView> views_;
+    at::Tensor conditions_;      ///< [N, c, h, w]; undefined where the prior takes none
+    at::Tensor latent_texture_;  ///< [L, C] x_t
+    at::Tensor view_latents_;    ///< [N, C, h, w] x_t, once the views go on alone
+};
+
+}  // namespace item3d

@@ -1,0 +1,22 @@
+// What moves the neural texture, by the method of an edit.
+#pragma once
+
+#include "item3d/edit/request.h"
+#include "item3d/edit/scene.h"
+#include "item3d/guidance/guidance.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace item3d {
+
+/// The plan's guidance, or that of a method which brings its own. Throws InputError where the
+/// method lacks a network.
+std::unique_ptr<Guidance> guidance_of_method(const EditRequest& request, const EditScene& scene);
+
+/// The cameras of an iteration: drawn anew, or views of a method's fixed set.
+std::vector<Camera> cameras_of_method(const EditScene& scene, const EditPlan& plan,
+                                      std::int64_t iteration);
+
+}  // namespace item3d
