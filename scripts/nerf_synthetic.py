@@ -9,12 +9,13 @@ What stands behind -- goes to `item3d reconstruct`, for instance --threads 8.
 
 Each scene learns from its training views and is scored on its test views (200 in the archive), at their full size. OUT/SCENE has what
 `item3d reconstruct` leaves; OUT/table.md and OUT/table.json have PSNR and SSIM over white, the masks' intersection over union, time and
-memory of each scene, and the means. Run it again after an interrupt: finished scenes are kept, and the one that was interrupted goes on.
-A scene that fails is listed with its message, the others are done all the same, and the exit code is 1. Needs Python alone."""
+memory of each scene, and the means. Run it again after an interrupt: finished scenes are kept, and the one that was interrupted goes on
+(its time is then that of the last start). A scene that fails is listed with its message, the others are done all the same, and the exit code is 1. Needs Python alone."""
 import argparse
 import json
 import os
 import pathlib
+import signal
 import struct
 import subprocess
 import sys
@@ -58,10 +59,15 @@ def reconstruct(source, out, options):
         print('+', ' '.join(command), flush=True)
         run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, errors='replace')
         last = ''
-        for line in run.stderr:
-            sys.stderr.write(line)
-            last = line.strip() or last
-        code = run.wait()
+        try:
+            for line in run.stderr:
+                sys.stderr.write(line)
+                last = line.strip() or last
+            code = run.wait()
+        except KeyboardInterrupt:  # from a terminal the program got it too, and writes its checkpoint
+            run.send_signal(signal.SIGINT)
+            run.wait()
+            code = 130
         if code == 130 or code < 0:
             sys.exit(f'{source.name}: interrupted; the same command goes on')
         if code != 0:
