@@ -57,7 +57,7 @@ TEST(CheckFrame, TurnsAreToldInWords) {
         << single;
     EXPECT_NE(single.find("; turned by -90 degrees about x they overlap by "), std::string::npos)
         << single;
-    EXPECT_TRUE(single.ends_with(" %: turn the mesh")) << single;
+    EXPECT_TRUE(single.ends_with(" %: turn the mesh or give --place-mesh")) << single;
     // Every turn that brings axes to axes is undone by what is said.
     for (const Vec3& first : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
         for (const Vec3& second : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
@@ -77,12 +77,55 @@ TEST(CheckFrame, AnotherUnitAndAnotherPlace) {
     const Dataset dataset = photographs_of(three_arms(), 12, 96);
     const std::string inches =
         refusal_of_frame(transformed(three_arms(), glm::scale(Mat4(1.0f), Vec3(39.37f))), dataset);
-    EXPECT_NE(inches.find("; scaled by 0.025"), std::string::npos) << inches;
+    EXPECT_NE(inches.find("; scaled by 0.0254 (inches in metres) they overlap by "),
+              std::string::npos)
+        << inches;
+    EXPECT_TRUE(inches.ends_with(" %: place the mesh so or give --place-mesh")) << inches;
     const Mat4 away = glm::translate(Mat4(1.0f), Vec3(5, -2, 1)) * turn(90, {0, 0, 1});
     const FrameFit fit = fit_frame(transformed(three_arms(), away), dataset);
     EXPECT_GT(fit.best.overlap, 0.9);
     EXPECT_TRUE(fit.best.words.starts_with("turned by -90 degrees about z")) << fit.best.words;
     EXPECT_NE(fit.best.words.find("then moved by ("), std::string::npos) << fit.best.words;
+}
+
+TEST(CheckFrame, UnitsAreToldExactly) {
+    const Dataset dataset = photographs_of(three_arms(), 12, 96);
+    const auto scaled = [](double factor) {
+        return glm::scale(Mat4(1.0f), Vec3(static_cast<float>(factor)));
+    };
+    for (const double factor : {0.001, 100.0, 1 / 0.0254}) {
+        const FrameFit fit =
+            fit_frame(transformed(three_arms(), scaled(factor) * turn(-90, {1, 0, 0})), dataset);
+        EXPECT_FALSE(fit.fits) << factor;
+        EXPECT_TRUE(fit.best_fits) << factor;
+        EXPECT_NEAR(fit.best.scale * factor, 1, 1e-4);
+        EXPECT_EQ(fit.best.move, Vec3(0.0f)) << fit.best.words;
+        EXPECT_TRUE(fit.best.words.starts_with("turned by 90 degrees about x, scaled by "))
+            << fit.best.words;
+    }
+    // A factor between no two units: about the origin as well, with no move made up.
+    const FrameFit fit = fit_frame(transformed(three_arms(), scaled(7.3)), dataset);
+    EXPECT_GT(fit.best.overlap, 0.95);
+    EXPECT_NEAR(fit.best.scale * 7.3, 1, 0.02);
+    EXPECT_EQ(fit.best.move, Vec3(0.0f)) << fit.best.words;
+}
+
+TEST(CheckFrame, AMeshIsPlacedToAPixel) {
+    const Dataset dataset = photographs_of(three_arms(), 12, 96);
+    const auto left = [&](const Mat4& away) {
+        const TriangleMesh mesh = transformed(three_arms(), away);
+        const Mat4 back = place_mesh(mesh, dataset, "arms.obj").matrix();
+        return (transformed(mesh, back).positions - three_arms().positions)
+            .abs()
+            .max()
+            .item<float>();
+    };
+    EXPECT_LT(left(glm::scale(Mat4(1.0f), Vec3(100.0f)) * turn(180, {0, 0, 1})), 1e-3f);
+    // A pixel is 0.03 wide at the object.
+    EXPECT_LT(left(glm::translate(Mat4(1.0f), Vec3(5, -2, 1)) *
+                   glm::scale(Mat4(1.0f), Vec3(0.37f)) * turn(90, {0, 0, 1})),
+              0.015f);
+    EXPECT_EQ(place_mesh(three_arms(), dataset, "arms.obj").matrix(), Mat4(1.0f));
 }
 
 TEST(CheckFrame, TheDatasetsOwnWorldIsTried) {
@@ -99,7 +142,7 @@ TEST(CheckFrame, WhatFitsInNoWayIsRefusedAndWhatIsLargerIsNot) {
     const Dataset dataset = photographs_of(three_arms(), 12, 96);
     const std::string text = refusal_of_frame(
         transformed(three_arms(), turn(45, glm::normalize(Vec3(1, 1, 0)))), dataset);
-    EXPECT_NE(text.find("; none of the 24 axis turns fits: "), std::string::npos) << text;
+    EXPECT_NE(text.find("; none of the 24 axis turns fits, nor "), std::string::npos) << text;
     // A card whose edges the material cuts away.
     TriangleMesh with_card = three_arms();
     const TriangleMesh card =

@@ -3,6 +3,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "tests/support/exif.h"
 #include "tests/support/reconstruct.h"
 
 #include <fmt/format.h>
@@ -62,10 +63,10 @@ class FindPoses : public ::testing::Test {
             "#!/bin/sh\n"
             "[ \"$2\" = -h ] && {{ echo '{}'; exit 0; }}\n"
             "echo \"$@\" >> {}/calls\n"
-            "command=$1\n"
+            "command=$1 all=\"$*\" here={}\n"
             "while [ $# -gt 0 ]; do case $1 in --output_path) output=$2;; esac; shift; done\n"
             "case $command in\n{}esac\n",
-            help, folder_.string(), cases);
+            help, folder_.string(), folder_.string(), cases);
         fs::permissions(program, fs::perms::owner_all);
     }
 
@@ -96,6 +97,13 @@ class FindPoses : public ::testing::Test {
 
 bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
+}
+
+int count_of(const std::string& text, const std::string& part) {
+    int count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+        ++count;
+    return count;
 }
 
 TEST_F(FindPoses, AreADataset) {
@@ -131,8 +139,63 @@ TEST_F(FindPoses, OptionsAreNamedAsTheProgramHasThem) {
     find_poses(search_);
     EXPECT_TRUE(has(calls(), "--FeatureExtraction.use_gpu 0 --SiftExtraction.num_threads 2"));
     EXPECT_TRUE(has(calls(), "--FeatureMatching.use_gpu 0")) << calls();
-    EXPECT_TRUE(has(calls(), "--ImageReader.single_camera 0")) << calls();
+    EXPECT_EQ(count_of(calls(), "--ImageReader.single_camera 1"), 2) << "one run a size";
     EXPECT_TRUE(has(calls(), "--ImageReader.mask_path " + search_.masks.string())) << calls();
+}
+
+TEST_F(FindPoses, PicturesOfOneLensShareIt) {
+    const Image picture(40, 30, 3, 0.5f);
+    for (int i = 0; i < 5; ++i)
+        testing::save_photograph(search_.images / fmt::format("{}.jpg", i), picture,
+                                 {.focal_35 = i % 2 == 0 ? 26 : 52, .camera = "Telephone 7"});
+    const std::string pngs = model_of(5);
+    install(pngs);
+    find_poses(search_);
+    // Two lenses of the telephone, and the pictures without EXIF.
+    EXPECT_EQ(count_of(calls(), "feature_extractor"), 3) << calls();
+    EXPECT_EQ(count_of(calls(), "--ImageReader.single_camera 1"), 3);
+    EXPECT_TRUE(has(calls(), "--ImageReader.camera_params 30.05,20,15,0")) << calls();
+    EXPECT_TRUE(has(calls(), "--ImageReader.camera_params 60.09,20,15,0")) << calls();
+    EXPECT_EQ(count_of(calls(), "camera_params"), 2);
+    // Each cut by hand: a lens for each, all in one run.
+    for (int i = 0; i < 12; ++i)
+        save_image(search_.images / fmt::format("cut_{}.png", i), disk_picture(24 + i, 30));
+    fs::remove(folder_ / "calls");
+    find_poses(search_);
+    EXPECT_EQ(count_of(calls(), "feature_extractor"), 1) << calls();
+    EXPECT_TRUE(has(calls(), "--ImageReader.single_camera 0")) << calls();
+}
+
+TEST_F(FindPoses, WhereMasksHideTooMuchTheSurroundingsAreLookedAt) {
+    search_.masks = folder_ / "masks";
+    fs::create_directories(search_.masks);
+    for (int i = 0; i < 5; ++i)
+        save_image(search_.masks / fmt::format("{}.png.png", i), disk_picture(24, 24));
+    // Nothing is found while the features are the object's.
+    const std::string model = model_of(4);
+    install(
+        "feature_extractor) echo \"$all\" | grep -q mask_path && touch $here/masked || "
+        "rm -f $here/masked;;\n"
+        "mapper) [ -e $here/masked ] || { mkdir \"$output/0\"; cp $here/model/* "
+        "\"$output/0\"; };;\n");
+    const std::string text = said();
+    EXPECT_TRUE(has(text, "of the object alone, as the masks have it, COLMAP found 0 of 5"))
+        << text;
+    EXPECT_TRUE(has(text, "poses were found for 4 of 5 pictures")) << text;
+    EXPECT_EQ(count_of(calls(), "mask_path"), 1) << calls();
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap.partial"));
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap.again"));
+    EXPECT_TRUE(has(said(), "are taken again"));
+}
+
+TEST_F(FindPoses, ATelephonesOwnFormatIsNamed) {
+    for (int i = 1; i < 5; ++i)
+        fs::remove(search_.images / fmt::format("{}.png", i));
+    for (int i = 0; i < 4; ++i)
+        write_atomically(search_.images / fmt::format("IMG_{}.HEIC", i), std::string_view("heic"));
+    EXPECT_TRUE(has(message<InputError>(),
+                    "1 PNG or JPEG picture(s); there are 4 of HEIC or DNG: "
+                    "convert them to JPEG first"));
 }
 
 TEST_F(FindPoses, ManyPicturesAreMatchedInTheirOrder) {

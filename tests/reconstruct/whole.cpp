@@ -244,6 +244,11 @@ TEST(Reconstruct, ThePreviewShowsPhotographsAndWhatThereIs) {
         EXPECT_EQ(in_photograph, x == 16);
         EXPECT_EQ(in_drawing, x == 16);
     }
+    // Pictures that lie and pictures that stand are shown beside each other.
+    Dataset mixed = dataset;
+    mixed.train[2].image = Image(32, 24, 4, 0.5f);
+    StagePreview(picture, mixed).update(stage);
+    EXPECT_EQ(load_image(picture).height, 3 * 32);
     // A preview that cannot be written does not stop anything.
     fs::remove_all(picture.parent_path());
     StagePreview(picture / "below" / "nothing.png", dataset).update(stage);

@@ -151,6 +151,10 @@ void add_reconstruct_command(CLI::App& app) {
     command->add_flag("--move-vertices", options->move_vertices, "Let that mesh's vertices move")
         ->needs(mesh);
     command
+        ->add_flag("--place-mesh", request.place_mesh,
+                   "Turn, scale and move that mesh to where the photographs show it")
+        ->needs(mesh);
+    command
         ->add_option("--extraction", request.shape.extraction,
                      "How triangles come from values on a lattice")
         ->check(CLI::IsMember(extraction_names()))

@@ -19,6 +19,7 @@
 #include "item3d/scene/far_origin.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace item3d {
 
@@ -45,9 +46,7 @@ std::vector<Photograph> relit_views(const Dataset& dataset, const ReconstructReq
         source.picture = find_picture(relit.folder / std::filesystem::path(view.name).filename());
         if (!std::filesystem::is_regular_file(source.picture)) continue;
         source.lens.focal_x = source.lens.focal_y = 1;
-        Lens lens;
-        MaskOrigin origin = MaskOrigin::none;
-        const Image picture = load_photograph(source, {}, request.dataset_options, lens, origin);
+        const Image picture = load_photograph(source, {}, request.dataset_options).image;
         if (picture.width != view.image.width || picture.height != view.image.height) {
             throw InputError(source.picture.string(), "is not of the size of its test view");
         }
@@ -97,34 +96,68 @@ void note_blurred_views(Reconstruction& result, const ViewCorrections& correctio
                                     blurred.size() > 3 ? ", ..." : ""));
 }
 
+void note_exposures(const std::vector<Photograph>& views) {
+    double least = std::numeric_limits<double>::max(), greatest = 0;
+    for (const Photograph& view : views) {
+        least = std::min(least, view.exposure);
+        greatest = std::max(greatest, view.exposure);
+    }
+    if (least > 0 && greatest > 1.01 * least)
+        note(fmt::format("exposures differ by a factor of {:.2f} (EXIF): gains begin there",
+                         greatest / least));
+}
+
 void score(Reconstruction& result, const ViewCorrections& corrections) {
     const ReconstructRequest& request = result.request;
-    const auto bounds = result.model.bounds();
     const std::int64_t shadow_points = request.refine.shadows ? request.refine.shadow_points : 0;
     const ModelRenderer renderer(result.model, result.light, shadow_points);
-    const auto test = make_targets(result.dataset.test, bounds);
-    result.test = renderer.score(test);
-    result.train = renderer.score(make_targets(
-        some_views(corrections.corrected(result.dataset.train), train_views_scored), bounds));
-    if (request.corrections.exposure) result.test_scaled = renderer.score_each_scaled(test);
+    const std::vector<Photograph>& test = result.dataset.test;
+    if (request.corrections.exposure) {
+        ModelRenderer::BothScores both = renderer.score_both(test);
+        result.test = std::move(both.as_it_is);
+        result.test_scaled = std::move(both.each_scaled);
+    } else {
+        result.test = renderer.score(test);
+    }
+    result.train =
+        renderer.score(some_views(corrections.corrected(result.dataset.train), train_views_scored));
     if (corrections.refines_poses() && !test.empty())
-        result.test_aligned = renderer.score_each_scaled(make_targets(
-            aligned_to_mesh(mesh_of(result.model), result.dataset, result.dataset.test), bounds));
+        result.test_aligned =
+            renderer.score_both(aligned_to_mesh(mesh_of(result.model), result.dataset, test))
+                .each_scaled;
     result.test_without_shadows = ModelRenderer(result.model, result.light, 0).score(test);
     for (const RelitViews& views : request.relit) {
-        const auto targets = make_targets(relit_views(result.dataset, request, views), bounds);
+        const auto targets = relit_views(result.dataset, request, views);
         const ModelRenderer relit(
             result.model, adjust_light(load_light(views.light), 0, views.exposure), shadow_points);
         const Vec3 gain = relit.best_gain(targets);
         result.relit.push_back({relit.score(targets), relit.score(targets, gain), gain});
     }
     if (!request.truth.empty())
-        result.materials = compare_materials(result.model, test, request.truth);
+        result.materials = compare_materials(
+            result.model, make_targets(test, result.model.bounds()), request.truth);
     if (!request.reference.empty()) {
         Model reference = load_model(request.reference);
         move_origin(reference, glm::dvec3(0.0));
         result.chamfer = chamfer_distance(mesh_of(result.model), mesh_of(reference));
     }
+}
+
+/// To where the photographs show it.
+void place(Model& model, Reconstruction& result) {
+    const Placement placement =
+        place_mesh(mesh_of(model), result.dataset, result.request.mesh.string());
+    if (placement.words.empty()) return;
+    note(fmt::format("the mesh is {}: its outlines overlap the masks by {:.1f} %", placement.words,
+                     100 * placement.overlap));
+    const Mat4 matrix = placement.matrix();
+    for (Primitive& primitive : model.primitives) {
+        for (Vec3& position : primitive.positions)
+            position = Vec3(matrix * Vec4(position, 1));
+        for (Vec3& normal : primitive.normals)
+            normal = placement.turn * normal;
+    }
+    result.mesh_placed = matrix;
 }
 
 /// The mesh with UVs, and the materials and light that were found with it.
@@ -136,6 +169,7 @@ struct Start {
 Start start_from_mesh(const ReconstructRequest& request, Reconstruction& result) {
     const Dataset& dataset = result.dataset;
     Model plain = load_plain_model(request.mesh);
+    if (request.place_mesh) place(plain, result);
     add_warning(result, check_mesh_frame(mesh_of(plain), dataset, request.mesh.string()));
     const auto bounds = plain.bounds();
     const auto views = make_targets({dataset.train.front()}, bounds);
@@ -195,6 +229,7 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     StageRunner runner(request, dataset);
     ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius, request.corrections);
     note_blurred_views(result, corrections);
+    if (request.corrections.exposure) note_exposures(dataset.train);
     Start start = request.mesh.empty()
                       ? start_from_photographs(request, result, corrections, runner)
                       : start_from_mesh(request, result);

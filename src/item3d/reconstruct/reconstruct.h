@@ -27,6 +27,8 @@ struct ReconstructRequest {
     std::filesystem::path output;     ///< folder, made when it is not there
     std::filesystem::path mesh;       ///< a shape that is known already; empty: it is looked for
     std::filesystem::path reference;  ///< the true mesh, to compare with; empty: none
+    /// Turn, scale and move that mesh to where the photographs show it, see place_mesh().
+    bool place_mesh = false;
     DatasetOptions dataset_options;
     ShapeOptions shape;
     RefineOptions refine;

@@ -29,6 +29,7 @@ std::string hash_of_views(const std::vector<Photograph>& views) {
         for (int k = 0; k < 16; ++k)
             add(view.camera.camera_to_world[k / 4][k % 4]);
         add(view.camera.field_of_view_x);
+        add(static_cast<float>(view.exposure));
         for (const float value : view.image.pixels)
             add(value);
     }
@@ -50,6 +51,7 @@ nlohmann::json identity_of(const ReconstructRequest& request, const Dataset& dat
                             {"mesh", nullptr}};
     if (!request.mesh.empty()) {
         identity["mesh"] = hash_of_file(request.mesh);
+        identity["place mesh"] = request.place_mesh;
         return identity;
     }
     identity["extraction"] = request.shape.extraction;

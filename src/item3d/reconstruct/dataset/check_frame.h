@@ -2,20 +2,12 @@
 #pragma once
 
 #include "item3d/reconstruct/dataset/dataset.h"
+#include "item3d/reconstruct/dataset/placement.h"
 #include "item3d/reconstruct/shape/clean_mesh.h"
 
 #include <string>
 
 namespace item3d {
-
-/// A change of a mesh's place: position -> scale * turn * position + move.
-struct Placement {
-    Mat3 turn{1.0f};
-    float scale = 1;
-    Vec3 move{0.0f};
-    std::string words;   ///< "turned by 90 degrees about x, then ..."; empty: as it is
-    double overlap = 0;  ///< of its outlines with the masks: intersection over union
-};
 
 struct FrameFit {
     double overlap = 0;        ///< as the mesh is
@@ -28,14 +20,18 @@ struct FrameFit {
     bool best_fits = false;
 };
 
-/// Compares outlines in a few training views. Where they do not overlap, tries the 24 turns that
-/// bring axes to axes and the one from the dataset's own world, first about the origin, then with
-/// the box's middle where the hull's is and one factor in all directions.
+/// Compares outlines in a few training views. Where they do not overlap, tries, until something
+/// fits: the turns of turns_to_try() about the origin; with them the factors between units; with
+/// them any factor; and the box's middle where the hull's is, with any factor and moved.
 FrameFit fit_frame(const TriangleMesh& mesh, const Dataset& dataset);
 
 /// Throws InputError that begins with `file`, the mesh's name, and says how to place it where it is
 /// in another frame than the photographs. Returns a warning, or nothing where all is well.
 std::string check_mesh_frame(const TriangleMesh& mesh, const Dataset& dataset,
                              const std::string& file);
+
+/// What brings the mesh to the photographs, to about a pixel; no words where it fits as it is.
+/// Throws InputError as check_mesh_frame() does where nothing is found that does.
+Placement place_mesh(const TriangleMesh& mesh, const Dataset& dataset, const std::string& file);
 
 }  // namespace item3d

@@ -210,6 +210,10 @@ void check_cameras(const fs::path& path, const Dataset& dataset) {
 Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
     SourceDataset source = read_source(path, options);
     if (source.views.empty()) throw InputError(path.string(), "the dataset has no views");
+    if (source.lenses_of_exif > 0) {
+        note(fmt::format("{} focal lengths are those that the camera wrote (EXIF)",
+                         source.lenses_of_exif));
+    }
     leave_out_unseen_tests(path, source);
     choose_splits(source, options);
     if (!options.masks.empty() && !fs::is_directory(options.masks)) {
@@ -220,10 +224,9 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
 
     Dataset dataset;
     dataset.kind = source.kind;
-    dataset.world_from_dataset = upright(source, options.up);
     std::map<MaskOrigin, std::size_t> origins;
     int width = 0, height = 0;
-    for (const SourceView& from : source.views) {
+    for (SourceView& from : source.views) {
         fs::path mask = find_mask(masks, from);
         if (mask.empty() && !options.masks.empty()) {
             throw InputError(options.masks.string(), "there is no mask for '" + from.name + "'",
@@ -231,12 +234,13 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
         }
         const bool named = mask.empty() && !from.mask.empty();
         if (named) mask = from.mask;
-        Lens lens;
-        MaskOrigin origin = MaskOrigin::none;
+        LoadedPhotograph loaded = load_photograph(from, mask, options);
+        ++origins[named ? MaskOrigin::mask_path : loaded.mask];
+        from.camera_to_world = loaded.camera_to_world;
         Photograph view;
         view.name = from.name;
-        view.image = load_photograph(from, mask, options, lens, origin);
-        ++origins[named ? MaskOrigin::mask_path : origin];
+        view.image = std::move(loaded.image);
+        view.exposure = loaded.exposure;
         // Where one angle stands for all pictures, they must have one size.
         if (from.lens.width == 0) {
             if (width == 0) {
@@ -250,10 +254,15 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
             }
         }
         view.camera.name = from.name;
-        view.camera.field_of_view_x = lens.field_of_view_x();
-        view.camera.camera_to_world = Mat4(dataset.world_from_dataset) * from.camera_to_world;
+        view.camera.field_of_view_x = loaded.lens.field_of_view_x();
+        view.camera.camera_to_world = from.camera_to_world;
         (from.split == Split::test ? dataset.test : dataset.train).push_back(std::move(view));
     }
+    dataset.world_from_dataset = upright(source, options.up);
+    for (auto* views : {&dataset.train, &dataset.test})
+        for (Photograph& view : *views)
+            view.camera.camera_to_world =
+                Mat4(dataset.world_from_dataset) * view.camera.camera_to_world;
     dataset.masks = origin_words(origins);
     std::tie(dataset.centre, dataset.radius) = region_seen(dataset.train);
     check_cameras(path, dataset);

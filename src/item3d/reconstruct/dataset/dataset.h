@@ -19,6 +19,8 @@ struct Photograph {
     Camera camera;
     /// Premultiplied linear RGB and coverage by the object: what the renderer draws. Row 0 on top.
     Image image;
+    /// Of its exposure as EXIF has it, up to a factor that all share; 0: not said.
+    double exposure = 0;
 };
 
 struct Dataset {

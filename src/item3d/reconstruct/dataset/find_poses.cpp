@@ -7,6 +7,7 @@
 #include "item3d/reconstruct/dataset/child_program.h"
 #include "item3d/reconstruct/dataset/colmap.h"
 #include "item3d/reconstruct/dataset/colmap_program.h"
+#include "item3d/reconstruct/dataset/pose_pictures.h"
 
 #include <nlohmann/json.hpp>
 
@@ -29,69 +30,15 @@ constexpr std::size_t fewest_pictures = 3;
 constexpr std::size_t most_exhaustive = 150;
 /// Pictures of a block that is matched with another; COLMAP's own 50 would show no progress.
 constexpr std::size_t matcher_block = 10;
+/// Beyond, as with pictures that were all cut by hand, each has a lens of its own.
+constexpr std::size_t most_lenses = 8;
 /// Of a picture, about. Time of matching grows with the square: COLMAP's own 8192 are for its GPU.
 constexpr int most_features = 2048;
 
 // ---- The pictures ----
 
-struct PictureSize {
-    unsigned width = 0, height = 0;
-    auto operator<=>(const PictureSize&) const = default;
-};
-
-unsigned big_endian(const Bytes& bytes, std::size_t at, int count) {
-    unsigned value = 0;
-    for (int i = 0; i < count; ++i)
-        value = value << 8 | bytes[at + static_cast<std::size_t>(i)];
-    return value;
-}
-
-/// As stored, of PNG and JPEG by their content; nothing for other files.
-std::optional<PictureSize> stored_size(const Bytes& file) {
-    constexpr std::uint8_t png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-    if (file.size() >= 24 && std::equal(std::begin(png), std::end(png), file.begin()))
-        return PictureSize{big_endian(file, 16, 4), big_endian(file, 20, 4)};
-    if (file.size() < 4 || big_endian(file, 0, 2) != 0xffd8) return std::nullopt;
-    for (std::size_t at = 2; at + 9 < file.size() && file[at] == 0xff;) {
-        const unsigned marker = file[at + 1];
-        const bool is_frame =
-            marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-        if (is_frame) return PictureSize{big_endian(file, at + 7, 2), big_endian(file, at + 5, 2)};
-        at += marker == 0xff ? 1 : 2 + big_endian(file, at + 2, 2);
-    }
-    return std::nullopt;
-}
-
-struct Pictures {
-    std::vector<fs::path> files;
-    std::set<PictureSize> sizes;
-};
-
-Pictures find_pictures(const fs::path& folder) {
-    if (!fs::is_directory(folder)) {
-        throw InputError(folder.string(), "is not a folder of pictures", "name one of photographs");
-    }
-    Pictures pictures;
-    for (const fs::path& file : list_pictures(folder)) {
-        if (!fs::is_regular_file(file)) continue;
-        const std::optional<PictureSize> size = stored_size(read_bytes(file));
-        if (!size) {
-            warn(file.string() + ": is no PNG or JPEG picture and is left out");
-            continue;
-        }
-        pictures.files.push_back(file);
-        pictures.sizes.insert(*size);
-    }
-    if (pictures.files.size() < fewest_pictures) {
-        throw InputError(folder.string(),
-                         fmt::format("{} PNG or JPEG picture(s)", pictures.files.size()),
-                         "at least 3 are needed, and 30 or more are good");
-    }
-    return pictures;
-}
-
 /// One for each picture, as COLMAP names them; else none at all.
-std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const Pictures& pictures) {
+std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const PosePictures& pictures) {
     if (search.masks.empty()) return {};
     if (!fs::is_directory(search.masks))
         throw InputError(search.masks.string(), "is not a folder of masks");
@@ -116,22 +63,28 @@ json list_files(const std::vector<fs::path>& files) {
 
 // ---- The steps ----
 
-ColmapStep extraction(const PoseSearch& search, const Pictures& pictures, bool has_masks,
-                      const fs::path& folder) {
+/// One lens for all of the files, from EXIF's focal length on where that is known; a lens for each
+/// where `lens` is null.
+ColmapStep extraction(const PoseSearch& search, const std::vector<fs::path>& files,
+                      const LensPictures* lens, bool has_masks, const fs::path& folder) {
     std::string names;
-    for (const fs::path& file : pictures.files)
+    for (const fs::path& file : files)
         names += file.filename().string() + "\n";
     write_atomically(folder / "pictures.txt", std::string_view(names));
-    ColmapStep step{
-        "features",
-        "Processed file",
-        static_cast<std::int64_t>(pictures.files.size()),
-        "feature_extractor",
-        {"--database_path", (folder / "database.db").string(), "--image_path",
-         fs::absolute(search.images).string(), "--image_list_path",
-         (folder / "pictures.txt").string(), "--ImageReader.camera_model", "SIMPLE_RADIAL",
-         "--ImageReader.single_camera", pictures.sizes.size() == 1 ? "1" : "0",
-         "--SiftExtraction.max_num_features", std::to_string(most_features)}};
+    ColmapStep step{"features",
+                    "Processed file",
+                    static_cast<std::int64_t>(files.size()),
+                    "feature_extractor",
+                    {"--database_path", (folder / "database.db").string(), "--image_path",
+                     fs::absolute(search.images).string(), "--image_list_path",
+                     (folder / "pictures.txt").string(), "--ImageReader.camera_model",
+                     "SIMPLE_RADIAL", "--ImageReader.single_camera", lens != nullptr ? "1" : "0",
+                     "--SiftExtraction.max_num_features", std::to_string(most_features)}};
+    if (lens != nullptr && lens->focal_pixels > 0) {
+        step.arguments.push_back("--ImageReader.camera_params");
+        step.arguments.push_back(fmt::format("{:.2f},{},{},0", lens->focal_pixels,
+                                             0.5 * lens->size.width, 0.5 * lens->size.height));
+    }
     if (has_masks) {
         step.arguments.push_back("--ImageReader.mask_path");
         step.arguments.push_back(fs::absolute(search.masks).string());
@@ -184,7 +137,12 @@ constexpr const char* no_poses_hint =
     "take more pictures that overlap, put an object without texture on a printed sheet, or give "
     "masks named PICTURE.jpg.png where the object turned before a fixed camera";
 
-void check_poses(const PoseSearch& search, const Pictures& pictures, const fs::path& folder) {
+std::size_t count_poses(const fs::path& folder) {
+    const fs::path model = largest_model(folder / "sparse");
+    return model.empty() ? 0 : count_colmap_images(model);
+}
+
+void check_poses(const PoseSearch& search, const PosePictures& pictures, const fs::path& folder) {
     const fs::path model = largest_model(folder / "sparse");
     if (model.empty()) {
         throw InputError(search.images.string(),
@@ -241,6 +199,8 @@ class PartialFolder {
     PartialFolder(const PartialFolder&) = delete;
     PartialFolder& operator=(const PartialFolder&) = delete;
 
+    const fs::path& path() const { return folder_; }
+
     void become(const fs::path& result) {
         remove(result);
         std::error_code code;
@@ -258,13 +218,22 @@ class PartialFolder {
 };
 
 /// Leaves the models in folder/sparse, none where the pictures do not suffice.
-void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const Pictures& pictures,
+void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const PosePictures& pictures,
                 bool has_masks, const fs::path& folder) {
     const fs::path scratch = folder / "help.txt";
-    ColmapStep step = extraction(search, pictures, has_masks, folder);
-    colmap.add_device(step, "FeatureExtraction", "SiftExtraction", scratch);
-    colmap.check(step, colmap.run(step));
-    step = matching(pictures.files.size(), folder);
+    const auto extract = [&](const std::vector<fs::path>& files, const LensPictures* lens) {
+        ColmapStep step = extraction(search, files, lens, has_masks, folder);
+        colmap.add_device(step, "FeatureExtraction", "SiftExtraction", scratch);
+        colmap.check(step, colmap.run(step));
+    };
+    // A run of its own for each lens: there is no other way to say which pictures share one.
+    if (pictures.lenses.size() <= most_lenses) {
+        for (const LensPictures& lens : pictures.lenses)
+            extract(lens.files, &lens);
+    } else {
+        extract(pictures.files, nullptr);
+    }
+    ColmapStep step = matching(pictures.files.size(), folder);
     colmap.add_device(step, "FeatureMatching", "SiftMatching", scratch);
     colmap.check(step, colmap.run(step));
     step = mapping(search, pictures.files.size(), colmap.threads(), folder);
@@ -279,7 +248,7 @@ void run_colmap(const ColmapProgram& colmap, const PoseSearch& search, const Pic
 }  // namespace
 
 fs::path find_poses(const PoseSearch& search) {
-    const Pictures pictures = find_pictures(search.images);
+    const PosePictures pictures = find_pose_pictures(search.images);
     const std::vector<fs::path> masks = masks_for_colmap(search, pictures);
     const json record = {{"pictures", list_files(pictures.files)}, {"masks", list_files(masks)}};
     const fs::path result = fs::absolute(search.output) / "colmap";
@@ -299,19 +268,30 @@ fs::path find_poses(const PoseSearch& search) {
     const fs::path log = result.parent_path() / "colmap.log";
     std::error_code ignored;
     fs::remove(log, ignored);
-    const fs::path folder = result.parent_path() / "colmap.partial";
-    PartialFolder partial(folder);
+    PartialFolder partial(result.parent_path() / "colmap.partial");
+    std::optional<PartialFolder> with_surroundings;
+    PartialFolder* best = &partial;
     const ColmapProgram colmap(program, log, search.threads);
     try {
-        run_colmap(colmap, search, pictures, !masks.empty(), folder);
-        check_poses(search, pictures, folder);
+        run_colmap(colmap, search, pictures, !masks.empty(), partial.path());
+        const std::size_t found = count_poses(partial.path());
+        if (!masks.empty() && 2 * found < pictures.files.size()) {
+            note(
+                fmt::format("of the object alone, as the masks have it, COLMAP found {} of {} "
+                            "poses: it looks at what stands around it too",
+                            found, pictures.files.size()));
+            with_surroundings.emplace(result.parent_path() / "colmap.again");
+            run_colmap(colmap, search, pictures, false, with_surroundings->path());
+            if (count_poses(with_surroundings->path()) > found) best = &*with_surroundings;
+        }
+        check_poses(search, pictures, best->path());
     } catch (const Interrupted&) {
         fs::remove(log, ignored);
         throw;
     }
-    write_atomically(folder / record_name, std::string_view(record.dump(1) + "\n"));
-    fs::rename(log, folder / "colmap.log", ignored);
-    partial.become(result);
+    write_atomically(best->path() / record_name, std::string_view(record.dump(1) + "\n"));
+    fs::rename(log, best->path() / "colmap.log", ignored);
+    best->become(result);
     return search.output / "colmap";
 }
 

@@ -1,21 +1,8 @@
 #include "item3d/reconstruct/dataset/orientation.h"
 
-#include <libexif/exif-data.h>
-
-#include <memory>
+#include "item3d/core/error.h"
 
 namespace item3d {
-
-int exif_orientation(const Bytes& file) {
-    const std::unique_ptr<ExifData, decltype(&exif_data_unref)> data(
-        exif_data_new_from_data(file.data(), static_cast<unsigned int>(file.size())),
-        &exif_data_unref);
-    if (!data) return 1;
-    const ExifEntry* entry = exif_content_get_entry(data->ifd[EXIF_IFD_0], EXIF_TAG_ORIENTATION);
-    if (entry == nullptr || entry->format != EXIF_FORMAT_SHORT || entry->size < 2) return 1;
-    const int value = exif_get_short(entry->data, exif_data_get_byte_order(data.get()));
-    return value >= 1 && value <= 8 ? value : 1;
-}
 
 bool swaps_sides(int orientation) {
     return orientation >= 5;
@@ -40,6 +27,24 @@ Image oriented(const Image& stored, int orientation) {
                 result.at(u, v, c) = stored.at(x, y, c);
         }
     }
+    return result;
+}
+
+int inverse_orientation(int orientation) {
+    return orientation == 6 ? 8 : orientation == 8 ? 6 : orientation;
+}
+
+bool is_turn(int orientation) {
+    return orientation == 3 || orientation == 6 || orientation == 8;
+}
+
+Mat4 oriented_camera(const Mat4& camera_to_world, int orientation) {
+    if (orientation == 1) return camera_to_world;
+    ITEM3D_CHECK(is_turn(orientation), "no camera mirrors what it stores");
+    Mat4 result = camera_to_world;
+    const Vec4 right = camera_to_world[0], up = camera_to_world[1];
+    result[0] = orientation == 3 ? -right : orientation == 6 ? up : -up;
+    result[1] = orientation == 3 ? -up : orientation == 6 ? -right : right;
     return result;
 }
 

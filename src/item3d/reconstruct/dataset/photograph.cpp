@@ -1,9 +1,9 @@
 #include "item3d/reconstruct/dataset/photograph.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/io/load.h"
+#include "item3d/reconstruct/dataset/camera_facts.h"
 #include "item3d/reconstruct/dataset/orientation.h"
 #include "item3d/report/picture.h"
 
@@ -27,17 +27,17 @@ std::string size_text(int width, int height) {
     return fmt::format("{} x {}", width, height);
 }
 
-/// Poses are found for pictures as they are stored or as they are shown: the one whose sides are
-/// the lens's; as shown where the layout names no size.
-Image right_way_up(const Image& stored, int orientation, const Lens& lens) {
-    if (orientation == 1) return stored;
-    if (lens.width == 0) return oriented(stored, orientation);
-    const auto fits = [&](int width, int height) {
-        return std::abs(static_cast<double>(width) * lens.height -
-                        static_cast<double>(height) * lens.width) <= std::max(width, height);
-    };
-    if (fits(stored.width, stored.height) || !swaps_sides(orientation)) return stored;
-    return fits(stored.height, stored.width) ? oriented(stored, orientation) : stored;
+bool has_proportions(int width, int height, const Lens& lens) {
+    return std::abs(static_cast<double>(width) * lens.height -
+                    static_cast<double>(height) * lens.width) <= std::max(width, height);
+}
+
+/// Whether poses were found for pictures as they are shown, not as they are stored: the one whose
+/// sides are the lens's; as shown where the layout names no size.
+bool is_posed_as_shown(const Image& stored, int orientation, const Lens& lens) {
+    if (lens.width == 0) return true;
+    return swaps_sides(orientation) && !has_proportions(stored.width, stored.height, lens) &&
+           has_proportions(stored.height, stored.width, lens);
 }
 
 /// Pictures may all be smaller than the lens says (folders like images_4), not of other
@@ -66,19 +66,23 @@ bool varies(const Image& image, int channel) {
     return false;
 }
 
+bool is_proportional(const Image& mask, int width, int height) {
+    return std::abs(static_cast<double>(mask.width) / width -
+                    static_cast<double>(mask.height) / height) < 0.02;
+}
+
 /// One channel: alpha where the mask has it and it says something, else the mean of the colours.
-Image load_mask(const fs::path& file, const Image& picture) {
-    const Image stored = load_image(file);
-    if (stored.width != picture.width || stored.height != picture.height) {
-        const bool proportional =
-            std::abs(static_cast<double>(stored.width) / picture.width -
-                     static_cast<double>(stored.height) / picture.height) < 0.02;
-        if (!proportional) {
+/// turn: brings a mask that lies the other way round to its picture.
+Image load_mask(const fs::path& file, const Image& picture, int turn) {
+    Image stored = load_image(file);
+    if (!is_proportional(stored, picture.width, picture.height)) {
+        if (!swaps_sides(turn) || !is_proportional(stored, picture.height, picture.width)) {
             throw InputError(file.string(),
                              "the mask is " + size_text(stored.width, stored.height) +
                                  ", its picture " + size_text(picture.width, picture.height),
                              "a mask has the size of its picture");
         }
+        stored = oriented(stored, turn);
     }
     const bool has_alpha = stored.channels == 2 || stored.channels == 4;
     const bool from_alpha = has_alpha && varies(stored, stored.channels - 1);
@@ -178,47 +182,58 @@ std::optional<Vec3> plain_border_color(const Image& picture, float tolerance) {
     return median;
 }
 
-Image load_photograph(const SourceView& view, const fs::path& mask_file,
-                      const DatasetOptions& options, Lens& lens, MaskOrigin& origin) {
+LoadedPhotograph load_photograph(const SourceView& view, const fs::path& mask_file,
+                                 const DatasetOptions& options) {
     std::error_code ignored;
     if (!fs::is_regular_file(view.picture, ignored)) {
         throw InputError(view.picture.string(),
                          "the picture of view '" + view.name + "' is missing",
                          "every pose needs its picture");
     }
-    const int orientation = exif_orientation(read_bytes(view.picture));
-    Image picture = right_way_up(load_image(view.picture), orientation, view.lens);
-    lens = lens_for(picture, view);
+    const CameraFacts facts = camera_facts(view.picture);
+    Image picture = load_image(view.picture);
+    const bool as_shown = is_posed_as_shown(picture, facts.orientation, view.lens);
+    if (as_shown) picture = oriented(picture, facts.orientation);
+    const Lens lens = lens_for(picture, view);
 
+    LoadedPhotograph loaded;
+    loaded.exposure = facts.exposure;
     const bool has_alpha = picture.channels == 2 || picture.channels == 4;
     std::optional<Vec3> background = options.background;
     Image mask;
     if (!mask_file.empty()) {
-        mask = load_mask(mask_file, picture);
-        origin = MaskOrigin::folder;
+        mask = load_mask(mask_file, picture,
+                         as_shown ? facts.orientation : inverse_orientation(facts.orientation));
+        loaded.mask = MaskOrigin::folder;
     } else if (has_alpha && varies(picture, picture.channels - 1)) {
-        origin = MaskOrigin::alpha;
+        loaded.mask = MaskOrigin::alpha;
     } else if (background) {
-        origin = MaskOrigin::background;
+        loaded.mask = MaskOrigin::background;
     } else {
         background = plain_border_color(picture, options.background_tolerance);
-        origin = background ? MaskOrigin::plain_border : MaskOrigin::none;
+        loaded.mask = background ? MaskOrigin::plain_border : MaskOrigin::none;
     }
-    Image image = premultiplied(picture, mask, options.is_linear || is_floating(view.picture),
-                                background, options.background_tolerance);
-    image = undistort(image, lens);
-    Lens ideal;
-    ideal.width = lens.width;
-    ideal.height = lens.height;
+    loaded.image =
+        undistort(premultiplied(picture, mask, options.is_linear || is_floating(view.picture),
+                                background, options.background_tolerance),
+                  lens);
+    loaded.camera_to_world = view.camera_to_world;
+    // Up is where the camera had it, not where its picture is stored.
+    if (!as_shown && is_turn(facts.orientation)) {
+        loaded.image = oriented(loaded.image, facts.orientation);
+        loaded.camera_to_world = oriented_camera(view.camera_to_world, facts.orientation);
+    }
+    Lens& ideal = loaded.lens;
+    ideal.width = loaded.image.width;
+    ideal.height = loaded.image.height;
     ideal.focal_x = ideal.focal_y = lens.focal_x;
-    ideal.centre_x = 0.5 * lens.width;
-    ideal.centre_y = 0.5 * lens.height;
+    ideal.centre_x = 0.5 * ideal.width;
+    ideal.centre_y = 0.5 * ideal.height;
     if (options.longest_side > 0) {
-        image = thumbnail(image, options.longest_side);
-        ideal = ideal.scaled_to(image.width, image.height);
+        loaded.image = thumbnail(loaded.image, options.longest_side);
+        ideal = ideal.scaled_to(loaded.image.width, loaded.image.height);
     }
-    lens = ideal;
-    return image;
+    return loaded;
 }
 
 }  // namespace item3d

@@ -17,10 +17,17 @@ std::filesystem::path find_mask(const std::filesystem::path& folder, const Sourc
 /// object stands before it. No value: there is none, or the whole picture has it.
 std::optional<Vec3> plain_border_color(const Image& picture, float tolerance);
 
-/// A picture in the size of its lens (or both smaller by the same factor), the right way up,
-/// undistorted, shrunk, premultiplied and linear. mask_file may be empty. Sets `lens` to that of
-/// the result and `origin` to where the coverage came from. Throws InputError.
-Image load_photograph(const SourceView& view, const std::filesystem::path& mask_file,
-                      const DatasetOptions& options, Lens& lens, MaskOrigin& origin);
+struct LoadedPhotograph {
+    Image image;  ///< premultiplied, linear, undistorted, shrunk, shown the right way up
+    Lens lens;    ///< ideal, of the image
+    Mat4 camera_to_world{1.0f};  ///< the view's, turned as the picture was
+    MaskOrigin mask = MaskOrigin::none;
+    double exposure = 0;  ///< CameraFacts::exposure
+};
+
+/// The picture of a view, whose lens may be for a larger one of the same proportions. mask_file may
+/// be empty; a mask may be turned as the picture is stored or as it is shown. Throws InputError.
+LoadedPhotograph load_photograph(const SourceView& view, const std::filesystem::path& mask_file,
+                                 const DatasetOptions& options);
 
 }  // namespace item3d

@@ -5,6 +5,7 @@
 #include "item3d/core/math.h"
 #include "item3d/reconstruct/dataset/lens.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,6 +33,7 @@ struct SourceDataset {
     std::vector<SourceView> views;
     /// The dataset's up direction where its layout fixes it; else it is told from the cameras.
     std::optional<Vec3> up;
+    std::size_t lenses_of_exif = 0;  ///< views whose focal length no file of the dataset names
 };
 
 /// folder / name, whose separators may be those of Windows. Throws InputError that begins with

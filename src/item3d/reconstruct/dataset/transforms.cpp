@@ -3,6 +3,8 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/reconstruct/dataset/camera_facts.h"
+#include "item3d/reconstruct/dataset/orientation.h"
 #include "item3d/scene/pose.h"
 
 #include <nlohmann/json.hpp>
@@ -89,7 +91,26 @@ void read_distortion(const Numbers& numbers, Lens& lens) {
     lens.tangential = {numbers.get("p1"), numbers.get("p2")};
 }
 
-Lens read_lens(const Numbers& numbers) {
+/// As the camera wrote it into the picture, for the picture as it is shown. No value: it did not,
+/// or there is no such picture.
+std::optional<Lens> lens_of_exif(const fs::path& picture) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(picture, ignored)) return std::nullopt;
+    const Bytes bytes = read_bytes(picture);
+    const std::optional<PictureSize> size = stored_size(bytes);
+    if (!size) return std::nullopt;
+    const CameraFacts facts = camera_facts(bytes);
+    Lens lens;
+    lens.width = size->width;
+    lens.height = size->height;
+    if (swaps_sides(facts.orientation)) std::swap(lens.width, lens.height);
+    lens.focal_x = lens.focal_y = focal_in_pixels(facts, lens.width, lens.height);
+    lens.centre_x = 0.5 * lens.width;
+    lens.centre_y = 0.5 * lens.height;
+    return lens.focal_x > 0 ? std::optional(lens) : std::nullopt;
+}
+
+Lens read_lens(const Numbers& numbers, const fs::path& picture, std::size_t& from_exif) {
     Lens lens;
     if (numbers.has("fl_x") && numbers.has("w") && numbers.has("h")) {
         lens.width = size_of(numbers, "w");
@@ -108,8 +129,16 @@ Lens read_lens(const Numbers& numbers) {
                                          angle));
         }
         lens.focal_x = lens.focal_y = 0.5 / std::tan(0.5 * angle);
+    } else if (const std::optional<Lens> found = lens_of_exif(picture)) {
+        lens = *found;
+        read_distortion(numbers, lens);
+        ++from_exif;
     } else {
-        throw InputError(numbers.subject(), "neither camera_angle_x nor fl_x, w and h are given");
+        throw InputError(numbers.subject(),
+                         "neither camera_angle_x nor fl_x, w and h are given, and EXIF names no "
+                         "focal length in " +
+                             picture.filename().string(),
+                         "add the lens to the file, or let --from-images find it");
     }
     if (!(lens.focal_x > 0 && lens.focal_y > 0)) {
         throw InputError(numbers.subject(), "the focal length is not above 0");
@@ -132,7 +161,8 @@ void read_frames(const fs::path& file, Split split, SourceDataset& dataset) {
         view.name = without_picture_extension(name);
         view.picture = find_picture(inside(folder, name, subject));
         view.camera_to_world = pose_from_rows(frame["transform_matrix"], subject);
-        view.lens = read_lens(Numbers(frame, document, subject));
+        view.lens =
+            read_lens(Numbers(frame, document, subject), view.picture, dataset.lenses_of_exif);
         if (frame.contains("mask_path") && frame["mask_path"].is_string()) {
             view.mask = inside(folder, frame["mask_path"].get<std::string>(), subject);
         }

@@ -130,6 +130,12 @@ nlohmann::json summary_json(const Reconstruction& result) {
                            {"peak_memory_bytes", peak_memory_bytes()}};
     if (result.shape)
         summary["scores"]["outline_disagreement_pixels"] = result.shape->outline_disagreement;
+    if (result.mesh_placed) {
+        const Mat4& m = *result.mesh_placed;
+        for (int row = 0; row < 4; ++row)
+            summary["model"]["mesh_placed_by"].push_back(
+                {m[0][row], m[1][row], m[2][row], m[3][row]});
+    }
     if (result.chamfer) summary["scores"]["chamfer"] = *result.chamfer;
     for (std::size_t i = 0; i < result.relit.size(); ++i) {
         const RelitScores& relit = result.relit[i];

@@ -34,6 +34,7 @@ struct Reconstruction {
     Image light;
     int texture_size = 0;
     std::optional<FoundShape> shape;  ///< none for a given mesh
+    std::optional<Mat4> mesh_placed;  ///< what a given mesh was transformed by
     RefineCurves refine;
     std::vector<ScoredView> train, test;  ///< a few of the former
     std::vector<ScoredView> test_without_shadows;

@@ -19,7 +19,6 @@ namespace item3d {
 
 namespace {
 
-constexpr std::size_t views_shown = 8;
 constexpr int model_picture_size = 320;
 
 /// Differences of eight bits of 255 are white.
@@ -40,7 +39,7 @@ Image error_map(const ScoredView& view) {
 
 std::string view_figures(const std::vector<ScoredView>& views) {
     std::vector<std::string> figures;
-    for (std::size_t i = 0; i < std::min(views_shown, views.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(pictured_views, views.size()); ++i) {
         const ScoredView& view = views[i];
         figures.push_back(html_comparison({"photograph", encode_webp(view.truth)},
                                           {"render", encode_webp(view.picture)},
@@ -54,7 +53,7 @@ std::string view_figures(const std::vector<ScoredView>& views) {
 
 std::string material_figures(const MaterialTruth& truth) {
     std::vector<std::string> figures;
-    for (std::size_t i = 0; i < std::min(views_shown / 2, truth.views.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(pictured_views / 2, truth.views.size()); ++i) {
         const MaterialMaps& maps = truth.views[i];
         figures.push_back(html_comparison({"true", encode_webp(maps.true_base_color)},
                                           {"found", encode_webp(maps.base_color)},

@@ -28,6 +28,43 @@ Image as_picture(const at::Tensor& planes) {
     return to_image(planes[0].permute({1, 2, 0}).contiguous());
 }
 
+/// drawn: [1, H, W, 4] as TargetView's.
+ScoredView score_of(const TargetView& view, const at::Tensor& drawn, Vec3 gain, bool is_pictured) {
+    const at::Tensor picture =
+        displayed_over_white(drawn * at::tensor({gain.x, gain.y, gain.z, 1.0f}));
+    const at::Tensor truth = displayed_over_white(view.image);
+    const at::Tensor a = drawn.select(3, 3), b = view.image.select(3, 3);
+    ScoredView result;
+    result.score = {view.name, psnr(picture, truth), ssim(picture, truth),
+                    at::minimum(a, b).sum().item<double>() /
+                        std::max(1e-9, at::maximum(a, b).sum().item<double>())};
+    if (!is_pictured) return result;
+    result.truth = as_picture(truth);
+    result.picture = as_picture(picture);
+    return result;
+}
+
+/// Least squares of linear radiance, where both show the object and nothing is clipped.
+class GainFit {
+  public:
+    void add(const TargetView& view, const at::Tensor& drawn) {
+        const at::Tensor render = drawn.narrow(3, 0, 3).to(at::kDouble);
+        const at::Tensor truth = view.image.narrow(3, 0, 3).to(at::kDouble);
+        const at::Tensor used =
+            (view.image.narrow(3, 3, 1) > 0.99f).logical_and(truth.amax(3, true) < 0.99);
+        product_ += (render * truth * used).sum({0, 1, 2});
+        square_ += (render * render * used).sum({0, 1, 2});
+    }
+    Vec3 gain() const {
+        const at::Tensor gain = product_ / square_.clamp_min(1e-12);
+        return {gain[0].item<float>(), gain[1].item<float>(), gain[2].item<float>()};
+    }
+
+  private:
+    at::Tensor product_ = at::zeros({3}, at::kDouble);
+    at::Tensor square_ = at::zeros({3}, at::kDouble);
+};
+
 std::vector<Vec3> points_on(const TriangleMesh& mesh, int count, Random& random) {
     const at::Tensor positions = mesh.positions.detach().contiguous();
     const at::Tensor triangles = mesh.triangles.contiguous();
@@ -89,7 +126,8 @@ ViewScore mean_score(const std::vector<ScoredView>& views) {
 }
 
 ModelRenderer::ModelRenderer(const Model& model, const Image& light, std::int64_t shadow_points)
-    : geometry_(Geometry::from_model(model)),
+    : bounds_(model.bounds()),
+      geometry_(Geometry::from_model(model)),
       materials_(model),
       light_(prefilter(light, light_cube)) {
     if (shadow_points == 0) return;
@@ -110,49 +148,44 @@ at::Tensor ModelRenderer::draw(const TargetView& view) const {
     return render(geometry_, materials_, light_, {view.camera}, options);
 }
 
-std::vector<ScoredView> ModelRenderer::score(const std::vector<TargetView>& views,
+TargetView ModelRenderer::target(const Photograph& view) const {
+    return make_targets({view}, bounds_).front();
+}
+
+std::vector<ScoredView> ModelRenderer::score(const std::vector<Photograph>& views,
                                              Vec3 gain) const {
     const at::NoGradGuard no_gradient;
-    const at::Tensor factors = at::tensor({gain.x, gain.y, gain.z, 1.0f});
     std::vector<ScoredView> scored;
-    for (const TargetView& view : views) {
-        const at::Tensor drawn = draw(view) * factors;
-        const at::Tensor picture = displayed_over_white(drawn);
-        const at::Tensor truth = displayed_over_white(view.image);
-        const at::Tensor a = drawn.select(3, 3), b = view.image.select(3, 3);
-        ScoredView result;
-        result.score = {view.name, psnr(picture, truth), ssim(picture, truth),
-                        at::minimum(a, b).sum().item<double>() /
-                            std::max(1e-9, at::maximum(a, b).sum().item<double>())};
-        result.truth = as_picture(truth);
-        result.picture = as_picture(picture);
-        scored.push_back(std::move(result));
+    for (const Photograph& view : views) {
+        const TargetView wanted = target(view);
+        scored.push_back(score_of(wanted, draw(wanted), gain, scored.size() < pictured_views));
     }
     return scored;
 }
 
-Vec3 ModelRenderer::best_gain(const std::vector<TargetView>& views) const {
+Vec3 ModelRenderer::best_gain(const std::vector<Photograph>& views) const {
     const at::NoGradGuard no_gradient;
-    at::Tensor product = at::zeros({3}, at::kDouble);
-    at::Tensor square = at::zeros({3}, at::kDouble);
-    for (const TargetView& view : views) {
-        const at::Tensor drawn = draw(view).narrow(3, 0, 3).to(at::kDouble);
-        const at::Tensor truth = view.image.narrow(3, 0, 3).to(at::kDouble);
-        const at::Tensor both =
-            (view.image.narrow(3, 3, 1) > 0.99f).logical_and(truth.amax(3, true) < 0.99);
-        product += (drawn * truth * both).sum({0, 1, 2});
-        square += (drawn * drawn * both).sum({0, 1, 2});
+    GainFit fit;
+    for (const Photograph& view : views) {
+        const TargetView wanted = target(view);
+        fit.add(wanted, draw(wanted));
     }
-    const at::Tensor gain = product / square.clamp_min(1e-12);
-    return {gain[0].item<float>(), gain[1].item<float>(), gain[2].item<float>()};
+    return fit.gain();
 }
 
-std::vector<ScoredView> ModelRenderer::score_each_scaled(
-    const std::vector<TargetView>& views) const {
-    std::vector<ScoredView> scored;
-    for (const TargetView& view : views)
-        scored.push_back(score({view}, best_gain({view})).front());
-    return scored;
+ModelRenderer::BothScores ModelRenderer::score_both(const std::vector<Photograph>& views) const {
+    const at::NoGradGuard no_gradient;
+    BothScores both;
+    for (const Photograph& view : views) {
+        const TargetView wanted = target(view);
+        const at::Tensor drawn = draw(wanted);
+        const bool is_pictured = both.as_it_is.size() < pictured_views;
+        both.as_it_is.push_back(score_of(wanted, drawn, Vec3(1), is_pictured));
+        GainFit fit;
+        fit.add(wanted, drawn);
+        both.each_scaled.push_back(score_of(wanted, drawn, fit.gain(), is_pictured));
+    }
+    return both;
 }
 
 double chamfer_distance(const TriangleMesh& mesh, const TriangleMesh& reference, int points,

@@ -7,6 +7,8 @@
 #include "item3d/scene/model.h"
 #include "item3d/tensors/tensor.h"
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,9 +22,12 @@ struct ViewScore {
     double mask_overlap = 0;  ///< intersection over union of coverage
 };
 
+/// Views of which scores keep pictures: the first ones, as hundreds would take gigabytes.
+inline constexpr std::size_t pictured_views = 8;
+
 struct ScoredView {
     ViewScore score;
-    Image truth, picture;  ///< sRGB over white
+    Image truth, picture;  ///< sRGB over white; empty of views after pictured_views
 };
 
 /// Means over views.
@@ -37,14 +42,20 @@ class ModelRenderer {
     /// [1, H, W, 4] premultiplied linear radiance.
     at::Tensor draw(const TargetView& view) const;
     /// gain: multiplies each channel's radiance.
-    std::vector<ScoredView> score(const std::vector<TargetView>& views, Vec3 gain = Vec3(1)) const;
+    std::vector<ScoredView> score(const std::vector<Photograph>& views, Vec3 gain = Vec3(1)) const;
     /// The gain that brings renders nearest to the photographs, least squares of linear radiance:
     /// light and base colour are known only up to such a factor.
-    Vec3 best_gain(const std::vector<TargetView>& views) const;
-    /// Each view with its own best gain: for photographs of different exposure.
-    std::vector<ScoredView> score_each_scaled(const std::vector<TargetView>& views) const;
+    Vec3 best_gain(const std::vector<Photograph>& views) const;
+    /// Views as they are, and each with its own best gain: for photographs of different exposure.
+    struct BothScores {
+        std::vector<ScoredView> as_it_is, each_scaled;
+    };
+    BothScores score_both(const std::vector<Photograph>& views) const;
 
   private:
+    TargetView target(const Photograph& view) const;
+
+    std::array<Vec3, 2> bounds_;
     Geometry geometry_;
     TexturedMaterials materials_;
     EnvironmentLight light_;

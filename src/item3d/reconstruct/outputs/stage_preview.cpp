@@ -29,6 +29,16 @@ at::Tensor base_color_picture(const RenderedView& view) {
     return scatter(opaque, view.surface, view.raster, at::zeros({4}));
 }
 
+/// [H, W, 3] each, of any heights, on top of the page.
+at::Tensor beside(std::vector<at::Tensor> columns) {
+    std::int64_t height = 0;
+    for (const at::Tensor& column : columns)
+        height = std::max(height, column.size(0));
+    for (at::Tensor& column : columns)
+        column = at::constant_pad_nd(column, {0, 0, 0, 0, 0, height - column.size(0)}, 1);
+    return at::cat(columns, 1).contiguous();
+}
+
 }  // namespace
 
 StagePreview::StagePreview(std::filesystem::path path, const Dataset& dataset)
@@ -54,7 +64,7 @@ void StagePreview::update(Stage& stage) {
                 rows.push_back(at::full_like(rows.front(), 1));
             columns.push_back(at::cat(rows, 0));
         }
-        save_image(path_, to_image(at::cat(columns, 1).contiguous()));
+        save_image(path_, to_image(beside(columns)));
     } catch (const Error& error) {
         warn(std::string("no more previews: ") + error.what());
         enabled_ = false;

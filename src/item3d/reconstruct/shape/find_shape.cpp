@@ -155,11 +155,8 @@ void ShapeSearch::step() {
         light_alone ? surface.positions.detach() : surface.positions, surface.triangles);
     const std::size_t index = order_.at(iteration());
     const TargetView& view = views_[index];
-    ViewRenderOptions how{.one_material = light_alone};
-    if (!light_alone) {
-        how.motion = corrections_.motion(index);
-        how.gain = corrections_.gain(index);
-    }
+    ViewRenderOptions how{.one_material = light_alone, .gain = corrections_.gain(index)};
+    if (!light_alone) how.motion = corrections_.motion(index);
     const RenderedView rendered =
         render_view(geometry, appearance_.field, learning_.light, view, how);
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));

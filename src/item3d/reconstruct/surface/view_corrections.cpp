@@ -25,6 +25,17 @@ at::Tensor mean_of(const std::vector<at::Tensor>& all) {
     return at::stack(all).mean(0);
 }
 
+/// [N, 3]: as EXIF has the exposures, by their median; 0 where it is not said of all.
+at::Tensor gains_of_exif(const std::vector<Photograph>& views) {
+    std::vector<double> logarithms;
+    for (const Photograph& view : views)
+        if (view.exposure > 0) logarithms.push_back(std::log(view.exposure));
+    const auto count = static_cast<std::int64_t>(views.size());
+    if (logarithms.size() < views.size()) return at::zeros({count, 3});
+    const at::Tensor gains = at::tensor(logarithms).to(at::kFloat);
+    return (gains - gains.median()).unsqueeze(1).repeat({1, 3});
+}
+
 std::vector<at::Tensor> zeros_for(std::size_t views) {
     std::vector<at::Tensor> result;
     for (std::size_t i = 0; i < views; ++i)
@@ -107,7 +118,7 @@ ViewCorrections::ViewCorrections(const std::vector<Photograph>& views, Vec3 cent
                                  const CorrectionOptions& options)
     : rotations_(zeros_for(views.size())),
       translations_(zeros_for(views.size())),
-      log_gains_(at::zeros({static_cast<std::int64_t>(views.size()), 3})),
+      log_gains_(gains_of_exif(views)),
       centre_(at::tensor({centre.x, centre.y, centre.z})),
       radius_(radius),
       options_(options),

@@ -40,7 +40,8 @@ struct RigidMotion {
 };
 
 /// Gain and motion of each training view. The median of the gains is 1 and the mean of the motions
-/// none, because a brighter light and a moved object would explain either as well.
+/// none, because a brighter light and a moved object would explain either as well. Gains begin as
+/// the exposures of EXIF are, where all pictures have them.
 class ViewCorrections {
   public:
     ViewCorrections(const std::vector<Photograph>& views, Vec3 centre, float radius,
