@@ -1,6 +1,7 @@
 // The layer that an edit leaves: applied again it gives the edit's own bytes, and layers add up.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/edit/outputs/rebake_layer.h"
 #include "item3d/layers/layer_field.h"
 #include "item3d/layers/layered_model.h"
 #include "item3d/layers/source_picture.h"
@@ -149,6 +150,105 @@ TEST_F(LayersTest, sixteen_bits_lossy_formats_and_resampling_are_exact) {
     EXPECT_TRUE(layer_of(small).pictures.at(0).source.defined());
     EXPECT_EQ(read_bytes(apply({"small"})), read_bytes(small.output / "model.glb"));
     EXPECT_THROW(apply({"small", "deep"}), InputError);
+}
+
+/// Layers baked anew from their fields.
+class RebakeTest : public LayersTest {
+  protected:
+    LayeredModelRequest again(const std::string& layer, int texture_size = 0) const {
+        LayeredModelRequest request;
+        request.model = folder_ / "cube.glb";
+        request.output = folder_ / "again.glb";
+        request.layers = {parse_layer_use((folder_ / layer).string())};
+        request.texture_size = texture_size;
+        request.rebake = rebake_layer;
+        return request;
+    }
+    Image base_color_again(const LayeredModelRequest& request) const {
+        record_ = write_layered_model(request);
+        return base_color_of(request.output);
+    }
+    /// Largest and mean distance of values, in steps of 1/255.
+    static std::pair<double, double> apart(const Image& a, const Image& b) {
+        if (a.pixels.size() != b.pixels.size()) return {1e9, 1e9};
+        double largest = 0, sum = 0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+            const double distance = 255 * std::abs(a.pixels[i] - b.pixels[i]);
+            largest = std::max(largest, distance);
+            sum += distance;
+        }
+        return {largest, sum / static_cast<double>(a.pixels.size())};
+    }
+    static Image halved(const Image& image) {
+        Image small(image.width / 2, image.height / 2, image.channels);
+        for (int y = 0; y < small.height; ++y)
+            for (int x = 0; x < small.width; ++x)
+                for (int c = 0; c < image.channels; ++c)
+                    small.at(x, y, c) =
+                        (image.at(2 * x, 2 * y, c) + image.at(2 * x + 1, 2 * y, c) +
+                         image.at(2 * x, 2 * y + 1, c) + image.at(2 * x + 1, 2 * y + 1, c)) /
+                        4;
+        return small;
+    }
+    mutable nlohmann::json record_;
+};
+
+TEST_F(RebakeTest, at_the_same_size_is_the_edit_and_at_twice_it_looks_the_same) {
+    const EditRequest edit = request(
+        "part", 4, {{"region", {"box=-1,-1,-1,0,1,1"}}, {"learning_rate", 0.05}, {"feather", 4}});
+    edit_model(edit);
+    const Image source = base_color_of(edit.model);
+    const Image edited = base_color_of(edit.output / "model.glb");
+    EXPECT_GT(apart(source, edited).second, 1);
+    const Image same = base_color_again(again("part", 64));
+    EXPECT_LE(apart(same, edited).first, 1.01);
+    EXPECT_LT(apart(same, edited).second, 0.1);
+    EXPECT_TRUE(record_["layers"][0].contains("baked_because"));
+    const Image twice = base_color_again(again("part", 128));
+    ASSERT_EQ(twice.width, 128);
+    // The checks' own edges are resampled; what was edited is not lost in them.
+    EXPECT_LT(apart(halved(twice), edited).second, 0.3 * apart(source, edited).second);
+    base_color_again(again("part"));
+    EXPECT_EQ(read_bytes(folder_ / "again.glb"), read_bytes(edit.output / "model.glb"));
+    EXPECT_FALSE(record_["layers"][0].contains("baked_because"));
+}
+
+TEST_F(RebakeTest, another_uv_map_and_a_larger_texture_are_baked_from_the_field) {
+    const EditRequest edit =
+        request("part", 4, {{"region", {"box=-1,-1,-1,0,1,1"}}, {"learning_rate", 0.05}});
+    edit_model(edit);
+    const Image source = base_color_of(edit.model);
+    const Image edited = base_color_of(edit.output / "model.glb");
+    // The texture and its map turned upside down: each place shows what it did.
+    const auto flipped = [](Image image) {
+        Image turned = image;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                for (int c = 0; c < image.channels; ++c)
+                    turned.at(x, image.height - 1 - y, c) = image.at(x, y, c);
+        return turned;
+    };
+    Model model = load_model(edit.model);
+    for (Vec2& uv : model.primitives.at(0).uvs)
+        uv.y = 1 - uv.y;
+    model.textures.at(0).image = flipped(source);
+    model.textures.at(0).file = nullptr;
+    model.source = nullptr;
+    save_model(edit.model, model);
+    const Image again_flipped = flipped(base_color_again(again("part")));
+    EXPECT_NE(record_["layers"][0]["baked_because"].get<std::string>().find("another UV map"),
+              std::string::npos);
+    EXPECT_LT(apart(again_flipped, edited).second, 0.1);
+
+    // Moved elsewhere, the field has nothing to say of it.
+    for (Vec3& position : model.primitives.at(0).positions)
+        position.x += 1;
+    save_model(edit.model, model);
+    EXPECT_THROW(base_color_again(again("part")), InputError);
+    EditLayer older = layer_of(edit);
+    older.channels.reset();
+    save_layer(edit.output / "layer.safetensors", older);
+    EXPECT_THROW(base_color_again(again("part", 32)), InputError);
 }
 
 TEST(LayerUse, is_read_from_its_end) {

@@ -50,24 +50,21 @@ Need estimate(const EditRequest& request, at::ScalarType precision) {
     ITEM3D_CHECK(false, "a precision without an estimate");
 }
 
-std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request,
-                                              const PriorNeeds& prior_needs) {
+}  // namespace
+
+std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request, const PriorNeeds& needs) {
     const EditPlan& plan = request.plan;
-    if (prior_needs.any_sentence) {
+    if (needs.any_sentence) {
         auto prior = std::make_shared<Pipeline>(
-            Pipeline::load(request.prior, prior_needs.device, prior_needs.precision));
+            Pipeline::load(request.prior, needs.device, needs.precision));
         prior->add(plan);
         return prior;
     }
-    RunNeeds needs;
-    needs.prompts = {prior_needs.from, prior_needs.to, plan.negative_prompt,
-                     default_negative_prompt()};
-    needs.decoder = plan.paints_detail;
-    return std::make_shared<RunningPipeline>(RunningPipeline::load(
-        request.prior, prior_needs.device, prior_needs.precision, plan, needs));
+    RunNeeds run{needs.sentences, needs.decoder};
+    run.prompts.push_back(default_negative_prompt());
+    return std::make_shared<RunningPipeline>(
+        RunningPipeline::load(request.prior, needs.device, needs.precision, plan, run));
 }
-
-}  // namespace
 
 std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& request,
                                                        at::ScalarType precision) {
@@ -80,24 +77,21 @@ std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& reques
     return load_captioner(request.captioner, request.device, precision);
 }
 
-std::shared_ptr<const DiffusionModel> load_prior(const EditRequest& request,
-                                                 const PriorNeeds& needs) {
-    const auto prior = load_networks(request, needs);
-    const EditPlan& plan = request.plan;
+void make_prior_ready(DiffusionModel& prior, const EditPlan& plan, bool low_memory) {
     for (const auto& [option, text] : {std::pair("--from", plan.from), std::pair("--to", plan.to)})
-        warn_of_lost_words(prior->tokenizer(), option, text);
-    if (needs.low_memory) prior->recompute_in_backward(true);
-    return prior;
+        warn_of_lost_words(prior.tokenizer(), option, text);
+    prior.recompute_in_backward(low_memory);
 }
 
-bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::Device device) {
+bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::Device device,
+                      bool is_loaded) {
     if (request.memory != "auto" && request.memory != "low" && request.memory != "high")
         throw InputError("--memory", "'" + request.memory + "' is not known",
                          "choose auto, low or high");
     // A device's own memory is not looked at: LibTorch's message names what it lacked.
     if (!device.is_cpu()) return request.memory == "low";
     const Need need = estimate(request, precision);
-    const double free = free_memory();
+    const double free = free_memory() + (is_loaded ? need.weights : 0);
     if (need.weights > free)
         throw ResourceError(fmt::format(
             "{}: its weights take {:.1f} GB in {}, and {:.1f} GB of memory are free; close other "

@@ -30,7 +30,7 @@ bool RegionRequest::needs_segmenter() const {
            std::any_of(exclude.begin(), exclude.end(), is_by_words);
 }
 
-Region::Region(const RegionRequest& request, const RegionScene& scene) {
+Region::Region(const RegionRequest& request, const RegionScene& scene) : request_(request) {
     const at::NoGradGuard no_grad;
     for (const std::string& text : request.include)
         include_.push_back(make_selector(text, scene));
