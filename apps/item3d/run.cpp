@@ -55,6 +55,17 @@ int fail_out_of_memory(const std::string& message) {
                                            "or fewer at a time");
 }
 
+/// "item3d edit", as far as the command line got.
+std::string command_of(const CLI::App& app) {
+    std::string command = app.get_name();
+    const CLI::App* deepest = &app;
+    while (!deepest->get_subcommands().empty()) {
+        deepest = deepest->get_subcommands().front();
+        command += " " + deepest->get_name();
+    }
+    return command;
+}
+
 int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
     CLI::App app("Edits the look of textured 3D models from two sentences.", "item3d");
     app.require_subcommand(1);
@@ -64,8 +75,9 @@ int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_c
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         // --help comes this way too; it is no error.
-        return app.exit(error) == 0 ? static_cast<int>(ExitCode::done)
-                                    : static_cast<int>(ExitCode::usage);
+        if (error.get_exit_code() == 0) return app.exit(error);
+        return fail(ExitCode::usage, std::string("error: ") + error.what() + "; `" +
+                                         command_of(app) + " --help` lists the options");
     }
     return static_cast<int>(ExitCode::done);
 }

@@ -25,6 +25,11 @@ TEST_F(EditProgram, LayersGiveTheEditAgain) {
     EXPECT_EQ(result.code, 0) << result.error;
     EXPECT_NE(result.out.find("a blue cube"), std::string::npos) << result.out;
     EXPECT_EQ(read_file(folder_ / "again.glb"), read_file(folder_ / "out" / "model.glb"));
+    const Result small = run("layers " + quoted(cube_) + " " + quoted(folder_ / "out") +
+                             " --texture-size 32 --json -o " + quoted(folder_ / "small.glb"));
+    EXPECT_EQ(small.code, 0) << small.error;
+    EXPECT_NE(small.out.find("baked_because"), std::string::npos) << small.out;
+    EXPECT_NE(small.error.find("baked anew from their fields"), std::string::npos) << small.error;
 }
 
 }  // namespace

@@ -74,6 +74,9 @@ TEST_F(RegionProgram, PlansRunInOrderAndGoOn) {
     std::ofstream(plan) << R"({"edits": [{"from": "a red cube", "to": "a blue cube"},
         {"from": "a blue cube", "to": "a green cube", "feather": 90}]})";
     expect_error(line, 3, "--feather");
+    std::ofstream(plan) << R"({"edits": [{"from": "a red cube", "to": "a blue cube"},
+        {"from": "a blue cube", "to": "a green cube", "region": ["sphere=0,0,9,1"]}]})";
+    expect_error(line, 3, "edit 2: sphere=0,0,9,1: it lies outside the model");
     std::ofstream(plan) << R"({"edits": [{"from": "a", "to": "b", "region": "named=black"}]})";
     expect_error(line, 3, "edit 1: region cannot be \"named=black\"");
     EXPECT_FALSE(fs::exists(folder_ / "out" / "1"));

@@ -1,6 +1,7 @@
 // The layer that an edit leaves: applied again it gives the edit's own bytes, and layers add up.
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/edit/outputs/rebake_layer.h"
 #include "item3d/layers/layer_field.h"
 #include "item3d/layers/layered_model.h"
 #include "item3d/layers/source_picture.h"
@@ -149,6 +150,120 @@ TEST_F(LayersTest, sixteen_bits_lossy_formats_and_resampling_are_exact) {
     EXPECT_TRUE(layer_of(small).pictures.at(0).source.defined());
     EXPECT_EQ(read_bytes(apply({"small"})), read_bytes(small.output / "model.glb"));
     EXPECT_THROW(apply({"small", "deep"}), InputError);
+}
+
+/// Layers baked anew from their fields.
+class RebakeTest : public LayersTest {
+  protected:
+    LayeredModelRequest again(const std::string& layer, int texture_size = 0) const {
+        LayeredModelRequest request;
+        request.model = folder_ / "cube.glb";
+        request.output = folder_ / "again.glb";
+        request.layers = {parse_layer_use((folder_ / layer).string())};
+        request.texture_size = texture_size;
+        request.rebake = rebake_layer;
+        return request;
+    }
+    Image base_color_again(const LayeredModelRequest& request) const {
+        record_ = write_layered_model(request);
+        return base_color_of(request.output);
+    }
+    /// Whether a texel lies well within a side of the cube.
+    static bool is_covered(const Image& image, int x, int y) {
+        const auto from_middle = [](double cells) {
+            return std::abs(cells - std::floor(cells) - 0.5);
+        };
+        return from_middle(3 * (x + 0.5) / image.width) < 0.35 &&
+               from_middle(2 * (y + 0.5) / image.height) < 0.35;
+    }
+    /// Mean distance of the values of covered texels, in steps of 1/255.
+    static double apart(const Image& a, const Image& b) {
+        if (a.pixels.size() != b.pixels.size()) return 1e9;
+        double sum = 0;
+        int count = 0;
+        for (int y = 0; y < a.height; ++y)
+            for (int x = 0; x < a.width; ++x)
+                for (int c = 0; c < a.channels && is_covered(a, x, y); ++c, ++count)
+                    sum += 255 * std::abs(a.at(x, y, c) - b.at(x, y, c));
+        return sum / count;
+    }
+    static Image changed(const Image& before, Image after) {
+        for (std::size_t i = 0; i < after.pixels.size(); ++i)
+            after.pixels[i] -= before.pixels.at(i);
+        return after;
+    }
+    static Image halved(const Image& image) {
+        Image small(image.width / 2, image.height / 2, image.channels);
+        for (int y = 0; y < small.height; ++y)
+            for (int x = 0; x < small.width; ++x)
+                for (int c = 0; c < image.channels; ++c)
+                    small.at(x, y, c) =
+                        (image.at(2 * x, 2 * y, c) + image.at(2 * x + 1, 2 * y, c) +
+                         image.at(2 * x, 2 * y + 1, c) + image.at(2 * x + 1, 2 * y + 1, c)) /
+                        4;
+        return small;
+    }
+    mutable nlohmann::json record_;
+};
+
+TEST_F(RebakeTest, at_the_same_size_is_the_edit_and_at_twice_it_looks_the_same) {
+    const EditRequest edit = request(
+        "part", 4, {{"region", {"box=-1,-1,-1,0,1,1"}}, {"learning_rate", 0.05}, {"feather", 4}});
+    edit_model(edit);
+    const Image source = base_color_of(edit.model);
+    const Image edited = base_color_of(edit.output / "model.glb");
+    EXPECT_GT(apart(source, edited), 1);
+    const Image same = base_color_again(again("part", 64));
+    // Half precision moves a value by a step; a threshold of the bake can make more of it.
+    EXPECT_LT(apart(same, edited), 0.1);
+    EXPECT_TRUE(record_["layers"][0].contains("baked_because"));
+    const Image twice = base_color_again(again("part", 128));
+    ASSERT_EQ(twice.width, 128);
+    // Against the source resampled in the same way: hardly anything of the edit.
+    const Image unedited = base_color_again(again("part:0.0001", 128));
+    EXPECT_LT(apart(changed(halved(unedited), halved(twice)), changed(source, edited)),
+              0.1 * apart(source, edited));
+    base_color_again(again("part"));
+    EXPECT_EQ(read_bytes(folder_ / "again.glb"), read_bytes(edit.output / "model.glb"));
+    EXPECT_FALSE(record_["layers"][0].contains("baked_because"));
+}
+
+TEST_F(RebakeTest, another_uv_map_and_a_larger_texture_are_baked_from_the_field) {
+    const EditRequest edit =
+        request("part", 4, {{"region", {"box=-1,-1,-1,0,1,1"}}, {"learning_rate", 0.05}});
+    edit_model(edit);
+    const Image source = base_color_of(edit.model);
+    const Image edited = base_color_of(edit.output / "model.glb");
+    // The texture and its map turned upside down: each place shows what it did.
+    const auto flipped = [](Image image) {
+        Image turned = image;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                for (int c = 0; c < image.channels; ++c)
+                    turned.at(x, image.height - 1 - y, c) = image.at(x, y, c);
+        return turned;
+    };
+    Model model = load_model(edit.model);
+    for (Vec2& uv : model.primitives.at(0).uvs)
+        uv.y = 1 - uv.y;
+    model.textures.at(0).image = flipped(source);
+    model.textures.at(0).file = nullptr;
+    model.source = nullptr;
+    save_model(edit.model, model);
+    const Image again_flipped = flipped(base_color_again(again("part")));
+    EXPECT_NE(record_["layers"][0]["baked_because"].get<std::string>().find("another UV map"),
+              std::string::npos);
+    EXPECT_LT(apart(again_flipped, edited), 0.1);
+
+    // Moved elsewhere, the field has nothing to say of it.
+    for (Vec3& position : model.primitives.at(0).positions)
+        position.x += 1;
+    save_model(edit.model, model);
+    EXPECT_THROW(base_color_again(again("part")), InputError);
+    EditLayer older = layer_of(edit);
+    older.channels.reset();
+    save_layer(edit.output / "layer.safetensors", older);
+    EXPECT_THROW(base_color_again(again("part", 32)), InputError);
 }
 
 TEST(LayerUse, is_read_from_its_end) {

@@ -14,6 +14,8 @@
 #include "item3d/core/progress.h"
 #include "item3d/edit/reconstructed_light.h"
 #include "item3d/edit/settings_table.h"
+#include "item3d/edit/sequence/region_check.h"
+#include "item3d/edit/sequence/sequence.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/tensors/precision.h"
@@ -128,8 +130,8 @@ EditPlan plan_of(const EditCommandOptions& options) {
     return resolve_plan(options.request.prior, overrides);
 }
 
-/// One edit by request and overrides.
-nlohmann::json edit_once(EditCommandOptions& options) {
+/// Decides the request's plan; throws for what makes no sense, warns of what has no effect.
+void plan_request(EditCommandOptions& options) {
     refuse_contradictions(options.overrides);
     EditRequest& request = options.request;
     nlohmann::json& overrides = options.overrides;
@@ -139,34 +141,31 @@ nlohmann::json edit_once(EditCommandOptions& options) {
     request.plan = plan_of(options);
     warn_of_words(request);
     warn_of_options(request.plan, overrides);
-    return edit_model(request);
 }
 
 nlohmann::json edit_by_plan(const EditCommandOptions& options) {
-    const std::vector<nlohmann::json> edits = read_plan_file(options.plan_file);
-    // An option of the command line holds for all edits that do not set it themselves.
-    const auto with = [&](const nlohmann::json& settings) {
+    EditSequence sequence;
+    sequence.plan = options.plan_file.string();
+    sequence.model = options.request.model;
+    sequence.output = options.request.output;
+    sequence.resume = options.request.resume;
+    for (const nlohmann::json& settings : read_plan_file(options.plan_file)) {
+        // An option of the command line holds for all edits that do not set it themselves.
         EditCommandOptions one = options;
         one.overrides.update(settings);
-        return one;
-    };
-    // A value that does not fit is told before the first edit takes its minutes.
-    for (std::size_t i = 0; i < edits.size(); ++i) {
         try {
-            plan_of(with(edits[i]));
-        } catch (const InputError& error) {
-            throw InputError(fmt::format("{}: edit {}", options.plan_file.string(), i + 1),
-                             error.what());
+            plan_request(one);
+        } catch (const Error& error) {
+            throw InputError(edit_name(sequence.plan, sequence.edits.size()), error.what());
         }
+        sequence.edits.push_back(one.request);
     }
-    return run_plan(options.request.model, options.request.output, edits, options.request.resume,
-                    [&](const PlannedEdit& planned) {
-                        EditCommandOptions one = with(planned.settings);
-                        one.request.model = planned.model;
-                        one.request.output = planned.output;
-                        one.request.resume = planned.is_begun;
-                        return edit_once(one);
-                    });
+    return edit_in_sequence(sequence);
+}
+
+nlohmann::json edit_once(EditCommandOptions& options) {
+    plan_request(options);
+    return edit_model(options.request);
 }
 
 void run_edit(EditCommandOptions& options) {

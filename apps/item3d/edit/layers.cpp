@@ -3,6 +3,7 @@
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"
 #include "item3d/core/format.h"
+#include "item3d/edit/outputs/rebake_layer.h"
 #include "item3d/layers/layered_model.h"
 
 #include <memory>
@@ -61,10 +62,19 @@ void add_layers_command(CLI::App& app) {
         ->add_option("--texture-format", options->texture_format,
                      "Of the textures that are written; without it, as the edits wrote them")
         ->check(CLI::IsMember({"keep", "png", "jpeg", "webp", "ktx2"}));
+    command
+        ->add_option("--texture-size", request.texture_size,
+                     "Longest edge of the textures that the layers change, which are baked anew "
+                     "from the layers' fields; without it, as they are")
+        ->check(CLI::Range(16, 8192));
+    request.rebake = rebake_layer;
     command->footer(
         "\nThe result is the model's textures plus the sum of strength times difference, rounded "
         "once.\nOne layer at strength 1 gives the edit's own model.glb, strength 0 the model as it "
-        "is.\n\n  item3d layers mug.glb golden:0.5 rusty:1:roughness,metallic -o mixed.glb\n");
+        "is.\nWhere the model's textures have other sizes than the edited one's, or another UV "
+        "map, "
+        "layers are\nbaked anew from the neural fields that they hold.\n\n  item3d layers mug.glb "
+        "golden:0.5 rusty:1:roughness,metallic -o mixed.glb\n");
     command->callback([options] { run_layers(*options); });
 }
 

@@ -14,12 +14,17 @@
 namespace item3d {
 
 nlohmann::json edit_model(const EditRequest& request) {
+    EditSession session;
+    return edit_model(request, session);
+}
+
+nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
     StageTimes times;
     const OutputFolder folder(request.output);
 
-    EditScene scene = load_scene(request);
-    std::optional<Clip> clip;  // needed at the end, but a folder without one is told at once
-    if (!request.clip.empty()) clip = Clip::load(request.clip);
+    EditScene scene = load_scene(request, session);
+    // Needed at the end, but a folder without one is told at once.
+    const std::shared_ptr<const Clip> clip = session.clip(request.clip);
     times.end_stage("load");
 
     std::future<Atlas> atlas = unwrap_meanwhile(request, scene);
@@ -44,13 +49,18 @@ nlohmann::json edit_model(const EditRequest& request) {
         times.end_stage("detail");
     }
 
-    const EditedModel edited = bake_and_save(request, scene, state);
+    EditedModel edited = bake_and_save(request, scene, state);
     times.end_stage("bake");
 
-    const Pictures pictures = render_pictures(request, scene, edited, clip);
+    const Pictures pictures = render_pictures(request, scene, edited, clip.get(), session);
     times.end_stage("report");
 
-    return write_summary(request, scene, state, times, iteration_times, edited, pictures);
+    nlohmann::json summary =
+        write_summary(request, scene, state, times, iteration_times, edited, pictures);
+    if (edited.is_as_read)
+        session.keep_model(request.output / model_file_name(request.model), request.plan.variant,
+                           std::move(edited.model));
+    return summary;
 }
 
 }  // namespace item3d

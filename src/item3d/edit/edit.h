@@ -3,6 +3,7 @@
 #pragma once
 
 #include "item3d/edit/request.h"
+#include "item3d/edit/session.h"
 
 #include <nlohmann/json.hpp>
 
@@ -12,5 +13,8 @@ namespace item3d {
 /// the content of edit.json. Throws InputError, ResourceError, and Interrupted (with the checkpoint
 /// written) as core/error.h says.
 nlohmann::json edit_model(const EditRequest& request);
+/// One of the edits that share a session: what it left is taken, and the edited model is left for
+/// the next.
+nlohmann::json edit_model(const EditRequest& request, EditSession& session);
 
 }  // namespace item3d

@@ -8,6 +8,7 @@
 #include "item3d/networks/diffusion/pipeline.h"
 #include "item3d/networks/diffusion/running_pipeline.h"
 #include "item3d/networks/verify.h"
+#include "item3d/region/region_readers.h"
 #include "item3d/tensors/precision.h"
 
 #include <algorithm>
@@ -52,31 +53,40 @@ Need estimate(const EditRequest& request, at::ScalarType precision) {
     ITEM3D_CHECK(false, "a precision without an estimate");
 }
 
-std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request,
-                                              const PriorNeeds& prior_needs) {
+}  // namespace
+
+std::filesystem::path networks_folder(const EditRequest& request) {
+    return request.plan.method == "in2n" && !request.instruct.empty() ? request.instruct
+                                                                       : request.prior;
+}
+
+void add_needs(PriorNeeds& needs, const EditRequest& request, const EditPlan& plan,
+               const PriorVocabulary& vocabulary) {
+    const auto ask = [&](const std::vector<std::string>& sentences) {
+        needs.sentences.insert(needs.sentences.end(), sentences.begin(), sentences.end());
+    };
+    const std::string to = vocabulary.reading(plan.to);
+    ask({vocabulary.reading(plan.from), to, plan.negative_prompt});
+    if (request.segmenter.empty()) ask(prompts_of_words({plan.region, plan.exclude}));
+    if (plan.method == "in2n") ask({plan.dataset_options().instruction});
+    if (plan.paints_views) ask(painting_prompts(to, plan.negative_prompt));
+    needs.decoder =
+        needs.decoder || plan.paints_detail || plan.paints_views || plan.method == "in2n";
+}
+
+std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request, const PriorNeeds& needs) {
     const EditPlan& plan = request.plan;
-    if (prior_needs.any_sentence) {
+    if (needs.any_sentence) {
         auto prior = std::make_shared<Pipeline>(
-            Pipeline::load(request.prior, prior_needs.device, prior_needs.precision));
+            Pipeline::load(request.prior, needs.device, needs.precision));
         prior->add(plan);
         return prior;
     }
-    RunNeeds needs;
-    needs.prompts = {prior_needs.from, prior_needs.to, plan.negative_prompt,
-                     default_negative_prompt()};
-    needs.prompts.insert(needs.prompts.end(), prior_needs.prompts.begin(),
-                         prior_needs.prompts.end());
-    needs.decoder = plan.paints_detail || plan.paints_views || plan.method == "in2n";
-    if (plan.method == "in2n") needs.prompts.push_back(plan.dataset_options().instruction);
-    if (plan.paints_views)
-        for (const std::string& prompt : painting_prompts(prior_needs.to, plan.negative_prompt))
-            needs.prompts.push_back(prompt);
+    RunNeeds run{needs.sentences, needs.decoder};
+    run.prompts.push_back(default_negative_prompt());
     return std::make_shared<RunningPipeline>(RunningPipeline::load(
-        plan.method == "in2n" && !request.instruct.empty() ? request.instruct : request.prior,
-        prior_needs.device, prior_needs.precision, plan, needs));
+        networks_folder(request), needs.device, needs.precision, plan, run));
 }
-
-}  // namespace
 
 std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& request,
                                                        at::ScalarType precision) {
@@ -89,14 +99,10 @@ std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& reques
     return load_captioner(request.captioner, request.device, precision);
 }
 
-std::shared_ptr<const DiffusionModel> load_prior(const EditRequest& request,
-                                                 const PriorNeeds& needs) {
-    const auto prior = load_networks(request, needs);
-    const EditPlan& plan = request.plan;
+void make_prior_ready(DiffusionModel& prior, const EditPlan& plan, bool low_memory) {
     for (const auto& [option, text] : {std::pair("--from", plan.from), std::pair("--to", plan.to)})
-        warn_of_lost_words(prior->tokenizer(), option, text);
-    if (needs.low_memory) prior->recompute_in_backward(true);
-    return prior;
+        warn_of_lost_words(prior.tokenizer(), option, text);
+    prior.recompute_in_backward(low_memory);
 }
 
 std::shared_ptr<const DiffusionModel> load_inpainter(const EditRequest& request, at::Device device,
@@ -118,14 +124,15 @@ std::shared_ptr<const DiffusionModel> load_inpainter(const EditRequest& request,
     return model;
 }
 
-bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::Device device) {
+bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::Device device,
+                      bool is_loaded) {
     if (request.memory != "auto" && request.memory != "low" && request.memory != "high")
         throw InputError("--memory", "'" + request.memory + "' is not known",
                          "choose auto, low or high");
     // A device's own memory is not looked at: LibTorch's message names what it lacked.
     if (!device.is_cpu()) return request.memory == "low";
     const Need need = estimate(request, precision);
-    const double free = free_memory();
+    const double free = free_memory() + (is_loaded ? need.weights : 0);
     if (need.weights > free)
         throw ResourceError(fmt::format(
             "{}: its weights take {:.1f} GB in {}, and {:.1f} GB of memory are free; close other "

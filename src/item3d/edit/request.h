@@ -22,6 +22,7 @@ struct EditRequest {
     std::filesystem::path teacher;     ///< CLIP model that clip follows; empty: `clip`
     EditPlan plan;
     bool resume = false;
+    std::filesystem::path checkpoint;  ///< file; empty: checkpoint.safetensors in the output folder
     std::vector<std::filesystem::path> texture_folders;  ///< see LoadOptions
     /// Edit materials whose base colour's picture cannot be read, by their factors.
     bool allow_missing_textures = false;
@@ -31,7 +32,8 @@ struct EditRequest {
     std::string precision = "auto";  ///< of the networks: auto, fp32, bf16, fp16
     std::string memory = "auto";     ///< auto, low (less memory, more time), high
     int picture_pixels = 384;        ///< side of the report's views; its turntable has 3/4 of it
-    std::string command;             ///< as typed, for edit.json and the resume hint
+    bool draws_turntable = true;
+    std::string command;  ///< as typed, for edit.json and the resume hint
 };
 
 }  // namespace item3d

@@ -3,14 +3,12 @@
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
-#include "item3d/edit/load_networks.h"
+#include "item3d/edit/outputs/bake_options.h"
 #include "item3d/edit/region_choice.h"
 #include "item3d/field/atlas/shared_texels.h"
-#include "item3d/io/load.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/region/region_readers.h"
 #include "item3d/scene/visibility.h"
-#include "item3d/tensors/checkpoint.h"
 #include "item3d/tensors/precision.h"
 
 #include <algorithm>
@@ -52,6 +50,11 @@ void note_variants(const Model& model, const std::vector<int>& materials) {
 }  // namespace
 
 EditScene load_scene(const EditRequest& request) {
+    EditSession session;
+    return load_scene(request, session);
+}
+
+EditScene load_scene(const EditRequest& request, EditSession& session) {
     const at::Device device = request.device;
     const EditPlan& plan = request.plan;
 
@@ -61,15 +64,13 @@ EditScene load_scene(const EditRequest& request) {
     scene.to = vocabulary.reading(plan.to);
     scene.device = device;
     scene.precision = choose_precision(request.precision, device);
-    const bool low_memory = wants_low_memory(request, scene.precision, device);
-    scene.captioner = load_wanted_captioner(request, scene.precision);
-    PriorNeeds needs{
-        device, scene.precision, scene.captioner != nullptr, low_memory, scene.from, scene.to, {}};
-    if (request.segmenter.empty()) needs.prompts = prompts_of_words({plan.region, plan.exclude});
-    scene.loading_prior = std::async(std::launch::async, load_prior, request, needs).share();
-    scene.hashing_weights = std::async(std::launch::async, hash_of_weights, request.prior).share();
-    scene.model = load_model(request.model,
-                             {.texture_folders = request.texture_folders, .variant = plan.variant});
+    PriorUse use{device, scene.precision, false};
+    use.low_memory =
+        wants_low_memory(request, scene.precision, device, session.has_prior(request, use));
+    scene.captioner = session.captioner(request, scene.precision);
+    scene.loading_prior = session.prior(request, use);
+    scene.hashing_weights = session.prior_hash(request.prior);
+    scene.model = session.take_model(request);
     scene.materials = select_materials(scene.model, plan.material);
     check_looks(request, scene.model, scene.materials);
     scene.geometry = Geometry::from_model(scene.model, device);
@@ -81,27 +82,24 @@ EditScene load_scene(const EditRequest& request) {
     scene.start = choose_start(plan, vocabulary, scene.model, scene.materials);
     scene.space = std::make_unique<FieldSpace>(scene.model, scene.materials, device);
     if (plan.edits_texture) {
-        const bool recolors = plan.uv == UvPolicy::automatic && plan.regularizes_color;
-        scene.atlas = choose_uvs(scene.model, *scene.space, scene.materials,
-                                 recolors ? UvPolicy::recolored : plan.uv);
+        scene.atlas = choose_uvs(scene.model, *scene.space, scene.materials, baked_uvs(plan));
         if (scene.atlas.has_shared_texels())
             scene.space->share(std::make_shared<SharedTexels>(scene.model, scene.atlas,
                                                               plan.texture_size, device));
     }
-    const bool is_prepared =
+    scene.is_prepared =
         std::any_of(scene.losses.begin(), scene.losses.end(), [](const auto& entry) {
             const MaterialLosses& lost = entry.second;
             return lost.emission || lost.transparency || !lost.extensions.empty();
         });
     // A region's textures are the same ones, unless the materials had to be prepared.
-    scene.textured = scene.source_textures && !is_prepared
+    scene.textured = scene.source_textures && !scene.is_prepared
                          ? std::make_unique<TexturedMaterials>(*scene.source_textures)
                          : std::make_unique<TexturedMaterials>(scene.model, device);
     scene.source = std::make_unique<MaterialSource>(scene.model, *scene.textured, *scene.space,
                                                     scene.materials, scene.start.channels,
                                                     scene.region.get(), device);
-    scene.lights =
-        std::make_unique<LightRig>(plan.light, plan.light_variation, plan.light_cube_size, device);
+    scene.lights = session.lights(plan, device);
     return scene;
 }
 

@@ -5,6 +5,7 @@
 #include "item3d/edit/material_start.h"
 #include "item3d/edit/region_views.h"
 #include "item3d/edit/request.h"
+#include "item3d/edit/session.h"
 #include "item3d/edit/source_materials.h"
 #include "item3d/edit/views.h"
 #include "item3d/field/atlas/atlas.h"
@@ -30,6 +31,7 @@ struct EditScene {
     BoundingSphere sphere;
     std::vector<int> materials;            ///< edited ones, indices into model.materials
     std::map<int, MaterialLosses> losses;  ///< of the edited materials in the file
+    bool is_prepared = false;              ///< some lost something, so model is not the file's
     MaterialStart start;                   ///< and which channels are edited
     /// The UV maps that the result is baked into; new ones come by unwrap_meanwhile().
     Atlas atlas;
@@ -40,7 +42,7 @@ struct EditScene {
     std::unique_ptr<Region> region;             ///< null: all of the edited materials
     std::unique_ptr<RegionViews> region_views;  ///< null with it
     std::unique_ptr<MaterialSource> source;
-    std::unique_ptr<LightRig> lights;
+    std::shared_ptr<LightRig> lights;
     /// Loads asynchronously; get() blocks and rethrows load errors.
     std::shared_future<std::shared_ptr<const DiffusionModel>> loading_prior;
     const std::shared_ptr<const DiffusionModel>& prior() const { return loading_prior.get(); }
@@ -51,7 +53,8 @@ struct EditScene {
 };
 
 /// Returns while the prior is still being loaded. Throws InputError for what cannot be read of the
-/// rest, ResourceError where memory will not do.
+/// rest, ResourceError where memory will not do. session: of the edits around this one, if any.
+EditScene load_scene(const EditRequest& request, EditSession& session);
 EditScene load_scene(const EditRequest& request);
 
 /// scene.atlas with its new UVs, made in the background; both must live until it is there.

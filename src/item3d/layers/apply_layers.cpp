@@ -1,9 +1,8 @@
 #include "item3d/layers/apply_layers.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/format.h"
+#include "item3d/layers/layer_fit.h"
 #include "item3d/layers/picture_sum.h"
-#include "item3d/layers/source_picture.h"
 
 #include <algorithm>
 #include <utility>
@@ -182,10 +181,6 @@ class LayerStack {
     ModelEdit edit_;
 };
 
-std::string shown(const std::optional<PictureSize>& size) {
-    return size ? fmt::format("{} x {}", size->first, size->second) : "none";
-}
-
 }  // namespace
 
 ModelEdit apply_layers(std::span<const AppliedLayer> layers, Model& model) {
@@ -196,43 +191,6 @@ ModelEdit apply_layers(std::span<const AppliedLayer> layers, Model& model) {
                              "apply it to " + applied.layer.model + ", of which it was made");
     }
     return LayerStack(layers, model).edit();
-}
-
-std::string misfit(const EditLayer& layer, const Model& model) {
-    for (const auto& [index, material] : layer.materials) {
-        const auto place = static_cast<std::size_t>(index);
-        if (place >= model.materials.size())
-            return fmt::format("is of a model with a material '{}' that this one has not",
-                               material.name);
-        const int texture = material.beginning ? material.beginning->base_color_texture : -1;
-        if (texture >= static_cast<int>(model.textures.size()))
-            return "is of a model with more textures than this one";
-        for (const int picture : material.pictures) {
-            if (picture < 0) continue;
-            const LayerPicture& own = layer.pictures[static_cast<std::size_t>(picture)];
-            const bool moved = material.beginning && own.slot == LayerSlot::base_color;
-            const auto size =
-                moved ? texture_size(model, texture) : source_size(model, index, own.slot);
-            if (size != own.source_size)
-                return fmt::format("is of a model whose texture of material '{}' is {}, not {}",
-                                   material.name, shown(own.source_size), shown(size));
-            const auto occlusion = occlusion_size(model, index, own.slot);
-            if (occlusion != own.occlusion_size)
-                return fmt::format("is of a model whose occlusion of material '{}' is {}, not {}",
-                                   material.name, shown(own.occlusion_size), shown(occlusion));
-        }
-    }
-    for (const auto& [index, edit] : layer.primitives) {
-        const auto place = static_cast<std::size_t>(index);
-        const auto count =
-            place < model.primitives.size() ? model.primitives[place].positions.size() : 0;
-        const bool fits = count > 0 &&
-                          model.primitives[place].material == layer.primitive_materials.at(index) &&
-                          std::all_of(edit.source_vertices.begin(), edit.source_vertices.end(),
-                                      [&](std::uint32_t vertex) { return vertex < count; });
-        if (!fits) return "has a new UV map of a mesh that this model has not";
-    }
-    return {};
 }
 
 }  // namespace item3d

@@ -23,7 +23,4 @@ struct AppliedLayer {
 /// than the model's or another layer's, or UV maps differ.
 ModelEdit apply_layers(std::span<const AppliedLayer> layers, Model& model);
 
-/// A sentence on what the layer was made for and this model has not; empty: it fits.
-std::string misfit(const EditLayer& layer, const Model& model);
-
 }  // namespace item3d

@@ -29,13 +29,13 @@ std::string primitive_prefix(int primitive) {
     return fmt::format("primitive.{}.", primitive);
 }
 
-json size_json(const std::optional<PictureSize>& size) {
+json size_json(const std::optional<LayerSize>& size) {
     return size ? json{size->first, size->second} : json();
 }
 
-std::optional<PictureSize> size_from(const json& from) {
+std::optional<LayerSize> size_from(const json& from) {
     if (from.is_null()) return std::nullopt;
-    return PictureSize(from.at(0).get<int>(), from.at(1).get<int>());
+    return LayerSize(from.at(0).get<int>(), from.at(1).get<int>());
 }
 
 json picture_json(const LayerPicture& picture) {
@@ -59,6 +59,7 @@ json material_json(int index, const LayerMaterial& material) {
                    {"removes_emission", changes.removes_emission},
                    {"makes_opaque", changes.makes_opaque},
                    {"removed_extensions", changes.removed_extensions}};
+    if (material.uvs) result["uvs"] = *material.uvs;
     if (material.beginning) {
         const MaterialBeginning& beginning = *material.beginning;
         const Vec4& factor = beginning.base_color_factor;
@@ -127,6 +128,19 @@ class LayerReader {
         header.at("model_hash").get_to(layer.model_hash);
         layer.settings = header.at("settings");
         layer.field = header.at("field");
+        if (header.contains("channels")) {
+            const json& channels = header.at("channels");
+            layer.channels = {
+                channels.at("base_color").get<bool>(), channels.at("occlusion").get<bool>(),
+                channels.at("roughness").get<bool>(), channels.at("metallic").get<bool>(),
+                channels.at("normal").get<bool>()};
+        }
+        if (header.contains("region")) {
+            const json& region = header.at("region");
+            layer.region = {region.at("include").get<std::vector<std::string>>(),
+                            region.at("exclude").get<std::vector<std::string>>(),
+                            region.at("feather").get<float>()};
+        }
         for (const json& picture : header.at("pictures"))
             layer.pictures.push_back(read_picture(picture, layer.pictures.size()));
         for (const json& material : header.at("materials"))
@@ -209,6 +223,7 @@ class LayerReader {
         from.at("removes_emission").get_to(changes.removes_emission);
         from.at("makes_opaque").get_to(changes.makes_opaque);
         from.at("removed_extensions").get_to(changes.removed_extensions);
+        if (from.contains("uvs")) material.uvs = from.at("uvs").get<std::vector<double>>();
         if (!from.contains("beginning")) return;
         const json& beginning = from.at("beginning");
         material.beginning.emplace();
@@ -272,14 +287,26 @@ void save_layer(const std::filesystem::path& path, const EditLayer& layer) {
         tensors.emplace_back(prefix + "uvs", at::tensor(uvs, at::kFloat).view({-1, 2}));
         tensors.emplace_back(prefix + "indices", to_tensor(edit.indices));
     }
-    const json header = {{"version", version()},
-                         {"model", layer.model},
-                         {"model_hash", layer.model_hash},
-                         {"settings", layer.settings},
-                         {"field", layer.field},
-                         {"pictures", std::move(pictures)},
-                         {"materials", std::move(materials)},
-                         {"primitives", std::move(primitives)}};
+    json header = {{"version", version()},
+                   {"model", layer.model},
+                   {"model_hash", layer.model_hash},
+                   {"settings", layer.settings},
+                   {"field", layer.field},
+                   {"pictures", std::move(pictures)},
+                   {"materials", std::move(materials)},
+                   {"primitives", std::move(primitives)}};
+    if (layer.channels) {
+        const BakedChannels& channels = *layer.channels;
+        header["channels"] = {{"base_color", channels.base_color},
+                              {"occlusion", channels.occlusion},
+                              {"roughness", channels.roughness},
+                              {"metallic", channels.metallic},
+                              {"normal", channels.normal}};
+    }
+    if (layer.region)
+        header["region"] = {{"include", layer.region->include},
+                            {"exclude", layer.region->exclude},
+                            {"feather", layer.region->feather}};
     save_safetensors(path, tensors,
                      {{"format", layer_format},
                       {"layer", header.dump(-1, ' ', false, json::error_handler_t::replace)}});

@@ -1,6 +1,7 @@
 // What an edit changed, apart from what it was applied to: layer.safetensors (docs/formats.md).
 #pragma once
 
+#include "item3d/field/bake/bake.h"
 #include "item3d/io/save.h"
 #include "item3d/tensors/safetensors.h"
 
@@ -21,7 +22,7 @@ enum class LayerSlot { base_color, metallic_roughness, normal };
 inline constexpr std::array layer_slots = {LayerSlot::base_color, LayerSlot::metallic_roughness,
                                            LayerSlot::normal};
 
-using PictureSize = std::pair<int, int>;  ///< width, height
+using LayerSize = std::pair<int, int>;  ///< width, height
 
 /// One picture of an edit. Values are the integers that a file has: steps of 1 / (2^bits - 1).
 struct LayerPicture {
@@ -41,7 +42,7 @@ struct LayerPicture {
     /// materials of which a part was edited; else undefined.
     at::Tensor mask;
     /// Of the model's texture in that slot, and of its occlusion's beside metallic_roughness.
-    std::optional<PictureSize> source_size, occlusion_size;
+    std::optional<LayerSize> source_size, occlusion_size;
 };
 
 /// What a material was when the edit began, where that is not what its file says: emission that
@@ -58,6 +59,14 @@ struct LayerMaterial {
     std::array<int, 3> pictures{-1, -1, -1};
     MaterialEdit changes;  ///< without pictures
     std::optional<MaterialBeginning> beginning;
+    /// uv_moments() of the model; no value in files of before they were kept.
+    std::optional<std::vector<double>> uvs;
+};
+
+/// The part of the surface that an edit was of, as RegionRequest has it (region/region.h).
+struct LayerRegion {
+    std::vector<std::string> include, exclude;
+    float feather = 0;
 };
 
 struct EditLayer {
@@ -69,6 +78,8 @@ struct EditLayer {
     std::map<int, LayerMaterial> materials;   ///< by index into Model::materials
     std::map<int, PrimitiveEdit> primitives;  ///< by index into Model::primitives
     std::map<int, int> primitive_materials;   ///< material of each of them
+    std::optional<BakedChannels> channels;    ///< what was baked from the field; none: not kept
+    std::optional<LayerRegion> region;        ///< none: the whole surface
     nlohmann::json field;                     ///< options of the neural textures
     NamedTensors parameters;                  ///< theirs (layer_field.h)
 };

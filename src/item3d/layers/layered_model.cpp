@@ -7,6 +7,7 @@
 #include "item3d/io/save.h"
 #include "item3d/io/text.h"
 #include "item3d/layers/apply_layers.h"
+#include "item3d/layers/layer_fit.h"
 #include "item3d/tensors/checkpoint.h"
 
 #include <algorithm>
@@ -49,7 +50,8 @@ void warn_of_others(const LayeredModelRequest& request, const Model& model,
     const std::string hash = hash_of_file(request.model);
     for (const AppliedLayer& applied : layers) {
         const EditLayer& layer = applied.layer;
-        if (layer.model_hash == hash || !misfit(layer, model).empty()) continue;
+        const bool fits = misfit(layer, model).empty() && has_same_uvs(layer, model);
+        if (layer.model_hash == hash || !fits) continue;
         warn(layer.path.string() + ": was made of another file, " + layer.model +
              "; its textures have the sizes of this one's, so it is applied");
     }
@@ -67,18 +69,45 @@ void write_unchanged(const LayeredModelRequest& request, const Model& model) {
     }
 }
 
+/// Why layers are to be made anew; empty: they fit as they are.
+std::string reason_to_rebake(const LayeredModelRequest& request, const Model& model,
+                             const std::vector<AppliedLayer>& layers) {
+    if (!request.rebake) return "";
+    for (const AppliedLayer& applied : layers) {
+        if (applied.use.strength == 0) continue;
+        const EditLayer& layer = applied.layer;
+        const std::string subject = layer.path.string();
+        if (!has_same_uvs(layer, model))
+            return subject + " is of a model with another UV map than this one";
+        const std::string problem = misfit(layer, model);
+        if (!problem.empty()) return subject + " " + problem;
+    }
+    return request.texture_size > 0 ? "textures of another size are asked for" : "";
+}
+
+void rebake_all(const LayeredModelRequest& request, const Model& model, const std::string& reason,
+                std::vector<AppliedLayer>& layers) {
+    note("layers are baked anew from their fields: " + reason);
+    for (AppliedLayer& applied : layers)
+        if (applied.use.strength != 0)
+            applied.layer = request.rebake(applied.layer, model, request.texture_size);
+}
+
 json record_of(const LayeredModelRequest& request, const Model& model,
-               const std::vector<AppliedLayer>& layers, const ModelEdit& edit) {
+               const std::vector<AppliedLayer>& layers, const ModelEdit& edit,
+               const std::string& rebaked) {
     json record{{"model", request.model.string()},
                 {"output", request.output.string()},
                 {"layers", json::array()},
                 {"materials", json::array()}};
-    for (const AppliedLayer& applied : layers)
-        record["layers"].push_back(
-            {{"file", applied.layer.path.string()},
-             {"strength", static_cast<double>(applied.use.strength) / LayerUse::strength_steps},
-             {"from", setting_of(applied.layer, "from")},
-             {"to", setting_of(applied.layer, "to")}});
+    for (const AppliedLayer& applied : layers) {
+        json& layer = record["layers"].emplace_back();
+        layer = {{"file", applied.layer.path.string()},
+                 {"strength", static_cast<double>(applied.use.strength) / LayerUse::strength_steps},
+                 {"from", setting_of(applied.layer, "from")},
+                 {"to", setting_of(applied.layer, "to")}};
+        if (!rebaked.empty() && applied.use.strength != 0) layer["baked_because"] = rebaked;
+    }
     for (const auto& [index, material] : edit.materials)
         record["materials"].push_back(model.materials[static_cast<std::size_t>(index)].name);
     return record;
@@ -95,7 +124,11 @@ json write_layered_model(const LayeredModelRequest& request) {
     }
     Model model =
         load_model(request.model, {.texture_folders = request.texture_folders, .variant = variant});
-    warn_of_others(request, model, layers);
+    const std::string rebaked = reason_to_rebake(request, model, layers);
+    if (rebaked.empty())
+        warn_of_others(request, model, layers);
+    else
+        rebake_all(request, model, rebaked, layers);
     ModelEdit edit = apply_layers(layers, model);
     if (edit.materials.empty()) {
         write_unchanged(request, model);
@@ -103,7 +136,7 @@ json write_layered_model(const LayeredModelRequest& request) {
         choose_codings(model, request.texture_format.value_or(format_of(layers)), edit);
         save_model(request.output, model, edit);
     }
-    return record_of(request, model, layers, edit);
+    return record_of(request, model, layers, edit, rebaked);
 }
 
 }  // namespace item3d

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/layers/source_picture.h"
+#include "item3d/layers/uv_moments.h"
 
 #include <algorithm>
 #include <limits>
@@ -106,6 +107,7 @@ class LayerMaker {
         const Material& begun = baked_.model.materials[place];
         const Material& read = baked_.file_materials[place];
         material.name = begun.name;
+        material.uvs = uv_moments(baked_.model, index);
         material.changes = edit;
         const EditedTexture* textures[] = {&edit.base_color, &edit.metallic_roughness,
                                            &edit.normal};

@@ -95,18 +95,18 @@ Image source_picture(const Model& model, int index, const LayerPicture& picture,
     return image;
 }
 
-std::optional<PictureSize> texture_size(const Model& model, int texture) {
+std::optional<LayerSize> texture_size(const Model& model, int texture) {
     if (texture < 0) return std::nullopt;
     const Image& texels = *texels_at(model, texture);
-    return PictureSize(texels.width, texels.height);
+    return LayerSize(texels.width, texels.height);
 }
 
-std::optional<PictureSize> source_size(const Model& model, int index, LayerSlot slot) {
+std::optional<LayerSize> source_size(const Model& model, int index, LayerSlot slot) {
     const Material& material = model.materials[static_cast<std::size_t>(index)];
     return texture_size(model, texture_in(material, slot));
 }
 
-std::optional<PictureSize> occlusion_size(const Model& model, int index, LayerSlot slot) {
+std::optional<LayerSize> occlusion_size(const Model& model, int index, LayerSlot slot) {
     if (slot != LayerSlot::metallic_roughness) return std::nullopt;
     const Material& material = model.materials[static_cast<std::size_t>(index)];
     return texture_size(model, material.occlusion_texture);

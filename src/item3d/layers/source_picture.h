@@ -23,9 +23,9 @@ Image source_picture(const Model& model, int material, const LayerPicture& pictu
                      const MaterialEdit& changes);
 
 /// Of one of Model::textures; no value for -1.
-std::optional<PictureSize> texture_size(const Model& model, int texture);
+std::optional<LayerSize> texture_size(const Model& model, int texture);
 /// Sizes of the textures that LayerPicture::source_size and occlusion_size are of.
-std::optional<PictureSize> source_size(const Model& model, int material, LayerSlot slot);
-std::optional<PictureSize> occlusion_size(const Model& model, int material, LayerSlot slot);
+std::optional<LayerSize> source_size(const Model& model, int material, LayerSlot slot);
+std::optional<LayerSize> occlusion_size(const Model& model, int material, LayerSlot slot);
 
 }  // namespace item3d

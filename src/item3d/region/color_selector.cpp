@@ -109,8 +109,9 @@ std::unique_ptr<Selector> select_color(const SelectorText& text, const RegionSce
     Vec3 srgb;
     try {
         srgb = parse_color(text.value.substr(0, tilde));
-    } catch (const InputError& error) {
-        throw InputError(text.whole, error.what());
+    } catch (const InputError&) {
+        throw InputError(text.whole, "it is no colour",
+                         "give a basic colour's name, #rrggbb, or r,g,b in [0, 1]");
     }
     return std::make_unique<ColorSelector>(scene.textured, srgb_to_lab(srgb), distance);
 }

@@ -140,10 +140,11 @@ class ViewSelector : public Selector {
 };
 
 /// Whether primitives have UVs and this material; "": any.
-at::Tensor primitives_with(const SelectorText& text, const Model& model,
+at::Tensor primitives_with(const SelectorText& text, const RegionScene& scene,
                            const std::string& material, const Image& mask) {
+    const Model& model = scene.model;
     std::vector<float> has;
-    bool any = false, is_known = false, is_noted = false;
+    bool any = false, is_known = false, is_noted = !scene.says_notes;
     for (const Primitive& primitive : model.primitives) {
         const Material& own = model.materials[static_cast<std::size_t>(primitive.material)];
         const bool is_meant = material.empty() || own.name == material;
@@ -189,7 +190,7 @@ std::unique_ptr<Selector> select_mask(const SelectorText& text, const RegionScen
     const auto [file, material] =
         is_file ? std::pair(text.value, std::string()) : split_at(text.value, '@');
     Image mask = load_mask(text, file);
-    const at::Tensor has_mask = primitives_with(text, scene.model, material, mask);
+    const at::Tensor has_mask = primitives_with(text, scene, material, mask);
     return std::make_unique<MaskSelector>(std::move(mask), has_mask);
 }
 

@@ -38,7 +38,7 @@ bool RegionRequest::needs_sentences() const {
     return has_selector(*this, [](const std::string& text) { return text == "auto"; });
 }
 
-Region::Region(const RegionRequest& request, const RegionScene& scene) {
+Region::Region(const RegionRequest& request, const RegionScene& scene) : request_(request) {
     const at::NoGradGuard no_grad;
     for (const std::string& text : request.include)
         include_.push_back(make_selector(text, scene));

@@ -38,6 +38,7 @@ class Region {
     /// nothing is selected.
     Region(const RegionRequest& request, const RegionScene& scene);
 
+    const RegionRequest& request() const { return request_; }
     /// [P, 1] float32 on the surface's device.
     at::Tensor weight(const Surface& surface) const;
     /// Part of the area of the scene's edited materials, weights counted.
@@ -49,6 +50,7 @@ class Region {
   private:
     at::Tensor unfeathered(const Surface& surface) const;
 
+    RegionRequest request_;
     std::vector<std::unique_ptr<Selector>> include_, exclude_;
     std::optional<Feather> feather_;
     double share_ = 0;

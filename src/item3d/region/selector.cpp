@@ -10,6 +10,8 @@
 #include "item3d/region/space_selectors.h"
 #include "item3d/region/words_selector.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -73,6 +75,13 @@ std::unique_ptr<Selector> make_selector(const std::string& text, const RegionSce
         forms.push_back(known.form);
     throw InputError(text.empty() ? "region" : text, "it is no selector",
                      fmt::format("choose from {}", fmt::join(forms, ", ")));
+}
+
+bool is_independent_of_textures(const std::string& text) {
+    const std::string kind = text.substr(0, text.find('='));
+    constexpr std::array independent = {"material", "node",   "mesh", "group", "attribute",
+                                        "box",      "sphere", "mask", "view"};
+    return std::find(independent.begin(), independent.end(), kind) != independent.end();
 }
 
 const std::vector<SelectorKind>& selector_kinds() {

@@ -23,6 +23,7 @@ struct RegionScene {
     const TexturedMaterials& textured;
     const FieldSpace& space;
     const RegionReaders* readers = nullptr;  ///< for words and auto; null: there are none
+    bool says_notes = true;
 };
 
 /// Weights in [0, 1] of places of a surface.
@@ -35,6 +36,10 @@ class Selector {
 
 /// KIND=VALUE or KIND, one of selector_kinds(). Throws InputError whose subject is `text`.
 std::unique_ptr<Selector> make_selector(const std::string& text, const RegionScene& scene);
+
+/// Whether a selector takes the same places whatever textures the model has: not by colour, nor by
+/// words.
+bool is_independent_of_textures(const std::string& text);
 
 struct SelectorKind {
     std::string form;  ///< as it is written: "sphere=X,Y,Z,R"

@@ -6,7 +6,8 @@ namespace item3d {
 namespace {
 
 std::filesystem::path checkpoint_path(const EditRequest& request) {
-    return request.output / "checkpoint.safetensors";
+    return request.checkpoint.empty() ? request.output / "checkpoint.safetensors"
+                                      : request.checkpoint;
 }
 
 nlohmann::json identity_of(const EditRequest& request, const EditState& state) {

@@ -6,7 +6,7 @@
 
 namespace item3d {
 
-/// Writes OUTPUT/checkpoint.safetensors.
+/// Writes the checkpoint of the request.
 void save_state(const EditRequest& request, const EditState& state);
 
 /// Fills `state` (whose field, optimiser and guidance are already built) from the checkpoint; false

@@ -2,6 +2,7 @@
 
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
+#include "item3d/edit/outputs/bake_options.h"
 #include "item3d/edit/outputs/layer_file.h"
 #include "item3d/field/bake/bake.h"
 #include "item3d/io/file_names.h"
@@ -74,16 +75,9 @@ NeuralTexture empty_field() {
 }
 
 constexpr int light_height = 256;
-/// See BakeOptions::blotch: of an edit that changes the same thing everywhere.
-constexpr float recoloured_blotch = 10.0f / 255;
 
 EditedModel bake_textures(const EditRequest& request, const EditScene& scene, EditState& state) {
-    BakeOptions options;
-    options.texture_size = request.plan.texture_size;
-    if (request.plan.regularizes_color) options.blotch = recoloured_blotch;
-    const ChannelMask& channels = scene.start.channels;
-    options.channels = {channels.base_color, channels.occlusion, channels.roughness,
-                        channels.metallic, channels.normal};
+    const BakeOptions options = bake_options(request.plan, scene.start.channels);
     BakeScene bake_scene{scene.model, scene.geometry, *scene.textured, *scene.space, scene.atlas};
     if (scene.region)
         bake_scene.weight = [&](const Surface& surface) { return scene.region->weight(surface); };
@@ -120,7 +114,9 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
                     source.metallic_roughness_texture);
         folder.save(material_edit.normal, name, "normal", "Normal", source.normal_texture);
     }
-    edited.model = load_model(path, {.variant = request.plan.variant});
+    edited.model = load_model(
+        path, {.texture_folders = request.texture_folders, .variant = request.plan.variant});
+    edited.is_as_read = edited.model.origin == scene.model.origin;
     move_origin(edited.model, scene.model.origin);
     return edited;
 }

@@ -17,6 +17,7 @@ namespace item3d {
 /// model.glb as it was written and read back: pictures and scores are of this, not of the field.
 struct EditedModel {
     Model model;
+    bool is_as_read = false;  ///< model is what load_model() makes of its file
     std::vector<TexturePair> textures;
     std::optional<Image> light;  ///< the new one, where the light was optimised
 };

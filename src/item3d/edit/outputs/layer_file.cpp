@@ -12,6 +12,13 @@ void write_layer_file(const EditRequest& request, const EditScene& scene, const 
     layer.model = request.model.filename().string();
     layer.model_hash = hash_of_file(request.model);
     layer.settings = request.plan;
+    const ChannelMask& channels = scene.start.channels;
+    layer.channels = {channels.base_color, channels.occlusion, channels.roughness,
+                      channels.metallic, channels.normal};
+    if (scene.region) {
+        const RegionRequest& region = scene.region->request();
+        layer.region = {region.include, region.exclude, region.feather};
+    }
     put_fields({state.fitted, state.field}, layer);
     save_layer(request.output / "layer.safetensors", layer);
 }

@@ -44,19 +44,45 @@ std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
     return images;
 }
 
+at::Tensor pictures_before(const EditRequest& request, const EditScene& scene,
+                           const EnvironmentLight& light, const std::vector<Camera>& cameras,
+                           const std::optional<DrawnModel>& drawn) {
+    const bool is_drawn = drawn && !scene.is_prepared && drawn->model == request.model &&
+                          drawn->light == request.plan.light &&
+                          drawn->pixels == request.picture_pixels;
+    return is_drawn ? drawn->pictures
+                    : draw_pictures(scene.model, light, cameras, request.picture_pixels);
+}
+
+ReportImage draw_turntable(const EditRequest& request, const EditScene& scene,
+                           const ModelDrawing& drawing) {
+    std::vector<Image> frames;
+    for (const Camera& camera : picture_cameras(scene.model, turntable_frames)) {
+        const at::Tensor frame = drawing.draw({camera}, request.picture_pixels * 3 / 4);
+        frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
+    }
+    ReportImage image{request.plan.to, encode_animation(frames)};
+    write_atomically(request.output / "turntable.webp", image.bytes);
+    return image;
+}
+
 }  // namespace
 
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
-                         const EditedModel& edited, const std::optional<Clip>& clip) {
+                         const EditedModel& edited, const Clip* clip, EditSession& session) {
     const int view_pixels = request.picture_pixels;
     const int texels = light_texels(view_pixels);
     const EnvironmentLight light = prefilter(scene.lights->image(), texels, scene.device);
     const auto cameras = picture_cameras(scene.model, view_count);
-    const at::Tensor before = draw_pictures(scene.model, light, cameras, view_pixels);
+    const at::Tensor before = pictures_before(request, scene, light, cameras, session.drawn);
     const EnvironmentLight new_light =
         edited.light ? prefilter(*edited.light, texels, scene.device) : light;
     const ModelDrawing drawing(edited.model, new_light);
     const at::Tensor after = drawing.draw(cameras, view_pixels);
+    session.drawn.reset();
+    if (!edited.light && edited.is_as_read)
+        session.drawn = {request.output / model_file_name(request.model), request.plan.light,
+                         view_pixels, after};
 
     Pictures pictures;
     const auto before_pictures = to_pictures(before);
@@ -67,18 +93,14 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     pictures.after = to_report(after_pictures);
 
     if (scene.region) {
-        pictures.region = to_report(region_pictures(*scene.region, scene.geometry, *scene.textured,
-                                                    light, cameras, view_pixels / 2));
+        const std::vector<Image> region = region_pictures(
+            *scene.region, scene.geometry, *scene.textured, light, cameras, view_pixels / 2);
+        save_sheet(request.output / "region.png", region, "the region");
+        pictures.region = to_report(region);
         pictures.outside = compare_outside(scene, edited.model);
     }
 
-    std::vector<Image> frames;
-    for (const Camera& camera : picture_cameras(scene.model, turntable_frames)) {
-        const at::Tensor frame = drawing.draw({camera}, view_pixels * 3 / 4);
-        frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
-    }
-    pictures.turntable = {request.plan.to, encode_animation(frames)};
-    write_atomically(request.output / "turntable.webp", pictures.turntable.bytes);
+    if (request.draws_turntable) pictures.turntable = draw_turntable(request, scene, drawing);
 
     const at::Tensor weights =
         scene.region ? mean_weights(*scene.region, scene.geometry, *scene.space) : at::Tensor();

@@ -18,16 +18,17 @@ struct Pictures {
     std::vector<ReportImage> after;
     std::vector<ReportImage> region;  ///< of the same views; empty where all was to change
     OutsideTexels outside;
-    ReportImage turntable;
+    std::optional<ReportImage> turntable;  ///< where the request wants one
     SurfaceMeans means_before;
     SurfaceMeans means_after;
     double detail_kept = 0;  ///< correlation of luminance detail before and after, see detail.h
     std::optional<ClipScores> clip;
 };
 
-/// Draws the same views of both models, each in its light; writes before.png, after.png and
-/// turntable.webp. With `clip`, scores them too.
+/// Draws the same views of both models, each in its light; writes before.png, after.png,
+/// region.png where there is a region, and turntable.webp. With `clip`, scores them too. Pictures
+/// that the session has of the model are not drawn again; those of the edited one are left there.
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
-                         const EditedModel& edited, const std::optional<Clip>& clip);
+                         const EditedModel& edited, const Clip* clip, EditSession& session);
 
 }  // namespace item3d

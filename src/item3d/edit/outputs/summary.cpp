@@ -279,9 +279,9 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     const std::string model_file = model_file_name(request.model);
     report.files = {{model_file, model_file},
                     {"edit.json", "edit.json"},
-                    {"turntable.webp", "turntable.webp"},
                     {"before.png", "before.png"},
                     {"after.png", "after.png"}};
+    if (pictures.turntable) report.files.emplace_back("turntable.webp", "turntable.webp");
     if (request.plan.edits_texture && !state.painter)
         report.files.emplace_back("layer.safetensors", "layer.safetensors");
     if (edited.light) report.files.push_back({"light.exr", "light.exr"});

@@ -17,11 +17,10 @@ std::map<std::string, TextEmbedding> encode_each(const TextEncoders& text,
                                                  const std::vector<std::string>& prompts) {
     std::set<std::string> distinct(prompts.begin(), prompts.end());
     distinct.emplace();
-    const std::vector<std::string> all(distinct.begin(), distinct.end());
-    const TextEmbedding texts = text.encode(all);
+    // One at a time: rounding must not depend on what else is asked for.
     std::map<std::string, TextEmbedding> encoded;
-    for (std::size_t i = 0; i < all.size(); ++i)
-        encoded[all[i]] = texts.row(static_cast<std::int64_t>(i));
+    for (const std::string& prompt : distinct)
+        encoded[prompt] = text.encode({prompt});
     return encoded;
 }
 

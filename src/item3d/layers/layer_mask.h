@@ -1,0 +1,37 @@
+// The part of a surface that a layer is of, by the masks that it holds.
+#pragma once
+
+#include "item3d/layers/layer.h"
+#include "item3d/render/interpolate.h"
+#include "item3d/scene/image.h"
+#include "item3d/scene/model.h"
+
+#include <map>
+
+namespace item3d {
+
+/// Weights of a region by its pictures in UV space: for models with the UV map of the edit. A mask
+/// that is smaller than what is baked is interpolated; others keep the weights of their texels.
+class LayerMask {
+  public:
+    /// texture_size: of the bake, as for atlas_size().
+    LayerMask(const EditLayer& layer, const Model& model, int texture_size);
+
+    /// Whether each of the layer's materials has one.
+    bool is_complete() const { return is_complete_; }
+    /// [P, 1] float32 in [0, 1] on the surface's device; 0 for other materials.
+    at::Tensor weight(const Surface& surface) const;
+
+  private:
+    struct Mask {
+        at::Tensor weights;  ///< [height, width] float32
+        UvWrap wrap;
+        bool is_enlarged = false;
+    };
+    static float weight_at(const Mask& mask, Vec2 uv);
+
+    std::map<std::int64_t, Mask> of_material_;
+    bool is_complete_ = true;
+};
+
+}  // namespace item3d
