@@ -27,8 +27,11 @@ class SequenceTest : public testing::EditTest {
     }
     /// The second asks the prior for another number of sentences.
     static std::vector<nlohmann::json> two() {
-        return {{{"region", {"box=-1,-1,-1,0,1,1"}}, {"iterations", 1}},
-                {{"from", "a blue cube"}, {"to", "a metal cube"}, {"negative_prompt", "a cup"}}};
+        return {{{"region", {"box=-1,-1,-1,0,1,1"}}, {"iterations", 1}, {"fit_steps", 10}},
+                {{"from", "a blue cube"},
+                 {"to", "a metal cube"},
+                 {"negative_prompt", "a cup"},
+                 {"fit_steps", 10}}};
     }
     /// The same edits, each by itself.
     void expect_as_by_hand(const EditSequence& all) const {
@@ -37,6 +40,7 @@ class SequenceTest : public testing::EditTest {
             EditRequest one = all.edits[i];
             one.model = model;
             one.output = folder_ / ("hand" + std::to_string(i + 1));
+            one.draws_turntable = false;
             edit_model(one);
             model = one.output / "model.glb";
             const fs::path planned = all.output / std::to_string(i + 1);
