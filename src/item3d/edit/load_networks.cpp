@@ -78,7 +78,7 @@ std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request, const 
     const EditPlan& plan = request.plan;
     if (needs.any_sentence) {
         auto prior = std::make_shared<Pipeline>(
-            Pipeline::load(request.prior, needs.device, needs.precision));
+            Pipeline::load(networks_folder(request), needs.device, needs.precision));
         prior->add(plan);
         return prior;
     }
