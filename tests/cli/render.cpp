@@ -27,7 +27,6 @@ class RenderProgram : public Program {
 
 TEST_F(RenderProgram, ChangesThePictureOnlyWhereAsked) {
     const std::string plain = picture("plain", "");
-    EXPECT_EQ(picture("none", "--occlusion=none"), plain);
     const std::string ambient = picture("ambient", "--occlusion");
     EXPECT_NE(ambient, plain);
     const std::string light = picture("light", "--occlusion=light");

@@ -79,9 +79,11 @@ TEST_F(EditTest, iterations_change_the_texture_and_depend_on_the_seed) {
 }
 
 TEST_F(EditTest, resumes_to_the_same_bytes_after_two_interrupts) {
-    EditRequest edit = request(
-        "whole", 6,
-        {{"light_augment", "all"}, {"evenness", 100}, {"detail", "always"}, {"detail_views", 2}});
+    EditRequest edit = request("whole", 6,
+                               {{"light_augment", "rotate"},
+                                {"evenness", 100},
+                                {"detail", "always"},
+                                {"detail_views", 2}});
     edit_model(edit);
     const Bytes whole = read_bytes(edit.output / "model.glb");
 
