@@ -82,12 +82,7 @@ int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_c
     return static_cast<int>(ExitCode::done);
 }
 
-}  // namespace
-
-int run_program(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
-    // A file that may not grow any more is an error of write(), not the end of the program.
-    std::signal(SIGXFSZ, SIG_IGN);
-    prepare_process();
+int code_of(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
     try {
         return parse_and_run(argc, argv, add_commands);
     } catch (const Interrupted& stop) {
@@ -109,6 +104,18 @@ int run_program(int argc, char** argv, std::initializer_list<AddCommand> add_com
     } catch (...) {
         return fail_as_bug("an exception of unknown type");
     }
+}
+
+}  // namespace
+
+void run_program(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
+    // A file that may not grow any more is an error of write(), not the end of the program.
+    std::signal(SIGXFSZ, SIG_IGN);
+    prepare_process();
+    const int code = code_of(argc, argv, add_commands);
+    // LibTorch would take a tenth of a second to forget its operators one by one.
+    std::fflush(nullptr);
+    std::_Exit(code);
 }
 
 }  // namespace item3d

@@ -139,9 +139,9 @@ ReconstructRequest short_request(const fs::path& dataset, const std::string& out
     request.shape.cells = {8, 16};
     request.shape.iterations = 9;  // three on the coarse lattice
     request.shape.triangles = 600;
-    request.shape.light_every = 2;  // most of a step's time is the light's
+    request.shape.light_every = 4;  // most of a step's time is the light's
     request.refine.iterations = 6;
-    request.refine.light_every = 2;
+    request.refine.light_every = 4;
     request.refine.traces = 3;
     request.refine.shadow_points = 1024;
     request.texture_size = 64;

@@ -3,7 +3,7 @@
 #include "apps/item3d/run.h"
 
 int main(int argc, char** argv) {
-    return item3d::run_program(
+    item3d::run_program(
         argc, argv,
         {item3d::add_edit_command, item3d::add_render_command, item3d::add_light_command,
          item3d::add_relight_command, item3d::add_generate_command, item3d::add_caption_command,

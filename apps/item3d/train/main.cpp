@@ -3,5 +3,5 @@
 #include "apps/item3d/train/commands.h"
 
 int main(int argc, char** argv) {
-    return item3d::run_program(argc, argv, {item3d::add_prior_command});
+    item3d::run_program(argc, argv, {item3d::add_prior_command});
 }
