@@ -1,0 +1,57 @@
+// The edits of a comparison: each a process of its own, in a folder that is named by its content.
+#pragma once
+
+#include "item3d/compare/cases.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+struct CompareOptions {
+    std::vector<CompareCase> cases;
+    std::vector<std::string> methods;  ///< of edit_method_names()
+    struct Prior {
+        std::string name;              ///< as it was given
+        std::filesystem::path folder;  ///< find_prior()
+    };
+    std::vector<Prior> priors;
+    std::vector<std::uint64_t> seeds;
+    std::filesystem::path output;
+    std::filesystem::path program;  ///< item3d-edit
+    int workers = 1;                ///< edits at a time
+    int threads = 0;                ///< of each; 0: the machine's, shared between the workers
+};
+
+struct CompareRun {
+    std::size_t case_index = 0;
+    std::string method;
+    std::string prior;  ///< its name
+    std::uint64_t seed = 0;
+    std::filesystem::path folder;        ///< output/runs/NAME-METHOD-SEED-HASH
+    std::vector<std::string> arguments;  ///< of item3d-edit, but for threads and --resume
+};
+
+/// Those of `methods` that a prior can run by itself: in2n needs an InstructPix2Pix, clip a CLIP.
+std::vector<std::string> methods_of_prior(const std::filesystem::path& prior,
+                                          const std::vector<std::string>& methods);
+
+/// "0..2", "3" or "0,4,7". Throws UsageError.
+std::vector<std::uint64_t> parse_seeds(const std::string& text);
+
+/// All runs: prior by prior, seed by seed, case by case, method by method. A folder's name has a
+/// hash of all that decides the result: the model file's bytes, the prior's weights and settings,
+/// the options, the program's version. Options of one method alone (instruction, clip-loss, ...) go
+/// to that method. Throws InputError for two cases that are the same.
+std::vector<CompareRun> plan_runs(const CompareOptions& options);
+
+/// Whether the run has ended well.
+bool is_done(const CompareRun& run);
+/// Why it has not, in one line; empty where it was not tried.
+std::string error_of(const CompareRun& run);
+
+}  // namespace item3d
