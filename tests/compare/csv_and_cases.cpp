@@ -86,6 +86,12 @@ TEST_F(CompareCases, WhatIsWrongIsNamed) {
     expect_refused("a.csv", "model,from,to,instuction\ncube.obj,a,b,c\n",
                    "did you mean 'instruction'");
     expect_refused("a.csv", "model,from,to\ncube.obj,a,b,c\n", "4 fields, the header 3");
+    const auto with = [](const std::string& more) {
+        return R"([{"model": "cube.obj", "from": "a", "to": "b", )" + more + "}]";
+    };
+    expect_refused("a.json", with(R"("variant": 3)"), "case 1: variant cannot be 3");
+    expect_refused("a.json", with(R"("variant": ["a"])"), "variant cannot be");
+    expect_refused("a.json", with(R"("textures": ["a", 4])"), "textures cannot be 4");
     expect_refused("a.csv", "model,from,to,method\ncube.obj,a,b,sds\n", "--methods");
 }
 
@@ -93,7 +99,10 @@ class CompareRuns : public CompareCases {
   protected:
     CompareOptions options() const {
         CompareOptions options;
-        options.cases = {{"cube", folder_ / "cube.obj", "a red cube", "a blue cube",
+        options.cases = {{"cube",
+                          folder_ / "cube.obj",
+                          "a red cube",
+                          "a blue cube",
                           {{"instruction", "make it blue"}, {"batch", 1}}}};
         options.methods = {"item3d", "in2n"};
         options.priors = {{"small", folder_ / "prior"}};
@@ -126,6 +135,17 @@ TEST_F(CompareRuns, OptionsOfOneMethodGoToItAlone) {
     CompareOptions twice = options();
     twice.cases.push_back(twice.cases[0]);
     EXPECT_THROW(plan_runs(twice), InputError);
+}
+
+TEST_F(CompareRuns, TheWholeSurfaceIsEditedUnlessACaseSaysOtherwise) {
+    const auto region_of = [](const CompareRun& run) {
+        const auto at = std::find(run.arguments.begin(), run.arguments.end(), "--region");
+        return at == run.arguments.end() ? "" : *(at + 1);
+    };
+    CompareOptions given = options();
+    EXPECT_EQ(region_of(plan_runs(given)[0]), "all");
+    given.cases[0].options["region"] = "named=red";
+    EXPECT_EQ(region_of(plan_runs(given)[0]), "named=red");
 }
 
 TEST(CompareSeeds, RangesAndLists) {

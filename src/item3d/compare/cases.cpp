@@ -23,20 +23,12 @@ using Json = nlohmann::json;
 constexpr const char* case_example =
     R"(as [{"model": "mug.glb", "from": "a red mug", "to": "a golden mug"}])";
 
-/// Options of `item3d edit` that are no settings and that a case may have.
-const std::vector<std::string> request_options = {"clip",
-                                                  "captioner",
-                                                  "inpainting",
-                                                  "instruct",
-                                                  "teacher",
-                                                  "segmenter",
-                                                  "textures",
-                                                  "variant",
-                                                  "precision",
-                                                  "memory",
-                                                  "picture-size",
-                                                  "device",
-                                                  "allow-missing-textures"};
+/// Options of `item3d edit` that are no settings and that a case may have: one text each, textures
+/// a list of them too.
+const std::vector<std::string> text_options = {"clip",      "captioner", "inpainting", "instruct",
+                                               "teacher",   "segmenter", "textures",   "variant",
+                                               "precision", "memory",    "device"};
+const std::vector<std::string> other_options = {"picture-size", "allow-missing-textures"};
 /// Settings that the comparison itself decides.
 const std::vector<std::string> own_options = {"method", "seed"};
 
@@ -51,8 +43,9 @@ std::vector<std::string> known_columns() {
         const std::string flag = setting.flag.substr(2);
         if (!has(own_options, flag) && !has(names, flag)) names.push_back(flag);
     }
-    for (const std::string& option : request_options)
-        if (!has(names, option)) names.push_back(option);
+    for (const auto& options : {text_options, other_options})
+        for (const std::string& option : options)
+            if (!has(names, option)) names.push_back(option);
     return names;
 }
 
@@ -103,6 +96,12 @@ CompareCase case_of(const Json& entry, const fs::path& file, const std::string& 
             throw InputError(subject, column + " cannot be " + value.dump(), "a text is expected");
         return value.get<std::string>();
     };
+    const auto check_texts = [&](const std::string& column, const Json& value) {
+        if (column != "textures" || !value.is_array()) text(column, value);
+        if (!value.is_array()) return;
+        for (const Json& one : value)
+            text(column, one);
+    };
     for (const auto& [given, value] : entry.items()) {
         const std::string column = column_named(given, subject);
         if (is_empty(value)) continue;
@@ -116,8 +115,10 @@ CompareCase case_of(const Json& entry, const fs::path& file, const std::string& 
             result.from = text(column, value);
         else if (column == "to")
             result.to = text(column, value);
-        else
+        else {
+            if (has(text_options, column)) check_texts(column, value);
             result.options[column] = value;
+        }
     }
     if (result.model.empty()) throw InputError(subject, "names no model", case_example);
     if (result.from.empty() || result.to.empty())
@@ -189,19 +190,18 @@ std::vector<CompareCase> default_compare_cases(const fs::path& folder, const fs:
     const fs::path mug = assets_folder() / "demo" / "mug.glb";
     for (const char* to : {"a blue mug", "a golden mug"})
         cases.push_back({fmt::format("mug: {}", to), mug, "a red mug", to, Json::object()});
-    struct Shape {
+    struct DefaultShape {
         std::string noun, source, color, material;
     };
-    for (const Shape& shape :
-         {Shape{"rabbit", "white", "green", "marble"}, Shape{"teapot", "gray", "pink", "wooden"}}) {
+    for (const DefaultShape& shape : {DefaultShape{"rabbit", "white", "green", "marble"},
+                                      DefaultShape{"teapot", "gray", "pink", "wooden"}}) {
         const fs::path model = folder / (shape.noun + ".glb");
         const SuiteCase start{"colors", shape.noun, shape.source, shape.color, shape.color};
         save_model(model, source_model(start, load_model(meshes.at(shape.noun)), vocabulary));
         for (const std::string& look : {shape.color, shape.material}) {
             const std::string to = prompt_of(look, shape.noun);
-            cases.push_back(
-                {shape.noun + ": " + to, model, prompt_of(shape.source, shape.noun), to,
-                 Json::object()});
+            cases.push_back({shape.noun + ": " + to, model, prompt_of(shape.source, shape.noun), to,
+                             Json::object()});
         }
     }
     return cases;

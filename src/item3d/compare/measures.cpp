@@ -33,9 +33,9 @@ constexpr int point_count = 4000;
 constexpr int view_count = 6;
 constexpr int view_pixels = 256;
 constexpr int depth_pixels = 512;
-constexpr double whole = 0.999;      ///< coverage
-constexpr double same_place = 1e-4;  ///< of the radius
-constexpr int shown[] = {0, 3};      ///< of the views: front and back
+constexpr double whole_pixel = 0.999;  ///< coverage
+constexpr double same_place = 1e-4;    ///< of the radius
+constexpr int shown[] = {0, 3};        ///< of the views: front and back
 
 /// The same points on a model, for each of the models that are compared.
 Surface points_of(const Model& model, const Geometry& geometry) {
@@ -69,7 +69,8 @@ double drawn_difference(const Surface& points, const Geometry& geometry,
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         const auto index = static_cast<std::int64_t>(i);
         const Raster raster = rasterize(geometry, {cameras[i]}, depth_pixels, depth_pixels);
-        const at::Tensor counts = (linear[index].select(2, 3) > whole).to(at::kFloat).unsqueeze(0);
+        const at::Tensor counts =
+            (linear[index].select(2, 3) > whole_pixel).to(at::kFloat).unsqueeze(0);
         views.push_back(colors_of_points(points, cameras[i], raster.depth[0],
                                          over_white(linear.narrow(0, index, 1))[0], counts,
                                          radius));
@@ -97,7 +98,8 @@ double painted_difference(const fs::path& folder, const Json& files, const Model
         const Raster raster = rasterize(geometry, {camera}, pixels, pixels);
         const at::Tensor covered = (raster.triangle >= 0).to(at::kFloat);
         const at::Tensor counts =
-            (covered.reshape({1, size, finer, size, finer}).mean({2, 4}) > whole).to(at::kFloat);
+            (covered.reshape({1, size, finer, size, finer}).mean({2, 4}) > whole_pixel)
+                .to(at::kFloat);
         views.push_back(colors_of_points(points, camera, raster.depth[0], picture, counts, radius));
     }
     return view_difference(views);
@@ -105,11 +107,9 @@ double painted_difference(const fs::path& folder, const Json& files, const Model
 
 LoadOptions load_options(const CompareCase& test) {
     LoadOptions options;
-    const Json folders = test.options.value("textures", Json());
-    if (folders.is_string()) options.texture_folders.emplace_back(folders.get<std::string>());
-    if (folders.is_array())
-        for (const Json& folder : folders)
-            options.texture_folders.emplace_back(folder.get<std::string>());
+    const Json folders = test.options.value("textures", Json::array());
+    for (const Json& folder : folders.is_array() ? folders : Json::array({folders}))
+        options.texture_folders.emplace_back(folder.get<std::string>());
     options.variant = test.options.value("variant", "");
     return options;
 }

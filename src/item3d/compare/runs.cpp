@@ -116,6 +116,9 @@ std::vector<CompareRun> plan_runs(const CompareOptions& options) {
                     run.prior = prior.name;
                     run.seed = seed;
                     Json own = test.options;
+                    // Edits of a colour would take what has it by themselves; methods are compared
+                    // as they were published, on all of the surface.
+                    if (!own.contains("region")) own["region"] = "all";
                     for (const auto& [option, owner] : owners)
                         if (owner != method) own.erase(option);
                     run.arguments = {"--from",   test.from, "--to",
