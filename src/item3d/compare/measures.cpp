@@ -188,8 +188,10 @@ Json measured_run(const CompareRun& run, const CompareCase& test) {
     row.update(measures);
     const Json& scores = summary["scores"];
     row["detail_kept"] = scores.at("detail_kept");
-    row["seconds"] = summary.at("seconds").at("total");
-    row["peak_memory_bytes"] = summary.at("peak_memory_bytes");
+    if (!was_resumed(run)) {
+        row["seconds"] = summary.at("seconds").at("total");
+        row["peak_memory_bytes"] = summary.at("peak_memory_bytes");
+    }
     row["unet_rows"] = summary.at("unet_rows");
     if (scores.contains("clip")) {
         row["clip_global"] = scores["clip"].at("global");

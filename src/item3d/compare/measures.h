@@ -13,7 +13,8 @@ nlohmann::json row_of(const CompareRun& run, const CompareCase& test);
 
 /// That, and of a run that has ended well
 ///   clip_global, clip_before, clip_directional   of the edit's own score, where there is a CLIP
-///   seconds, peak_memory_bytes, unet_rows, detail_kept
+///   seconds, peak_memory_bytes               not of a run that went on where it was cut off
+///   unet_rows, detail_kept
 ///   geometry_kept, uv_kept    whether positions and triangles, and UV maps, are as they were
 ///   view_difference           view_difference.h, of six views in the edit's light; of
 ///                             controlnet-2d, of the pictures that it drew

@@ -84,7 +84,8 @@ std::string result_figure(const Json& row, const fs::path& output, const std::st
     add("clip_directional", "direction", 2);
     add("detail_kept", "kept", 2);
     add("view_difference", "\u0394E", 1);
-    add("seconds", "s", 0);
+    if (row.contains("seconds"))
+        caption += fmt::format(" \u00b7 {:.0f} s", row["seconds"].get<double>());
     return fmt::format(
         "<figure><a href=\"{}/report.html\"><img src=\"{}\" alt=\"{}\" loading=\"lazy\"></a>"
         "<figcaption><b>{}</b>{}</figcaption></figure>\n",

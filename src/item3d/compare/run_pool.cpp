@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* checkpoint_name = "checkpoint.safetensors";
 constexpr double first_guess_bytes = 2e9;
 constexpr auto nap = std::chrono::milliseconds(100);
 constexpr auto longest_farewell = std::chrono::seconds(60);
@@ -58,8 +59,9 @@ std::string reason_of(const fs::path& log, int status) {
 RunningEdit start(const CompareRun& run, const CompareOptions& options) {
     make_output_folder(run.folder);
     fs::remove(run.folder / "failed.txt");
-    // A run of these very settings that was cut off has a checkpoint of the same content.
-    const bool begun = fs::exists(run.folder / "log.txt");
+    // A run of these very settings that was cut off.
+    const bool begun = fs::exists(run.folder / checkpoint_name);
+    if (begun) write_atomically(run.folder / resumed_name, std::string_view());
     fs::remove(run.folder / "log.txt");
     std::vector<std::string> arguments = {options.program.string()};
     arguments.insert(arguments.end(), run.arguments.begin(), run.arguments.end());
@@ -127,6 +129,7 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
             if (!well && !interrupted())
                 write_atomically(run.folder / "failed.txt",
                                  reason_of(run.folder / "log.txt", *status));
+            if (well) fs::remove(run.folder / checkpoint_name);  // as large as all the rest
             largest = std::max(ended == before ? 0.0 : largest, std::max(peak_of(run), 1.0));
             note(fmt::format("{} of {}: {}: {}", ++ended, runs.size(),
                              run.folder.filename().string(),

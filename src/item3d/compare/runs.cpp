@@ -154,6 +154,10 @@ bool is_done(const CompareRun& run) {
     return fs::exists(run.folder / "edit.json") && error_of(run).empty();
 }
 
+bool was_resumed(const CompareRun& run) {
+    return fs::exists(run.folder / resumed_name);
+}
+
 std::string error_of(const CompareRun& run) {
     const fs::path file = run.folder / "failed.txt";
     return fs::exists(file) ? read_text(file) : "";

@@ -27,6 +27,9 @@ struct CompareOptions {
     int threads = 0;                ///< of each; 0: the machine's, shared between the workers
 };
 
+/// A file in the folder of a run that was cut off and went on.
+inline constexpr const char* resumed_name = "resumed";
+
 struct CompareRun {
     std::size_t case_index = 0;
     std::string method;
@@ -51,6 +54,8 @@ std::vector<CompareRun> plan_runs(const CompareOptions& options);
 
 /// Whether the run has ended well.
 bool is_done(const CompareRun& run);
+/// Whether it was cut off and went on, so that its time and memory are of its last part alone.
+bool was_resumed(const CompareRun& run);
 /// Why it has not, in one line; empty where it was not tried.
 std::string error_of(const CompareRun& run);
 
