@@ -99,12 +99,10 @@ class CompareRuns : public CompareCases {
   protected:
     CompareOptions options() const {
         CompareOptions options;
-        options.cases = {{"cube",
-                          folder_ / "cube.obj",
-                          "a red cube",
-                          "a blue cube",
-                          {{"instruction", "make it blue"}, {"batch", 1}}}};
-        options.methods = {"item3d", "in2n"};
+        options.cases.resize(1);
+        options.cases[0] = {"cube", folder_ / "cube.obj", "a red cube", "a blue cube", "", {}};
+        options.cases[0].options = {{"instruction", "make it blue"}, {"batch", 1}};
+        options.methods = {plain_method("item3d"), plain_method("in2n")};
         options.priors = {{"small", folder_ / "prior"}};
         options.seeds = {0, 1};
         options.output = folder_ / "out";
@@ -135,6 +133,22 @@ TEST_F(CompareRuns, OptionsOfOneMethodGoToItAlone) {
     CompareOptions twice = options();
     twice.cases.push_back(twice.cases[0]);
     EXPECT_THROW(plan_runs(twice), InputError);
+}
+
+TEST_F(CompareRuns, OptionsOfAMethodGoBeforeThoseOfACase) {
+    CompareOptions given = options();
+    given.cases[0].options["iterations"] = 9;
+    given.methods = {{"fast", {{"iterations", 3}, {"guidance", "dds"}}}};
+    const CompareRun run = plan_runs(given)[0];
+    const auto value_of = [&](const char* option) {
+        const auto at = std::find(run.arguments.begin(), run.arguments.end(), option);
+        return at == run.arguments.end() ? "" : *(at + 1);
+    };
+    EXPECT_EQ(run.method, "fast");
+    EXPECT_EQ(value_of("--method"), "item3d");
+    EXPECT_EQ(value_of("--iterations"), "3");
+    EXPECT_EQ(value_of("--guidance"), "dds");
+    EXPECT_EQ(value_of("--batch"), "1");
 }
 
 TEST_F(CompareRuns, TheWholeSurfaceIsEditedUnlessACaseSaysOtherwise) {

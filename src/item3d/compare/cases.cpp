@@ -5,11 +5,6 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/edit/settings_table.h"
-#include "item3d/io/load.h"
-#include "item3d/io/save.h"
-#include "item3d/networks/vocabulary.h"
-#include "item3d/suite/cases.h"
-#include "item3d/suite/held_out_meshes.h"
 
 #include <algorithm>
 #include <numeric>
@@ -37,7 +32,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 }
 
 std::vector<std::string> known_columns() {
-    std::vector<std::string> names = {"name", "model", "from", "to"};
+    std::vector<std::string> names = {"name", "model", "from", "to", "expect"};
     for (const Setting& setting : settings_table()) {
         if (setting.flag.empty()) continue;
         const std::string flag = setting.flag.substr(2);
@@ -115,6 +110,8 @@ CompareCase case_of(const Json& entry, const fs::path& file, const std::string& 
             result.from = text(column, value);
         else if (column == "to")
             result.to = text(column, value);
+        else if (column == "expect")
+            result.expect = text(column, value);
         else {
             if (has(text_options, column)) check_texts(column, value);
             result.options[column] = value;
@@ -180,30 +177,6 @@ std::vector<CompareCase> read_compare_cases(const fs::path& file) {
     for (const Json& entry : entries)
         cases.push_back(
             case_of(entry, file, fmt::format("{}: case {}", subject, cases.size() + 1)));
-    return cases;
-}
-
-std::vector<CompareCase> default_compare_cases(const fs::path& folder, const fs::path& prior) {
-    const PriorVocabulary vocabulary = PriorVocabulary::load(prior);
-    const auto meshes = save_held_out_meshes(folder / "meshes");
-    std::vector<CompareCase> cases;
-    const fs::path mug = assets_folder() / "demo" / "mug.glb";
-    for (const char* to : {"a blue mug", "a golden mug"})
-        cases.push_back({fmt::format("mug: {}", to), mug, "a red mug", to, Json::object()});
-    struct DefaultShape {
-        std::string noun, source, color, material;
-    };
-    for (const DefaultShape& shape : {DefaultShape{"rabbit", "white", "green", "marble"},
-                                      DefaultShape{"teapot", "gray", "pink", "wooden"}}) {
-        const fs::path model = folder / (shape.noun + ".glb");
-        const SuiteCase start{"colors", shape.noun, shape.source, shape.color, shape.color};
-        save_model(model, source_model(start, load_model(meshes.at(shape.noun)), vocabulary));
-        for (const std::string& look : {shape.color, shape.material}) {
-            const std::string to = prompt_of(look, shape.noun);
-            cases.push_back({shape.noun + ": " + to, model, prompt_of(shape.source, shape.noun), to,
-                             Json::object()});
-        }
-    }
     return cases;
 }
 

@@ -4,14 +4,19 @@
 #include "item3d/compare/page.h"
 #include "item3d/compare/run_pool.h"
 #include "item3d/compare/table.h"
+#include "item3d/compare/verdict.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/io/load_light.h"
 
 namespace item3d {
 
 nlohmann::json compare_methods(const CompareOptions& options, const std::string& command) {
+    check_expectations(options);
+    for (const std::string& light : options.pictures.lights)
+        load_light(light);  // refused before hours are spent
     make_output_folder(options.output);
     const std::vector<CompareRun> runs = plan_runs(options);
     perform_runs(runs, options);
@@ -22,7 +27,7 @@ nlohmann::json compare_methods(const CompareOptions& options, const std::string&
         const CompareCase& test = options.cases[run.case_index];
         nlohmann::json row;
         try {
-            row = measured_run(run, test);
+            row = measured_run(run, test, options.pictures);
         } catch (const Error& error) {
             if (error.code() == ExitCode::interrupted) throw;
             row = row_of(run, test);

@@ -3,6 +3,8 @@
 #include "item3d/baselines/painting_scene.h"
 #include "item3d/baselines/view_lists.h"
 #include "item3d/compare/baked_light.h"
+#include "item3d/compare/run_pictures.h"
+#include "item3d/compare/verdict.h"
 #include "item3d/compare/view_difference.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
@@ -14,7 +16,6 @@
 #include "item3d/render/pictures.h"
 #include "item3d/render/rasterize.h"
 #include "item3d/render/srgb.h"
-#include "item3d/report/animation.h"
 #include "item3d/report/model_pictures.h"
 #include "item3d/scene/bounding_sphere.h"
 #include "item3d/scene/far_origin.h"
@@ -30,12 +31,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr int point_count = 4000;
-constexpr int view_count = 6;
-constexpr int view_pixels = 256;
 constexpr int depth_pixels = 512;
 constexpr double whole_pixel = 0.999;  ///< coverage
 constexpr double same_place = 1e-4;    ///< of the radius
-constexpr int shown[] = {0, 3};        ///< of the views: front and back
 
 /// The same points on a model, for each of the models that are compared.
 Surface points_of(const Model& model, const Geometry& geometry) {
@@ -55,13 +53,6 @@ bool same_geometry(const Geometry& a, const Geometry& b, double radius) {
     return (corners(a) - corners(b)).abs().max().item<double>() <= same_place * radius;
 }
 
-Image to_strip(const at::Tensor& pictures) {
-    std::vector<at::Tensor> parts;
-    for (const int index : shown)
-        parts.push_back(pictures[index]);
-    return to_image(at::cat(parts, 2).permute({1, 2, 0}).contiguous());
-}
-
 double drawn_difference(const Surface& points, const Geometry& geometry,
                         const std::vector<Camera>& cameras, const at::Tensor& linear,
                         double radius) {
@@ -79,8 +70,9 @@ double drawn_difference(const Surface& points, const Geometry& geometry,
 }
 
 /// Of the pictures in views/ that controlnet-2d drew, pixels of the prior's size.
-double painted_difference(const fs::path& folder, const Json& files, const Model& model,
-                          const Surface& points, const Geometry& geometry, double radius) {
+double painted_difference(const fs::path& folder, const std::vector<std::string>& files,
+                          const Model& model, const Surface& points, const Geometry& geometry,
+                          double radius) {
     PaintingScene scene;
     for (const Primitive& primitive : model.primitives)
         scene.points.insert(scene.points.end(), primitive.positions.begin(),
@@ -88,7 +80,7 @@ double painted_difference(const fs::path& folder, const Json& files, const Model
     std::vector<PointColors> views;
     for (std::size_t i = 0; i < std::min(files.size(), ring_and_poles().size()); ++i) {
         const Camera camera = side_view(scene, ring_and_poles()[i]).camera;
-        const at::Tensor picture = to_tensor(load_image(folder / files[i].get<std::string>()))
+        const at::Tensor picture = to_tensor(load_image(folder / files[i]))
                                        .narrow(2, 0, 3)
                                        .permute({2, 0, 1})
                                        .contiguous();
@@ -114,38 +106,43 @@ LoadOptions load_options(const CompareCase& test) {
     return options;
 }
 
-Json computed(const CompareRun& run, const CompareCase& test, const Json& summary) {
+/// What is drawn and judged anew when more is asked for.
+Json asked_of(const CompareCase& test, const PictureWishes& wishes) {
+    return {{"lights", wishes.lights}, {"all_views", wishes.all_views}, {"expect", test.expect}};
+}
+
+Json computed(const CompareRun& run, const CompareCase& test, const PictureWishes& wishes,
+              const Json& summary) {
     const at::NoGradGuard no_grad;
     const LoadOptions load = load_options(test);
-    const Model before = load_model(test.model, load);
-    Model after = load_model(run.folder / model_file_name(test.model), load);
-    move_origin(after, before.origin);
+    RunModels models;
+    models.before = load_model(test.model, load);
+    models.after = load_model(run.folder / model_file_name(test.model), load);
+    move_origin(models.after, models.before.origin);
+    const Model &before = models.before, &after = models.after;
     const double radius = bounding_sphere(before).radius;
     const Geometry was = Geometry::from_model(before), is = Geometry::from_model(after);
     const bool kept = same_geometry(was, is, radius);
     Json result = {{"geometry_kept", kept}, {"uv_kept", kept && summary.at("new_uv_maps").empty()}};
 
-    const std::string light_name = summary.at("settings").at("light").get<std::string>();
-    const Image light = load_light(light_name);
-    const EnvironmentLight shining = prefilter(light, light_texels(view_pixels));
-    const auto cameras = picture_cameras(before, view_count);
-    const at::Tensor drawn = draw_pictures(after, shining, cameras, view_pixels);
-    write_atomically(run.folder / "view.webp", encode_webp(to_strip(over_white(drawn))));
-    std::vector<Camera> shown_cameras;
-    for (const int index : shown)
-        shown_cameras.push_back(cameras[static_cast<std::size_t>(index)]);
-    const at::Tensor drawn_before =
-        over_white(draw_pictures(before, shining, shown_cameras, view_pixels));
-    write_atomically(
-        run.folder / "before.webp",
-        encode_webp(to_image(
-            at::cat({drawn_before[0], drawn_before[1]}, 2).permute({1, 2, 0}).contiguous())));
+    models.light_before = load_light(summary.at("settings").at("light").get<std::string>());
+    const fs::path found_light = run.folder / "light.exr";
+    models.light_after =
+        fs::exists(found_light) ? load_light(found_light.string()) : models.light_before;
+    const auto cameras = picture_cameras(before, run_view_count);
+    const at::Tensor drawn =
+        draw_pictures(after, prefilter(models.light_after, light_texels(run_view_pixels)), cameras,
+                      run_view_pixels);
+    std::vector<std::string> painted;
+    if (run.edit_method == "controlnet-2d") painted = summary.value("views", painted);
+    write_run_pictures(run, models, cameras, over_white(drawn), painted, wishes);
+    result.update(
+        verdict_of(test, summary["scores"].at("after"), over_white(drawn), run.prior_folder));
 
     const Surface points = points_of(after, is);
-    const Json pictures = summary.value("views", Json::array());
-    const double apart = run.method == "controlnet-2d" && !pictures.empty()
-                             ? painted_difference(run.folder, pictures, before, points, is, radius)
-                             : drawn_difference(points, is, cameras, drawn, radius);
+    const double apart = painted.empty()
+                             ? drawn_difference(points, is, cameras, drawn, radius)
+                             : painted_difference(run.folder, painted, before, points, is, radius);
     if (std::isfinite(apart)) result["view_difference"] = apart;
     if (kept) {
         const Surface source = points_of(before, was);
@@ -153,7 +150,7 @@ Json computed(const CompareRun& run, const CompareCase& test, const Json& summar
         if (moved.item<double>() <= same_place * radius)
             result["light_baked"] = baked_light(TexturedMaterials(before).sample(source).base_color,
                                                 TexturedMaterials(after).sample(points).base_color,
-                                                source.normal, light);
+                                                source.normal, models.light_before);
     }
     return result;
 }
@@ -161,13 +158,18 @@ Json computed(const CompareRun& run, const CompareCase& test, const Json& summar
 }  // namespace
 
 Json row_of(const CompareRun& run, const CompareCase& test) {
-    return {{"case", test.name},    {"model", test.model.filename().string()},
-            {"from", test.from},    {"to", test.to},
-            {"method", run.method}, {"prior", run.prior},
-            {"seed", run.seed},     {"folder", "runs/" + run.folder.filename().string()}};
+    return {{"case", test.name},
+            {"model", test.model.filename().string()},
+            {"from", test.from},
+            {"to", test.to},
+            {"method", run.method},
+            {"prior", run.prior},
+            {"seed", run.seed},
+            {"expect", test.expect},
+            {"folder", "runs/" + run.folder.filename().string()}};
 }
 
-Json measured_run(const CompareRun& run, const CompareCase& test) {
+Json measured_run(const CompareRun& run, const CompareCase& test, const PictureWishes& wishes) {
     Json row = row_of(run, test);
     if (!is_done(run)) {
         const std::string error = error_of(run);
@@ -181,11 +183,16 @@ Json measured_run(const CompareRun& run, const CompareCase& test) {
     }
     const fs::path kept = run.folder / "measures.json";
     Json measures = fs::exists(kept) ? Json::parse(read_text(kept), nullptr, false) : Json();
-    if (!measures.is_object()) {
-        measures = computed(run, test, summary);
+    const Json asked = asked_of(test, wishes);
+    if (!measures.is_object() || measures.value("asked", Json()) != asked) {
+        measures = computed(run, test, wishes, summary);
+        measures["asked"] = asked;
         write_atomically(kept, measures.dump(2) + "\n");
     }
+    measures.erase("asked");
     row.update(measures);
+    row["pictures"] = pictures_of_run(wishes, false);
+    row["pictures_before"] = pictures_of_run(wishes, true);
     const Json& scores = summary["scores"];
     row["detail_kept"] = scores.at("detail_kept");
     if (!was_resumed(run)) {

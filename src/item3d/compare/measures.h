@@ -19,8 +19,10 @@ nlohmann::json row_of(const CompareRun& run, const CompareCase& test);
 ///   view_difference           view_difference.h, of six views in the edit's light; of
 ///                             controlnet-2d, of the pictures that it drew
 ///   light_baked               baked_light.h, in the edit's light
-/// else "error". What had to be computed is kept in the run's measures.json; its view.webp shows
-/// the result from two sides and the folder's before.webp the model as it was.
-nlohmann::json measured_run(const CompareRun& run, const CompareCase& test);
+///   found, right              verdict.h, where the case expects something
+///   pictures, pictures_before run_pictures.h, drawn into the run's folder
+/// else "error". What had to be computed is kept in the run's measures.json.
+nlohmann::json measured_run(const CompareRun& run, const CompareCase& test,
+                            const PictureWishes& wishes);
 
 }  // namespace item3d

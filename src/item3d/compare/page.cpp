@@ -1,5 +1,6 @@
 #include "item3d/compare/page.h"
 
+#include "item3d/compare/pairs.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/version.h"
@@ -19,47 +20,71 @@ constexpr const char* page_style =
     "<style>main { max-width: 1560px; } .wide { overflow-x: auto; } .wide table { min-width: "
     "900px; }"
     " .wide th, .wide td { text-align: right; padding: 7px 12px; overflow-wrap: normal; }"
+    " .wide.narrow table { min-width: 0; width: auto; } .wide td b { font-weight: 600; }"
     " .wide th:first-child { text-align: left; padding-left: 0; color: var(--ink); }"
     " .failed { border-left: 3px solid var(--accent); background: var(--card);"
     " border-radius: 0 10px 10px 0; padding: 12px 16px; }"
     " .failed p { margin: 6px 0 0; overflow-wrap: anywhere; }"
-    " .failed b, figure b { font-weight: 600; } figure a { color: inherit; }</style>\n";
+    " .failed b, figure b { font-weight: 600; } figure a { color: inherit; }"
+    " figure img + img, figure a + a img { margin-top: 6px; }</style>\n";
 
 std::string text_of(const Json& row, const char* key) {
     return row.at(key).get<std::string>();
 }
 
-std::string number(const std::optional<double>& value, int digits, double scale = 1) {
-    return value ? fmt::format("{:.{}f}", *value * scale, digits) : "\u2013";
+std::string head_of(const MethodSummary& one, bool names_priors) {
+    return fmt::format("<tr><th scope=\"row\">{}</th>",
+                       html_escape(names_priors ? one.method + ", " + one.prior : one.method));
 }
 
 std::string table_of(const std::vector<MethodSummary>& summaries, bool names_priors) {
-    std::string html =
-        "<div class=\"wide\"><table><tr><th>method</th><th>runs</th><th>CLIP, target</th>"
-        "<th>CLIP, direction</th><th>\u00b1 seeds</th><th>seconds</th><th>MB</th><th>structure "
-        "kept</th><th>geometry kept</th><th>UV kept</th><th>view \u0394E</th><th>baked "
-        "light</th></tr>\n";
+    const std::vector<TableColumn> columns = table_columns(summaries);
+    std::string html = "<div class=\"wide\"><table><tr><th>method</th><th>runs</th>";
+    for (const TableColumn& column : columns)
+        html += fmt::format("<th>{}</th>", column.title);
+    html += "</tr>\n";
     for (const MethodSummary& one : summaries) {
-        html += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td>",
-                            html_escape(names_priors ? one.method + ", " + one.prior : one.method),
-                            one.ended_well == one.runs
-                                ? std::to_string(one.runs)
-                                : fmt::format("{} of {}", one.ended_well, one.runs));
-        for (const std::string& cell :
-             {number(one.clip_global, 3), number(one.clip_directional, 3), number(one.spread, 3),
-              number(one.seconds, 0), number(one.peak_memory_bytes, 0, 1e-6),
-              number(one.detail_kept, 3), number(one.geometry_kept, 0, 100) + " %",
-              number(one.uv_kept, 0, 100) + " %", number(one.view_difference, 2),
-              number(one.light_baked, 2)})
-            html += "<td>" + (cell.starts_with("\u2013") ? std::string("\u2013") : cell) + "</td>";
+        html += head_of(one, names_priors) +
+                fmt::format("<td>{}</td>", one.ended_well == one.runs
+                                               ? std::to_string(one.runs)
+                                               : fmt::format("{} of {}", one.ended_well, one.runs));
+        for (const TableColumn& column : columns) {
+            const std::string text = cell_text(column, one);
+            html += text.empty()                      ? "<td>\u2013</td>"
+                    : is_best(column, one, summaries) ? "<td><b>" + text + "</b></td>"
+                                                      : "<td>" + text + "</td>";
+        }
         html += "</tr>\n";
     }
     return html +
-           "</table></div>\n<p class=\"lede\">Means of the runs that ended. View \u0394E: how far "
-           "apart the colours of one surface point are in two views (2.3 is just noticeable; "
-           "highlights move). Baked light: correlation of the change of base colour with the "
-           "edit's light. \u00b1 seeds: standard deviation of the direction between seeds of a "
-           "case.</p>\n";
+           "</table></div>\n<p class=\"lede\">Means of the runs that ended; the best in bold. View "
+           "\u0394E: how far apart the colours of one surface point are in two views (2.3 is just "
+           "noticeable; highlights move). Baked light: correlation of the change of base colour "
+           "with the edit's light. \u00b1 seeds: standard deviation of the direction between "
+           "seeds of a case. Time and memory leave out runs that were cut off and went on.</p>\n";
+}
+
+/// Nothing where there is one method.
+std::string pairs_of(const Rows& rows, bool names_priors) {
+    const std::vector<PairedMethod> methods = beside_first(rows);
+    if (methods.empty()) return "";
+    std::string html =
+        "<div class=\"wide narrow\"><table><tr><th>method</th><th>pairs</th><th>CLIP, "
+        "direction</th><th>worst seed</th><th>structure kept</th><th>worst seed</th></tr>\n";
+    const auto cells = [](const PairedDifference& difference) {
+        if (difference.pairs == 0) return std::string("<td>\u2013</td><td>\u2013</td>");
+        return fmt::format("<td>{:+.3f}</td><td>{:+.3f}</td>", difference.mean,
+                           difference.worst_seed);
+    };
+    for (const PairedMethod& one : methods) {
+        MethodSummary named;
+        named.method = one.method;
+        named.prior = one.prior;
+        html += head_of(named, names_priors) +
+                fmt::format("<td>{}</td>", std::max(one.directional.pairs, one.kept.pairs)) +
+                cells(one.directional) + cells(one.kept) + "</tr>\n";
+    }
+    return html + "</table></div>\n";
 }
 
 std::string name_of(const Json& row, bool names_priors, bool names_seeds) {
@@ -74,23 +99,36 @@ std::string failure(const Json& row, const std::string& name) {
                        html_escape(text_of(row, "error")));
 }
 
-std::string result_figure(const Json& row, const fs::path& output, const std::string& name) {
+/// Pictures of a run's folder below each other, a link around them where `link` is not empty.
+std::string run_figure(const Json& row, const char* key, const fs::path& output,
+                       const std::string& link, const std::string& caption) {
     const std::string folder = text_of(row, "folder");
-    std::string caption;
+    std::string html = "<figure>";
+    if (!link.empty()) html += "<a href=\"" + html_escape(link) + "\">";
+    for (const Json& picture : row.at(key))
+        html +=
+            fmt::format("<img src=\"{}\" alt=\"{}\" title=\"{}\" loading=\"lazy\">",
+                        data_uri(read_bytes(output / folder / text_of(picture, "file"))),
+                        html_escape(text_of(row, "method") + ", " + text_of(picture, "caption")),
+                        html_escape(text_of(picture, "caption")));
+    if (!link.empty()) html += "</a>";
+    return html + "<figcaption>" + caption + "</figcaption></figure>\n";
+}
+
+std::string result_figure(const Json& row, const fs::path& output, const std::string& name) {
+    std::string caption = "<b>" + html_escape(name) + "</b>";
     const auto add = [&](const char* key, const char* label, int digits) {
         if (row.contains(key))
             caption += fmt::format(" \u00b7 {} {:.{}f}", label, row[key].get<double>(), digits);
     };
+    if (row.contains("right") && !row["right"].get<bool>())
+        caption += " \u00b7 looks like " + html_escape(text_of(row, "found"));
     add("clip_directional", "direction", 2);
     add("detail_kept", "kept", 2);
     add("view_difference", "\u0394E", 1);
     if (row.contains("seconds"))
         caption += fmt::format(" \u00b7 {:.0f} s", row["seconds"].get<double>());
-    return fmt::format(
-        "<figure><a href=\"{}/report.html\"><img src=\"{}\" alt=\"{}\" loading=\"lazy\"></a>"
-        "<figcaption><b>{}</b>{}</figcaption></figure>\n",
-        html_escape(folder), data_uri(read_bytes(output / folder / "view.webp")), html_escape(name),
-        html_escape(name), caption);
+    return run_figure(row, "pictures", output, text_of(row, "folder") + "/report.html", caption);
 }
 
 /// The rows of one case.
@@ -156,14 +194,17 @@ std::string compare_page(const Rows& rows, const fs::path& output, const std::st
         body += html_section(
             "Failed", "<div class=\"gallery\" style=\"--least:420px\">\n" + failures + "</div>\n");
     body += html_section("Methods", table_of(summaries, priors));
+    if (!rows.empty())
+        body += html_section(
+            "Beside " + text_of(rows.front(), "method") + ", on the same cases and seeds",
+            pairs_of(rows, priors));
     for (const CaseRows& one : cases) {
         std::vector<std::string> figures;
         const auto ended = std::find_if(one.rows.begin(), one.rows.end(),
                                         [](const Json& row) { return !row.contains("error"); });
         if (ended != one.rows.end())
-            figures.push_back(
-                html_figure({"before: " + text_of(*ended, "from"),
-                             read_bytes(output / text_of(*ended, "folder") / "before.webp")}));
+            figures.push_back(run_figure(*ended, "pictures_before", output, "",
+                                         "before: " + html_escape(text_of(*ended, "from"))));
         for (const Json& row : one.rows) {
             const std::string name = name_of(row, priors, seeds);
             figures.push_back(row.contains("error") ? failure(row, name)

@@ -23,22 +23,6 @@ using Json = nlohmann::json;
 const std::map<std::string, std::string> owners = {
     {"guidance", "item3d"}, {"clip-loss", "clip"}, {"instruction", "in2n"}, {"image-cfg", "in2n"}};
 
-/// Lower-case letters and digits, words joined by dashes.
-std::string slug(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (std::isalnum(byte))
-            result += static_cast<char>(std::tolower(byte));
-        else if (!result.empty() && result.back() != '-')
-            result += '-';
-    }
-    result = result.substr(0, 40);
-    while (!result.empty() && result.back() == '-')
-        result.pop_back();
-    return result.empty() ? "case" : result;
-}
-
 std::string sha256(const std::string& text) {
     Digest digest(DigestKind::sha256, text.size());
     digest.update({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -59,7 +43,39 @@ std::uint64_t number_of(const std::string& text, const std::string& whole) {
     return value;
 }
 
+/// Options of the case that this method takes, under those of the method.
+Json options_of(const CompareCase& test, const CompareMethod& method) {
+    Json options = test.options;
+    for (const auto& [option, owner] : owners)
+        if (owner != method.edit_method()) options.erase(option);
+    // Edits of a colour would take what has it by themselves; methods are compared as they were
+    // published, on all of the surface.
+    if (!options.contains("region")) options["region"] = "all";
+    options.update(method.options);
+    options["method"] = method.edit_method();
+    return options;
+}
+
 }  // namespace
+
+CompareMethod plain_method(const std::string& name) {
+    return {name, {{"method", name}}};
+}
+
+std::string slug(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (std::isalnum(byte))
+            result += static_cast<char>(std::tolower(byte));
+        else if (!result.empty() && result.back() != '-')
+            result += '-';
+    }
+    result = result.substr(0, 40);
+    while (!result.empty() && result.back() == '-')
+        result.pop_back();
+    return result.empty() ? "case" : result;
+}
 
 std::vector<std::string> methods_of_prior(const fs::path& prior,
                                           const std::vector<std::string>& methods) {
@@ -109,28 +125,24 @@ std::vector<CompareRun> plan_runs(const CompareOptions& options) {
         for (const std::uint64_t seed : options.seeds) {
             for (std::size_t i = 0; i < options.cases.size(); ++i) {
                 const CompareCase& test = options.cases[i];
-                for (const std::string& method : options.methods) {
+                for (const CompareMethod& method : options.methods) {
                     CompareRun run;
                     run.case_index = i;
-                    run.method = method;
+                    run.method = method.name;
+                    run.edit_method = method.edit_method();
                     run.prior = prior.name;
+                    run.prior_folder = prior.folder;
                     run.seed = seed;
-                    Json own = test.options;
-                    // Edits of a colour would take what has it by themselves; methods are compared
-                    // as they were published, on all of the surface.
-                    if (!own.contains("region")) own["region"] = "all";
-                    for (const auto& [option, owner] : owners)
-                        if (owner != method) own.erase(option);
-                    run.arguments = {"--from",   test.from, "--to",
-                                     test.to,    "--seed",  std::to_string(seed),
-                                     "--method", method};
-                    for (const std::string& argument : option_arguments(own))
+                    run.arguments = {"--from", test.from, "--to",
+                                     test.to,  "--seed",  std::to_string(seed)};
+                    for (const std::string& argument : option_arguments(options_of(test, method)))
                         run.arguments.push_back(argument);
                     std::string asked = decides + bytes[i];
                     for (const std::string& argument : run.arguments)
                         asked += '\0' + argument;
-                    const std::string name = fmt::format("{}-{}-{}-{}", slug(test.name), method,
-                                                         seed, sha256(asked).substr(0, 10));
+                    const std::string name =
+                        fmt::format("{}-{}-{}-{}", slug(test.name), slug(method.name), seed,
+                                    sha256(asked).substr(0, 10));
                     const auto [found, is_new] = case_of_folder.emplace(name, i);
                     if (!is_new && found->second != i)
                         throw InputError(fmt::format("case {} ('{}')", i + 1, test.name),

@@ -12,9 +12,28 @@
 
 namespace item3d {
 
+/// A row of the comparison: a method of the edit, or one with options of its own.
+struct CompareMethod {
+    std::string name;  ///< in tables and folders
+    /// Options of `item3d edit`, which go before a case's; "method" is among them, "item3d" where
+    /// it is not.
+    nlohmann::json options = nlohmann::json::object();
+
+    std::string edit_method() const { return options.value("method", "item3d"); }
+};
+
+/// A method of edit_method_names() as it is.
+CompareMethod plain_method(const std::string& name);
+
+/// What is drawn of each run beside two views in the edit's light.
+struct PictureWishes {
+    std::vector<std::string> lights;  ///< presets or files: two views in each
+    bool all_views = false;           ///< six views; of controlnet-2d, what it drew
+};
+
 struct CompareOptions {
     std::vector<CompareCase> cases;
-    std::vector<std::string> methods;  ///< of edit_method_names()
+    std::vector<CompareMethod> methods;
     struct Prior {
         std::string name;              ///< as it was given
         std::filesystem::path folder;  ///< find_prior()
@@ -25,6 +44,7 @@ struct CompareOptions {
     std::filesystem::path program;  ///< item3d-edit
     int workers = 1;                ///< edits at a time
     int threads = 0;                ///< of each; 0: the machine's, shared between the workers
+    PictureWishes pictures;
 };
 
 /// A file in the folder of a run that was cut off and went on.
@@ -32,14 +52,20 @@ inline constexpr const char* resumed_name = "resumed";
 
 struct CompareRun {
     std::size_t case_index = 0;
-    std::string method;
-    std::string prior;  ///< its name
+    std::string method;       ///< CompareMethod::name
+    std::string edit_method;  ///< of edit_method_names()
+    std::string prior;        ///< its name
+    std::filesystem::path prior_folder;
     std::uint64_t seed = 0;
     std::filesystem::path folder;        ///< output/runs/NAME-METHOD-SEED-HASH
     std::vector<std::string> arguments;  ///< of item3d-edit, but for threads and --resume
 };
 
-/// Those of `methods` that a prior can run by itself: in2n needs an InstructPix2Pix, clip a CLIP.
+/// Lower-case letters and digits, at most 40, words joined by dashes.
+std::string slug(const std::string& text);
+
+/// Those of `methods` (of edit_method_names()) that a prior can run by itself: in2n needs an
+/// InstructPix2Pix, clip a CLIP.
 std::vector<std::string> methods_of_prior(const std::filesystem::path& prior,
                                           const std::vector<std::string>& methods);
 

@@ -4,8 +4,8 @@
 #include "item3d/core/format.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <string_view>
 
@@ -70,45 +70,19 @@ std::string latex_escape(const std::string& text) {
     return result;
 }
 
-/// A column of numbers: what it is, how it is written, and which is best.
-struct Column {
-    const char* title;
-    std::optional<double> MethodSummary::*value;
-    int digits;
-    int better;  ///< 1: more, -1: less, 0: neither
-    double scale = 1;
+const std::vector<TableColumn> all_columns = {
+    {"right, %", "Right (\\%) $\\uparrow$", &MethodSummary::right, 0, 1, 100},
+    {"CLIP, target", "CLIP $\\uparrow$", &MethodSummary::clip_global, 3, 1},
+    {"CLIP, direction", "CLIP dir.\\ $\\uparrow$", &MethodSummary::clip_directional, 3, 1},
+    {"\u00b1 seeds", "$\\pm$ seeds", &MethodSummary::spread, 3, 0},
+    {"seconds", "Time (s) $\\downarrow$", &MethodSummary::seconds, 0, -1},
+    {"MB", "Memory (MB) $\\downarrow$", &MethodSummary::peak_memory_bytes, 0, -1, 1e-6},
+    {"structure kept", "Structure $\\uparrow$", &MethodSummary::detail_kept, 3, 1},
+    {"geometry kept, %", "Geometry kept (\\%)", &MethodSummary::geometry_kept, 0, 0, 100},
+    {"UV kept, %", "UV kept (\\%)", &MethodSummary::uv_kept, 0, 0, 100},
+    {"view \u0394E", "View $\\Delta E$ $\\downarrow$", &MethodSummary::view_difference, 2, -1},
+    {"baked light", "Baked light $r$", &MethodSummary::light_baked, 2, 0},
 };
-
-const std::vector<Column>& columns() {
-    static const std::vector<Column> all = {
-        {"CLIP $\\uparrow$", &MethodSummary::clip_global, 3, 1},
-        {"CLIP dir.\\ $\\uparrow$", &MethodSummary::clip_directional, 3, 1},
-        {"$\\pm$ seeds", &MethodSummary::spread, 3, 0},
-        {"Time (s) $\\downarrow$", &MethodSummary::seconds, 0, -1},
-        {"Memory (MB) $\\downarrow$", &MethodSummary::peak_memory_bytes, 0, -1, 1e-6},
-        {"Structure $\\uparrow$", &MethodSummary::detail_kept, 3, 1},
-        {"Geometry kept (\\%)", &MethodSummary::geometry_kept, 0, 0, 100},
-        {"UV kept (\\%)", &MethodSummary::uv_kept, 0, 0, 100},
-        {"View $\\Delta E$ $\\downarrow$", &MethodSummary::view_difference, 2, -1},
-        {"Baked light $r$", &MethodSummary::light_baked, 2, 0},
-    };
-    return all;
-}
-
-std::string written(const Column& column, const MethodSummary& summary) {
-    const auto value = summary.*column.value;
-    return value ? fmt::format("{:.{}f}", *value * column.scale, column.digits) : "--";
-}
-
-bool is_best(const Column& column, const MethodSummary& one,
-             const std::vector<MethodSummary>& all) {
-    const auto value = one.*column.value;
-    if (!value || column.better == 0 || all.size() < 2) return false;
-    return std::all_of(all.begin(), all.end(), [&](const MethodSummary& other) {
-        const auto theirs = other.*column.value;
-        return !theirs || column.better * (*value - *theirs) >= 0;
-    });
-}
 
 }  // namespace
 
@@ -139,10 +113,37 @@ std::vector<MethodSummary> summarize(const Rows& rows) {
         summary.uv_kept = mean(own, "uv_kept");
         summary.view_difference = mean(own, "view_difference");
         summary.light_baked = mean(own, "light_baked");
+        summary.right = mean(own, "right");
         summary.spread = spread_over_seeds(own, "clip_directional");
         summaries.push_back(std::move(summary));
     }
     return summaries;
+}
+
+std::vector<TableColumn> table_columns(const std::vector<MethodSummary>& summaries) {
+    std::vector<TableColumn> used;
+    std::copy_if(all_columns.begin(), all_columns.end(), std::back_inserter(used),
+                 [&](const TableColumn& column) {
+                     return std::any_of(
+                         summaries.begin(), summaries.end(),
+                         [&](const MethodSummary& one) { return (one.*column.value).has_value(); });
+                 });
+    return used;
+}
+
+std::string cell_text(const TableColumn& column, const MethodSummary& summary) {
+    const auto value = summary.*column.value;
+    return value ? fmt::format("{:.{}f}", *value * column.scale, column.digits) : "";
+}
+
+bool is_best(const TableColumn& column, const MethodSummary& summary,
+             const std::vector<MethodSummary>& all) {
+    const auto value = summary.*column.value;
+    if (!value || column.better == 0 || all.size() < 2) return false;
+    return std::all_of(all.begin(), all.end(), [&](const MethodSummary& other) {
+        const auto theirs = other.*column.value;
+        return !theirs || column.better * (*value - *theirs) >= 0;
+    });
 }
 
 std::string table_csv(const Rows& rows) {
@@ -164,6 +165,9 @@ std::string table_csv(const Rows& rows) {
                                            "uv_kept",
                                            "view_difference",
                                            "light_baked",
+                                           "expect",
+                                           "found",
+                                           "right",
                                            "error",
                                            "folder"};
     std::string text = csv_line(keys);
@@ -184,10 +188,11 @@ std::string table_latex(const std::vector<MethodSummary>& summaries) {
     const bool names_priors =
         std::any_of(summaries.begin(), summaries.end(),
                     [&](const MethodSummary& one) { return one.prior != summaries.front().prior; });
-    std::string text = "\\begin{tabular}{l" + std::string(columns().size() + 1, 'r') +
-                       "}\n\\toprule\nMethod & Runs";
-    for (const Column& column : columns())
-        text += fmt::format(" & {}", column.title);
+    const std::vector<TableColumn> columns = table_columns(summaries);
+    std::string text =
+        "\\begin{tabular}{l" + std::string(columns.size() + 1, 'r') + "}\n\\toprule\nMethod & Runs";
+    for (const TableColumn& column : columns)
+        text += fmt::format(" & {}", column.latex_title);
     text += " \\\\\n\\midrule\n";
     for (const MethodSummary& summary : summaries) {
         text += latex_escape(summary.method);
@@ -195,10 +200,13 @@ std::string table_latex(const std::vector<MethodSummary>& summaries) {
         text += summary.ended_well == summary.runs
                     ? fmt::format(" & {}", summary.runs)
                     : fmt::format(" & {} of {}", summary.ended_well, summary.runs);
-        for (const Column& column : columns()) {
-            const std::string value = written(column, summary);
-            text +=
-                is_best(column, summary, summaries) ? " & \\textbf{" + value + "}" : " & " + value;
+        for (const TableColumn& column : columns) {
+            const std::string value = cell_text(column, summary);
+            if (value.empty())
+                text += " & --";
+            else
+                text += is_best(column, summary, summaries) ? " & \\textbf{" + value + "}"
+                                                            : " & " + value;
         }
         text += " \\\\\n";
     }
