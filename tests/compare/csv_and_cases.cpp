@@ -95,6 +95,16 @@ TEST_F(CompareCases, WhatIsWrongIsNamed) {
     expect_refused("a.csv", "model,from,to,method\ncube.obj,a,b,sds\n", "--methods");
 }
 
+TEST_F(CompareCases, AnOptionForAllGoesBeforeTheirOwn) {
+    auto cases = read("a.csv", "model,from,to,iterations\ncube.obj,a,b,9\ncube.obj,a,c,\n");
+    set_option(cases, "iterations=3");
+    for (const CompareCase& test : cases)
+        EXPECT_EQ(option_arguments(test.options), (std::vector<std::string>{"--iterations", "3"}));
+    EXPECT_THROW(set_option(cases, "iterations"), UsageError);
+    EXPECT_THROW(set_option(cases, "model=cube.obj"), UsageError);
+    EXPECT_THROW(set_option(cases, "iteratoins=3"), InputError);
+}
+
 class CompareRuns : public CompareCases {
   protected:
     CompareOptions options() const {

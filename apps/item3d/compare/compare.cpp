@@ -32,6 +32,7 @@ struct CompareCommand : CommonOptions {
     std::vector<std::string> methods;
     std::vector<std::string> priors;
     std::vector<std::string> lights;
+    std::vector<std::string> settings;
     std::string seeds = "0";
     int rows = default_rows;
     int workers = 1;
@@ -118,6 +119,8 @@ void run_compare(const CompareCommand& command) {
             ? cases_of_suite(suite, options.output / "models", options.priors[0].folder,
                              command.meshes.empty() ? Meshes() : suite_meshes(command.meshes))
             : read_compare_cases(command.cases);
+    for (const std::string& option : command.settings)
+        set_option(options.cases, option);
     if (options.methods.empty())
         options.methods = suite.methods.empty() ? possible_methods(options) : suite.methods;
     const nlohmann::json result = compare_methods(options, command_line());
@@ -169,6 +172,11 @@ void add_compare_command(CLI::App& app) {
         ->add_option("--prior", options->priors,
                      "A folder or a name; may be given several times; without it, the embedded "
                      "one")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--with", options->settings,
+                     "NAME=VALUE: an option of item3d edit for all cases, as iterations=100; may "
+                     "be given several times")
         ->allow_extra_args(false);
     command->add_option("--seeds", options->seeds, "0..2, or numbers with commas")
         ->capture_default_str();

@@ -24,6 +24,8 @@ const std::vector<std::string> text_options = {"clip",      "captioner", "inpain
                                                "teacher",   "segmenter", "textures",   "variant",
                                                "precision", "memory",    "device"};
 const std::vector<std::string> other_options = {"picture-size", "allow-missing-textures"};
+/// What a case has beside options of the edit.
+const std::vector<std::string> case_columns = {"name", "model", "from", "to", "expect"};
 /// Settings that the comparison itself decides.
 const std::vector<std::string> own_options = {"method", "seed"};
 
@@ -32,7 +34,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 }
 
 std::vector<std::string> known_columns() {
-    std::vector<std::string> names = {"name", "model", "from", "to", "expect"};
+    std::vector<std::string> names = case_columns;
     for (const Setting& setting : settings_table()) {
         if (setting.flag.empty()) continue;
         const std::string flag = setting.flag.substr(2);
@@ -178,6 +180,17 @@ std::vector<CompareCase> read_compare_cases(const fs::path& file) {
         cases.push_back(
             case_of(entry, file, fmt::format("{}: case {}", subject, cases.size() + 1)));
     return cases;
+}
+
+void set_option(std::vector<CompareCase>& cases, const std::string& option) {
+    const std::size_t split = option.find('=');
+    if (split == std::string::npos || split == 0)
+        throw UsageError("--with " + option + ": expected NAME=VALUE, as iterations=100");
+    const std::string name = column_named(option.substr(0, split), "--with");
+    if (has(case_columns, name))
+        throw UsageError("--with " + option + ": a case's own, which cannot be set for all");
+    for (CompareCase& test : cases)
+        test.options[name] = option.substr(split + 1);
 }
 
 std::vector<std::string> option_arguments(const Json& options) {

@@ -27,6 +27,10 @@ struct CompareCase {
 /// known one).
 std::vector<CompareCase> read_compare_cases(const std::filesystem::path& file);
 
+/// Gives all cases an option of `item3d edit` as "iterations=100", whatever they had. Throws
+/// UsageError for a text without "=", InputError as read_compare_cases().
+void set_option(std::vector<CompareCase>& cases, const std::string& option);
+
 /// What `options` are on the command line: --light noon --region a --region b. A list is given with
 /// commas where the option takes it so, else the option is repeated; allow-missing-textures is a
 /// bare flag where it is true.

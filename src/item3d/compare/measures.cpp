@@ -53,6 +53,11 @@ bool same_geometry(const Geometry& a, const Geometry& b, double radius) {
     return (corners(a) - corners(b)).abs().max().item<double>() <= same_place * radius;
 }
 
+bool has_uv_maps(const Model& model) {
+    return std::any_of(model.primitives.begin(), model.primitives.end(),
+                       [](const Primitive& primitive) { return !primitive.uvs.empty(); });
+}
+
 double drawn_difference(const Surface& points, const Geometry& geometry,
                         const std::vector<Camera>& cameras, const at::Tensor& linear,
                         double radius) {
@@ -123,7 +128,8 @@ Json computed(const CompareRun& run, const CompareCase& test, const PictureWishe
     const double radius = bounding_sphere(before).radius;
     const Geometry was = Geometry::from_model(before), is = Geometry::from_model(after);
     const bool kept = same_geometry(was, is, radius);
-    Json result = {{"geometry_kept", kept}, {"uv_kept", kept && summary.at("new_uv_maps").empty()}};
+    Json result = {{"geometry_kept", kept}};
+    if (has_uv_maps(before)) result["uv_kept"] = kept && summary.at("new_uv_maps").empty();
 
     models.light_before = load_light(summary.at("settings").at("light").get<std::string>());
     const fs::path found_light = run.folder / "light.exr";

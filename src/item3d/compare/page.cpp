@@ -7,6 +7,7 @@
 #include "item3d/report/html.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace item3d {
@@ -65,16 +66,22 @@ std::string table_of(const std::vector<MethodSummary>& summaries, bool names_pri
 }
 
 /// Nothing where there is one method.
-std::string pairs_of(const Rows& rows, bool names_priors) {
+std::string pairs_of(const Rows& rows, bool names_priors, bool seeds) {
     const std::vector<PairedMethod> methods = beside_first(rows);
     if (methods.empty()) return "";
+    const std::string worst = seeds ? "<th>worst seed</th>" : "";
     std::string html =
         "<div class=\"wide narrow\"><table><tr><th>method</th><th>pairs</th><th>CLIP, "
-        "direction</th><th>worst seed</th><th>structure kept</th><th>worst seed</th></tr>\n";
-    const auto cells = [](const PairedDifference& difference) {
-        if (difference.pairs == 0) return std::string("<td>\u2013</td><td>\u2013</td>");
-        return fmt::format("<td>{:+.3f}</td><td>{:+.3f}</td>", difference.mean,
-                           difference.worst_seed);
+        "direction</th>" +
+        worst + "<th>structure kept</th>" + worst + "</tr>\n";
+    const auto cells = [&](const PairedDifference& difference) {
+        const auto cell = [&](double value) {
+            // No minus where nothing but zeros follows.
+            const double shown = std::abs(value) < 0.0005 ? 0.0 : value;
+            return difference.pairs == 0 ? std::string("<td>\u2013</td>")
+                                         : fmt::format("<td>{:+.3f}</td>", shown);
+        };
+        return cell(difference.mean) + (seeds ? cell(difference.worst_seed) : "");
     };
     for (const PairedMethod& one : methods) {
         MethodSummary named;
@@ -197,20 +204,25 @@ std::string compare_page(const Rows& rows, const fs::path& output, const std::st
     if (!rows.empty())
         body += html_section(
             "Beside " + text_of(rows.front(), "method") + ", on the same cases and seeds",
-            pairs_of(rows, priors));
+            pairs_of(rows, priors, seeds));
     for (const CaseRows& one : cases) {
         std::vector<std::string> figures;
         const auto ended = std::find_if(one.rows.begin(), one.rows.end(),
                                         [](const Json& row) { return !row.contains("error"); });
-        if (ended != one.rows.end())
-            figures.push_back(run_figure(*ended, "pictures_before", output, "",
-                                         "before: " + html_escape(text_of(*ended, "from"))));
+        if (ended != one.rows.end()) {
+            std::string caption = "before: " + html_escape(text_of(*ended, "from"));
+            const Json& pictures = ended->at("pictures_before");
+            for (const Json& picture : pictures)
+                if (pictures.size() > 1)
+                    caption += " \u00b7 " + html_escape(text_of(picture, "caption"));
+            figures.push_back(run_figure(*ended, "pictures_before", output, "", caption));
+        }
         for (const Json& row : one.rows) {
             const std::string name = name_of(row, priors, seeds);
             figures.push_back(row.contains("error") ? failure(row, name)
                                                     : result_figure(row, output, name));
         }
-        body += html_section(one.name, html_gallery(figures, 330));
+        body += html_section(one.name, html_gallery(figures, figures.size() > 4 ? 250 : 330));
     }
     body += "<footer><p><code>" + html_escape(command) + "</code></p><p>item3d " +
             html_escape(version()) + "</p></footer>\n";

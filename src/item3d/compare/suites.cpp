@@ -23,10 +23,8 @@ CompareMethod own_method(const std::string& name, Json options) {
 
 /// Guidance alone, without what the edit adds to it.
 CompareMethod bare_guidance(const std::string& name, const Json& options, double cost, int rows) {
-    Json all = {{"iterations", std::max(1L, std::lround(rows / cost))},
-                {"settle", 0},
-                {"detail", "off"},
-                {"texture-size", 256}};
+    Json all = {
+        {"iterations", std::max(1L, std::lround(rows / cost))}, {"settle", 0}, {"detail", "off"}};
     all.update(options);
     return {name, all};
 }
@@ -97,9 +95,9 @@ std::vector<CompareCase> default_cases(const StartModels& models) {
 }
 
 /// Colours, materials and stripes of each mesh; thin: a third of the colours, half of the
-/// materials.
-std::vector<CompareCase> cases_of_meshes(const StartModels& models, const Meshes& meshes,
-                                         bool thin) {
+/// materials; small_textures: 256 texels an edge, of stripes 512.
+std::vector<CompareCase> cases_of_meshes(const StartModels& models, const Meshes& meshes, bool thin,
+                                         bool small_textures) {
     std::vector<std::string> nouns;
     for (const auto& [noun, file] : meshes)
         nouns.push_back(noun);
@@ -107,8 +105,10 @@ std::vector<CompareCase> cases_of_meshes(const StartModels& models, const Meshes
     std::map<std::string, int> seen;
     for (const SuiteCase& test : suite_cases(nouns)) {
         const int every = test.group == "colors" ? 3 : test.group == "materials" ? 2 : 1;
-        if (seen[test.group]++ % every == 0 || !thin)
-            cases.push_back(models.start(test, meshes.at(test.mesh)));
+        if (seen[test.group]++ % every != 0 && thin) continue;
+        cases.push_back(models.start(test, meshes.at(test.mesh)));
+        if (small_textures)
+            cases.back().options["texture-size"] = test.group == "stripes" ? 512 : 256;
     }
     return cases;
 }
@@ -171,7 +171,7 @@ std::vector<CompareCase> cases_of_suite(const CompareSuite& suite, const fs::pat
         if (used.empty())
             for (const char* noun : {"mug", "rabbit", "teapot"})
                 used[noun] = models.mesh(noun);
-        return cases_of_meshes(models, used, suite.name != "quality");
+        return cases_of_meshes(models, used, suite.name != "quality", suite.name == "guidance");
     }
     if (suite.name == "adjustment")
         return {models.plain("duck", "yellow", "red", "red"),
