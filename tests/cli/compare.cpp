@@ -29,7 +29,7 @@ TEST_F(CompareProgram, OneFailureDoesNotEndTheRest) {
     ASSERT_EQ(first.code, 0) << first.error;
     EXPECT_NE(first.out.find("\"failed\": 1"), std::string::npos) << first.out;
     EXPECT_NE(first.out.find("follows no instructions"), std::string::npos) << first.out;
-    for (const char* key : {"detail_kept", "geometry_kept", "uv_kept", "light_baked"})
+    for (const char* key : {"detail_kept", "geometry_kept", "view_difference", "light_baked"})
         EXPECT_NE(first.out.find(key), std::string::npos) << key;
     for (const char* file : {"table.csv", "table.tex", "index.html"})
         EXPECT_TRUE(fs::exists(folder_ / "out" / file)) << file;
@@ -46,6 +46,7 @@ TEST_F(CompareProgram, WhatCannotBeComparedIsNamed) {
     expect_error(compare("typo.csv"), 3, "did you mean 'light'");
     expect_error(compare("missing.json"), 3, "missing.json");
     expect_error(compare("cases.json", "--methods best"), 2, "there is no method 'best'");
+    expect_error(compare("cases.json", "--suite best"), 2, "there is no suite 'best'");
     expect_error(compare("cases.json", "--seeds 3..1"), 2, "--seeds 3..1");
 }
 

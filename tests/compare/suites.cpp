@@ -61,7 +61,7 @@ TEST_F(CompareSuites, GuidanceSharesTheRows) {
 
 TEST_F(CompareSuites, CasesStartFromModelsThatAreThere) {
     for (const char* name : {"adjustment", "direction"}) {
-        const auto cases = cases_of_suite(suite(name), folder_, prior_, {});
+        const auto cases = cases_of_suite(suite(name), folder_, {});
         ASSERT_FALSE(cases.empty());
         std::set<std::string> names;
         for (const CompareCase& test : cases) {

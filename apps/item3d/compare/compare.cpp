@@ -5,6 +5,7 @@
 #include "apps/item3d/compare/commands.h"
 #include "item3d/baselines/methods.h"
 #include "item3d/compare/suites.h"
+#include "item3d/compare/verdict.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -64,9 +65,9 @@ CompareSuite suite_named(const CompareCommand& command) {
     std::string list;
     for (const CompareSuite& suite : compare_suites(command.rows)) {
         if (suite.name == command.suite) return suite;
-        list += fmt::format("\n  {:10}  {}", suite.name, suite.description);
+        list += (list.empty() ? "" : ", ") + suite.name;
     }
-    throw UsageError("--suite: there is no suite '" + command.suite + "'; there are" + list);
+    throw UsageError("--suite: there is no suite '" + command.suite + "': there are " + list);
 }
 
 /// Of the suite's, or of all that there are where it has none of its own.
@@ -114,11 +115,14 @@ void run_compare(const CompareCommand& command) {
                             ": is not there; build it (make) or install item3d again");
     options.pictures = suite.pictures;
     if (!command.lights.empty()) options.pictures.lights = command.lights;
-    options.cases =
-        command.cases.empty()
-            ? cases_of_suite(suite, options.output / "models", options.priors[0].folder,
-                             command.meshes.empty() ? Meshes() : suite_meshes(command.meshes))
-            : read_compare_cases(command.cases);
+    if (command.cases.empty()) {
+        options.cases =
+            cases_of_suite(suite, options.output / "models",
+                           command.meshes.empty() ? Meshes() : suite_meshes(command.meshes));
+    } else {
+        options.cases = read_compare_cases(command.cases);
+        check_expectations(options);
+    }
     for (const std::string& option : command.settings)
         set_option(options.cases, option);
     if (options.methods.empty())

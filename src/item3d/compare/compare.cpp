@@ -4,7 +4,6 @@
 #include "item3d/compare/page.h"
 #include "item3d/compare/run_pool.h"
 #include "item3d/compare/table.h"
-#include "item3d/compare/verdict.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -14,7 +13,6 @@
 namespace item3d {
 
 nlohmann::json compare_methods(const CompareOptions& options, const std::string& command) {
-    check_expectations(options);
     for (const std::string& light : options.pictures.lights)
         load_light(light);  // refused before hours are spent
     make_output_folder(options.output);

@@ -25,6 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* checkpoint_name = "checkpoint.safetensors";
 constexpr double first_guess_bytes = 2e9;
+constexpr auto growing_time = std::chrono::seconds(30);
 constexpr auto nap = std::chrono::milliseconds(100);
 constexpr auto longest_farewell = std::chrono::seconds(60);
 
@@ -105,7 +106,11 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
     const auto may_begin = [&] {
         if (waiting.empty() || running.size() >= static_cast<std::size_t>(options.workers))
             return false;
-        return running.empty() || available_bytes() > largest;
+        // Those that began lately have not taken all of their memory yet.
+        const auto young = std::count_if(running.begin(), running.end(), [](const auto& edit) {
+            return Clock::now() - edit.begin < growing_time;
+        });
+        return running.empty() || available_bytes() > largest * static_cast<double>(1 + young);
     };
     while (!waiting.empty() || !running.empty()) {
         if (interrupted()) {

@@ -2,6 +2,7 @@
 
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/hub/find_prior.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"
 #include "item3d/networks/vocabulary.h"
@@ -51,8 +52,8 @@ std::vector<CompareMethod> guidance_contenders(int rows) {
 /// Writes what cases start from, each model once.
 class StartModels {
   public:
-    StartModels(const fs::path& folder, const fs::path& prior)
-        : folder_(folder), vocabulary_(PriorVocabulary::load(prior)) {}
+    explicit StartModels(const fs::path& folder)
+        : folder_(folder), vocabulary_(PriorVocabulary::load(find_prior("embedded"))) {}
 
     /// The demo's mug, or a shape that the prior never saw, without materials.
     fs::path mesh(const std::string& noun) const {
@@ -163,9 +164,9 @@ std::vector<CompareSuite> compare_suites(int rows) {
 }
 
 std::vector<CompareCase> cases_of_suite(const CompareSuite& suite, const fs::path& folder,
-                                        const fs::path& prior, const Meshes& meshes) {
+                                        const Meshes& meshes) {
     make_output_folder(folder);
-    const StartModels models(folder, prior);
+    const StartModels models(folder);
     if (suite.takes_meshes) {
         Meshes used = meshes;
         if (used.empty())

@@ -22,12 +22,11 @@ struct CompareSuite {
 /// forward, that each edit of "guidance" gets.
 std::vector<CompareSuite> compare_suites(int rows);
 
-/// The cases of a suite. Its models, in plain colours of the prior's or with stripes, are written
-/// into `folder`. meshes: by noun; empty: the demo's mug and shapes that the prior never saw.
-/// Throws InputError where the prior has no colours of these names.
+/// The cases of a suite. Its models, in plain colours as the embedded prior knows them or with
+/// stripes, are written into `folder`. meshes: by noun; empty: the demo's mug and shapes that the
+/// prior never saw. Throws InputError where a mesh cannot be read, or has no UVs for stripes.
 std::vector<CompareCase> cases_of_suite(const CompareSuite& suite,
                                         const std::filesystem::path& folder,
-                                        const std::filesystem::path& prior,
                                         const std::map<std::string, std::filesystem::path>& meshes);
 
 }  // namespace item3d
