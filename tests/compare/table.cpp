@@ -71,6 +71,23 @@ TEST(CompareTable, HasTheColumnsThatHaveValues) {
     EXPECT_EQ(summarize(rows)[0].right, 0.5);
 }
 
+TEST(CompareTable, WhatLooksTheSameIsAsGood) {
+    const auto best = [](const std::vector<double>& directions) {
+        std::vector<json> rows;
+        for (std::size_t i = 0; i < directions.size(); ++i)
+            rows.push_back(compared("one", "m" + std::to_string(i), 0, directions[i]));
+        const auto all = summarize(rows);
+        const TableColumn column = table_columns(all).front();
+        std::vector<bool> marks;
+        for (const MethodSummary& one : all)
+            marks.push_back(is_best(column, one, all));
+        return marks;
+    };
+    EXPECT_EQ(best({0.3301, 0.3304, 0.2}), (std::vector<bool>{true, true, false}));
+    EXPECT_EQ(best({0.5, 0.5}), (std::vector<bool>{false, false}));
+    EXPECT_EQ(best({0.5}), (std::vector<bool>{false}));
+}
+
 TEST(ComparePairs, AreOfTheSameCaseAndSeed) {
     std::vector<json> rows;
     // The second method is 0.2 and 0.4 better with seed 0, 0.1 worse with seed 1; what only one of

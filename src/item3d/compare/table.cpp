@@ -138,12 +138,17 @@ std::string cell_text(const TableColumn& column, const MethodSummary& summary) {
 
 bool is_best(const TableColumn& column, const MethodSummary& summary,
              const std::vector<MethodSummary>& all) {
-    const auto value = summary.*column.value;
-    if (!value || column.better == 0 || all.size() < 2) return false;
-    return std::all_of(all.begin(), all.end(), [&](const MethodSummary& other) {
-        const auto theirs = other.*column.value;
-        return !theirs || column.better * (*value - *theirs) >= 0;
-    });
+    if (column.better == 0 || !(summary.*column.value)) return false;
+    // As they are printed: what looks the same is as good.
+    const auto shown = [&](const MethodSummary& one) { return std::stod(cell_text(column, one)); };
+    bool beats_one = false;
+    for (const MethodSummary& other : all) {
+        if (!(other.*column.value)) continue;
+        const double more = column.better * (shown(summary) - shown(other));
+        if (more < 0) return false;
+        beats_one |= more > 0;
+    }
+    return beats_one;
 }
 
 std::string table_csv(const Rows& rows) {

@@ -41,7 +41,7 @@ struct TableColumn {
 std::vector<TableColumn> table_columns(const std::vector<MethodSummary>& summaries);
 /// The number as it is printed, empty where there is none.
 std::string cell_text(const TableColumn& column, const MethodSummary& summary);
-/// Whether the method is better than, or as good as, all others, where there are others.
+/// Whether the method is better than one other and, as printed, as good as all.
 bool is_best(const TableColumn& column, const MethodSummary& summary,
              const std::vector<MethodSummary>& all);
 
