@@ -35,8 +35,8 @@ class SuiteResume : public testing::EditTest {
                          json{{"vocabulary", {{"colors", colors}}}, {"defaults", defaults}}.dump());
     }
 
-    const SuiteEdit to_blue_{{"colors", "cube", "red", "blue", "blue"}};
-    const SuiteEdit to_red_{{"colors", "cube", "blue", "red", "red"}};
+    const SuiteCase to_blue_{"colors", "cube", "red", "blue", "blue"};
+    const SuiteCase to_red_{"colors", "cube", "blue", "red", "red"};
     SuiteOptions options_;
 };
 

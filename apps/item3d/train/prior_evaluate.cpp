@@ -46,10 +46,8 @@ nlohmann::json run_edits(const EvaluateOptions& options) {
     std::vector<std::string> nouns;
     for (const auto& [noun, path] : suite.meshes)
         nouns.push_back(noun);
-    std::vector<SuiteEdit> edits;
-    for (const SuiteCase& test : prior_suite_cases(nouns, PriorVocabulary::load(suite.prior)))
-        edits.push_back({test});
-    return run_edit_suite(edits, suite).at("totals");
+    const auto cases = prior_suite_cases(nouns, PriorVocabulary::load(suite.prior));
+    return run_edit_suite(cases, suite).at("totals");
 }
 
 /// The segmenter alone: OUTPUT/parts.json, and the parts that it finds, the worst first.

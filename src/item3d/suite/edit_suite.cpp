@@ -35,7 +35,7 @@ struct Judge {
     std::string weights;         ///< checksum of what the edits are guided by
 };
 
-EditRequest request_of(const SuiteEdit& edit, const SuiteOptions& options, const fs::path& folder,
+EditRequest request_of(const SuiteCase& test, const SuiteOptions& options, const fs::path& folder,
                        bool resume) {
     EditRequest request;
     request.model = folder / "source.glb";
@@ -43,11 +43,9 @@ EditRequest request_of(const SuiteEdit& edit, const SuiteOptions& options, const
     request.output = folder;
     request.resume = resume;
     request.picture_pixels = options.picture_pixels;
-    json overrides = {{"from", prompt_of(edit.test.source, edit.test.mesh)},
-                      {"to", prompt_of(edit.test.target, edit.test.mesh)},
-                      {"seed", options.seed}};
-    if (edit.method == "sds") overrides["guidance"] = "sds";
-    if (edit.method == "off") overrides["adjust"] = "off";
+    const json overrides = {{"from", prompt_of(test.source, test.mesh)},
+                            {"to", prompt_of(test.target, test.mesh)},
+                            {"seed", options.seed}};
     request.plan = resolve_plan(options.prior, overrides);
     request.command = fmt::format("item3d edit {} --from '{}' --to '{}'", request.model.string(),
                                   request.plan.from, request.plan.to);
@@ -85,10 +83,9 @@ json verdict_of(const SuiteCase& test, const json& summary, const EditRequest& r
     return {{"found", found}, {"right", found == test.word}};
 }
 
-json run_edit(const SuiteEdit& edit, const SuiteOptions& options, const Judge& judge,
+json run_edit(const SuiteCase& test, const SuiteOptions& options, const Judge& judge,
               const fs::path& folder, bool resume) {
-    const SuiteCase& test = edit.test;
-    const EditRequest request = request_of(edit, options, folder, resume);
+    const EditRequest request = request_of(test, options, folder, resume);
     save_model(request.model,
                source_model(test, load_model(options.meshes.at(test.mesh)), judge.vocabulary));
     const json summary = edit_model(request);
@@ -97,7 +94,6 @@ json run_edit(const SuiteEdit& edit, const SuiteOptions& options, const Judge& j
                    {"mesh", test.mesh},
                    {"from", summary["from"]},
                    {"to", summary["to"]},
-                   {"method", edit.method},
                    {"scores", summary["scores"]},
                    {"seconds", summary["seconds"]["total"]},
                    {"peak_memory_bytes", summary["peak_memory_bytes"]}});
@@ -107,12 +103,10 @@ json run_edit(const SuiteEdit& edit, const SuiteOptions& options, const Judge& j
 constexpr const char* verdict_name = "verdict.json";
 
 /// What a verdict depends on.
-json asked(const SuiteEdit& edit, const SuiteOptions& options, const Judge& judge) {
-    const SuiteCase& test = edit.test;
+json asked(const SuiteCase& test, const SuiteOptions& options, const Judge& judge) {
     return {{"model", options.meshes.at(test.mesh).string()},
             {"from", prompt_of(test.source, test.mesh)},
             {"to", prompt_of(test.target, test.mesh)},
-            {"method", edit.method},
             {"weights", judge.weights},
             {"seed", options.seed}};
 }
@@ -126,9 +120,9 @@ json verdict_before(const fs::path& folder) {
     return readable ? verdict : json::object();
 }
 
-json run_or_keep(const SuiteEdit& edit, const SuiteOptions& options, const Judge& judge,
+json run_or_keep(const SuiteCase& test, const SuiteOptions& options, const Judge& judge,
                  const fs::path& folder) {
-    const json question = asked(edit, options, judge);
+    const json question = asked(test, options, judge);
     const json before = options.resume ? verdict_before(folder) : json::object();
     const json asked_before = before.value("asked", json::object());
     if (asked_before == question && before.contains("result")) return before["result"];
@@ -141,20 +135,16 @@ json run_or_keep(const SuiteEdit& edit, const SuiteOptions& options, const Judge
         write_atomically(folder / verdict_name, verdict.dump(2) + "\n");
     };
     if (!resume) write({{"asked", question}});
-    const json result = run_edit(edit, options, judge, folder, resume);
+    const json result = run_edit(test, options, judge, folder, resume);
     write({{"asked", question}, {"result", result}});
     return result;
 }
 
 std::string verdict_text(const json& result) {
-    std::string text =
-        result["method"] == "learned" ? "" : result["method"].get<std::string>() + ", ";
     if (result.contains("right"))
-        text += fmt::format("{}: {}", result["right"].get<bool>() ? "right" : "wrong",
-                            result["found"].get<std::string>());
-    else
-        text += fmt::format("detail kept {:.2f}", result["scores"]["detail_kept"].get<double>());
-    return text;
+        return fmt::format("{}: {}", result["right"].get<bool>() ? "right" : "wrong",
+                           result["found"].get<std::string>());
+    return fmt::format("detail kept {:.2f}", result["scores"]["detail_kept"].get<double>());
 }
 
 /// Failures first.
@@ -214,29 +204,29 @@ json suite_totals(const std::vector<json>& results) {
     return {{"groups", groups}, {"edits", results.size()}, {"peak_memory_bytes", memory}};
 }
 
-json run_edit_suite(const std::vector<SuiteEdit>& edits, const SuiteOptions& options) {
+json run_edit_suite(const std::vector<SuiteCase>& cases, const SuiteOptions& options) {
     Judge judge{PriorVocabulary::load(options.prior), {}, nullptr, hash_of_weights(options.prior)};
     judge.colors = named_colors(judge.vocabulary);
     const fs::path clip = find_in_prior(options.prior, "clip");
     if (!clip.empty()) judge.clip = std::make_unique<Clip>(Clip::load(clip));
     std::vector<std::string> names;
-    for (const SuiteEdit& edit : edits) {
-        names.push_back(fmt::format("{:02}-{}-{}", names.size(), edit.test.group, edit.test.mesh));
+    for (const SuiteCase& test : cases) {
+        names.push_back(fmt::format("{:02}-{}-{}", names.size(), test.group, test.mesh));
         if (!options.resume) fs::remove(options.output / names.back() / verdict_name);
     }
     std::vector<json> results;
-    for (const SuiteEdit& edit : edits) {
+    for (const SuiteCase& test : cases) {
         const std::string& name = names[results.size()];
         json result;
         try {
-            result = run_or_keep(edit, options, judge, options.output / name);
+            result = run_or_keep(test, options, judge, options.output / name);
         } catch (const Interrupted&) {
             throw Interrupted(
                 fmt::format("{} of {} edits are done; the same command with --resume goes on",
-                            results.size(), edits.size()));
+                            results.size(), cases.size()));
         }
         result["folder"] = name;
-        note(fmt::format("{} of {}: {} -> {}: {}", results.size() + 1, edits.size(),
+        note(fmt::format("{} of {}: {} -> {}: {}", results.size() + 1, cases.size(),
                          result["from"].get<std::string>(), result["to"].get<std::string>(),
                          verdict_text(result)));
         results.push_back(result);

@@ -13,12 +13,6 @@
 
 namespace item3d {
 
-/// A case and how it is edited: "learned", "off" (the direction is not adjusted) or "sds".
-struct SuiteEdit {
-    SuiteCase test;
-    std::string method = "learned";
-};
-
 struct SuiteOptions {
     std::filesystem::path output;
     std::filesystem::path prior;
@@ -34,7 +28,7 @@ struct SuiteOptions {
 /// when the surface's mean metallic is more than 0.6; a material or pattern when the prior's own
 /// CLIP, where it has one, sees it among all of its materials and patterns. Stripes are judged by
 /// the detail that is kept. Throws what an edit throws.
-nlohmann::json run_edit_suite(const std::vector<SuiteEdit>& edits, const SuiteOptions& options);
+nlohmann::json run_edit_suite(const std::vector<SuiteCase>& cases, const SuiteOptions& options);
 
 /// {group: {"edits", "right"?, "kept", "seconds", "seconds_most"}, "edits", "peak_memory_bytes"} of
 /// the results. Means, but for the last two.

@@ -7,14 +7,19 @@
 
 namespace item3d {
 
+std::filesystem::path save_held_out_mesh(const std::filesystem::path& folder,
+                                         const std::string& noun) {
+    make_output_folder(folder);
+    const std::filesystem::path file = folder / (noun + ".glb");
+    save_model(file, shape_model(noun, training_variants));
+    return file;
+}
+
 std::map<std::string, std::filesystem::path> save_held_out_meshes(
     const std::filesystem::path& folder) {
-    make_output_folder(folder);
     std::map<std::string, std::filesystem::path> files;
-    for (const std::string noun : {"airplane", "duck", "rabbit", "sofa", "teapot", "truck"}) {
-        files[noun] = folder / (noun + ".glb");
-        save_model(files[noun], shape_model(noun, training_variants));
-    }
+    for (const std::string noun : {"airplane", "duck", "rabbit", "sofa", "teapot", "truck"})
+        files[noun] = save_held_out_mesh(folder, noun);
     return files;
 }
 

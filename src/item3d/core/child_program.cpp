@@ -1,4 +1,4 @@
-#include "item3d/reconstruct/dataset/child_program.h"
+#include "item3d/core/child_program.h"
 
 #include "item3d/core/error.h"
 
@@ -65,6 +65,10 @@ ChildProgram::~ChildProgram() {
     ::kill(-id_, SIGKILL);
     while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
     }
+}
+
+void ChildProgram::ask_to_end() {
+    if (!status_) ::kill(-id_, SIGTERM);
 }
 
 std::optional<int> ChildProgram::status() {

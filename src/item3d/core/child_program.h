@@ -26,6 +26,8 @@ class ChildProgram {
     ChildProgram(const ChildProgram&) = delete;
     ChildProgram& operator=(const ChildProgram&) = delete;
 
+    /// Asks the group to end (SIGTERM), so that it can keep what it has; returns at once.
+    void ask_to_end();
     /// The status of waitpid() once it has ended; before, nothing.
     std::optional<int> status();
 

@@ -1,0 +1,199 @@
+// item3d compare: a list of edits with every method, and the paper's table of them.
+#include "item3d/compare/compare.h"
+
+#include "apps/item3d/command.h"
+#include "apps/item3d/compare/commands.h"
+#include "item3d/baselines/methods.h"
+#include "item3d/compare/suites.h"
+#include "item3d/compare/verdict.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/suite/models.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+using Meshes = std::map<std::string, std::filesystem::path>;
+
+constexpr int default_rows = 700;
+
+struct CompareCommand : CommonOptions {
+    std::filesystem::path cases;  ///< empty: those of the suite
+    std::filesystem::path output;
+    std::string suite = "methods";
+    std::vector<std::string> meshes;
+    std::vector<std::string> methods;
+    std::vector<std::string> priors;
+    std::vector<std::string> lights;
+    std::vector<std::string> settings;
+    std::string seeds = "0";
+    int rows = default_rows;
+    int workers = 1;
+};
+
+/// Whether a case brings the weights that a method needs beside the prior.
+bool brings(const std::vector<CompareCase>& cases, const char* option) {
+    return std::any_of(cases.begin(), cases.end(),
+                       [&](const CompareCase& one) { return one.options.contains(option); });
+}
+
+/// All that any of the priors, or a case, has the weights for.
+std::vector<CompareMethod> possible_methods(const CompareOptions& options) {
+    std::vector<CompareMethod> possible;
+    for (const std::string& method : edit_method_names()) {
+        const bool by_case = (method == "in2n" && brings(options.cases, "instruct")) ||
+                             (method == "clip" &&
+                              (brings(options.cases, "clip") || brings(options.cases, "teacher")));
+        const bool by_prior = std::any_of(
+            options.priors.begin(), options.priors.end(), [&](const CompareOptions::Prior& prior) {
+                return !methods_of_prior(prior.folder, {method}).empty();
+            });
+        if (by_case || by_prior) possible.push_back(plain_method(method));
+    }
+    return possible;
+}
+
+CompareSuite suite_named(const CompareCommand& command) {
+    std::string list;
+    for (const CompareSuite& suite : compare_suites(command.rows)) {
+        if (suite.name == command.suite) return suite;
+        list += (list.empty() ? "" : ", ") + suite.name;
+    }
+    throw UsageError("--suite: there is no suite '" + command.suite + "': there are " + list);
+}
+
+/// Of the suite's, or of all that there are where it has none of its own.
+std::vector<CompareMethod> chosen_methods(const std::vector<std::string>& names,
+                                          const CompareSuite& suite) {
+    std::vector<CompareMethod> known = suite.methods;
+    if (known.empty())
+        for (const std::string& name : edit_method_names())
+            known.push_back(plain_method(name));
+    std::vector<CompareMethod> chosen;
+    for (const std::string& name : names) {
+        const auto of_name = [&](const CompareMethod& method) { return method.name == name; };
+        const auto found = std::find_if(known.begin(), known.end(), of_name);
+        if (found == known.end()) {
+            std::string list;
+            for (const CompareMethod& method : known)
+                list += (list.empty() ? "" : ", ") + method.name;
+            throw UsageError(
+                fmt::format("--methods: there is no method '{}': there are {}", name, list));
+        }
+        if (std::any_of(chosen.begin(), chosen.end(), of_name))
+            throw UsageError("--methods: '" + name + "' is there twice");
+        chosen.push_back(*found);
+    }
+    return chosen;
+}
+
+void run_compare(const CompareCommand& command) {
+    const CompareSuite suite = suite_named(command);
+    if (!command.meshes.empty() && (!suite.takes_meshes || !command.cases.empty()))
+        throw UsageError("--mesh goes with the cases of --suite quality, direction and guidance");
+    CompareOptions options;
+    options.methods = chosen_methods(command.methods, suite);
+    options.seeds = parse_seeds(command.seeds);
+    options.output = std::filesystem::absolute(command.output);
+    options.workers = command.workers;
+    options.threads = command.threads;
+    options.program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "item3d-edit";
+    std::vector<std::string> names = command.priors;
+    if (names.empty()) names.emplace_back("embedded");
+    for (const std::string& name : names)
+        options.priors.push_back({name, find_prior(name)});
+    if (!std::filesystem::exists(options.program))
+        throw ResourceError(options.program.string() +
+                            ": is not there; build it (make) or install item3d again");
+    options.pictures = suite.pictures;
+    if (!command.lights.empty()) options.pictures.lights = command.lights;
+    if (command.cases.empty()) {
+        options.cases =
+            cases_of_suite(suite, options.output / "models",
+                           command.meshes.empty() ? Meshes() : suite_meshes(command.meshes));
+    } else {
+        options.cases = read_compare_cases(command.cases);
+        check_expectations(options);
+    }
+    for (const std::string& option : command.settings)
+        set_option(options.cases, option);
+    if (options.methods.empty())
+        options.methods = suite.methods.empty() ? possible_methods(options) : suite.methods;
+    const nlohmann::json result = compare_methods(options, command_line());
+    if (command.json)
+        print_json(result);
+    else
+        fmt::print("{}\n", (command.output / "index.html").string());
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app) {
+    auto options = std::make_shared<CompareCommand>();
+    CLI::App* command = add_command(app, "compare", *options);
+    command->add_option("CASES", options->cases,
+                        "JSON list or CSV file of cases: model, from, to, instruction and other "
+                        "options of edit; without it, those of the suite");
+    command
+        ->add_option("-o,--output", options->output,
+                     "Folder for the runs, table.csv, table.tex and index.html; what is there "
+                     "already is kept")
+        ->required();
+    command
+        ->add_option("--suite", options->suite,
+                     "What is compared: methods, quality, direction, adjustment, guidance, "
+                     "relighting, lights or 2d; it brings methods, cases and pictures")
+        ->capture_default_str();
+    command
+        ->add_option("--mesh", options->meshes,
+                     "NOUN=FILE for the cases of quality, direction and guidance, beside the "
+                     "demo's mug; may be given several times")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--rows", options->rows,
+                     "Rows of the U-Net, forward, that each edit of --suite guidance gets")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    command
+        ->add_option("--lights", options->lights,
+                     "Presets or files, with commas: each result is drawn in these too")
+        ->delimiter(',');
+    command
+        ->add_option(
+            "--methods", options->methods,
+            "Of item3d edit --method help, or of the suite's, with commas; without it, all "
+            "of the suite's, or all that the prior can run")
+        ->delimiter(',');
+    command
+        ->add_option("--prior", options->priors,
+                     "A folder or a name; may be given several times; without it, the embedded "
+                     "one")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--with", options->settings,
+                     "NAME=VALUE: an option of item3d edit for all cases, as iterations=100; may "
+                     "be given several times")
+        ->allow_extra_args(false);
+    command->add_option("--seeds", options->seeds, "0..2, or numbers with commas")
+        ->capture_default_str();
+    command
+        ->add_option("--workers", options->workers,
+                     "Edits at a time, as far as memory allows; they share the cores, so that "
+                     "seconds are those of a busy machine")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    command->callback([options] {
+        start_command(*options);
+        run_compare(*options);
+    });
+}
+
+}  // namespace item3d

@@ -1,0 +1,218 @@
+#include "item3d/compare/cases.h"
+
+#include "item3d/compare/csv.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/edit/settings_table.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* case_example =
+    R"(as [{"model": "mug.glb", "from": "a red mug", "to": "a golden mug"}])";
+
+/// Options of `item3d edit` that are no settings and that a case may have: one text each, textures
+/// a list of them too.
+const std::vector<std::string> text_options = {"clip",      "captioner", "inpainting", "instruct",
+                                               "teacher",   "segmenter", "textures",   "variant",
+                                               "precision", "memory",    "device"};
+const std::vector<std::string> other_options = {"picture-size", "allow-missing-textures"};
+/// What a case has beside options of the edit.
+const std::vector<std::string> case_columns = {"name", "model", "from", "to", "expect"};
+/// Settings that the comparison itself decides.
+const std::vector<std::string> own_options = {"method", "seed"};
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<std::string> known_columns() {
+    std::vector<std::string> names = case_columns;
+    for (const Setting& setting : settings_table()) {
+        if (setting.flag.empty()) continue;
+        const std::string flag = setting.flag.substr(2);
+        if (!has(own_options, flag) && !has(names, flag)) names.push_back(flag);
+    }
+    for (const auto& options : {text_options, other_options})
+        for (const std::string& option : options)
+            if (!has(names, option)) names.push_back(option);
+    return names;
+}
+
+/// Insertions, deletions and replacements between two words (Levenshtein).
+std::size_t distance(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t corner = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = corner + (a[i - 1] == b[j - 1] ? 0 : 1);
+            corner = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+        }
+    }
+    return row.back();
+}
+
+/// The column's name as the program has it. Throws InputError.
+std::string column_named(std::string name, const std::string& subject) {
+    std::replace(name.begin(), name.end(), '_', '-');
+    static const std::vector<std::string> known = known_columns();
+    if (has(known, name)) return name;
+    if (has(own_options, name))
+        throw InputError(subject, "'" + name + "' is the comparison's own",
+                         "give --" + name + "s to item3d compare");
+    const auto nearest = std::min_element(known.begin(), known.end(),
+                                          [&](const std::string& a, const std::string& b) {
+                                              return distance(name, a) < distance(name, b);
+                                          });
+    throw InputError(subject, "there is no column '" + name + "'",
+                     "did you mean '" + *nearest +
+                         "'? Columns are model, from, to, instruction and what item3d edit --help "
+                         "lists");
+}
+
+bool is_empty(const Json& value) {
+    return value.is_null() || (value.is_string() && value.get<std::string>().find_first_not_of(
+                                                        " \t") == std::string::npos);
+}
+
+CompareCase case_of(const Json& entry, const fs::path& file, const std::string& subject) {
+    if (!entry.is_object()) throw InputError(subject, "an object was expected", case_example);
+    CompareCase result;
+    const auto text = [&](const std::string& column, const Json& value) {
+        if (!value.is_string())
+            throw InputError(subject, column + " cannot be " + value.dump(), "a text is expected");
+        return value.get<std::string>();
+    };
+    const auto check_texts = [&](const std::string& column, const Json& value) {
+        if (column != "textures" || !value.is_array()) text(column, value);
+        if (!value.is_array()) return;
+        for (const Json& one : value)
+            text(column, one);
+    };
+    for (const auto& [given, value] : entry.items()) {
+        const std::string column = column_named(given, subject);
+        if (is_empty(value)) continue;
+        if (value.is_object())
+            throw InputError(subject, column + " cannot be " + value.dump(), case_example);
+        if (column == "name")
+            result.name = text(column, value);
+        else if (column == "model")
+            result.model = file.parent_path() / text(column, value);
+        else if (column == "from")
+            result.from = text(column, value);
+        else if (column == "to")
+            result.to = text(column, value);
+        else if (column == "expect")
+            result.expect = text(column, value);
+        else {
+            if (has(text_options, column)) check_texts(column, value);
+            result.options[column] = value;
+        }
+    }
+    if (result.model.empty()) throw InputError(subject, "names no model", case_example);
+    if (result.from.empty() || result.to.empty())
+        throw InputError(subject,
+                         "has no '" + std::string(result.from.empty() ? "from" : "to") + "'",
+                         case_example);
+    if (!fs::is_regular_file(result.model))
+        throw InputError(subject, "there is no model " + result.model.string(),
+                         "paths are from the folder of " + file.filename().string());
+    if (result.name.empty()) result.name = result.model.stem().string() + ": " + result.to;
+    return result;
+}
+
+Json entries_of_csv(const CsvRows& rows, const std::string& subject) {
+    Json entries = Json::array();
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        if (rows[i].size() > rows[0].size())
+            throw InputError(
+                fmt::format("{}: case {}", subject, i),
+                fmt::format("has {} fields, the header {}", rows[i].size(), rows[0].size()),
+                "quote what has a comma");
+        Json entry = Json::object();
+        for (std::size_t column = 0; column < rows[i].size(); ++column)
+            entry[rows[0][column]] = rows[i][column];
+        entries.push_back(entry);
+    }
+    return entries;
+}
+
+std::string plain(const Json& value) {
+    return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// Whether several values stand behind one option, separated by commas.
+bool takes_commas(const std::string& option) {
+    for (const Setting& setting : settings_table())
+        if (setting.flag == "--" + option)
+            return setting.type == SettingType::numbers || setting.type == SettingType::texts;
+    return false;
+}
+
+}  // namespace
+
+std::vector<CompareCase> read_compare_cases(const fs::path& file) {
+    const std::string text = read_text(file);
+    const std::string subject = file.string();
+    Json entries;
+    if (file.extension() == ".csv") {
+        entries = entries_of_csv(parse_csv(text, subject), subject);
+    } else {
+        entries = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+        if (entries.is_discarded())
+            throw InputError(subject, "is no JSON",
+                             "a list of cases is expected, or a file that ends in .csv");
+    }
+    if (!entries.is_array() || entries.empty())
+        throw InputError(subject, "a list of cases was expected", case_example);
+    std::vector<CompareCase> cases;
+    for (const Json& entry : entries)
+        cases.push_back(
+            case_of(entry, file, fmt::format("{}: case {}", subject, cases.size() + 1)));
+    return cases;
+}
+
+void set_option(std::vector<CompareCase>& cases, const std::string& option) {
+    const std::size_t split = option.find('=');
+    if (split == std::string::npos || split == 0)
+        throw UsageError("--with " + option + ": expected NAME=VALUE, as iterations=100");
+    const std::string name = column_named(option.substr(0, split), "--with");
+    if (has(case_columns, name))
+        throw UsageError("--with " + option + ": a case's own, which cannot be set for all");
+    for (CompareCase& test : cases)
+        test.options[name] = option.substr(split + 1);
+}
+
+std::vector<std::string> option_arguments(const Json& options) {
+    std::vector<std::string> arguments;
+    for (const auto& [name, value] : options.items()) {
+        const std::string flag = "--" + name;
+        if (name == "allow-missing-textures") {
+            if (value == Json(true) || plain(value) == "true") arguments.push_back(flag);
+            continue;
+        }
+        if (!value.is_array()) {
+            arguments.insert(arguments.end(), {flag, plain(value)});
+            continue;
+        }
+        std::string together;
+        for (const Json& one : value) {
+            if (!takes_commas(name)) arguments.insert(arguments.end(), {flag, plain(one)});
+            together += (together.empty() ? "" : ",") + plain(one);
+        }
+        if (takes_commas(name)) arguments.insert(arguments.end(), {flag, together});
+    }
+    return arguments;
+}
+
+}  // namespace item3d

@@ -1,0 +1,43 @@
+#include "item3d/compare/compare.h"
+
+#include "item3d/compare/measures.h"
+#include "item3d/compare/page.h"
+#include "item3d/compare/run_pool.h"
+#include "item3d/compare/table.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/io/load_light.h"
+
+namespace item3d {
+
+nlohmann::json compare_methods(const CompareOptions& options, const std::string& command) {
+    for (const std::string& light : options.pictures.lights)
+        load_light(light);  // refused before hours are spent
+    make_output_folder(options.output);
+    const std::vector<CompareRun> runs = plan_runs(options);
+    perform_runs(runs, options);
+    std::vector<nlohmann::json> rows;
+    std::size_t failed = 0;
+    for (const CompareRun& run : runs) {
+        if (interrupted()) throw Interrupted("all runs have ended; the same command measures them");
+        const CompareCase& test = options.cases[run.case_index];
+        nlohmann::json row;
+        try {
+            row = measured_run(run, test, options.pictures);
+        } catch (const Error& error) {
+            if (error.code() == ExitCode::interrupted) throw;
+            row = row_of(run, test);
+            row["error"] = fmt::format("cannot be measured: {}", error.what());
+        }
+        if (row.contains("error")) ++failed;
+        rows.push_back(std::move(row));
+    }
+    write_atomically(options.output / "table.csv", table_csv(rows));
+    write_atomically(options.output / "table.tex", table_latex(summarize(rows)));
+    write_atomically(options.output / "index.html", compare_page(rows, options.output, command));
+    return {{"runs", rows.size()}, {"failed", failed}, {"rows", rows}};
+}
+
+}  // namespace item3d

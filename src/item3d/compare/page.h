@@ -1,0 +1,18 @@
+// The page of a comparison: index.html.
+#pragma once
+
+#include "item3d/compare/table.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// The table of methods, what failed and why, and for each case its model before and after every
+/// run, side by side: cases with failures first, then by the lowest directional score. rows: of
+/// measured_run(), whose pictures are read from `output`. command: as typed, in the footer.
+std::string compare_page(const std::vector<nlohmann::json>& rows,
+                         const std::filesystem::path& output, const std::string& command);
+
+}  // namespace item3d

@@ -1,0 +1,148 @@
+#include "item3d/compare/run_pool.h"
+
+#include "item3d/core/child_program.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <list>
+#include <memory>
+#include <sstream>
+#include <thread>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* checkpoint_name = "checkpoint.safetensors";
+constexpr double first_guess_bytes = 2e9;
+constexpr auto growing_time = std::chrono::seconds(30);
+constexpr auto nap = std::chrono::milliseconds(100);
+constexpr auto longest_farewell = std::chrono::seconds(60);
+
+struct RunningEdit {
+    const CompareRun* run;
+    std::unique_ptr<ChildProgram> program;
+    Clock::time_point begin = Clock::now();
+};
+
+/// Bytes that new programs can have (MemAvailable); without the file, endless.
+double available_bytes() {
+    std::ifstream file("/proc/meminfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("MemAvailable:"))
+            return 1024 * std::strtod(line.c_str() + line.find(':') + 1, nullptr);
+    return 1e18;
+}
+
+/// "error: ..." of the log's last line that says what went wrong.
+std::string reason_of(const fs::path& log, int status) {
+    std::istringstream lines(read_text(log));
+    std::string reason;
+    constexpr std::string_view mark = "item3d: error: ";
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with(mark)) reason = line.substr(mark.size());
+    if (!reason.empty()) return reason;
+    if (WIFSIGNALED(status))
+        return fmt::format("ended by signal {}, see {}", WTERMSIG(status), log.string());
+    return fmt::format("ended with code {}, see {}", WEXITSTATUS(status), log.string());
+}
+
+RunningEdit start(const CompareRun& run, const CompareOptions& options) {
+    make_output_folder(run.folder);
+    fs::remove(run.folder / "failed.txt");
+    // A run of these very settings that was cut off.
+    const bool begun = fs::exists(run.folder / checkpoint_name);
+    if (begun) write_atomically(run.folder / resumed_name, std::string_view());
+    fs::remove(run.folder / "log.txt");
+    std::vector<std::string> arguments = {options.program.string()};
+    arguments.insert(arguments.end(), run.arguments.begin(), run.arguments.end());
+    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const int threads =
+        options.threads > 0 ? options.threads : std::max(1, cores / options.workers);
+    arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
+    if (begun) arguments.emplace_back("--resume");
+    return {&run, std::make_unique<ChildProgram>(arguments, run.folder / "log.txt")};
+}
+
+/// Bytes that the run took at most; 0 where it does not say.
+double peak_of(const CompareRun& run) {
+    const fs::path file = run.folder / "edit.json";
+    if (!fs::exists(file)) return 0;
+    const Json summary = Json::parse(read_text(file), nullptr, false);
+    return summary.is_object() ? summary.value("peak_memory_bytes", 0.0) : 0;
+}
+
+void end_all(std::list<RunningEdit>& running) {
+    for (RunningEdit& edit : running)
+        edit.program->ask_to_end();
+    const auto last = Clock::now() + longest_farewell;
+    for (RunningEdit& edit : running)
+        while (!edit.program->status() && Clock::now() < last)
+            std::this_thread::sleep_for(nap);
+    running.clear();
+}
+
+}  // namespace
+
+void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& options) {
+    std::list<const CompareRun*> waiting;
+    for (const CompareRun& run : runs)
+        if (!is_done(run)) waiting.push_back(&run);
+    const std::size_t before = runs.size() - waiting.size();
+    if (before > 0) note(fmt::format("{} of {} runs are there already", before, runs.size()));
+    std::list<RunningEdit> running;
+    std::size_t ended = before;
+    double largest = first_guess_bytes;
+    const auto may_begin = [&] {
+        if (waiting.empty() || running.size() >= static_cast<std::size_t>(options.workers))
+            return false;
+        // Those that began lately have not taken all of their memory yet.
+        const auto young = std::count_if(running.begin(), running.end(), [](const auto& edit) {
+            return Clock::now() - edit.begin < growing_time;
+        });
+        return running.empty() || available_bytes() > largest * static_cast<double>(1 + young);
+    };
+    while (!waiting.empty() || !running.empty()) {
+        if (interrupted()) {
+            end_all(running);
+            throw Interrupted(fmt::format("{} of {} runs have ended; the same command goes on",
+                                          ended, runs.size()));
+        }
+        if (may_begin()) {
+            running.push_back(start(*waiting.front(), options));
+            waiting.pop_front();
+        }
+        for (auto edit = running.begin(); edit != running.end();) {
+            const auto status = edit->program->status();
+            if (!status) {
+                ++edit;
+                continue;
+            }
+            const CompareRun& run = *edit->run;
+            const std::chrono::duration<double> took = Clock::now() - edit->begin;
+            const bool well = *status == 0 && fs::exists(run.folder / "edit.json");
+            if (!well && !interrupted())
+                write_atomically(run.folder / "failed.txt",
+                                 reason_of(run.folder / "log.txt", *status));
+            if (well) fs::remove(run.folder / checkpoint_name);  // as large as all the rest
+            largest = std::max(ended == before ? 0.0 : largest, std::max(peak_of(run), 1.0));
+            note(fmt::format("{} of {}: {}: {}", ++ended, runs.size(),
+                             run.folder.filename().string(),
+                             well ? format_duration(took.count()) : error_of(run)));
+            edit = running.erase(edit);
+        }
+        std::this_thread::sleep_for(may_begin() ? std::chrono::milliseconds(1) : nap);
+    }
+}
+
+}  // namespace item3d

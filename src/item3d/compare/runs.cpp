@@ -1,0 +1,178 @@
+#include "item3d/compare/runs.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/version.h"
+#include "item3d/hub/digest.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/tensors/checkpoint.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// Options that `item3d edit` takes with one method alone.
+const std::map<std::string, std::string> owners = {
+    {"guidance", "item3d"}, {"clip-loss", "clip"}, {"instruction", "in2n"}, {"image-cfg", "in2n"}};
+
+std::string sha256(const std::string& text) {
+    Digest digest(DigestKind::sha256, text.size());
+    digest.update({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    return digest.finish();
+}
+
+std::string settings_of(const fs::path& prior) {
+    const fs::path file = prior / "prior.json";
+    return fs::exists(file) ? read_text(file) : "";
+}
+
+std::uint64_t number_of(const std::string& text, const std::string& whole) {
+    std::uint64_t value = 0;
+    const char* end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, value);
+    if (parsed.ec != std::errc() || parsed.ptr != end)
+        throw UsageError("--seeds " + whole + ": expected 0..2, or numbers with commas");
+    return value;
+}
+
+/// Options of the case that this method takes, under those of the method.
+Json options_of(const CompareCase& test, const CompareMethod& method) {
+    Json options = test.options;
+    for (const auto& [option, owner] : owners)
+        if (owner != method.edit_method()) options.erase(option);
+    // Edits of a colour would take what has it by themselves; methods are compared as they were
+    // published, on all of the surface.
+    if (!options.contains("region")) options["region"] = "all";
+    options.update(method.options);
+    options["method"] = method.edit_method();
+    return options;
+}
+
+}  // namespace
+
+CompareMethod plain_method(const std::string& name) {
+    return {name, {{"method", name}}};
+}
+
+std::string slug(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (std::isalnum(byte))
+            result += static_cast<char>(std::tolower(byte));
+        else if (!result.empty() && result.back() != '-')
+            result += '-';
+    }
+    result = result.substr(0, 40);
+    while (!result.empty() && result.back() == '-')
+        result.pop_back();
+    return result.empty() ? "case" : result;
+}
+
+std::vector<std::string> methods_of_prior(const fs::path& prior,
+                                          const std::vector<std::string>& methods) {
+    const fs::path config = prior / "unet" / "config.json";
+    const Json unet = fs::exists(config) ? Json::parse(read_text(config), nullptr, false) : Json();
+    const bool instructed = unet.is_object() && unet.value("in_channels", Json(4)) == Json(8);
+    std::vector<std::string> able;
+    for (const std::string& method : methods) {
+        if (method == "in2n" && !instructed) continue;
+        if (method == "clip" && find_in_prior(prior, "clip").empty()) continue;
+        able.push_back(method);
+    }
+    return able;
+}
+
+std::vector<std::uint64_t> parse_seeds(const std::string& text) {
+    constexpr std::uint64_t most = 1000;
+    std::vector<std::uint64_t> seeds;
+    if (const std::size_t dots = text.find(".."); dots != std::string::npos) {
+        const std::uint64_t first = number_of(text.substr(0, dots), text);
+        const std::uint64_t last = number_of(text.substr(dots + 2), text);
+        if (last < first || last - first >= most)
+            throw UsageError(fmt::format(
+                "--seeds {}: the last is before the first, or more than {} seeds", text, most));
+        for (std::uint64_t seed = first; seed <= last; ++seed)
+            seeds.push_back(seed);
+        return seeds;
+    }
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t comma = std::min(text.find(',', begin), text.size());
+        const std::uint64_t seed = number_of(text.substr(begin, comma - begin), text);
+        if (std::find(seeds.begin(), seeds.end(), seed) == seeds.end()) seeds.push_back(seed);
+        begin = comma + 1;
+    }
+    return seeds;
+}
+
+std::vector<CompareRun> plan_runs(const CompareOptions& options) {
+    std::vector<CompareRun> runs;
+    std::vector<std::string> bytes;  // of each case's model, as a checksum
+    for (const CompareCase& test : options.cases)
+        bytes.push_back(sha256(read_text(test.model)));
+    std::map<std::string, std::size_t> case_of_folder;
+    for (const auto& prior : options.priors) {
+        const std::string decides =
+            version() + hash_of_weights(prior.folder) + sha256(settings_of(prior.folder));
+        for (const std::uint64_t seed : options.seeds) {
+            for (std::size_t i = 0; i < options.cases.size(); ++i) {
+                const CompareCase& test = options.cases[i];
+                for (const CompareMethod& method : options.methods) {
+                    CompareRun run;
+                    run.case_index = i;
+                    run.method = method.name;
+                    run.edit_method = method.edit_method();
+                    run.prior = prior.name;
+                    run.prior_folder = prior.folder;
+                    run.seed = seed;
+                    run.arguments = {"--from", test.from, "--to",
+                                     test.to,  "--seed",  std::to_string(seed)};
+                    for (const std::string& argument : option_arguments(options_of(test, method)))
+                        run.arguments.push_back(argument);
+                    std::string asked = decides + bytes[i];
+                    for (const std::string& argument : run.arguments)
+                        asked += '\0' + argument;
+                    const std::string name =
+                        fmt::format("{}-{}-{}-{}", slug(test.name), slug(method.name), seed,
+                                    sha256(asked).substr(0, 10));
+                    const auto [found, is_new] = case_of_folder.emplace(name, i);
+                    if (!is_new && found->second != i)
+                        throw InputError(fmt::format("case {} ('{}')", i + 1, test.name),
+                                         fmt::format("is the same as case {}", found->second + 1),
+                                         "leave one of them out");
+                    run.folder = options.output / "runs" / name;
+                    // Where things lie decides nothing.
+                    run.arguments.insert(run.arguments.begin(), {"edit", test.model.string()});
+                    run.arguments.insert(
+                        run.arguments.end(),
+                        {"--prior", prior.folder.string(), "-o", run.folder.string(), "--json"});
+                    if (is_new) runs.push_back(std::move(run));
+                }
+            }
+        }
+    }
+    return runs;
+}
+
+bool is_done(const CompareRun& run) {
+    return fs::exists(run.folder / "edit.json") && error_of(run).empty();
+}
+
+bool was_resumed(const CompareRun& run) {
+    return fs::exists(run.folder / resumed_name);
+}
+
+std::string error_of(const CompareRun& run) {
+    const fs::path file = run.folder / "failed.txt";
+    return fs::exists(file) ? read_text(file) : "";
+}
+
+}  // namespace item3d
