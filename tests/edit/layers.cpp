@@ -207,8 +207,12 @@ class RebakeTest : public LayersTest {
 };
 
 TEST_F(RebakeTest, at_the_same_size_is_the_edit_and_at_twice_it_looks_the_same) {
-    const EditRequest edit = request(
-        "part", 4, {{"region", {"box=-1,-1,-1,0,1,1"}}, {"learning_rate", 0.05}, {"feather", 4}});
+    EditRequest edit = request("part", 2,
+                               {{"region", {"box=-1,-1,-1,0,1,1"}},
+                                {"learning_rate", 0.1},
+                                {"fit_steps", 10},
+                                {"feather", 4}});
+    edit.draws_turntable = false;
     edit_model(edit);
     const Image source = base_color_of(edit.model);
     const Image edited = base_color_of(edit.output / "model.glb");
@@ -229,8 +233,9 @@ TEST_F(RebakeTest, at_the_same_size_is_the_edit_and_at_twice_it_looks_the_same) 
 }
 
 TEST_F(RebakeTest, another_uv_map_and_a_larger_texture_are_baked_from_the_field) {
-    const EditRequest edit =
-        request("part", 4, {{"region", {"box=-1,-1,-1,0,1,1"}}, {"learning_rate", 0.05}});
+    EditRequest edit = request(
+        "part", 2, {{"region", {"box=-1,-1,-1,0,1,1"}}, {"learning_rate", 0.1}, {"fit_steps", 10}});
+    edit.draws_turntable = false;
     edit_model(edit);
     const Image source = base_color_of(edit.model);
     const Image edited = base_color_of(edit.output / "model.glb");

@@ -11,7 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <string>
 
 namespace item3d::testing {
@@ -31,6 +33,16 @@ class EditTest : public ::testing::Test {
         save_image(folder_ / "light.exr", make_light_preset("studio", 32));
     }
     void TearDown() override { fs::remove_all(folder_); }
+
+    /// Mean absolute difference; infinite for other sizes.
+    static double mean_difference(const Image& a, const Image& b) {
+        if (a.pixels.empty() || a.pixels.size() != b.pixels.size())
+            return std::numeric_limits<double>::infinity();
+        double apart = 0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i)
+            apart += std::abs(a.pixels[i] - b.pixels[i]);
+        return apart / static_cast<double>(a.pixels.size());
+    }
 
     /// A cube whose six sides have places of their own in a checkered 64 x 64 texture.
     static void write_cube(const fs::path& path) {

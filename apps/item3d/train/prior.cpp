@@ -56,11 +56,12 @@ CLI::Option* add_setting(CLI::App& command, TrainOptions& options, const std::st
 
 void run_train(const TrainOptions& options, at::Device device) {
     TrainSettings settings = options.chosen();
-    settings.device = device;
-    if (!device.is_cpu()) {
+    // Weights depend on the device: a training moves to it only when told to.
+    settings.device = options.device == "cuda" ? device : at::Device(at::kCPU);
+    if (!settings.device.is_cpu()) {
         if (options.replicas->count() > 0 && settings.replicas > 1)
             throw InputError("--replicas", "a CUDA device trains one copy",
-                             "give one process for each device, or --device cpu");
+                             "leave it out, or train by --device cpu");
         settings.replicas = 1;
     }
     settings.processes = ProcessGroup::from_environment();

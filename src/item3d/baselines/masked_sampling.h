@@ -50,8 +50,8 @@ struct MaskedSampling {
 /// Scaled latents [1, C, h, w]. Throws Interrupted after Ctrl-C.
 at::Tensor sample_masked(const GuidedModel& model, const MaskedSampling& sampling);
 
-/// What a method draws, as parts of one stream: numbers of seeded_noise() and seeded_random(), each
-/// the first of many.
+/// Uses of random numbers by the methods: each has its own part of one stream, which begins at its
+/// value.
 enum class BaselineDraw : std::uint64_t {
     views = 0,                 ///< noise that a view begins from
     view_steps = 1u << 20,     ///< noise of a step of a view

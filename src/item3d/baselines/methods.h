@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// What --method offers.
+/// A method that --method takes.
 struct EditMethod {
     std::string name;
     std::string description;

@@ -1,5 +1,4 @@
-// What methods that paint texels view after view have in common: the surface, the prior, and
-// pictures of what is painted so far.
+// Surface, prior and pictures so far, which all methods share that paint texels view after view.
 #pragma once
 
 #include "item3d/baselines/texel_list.h"
@@ -78,7 +77,7 @@ class ViewRender {
     /// colors [T, 3] sRGB without any light, other materials' own base colours beside them,
     /// mid-grey behind: [1, 3, R, R].
     at::Tensor picture(const at::Tensor& colors) const;
-    /// Of DiffusionModel::predict(), for latents of pictures of this view.
+    /// The condition that DiffusionModel::predict() takes, for latents of pictures of this view.
     at::Tensor condition(const DiffusionModel& model, const at::Tensor& latents) const;
 
   private:

@@ -17,7 +17,8 @@ constexpr double together = 0.8;  ///< of the steps, after which views go on alo
 constexpr double shuffled = 0.4;  ///< of the steps, in which backgrounds change their colour
 constexpr float latent_tolerance = 0.03f;  ///< of the radius, behind what a coarse view sees
 
-/// Of bilinear weights, that cells of the model have: others are of the background.
+/// Smallest sum of bilinear weights of cells that the model covers; below it a texel is taken for
+/// background.
 constexpr double least_covered = 0.25;
 
 /// The network's output that means `clean` for a sample of that abar.

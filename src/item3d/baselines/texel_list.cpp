@@ -62,7 +62,7 @@ at::Tensor push_down(const at::Tensor& planes) {
 
 }  // namespace
 
-/// What is collected from all texture sets.
+/// Texels of all texture sets, as they are collected.
 struct TexelList::Found {
     std::vector<std::int64_t> cells;      ///< texel of each cell
     std::vector<std::int64_t> own_cells;  ///< cell of each texel

@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// What a view shows, [1, 1, S, S] each.
+/// Pixels of a view, [1, 1, S, S] each.
 struct GenerationInput {
     at::Tensor editable;  ///< 0 or 1: pixels that may change
     at::Tensor painted;   ///< 0 or 1: a view painted them

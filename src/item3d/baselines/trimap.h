@@ -6,7 +6,7 @@
 
 namespace item3d {
 
-/// What a view shows, [1, 1, S, S] each.
+/// Pixels of a view, [1, 1, S, S] each.
 struct TrimapInput {
     at::Tensor covered;    ///< 0 or 1: the model
     at::Tensor editable;   ///< 0 or 1: what may change of it

@@ -57,7 +57,7 @@ Need estimate(const EditRequest& request, at::ScalarType precision) {
 
 std::filesystem::path networks_folder(const EditRequest& request) {
     return request.plan.method == "in2n" && !request.instruct.empty() ? request.instruct
-                                                                       : request.prior;
+                                                                      : request.prior;
 }
 
 void add_needs(PriorNeeds& needs, const EditRequest& request, const EditPlan& plan,
@@ -78,14 +78,14 @@ std::shared_ptr<DiffusionModel> load_networks(const EditRequest& request, const 
     const EditPlan& plan = request.plan;
     if (needs.any_sentence) {
         auto prior = std::make_shared<Pipeline>(
-            Pipeline::load(request.prior, needs.device, needs.precision));
+            Pipeline::load(networks_folder(request), needs.device, needs.precision));
         prior->add(plan);
         return prior;
     }
     RunNeeds run{needs.sentences, needs.decoder};
     run.prompts.push_back(default_negative_prompt());
-    return std::make_shared<RunningPipeline>(RunningPipeline::load(
-        networks_folder(request), needs.device, needs.precision, plan, run));
+    return std::make_shared<RunningPipeline>(
+        RunningPipeline::load(networks_folder(request), needs.device, needs.precision, plan, run));
 }
 
 std::shared_ptr<const Captioner> load_wanted_captioner(const EditRequest& request,

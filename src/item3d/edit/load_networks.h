@@ -38,7 +38,7 @@ struct PriorNeeds {
 /// The folder whose networks the request's method runs: the prior, or what edits by instructions.
 std::filesystem::path networks_folder(const EditRequest& request);
 
-/// Adds what an edit by `plan`, else as the request says, asks of its prior.
+/// Adds the sentences and the decoder that an edit by `plan` uses; all else as the request says.
 void add_needs(PriorNeeds& needs, const EditRequest& request, const EditPlan& plan,
                const PriorVocabulary& vocabulary);
 

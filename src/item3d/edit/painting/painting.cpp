@@ -11,6 +11,7 @@
 #include "item3d/edit/optimize/render_view.h"
 #include "item3d/io/save.h"
 #include "item3d/networks/vocabulary.h"
+#include "item3d/region/seen_shape.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/srgb.h"
 
