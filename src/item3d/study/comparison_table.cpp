@@ -1,10 +1,12 @@
 #include "item3d/study/comparison_table.h"
 
+#include "item3d/core/csv.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -14,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array wanted_columns = {"case", "model", "from", "to", "method", "seed", "folder"};
+constexpr std::array wanted_columns = {"case",   "model", "from", "to",
+                                       "method", "prior", "seed", "folder"};
 constexpr std::array score_columns = {"clip_global", "clip_directional", "seconds",
                                       "peak_memory_bytes"};
 
@@ -35,14 +38,9 @@ Header read_header(const std::vector<std::string>& cells, const std::string& sub
 ComparisonRow read_row(const std::vector<std::string>& cells, const Header& header,
                        const fs::path& folder) {
     const auto cell = [&](const char* column) { return cells[header.at(column)]; };
-    ComparisonRow row{cell("case"),
-                      cell("model"),
-                      cell("from"),
-                      cell("to"),
-                      cell("method"),
-                      cell("seed"),
-                      folder / cell("folder"),
-                      {}};
+    ComparisonRow row{cell("case"), cell("model"),           cell("from"),
+                      cell("to"),   cell("method"),          cell("prior"),
+                      cell("seed"), folder / cell("folder"), {}};
     for (const char* column : score_columns) {
         if (!header.contains(column) || cell(column).empty()) continue;
         char* end = nullptr;
@@ -59,41 +57,17 @@ bool has_pictures(const fs::path& folder) {
     return true;
 }
 
-}  // namespace
-
-std::vector<std::vector<std::string>> parse_csv(const std::string& text,
-                                                const std::string& subject) {
-    std::vector<std::vector<std::string>> rows;
-    std::vector<std::string> cells{""};
-    bool quoted = false, empty = true;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char character = text[i];
-        if (quoted) {
-            if (character != '"')
-                cells.back() += character;
-            else if (i + 1 < text.size() && text[i + 1] == '"')
-                cells.back() += text[i++];
-            else
-                quoted = false;
-        } else if (character == '"') {
-            quoted = true;
-            empty = false;
-        } else if (character == ',') {
-            cells.emplace_back();
-            empty = false;
-        } else if (character == '\n') {
-            if (!empty) rows.push_back(std::move(cells));
-            cells = {""};
-            empty = true;
-        } else if (character != '\r') {
-            cells.back() += character;
-            empty = false;
-        }
-    }
-    if (quoted) throw InputError(subject, "ends within quotes", "the file may be cut off");
-    if (!empty) rows.push_back(std::move(cells));
-    return rows;
+/// "METHOD (PRIOR)" where a comparison has several priors: each pair is judged by itself.
+void name_priors(std::vector<ComparisonRow>& rows) {
+    const bool several = std::any_of(rows.begin(), rows.end(), [&](const ComparisonRow& row) {
+        return row.prior != rows.front().prior;
+    });
+    if (!several) return;
+    for (ComparisonRow& row : rows)
+        row.method += " (" + row.prior + ")";
 }
+
+}  // namespace
 
 std::vector<ComparisonRow> read_comparison(const fs::path& folder,
                                            std::vector<std::string>& skipped) {
@@ -114,6 +88,7 @@ std::vector<ComparisonRow> read_comparison(const fs::path& folder,
             skipped.push_back(
                 fmt::format("{} by {}, seed {}", row.case_name, row.method, row.seed));
     }
+    name_priors(rows);
     if (rows.empty())
         throw InputError(path.string(),
                          "no row's folder has before.png, after.png and turntable.webp",

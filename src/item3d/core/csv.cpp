@@ -1,0 +1,57 @@
+#include "item3d/core/csv.h"
+
+#include "item3d/core/error.h"
+
+namespace item3d {
+
+CsvRows parse_csv(const std::string& text, const std::string& subject) {
+    CsvRows rows;
+    std::vector<std::string> row(1);
+    bool quoted = false;
+    const auto end_row = [&] {
+        if (row.size() > 1 || !row[0].empty()) rows.push_back(row);
+        row.assign(1, "");
+    };
+    for (std::size_t i = text.starts_with("\xef\xbb\xbf") ? 3 : 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (quoted) {
+            const bool doubled = c == '"' && i + 1 < text.size() && text[i + 1] == '"';
+            if (c == '"' && !doubled)
+                quoted = false;
+            else
+                row.back() += c;
+            if (doubled) ++i;
+        } else if (c == '"' && row.back().empty()) {
+            quoted = true;
+        } else if (c == ',') {
+            row.emplace_back();
+        } else if (c == '\n') {
+            end_row();
+        } else if (c != '\r') {
+            row.back() += c;
+        }
+    }
+    if (quoted)
+        throw InputError(subject, "a quote is not closed in row " + std::to_string(rows.size() + 1),
+                         "a quote within a field is written twice");
+    end_row();
+    return rows;
+}
+
+std::string csv_line(const std::vector<std::string>& fields) {
+    std::string line;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        if (i > 0) line += ',';
+        if (fields[i].find_first_of(",\"\r\n") == std::string::npos) {
+            line += fields[i];
+            continue;
+        }
+        line += '"';
+        for (const char c : fields[i])
+            line += c == '"' ? std::string("\"\"") : std::string(1, c);
+        line += '"';
+    }
+    return line + "\n";
+}
+
+}  // namespace item3d

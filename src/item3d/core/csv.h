@@ -1,0 +1,19 @@
+// Tables of values separated by commas (RFC 4180).
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+using CsvRows = std::vector<std::vector<std::string>>;
+
+/// Rows of fields; a quoted field may hold commas, line ends and doubled quotes. Lines without
+/// anything are left out, as is a byte order mark. Throws InputError that names `subject` where a
+/// quote is not closed.
+CsvRows parse_csv(const std::string& text, const std::string& subject);
+
+/// One row with its line end; fields are quoted where they must be.
+std::string csv_line(const std::vector<std::string>& fields);
+
+}  // namespace item3d
