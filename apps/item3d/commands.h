@@ -24,6 +24,8 @@ inline constexpr std::array commands = {
     CommandEntry{"score", "edit", "Measure by CLIP how well an edit follows its sentences"},
     CommandEntry{"region", "edit", "Show what part of a model selectors take, before an edit"},
     CommandEntry{"layers", "edit", "Apply what edits changed to a model, at any strength"},
+    CommandEntry{"study", "study",
+                 "Ask people what they think of edits, and analyze what they say"},
     CommandEntry{"prior", "train", "Train, fetch and inspect priors"},
     CommandEntry{"bench", "bench", "Measure how fast this machine is"},
 };

@@ -27,7 +27,7 @@ enum class RandomStream : std::uint64_t {
     color_points = 9,              ///< edit: where the colour regulariser looks
     reading = 10,                  ///< guidance: noise under which a model reads pictures
     baseline = 12,                 ///< baselines: noise of what is sampled
-    study = 0x7374756479,          ///< study: names of pictures, a participant's order and sides
+    study = 0x7374756479,          ///< study: names of pictures, attention items
     study_bootstrap = 0x626f6f74,  ///< study: resampled raters
     region = 0x726567696f6e,       ///< region: points that a part of a surface is measured at
     field = 0x6669656c64,          ///< field: first values of the neural texture
@@ -42,12 +42,13 @@ enum class RandomStream : std::uint64_t {
 /// Streams of a seed that an index was mixed into. No such seed is a run's own, so that a value may
 /// be one of RandomStream's (8 is).
 enum class IndexedStream : std::uint64_t {
-    cameras = 2,           ///< edit: of an iteration
-    backgrounds = 3,       ///< edit: of an iteration
-    lights = 4,            ///< edit: of an iteration
-    painting_cameras = 8,  ///< edit: of a view of the detail stage
-    region_cameras = 10,   ///< edit: of a close-up
-    region_looks = 11,     ///< edit: what a close-up looks at
+    cameras = 2,                 ///< edit: of an iteration
+    backgrounds = 3,             ///< edit: of an iteration
+    lights = 4,                  ///< edit: of an iteration
+    painting_cameras = 8,        ///< edit: of a view of the detail stage
+    region_cameras = 10,         ///< edit: of a close-up
+    region_looks = 11,           ///< edit: what a close-up looks at
+    study_pages = 0x7061676573,  ///< study: a participant's order and positions
 };
 
 /// Two streams of one value are a case that is there twice, which does not compile; one that is
@@ -85,6 +86,7 @@ constexpr bool is_listed(IndexedStream stream) {
         case IndexedStream::painting_cameras:
         case IndexedStream::region_cameras:
         case IndexedStream::region_looks:
+        case IndexedStream::study_pages:
             return true;
     }
     return false;

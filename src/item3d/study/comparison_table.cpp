@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array wanted_columns = {"case",   "model", "from", "to",
                                        "method", "prior", "seed", "folder"};
-constexpr std::array score_columns = {"clip_global", "clip_directional", "seconds",
-                                      "peak_memory_bytes"};
+constexpr std::array passed_columns = {"clip_global", "clip_directional", "seconds",
+                                       "peak_memory_bytes"};
 
 using Header = std::map<std::string, std::size_t>;
 
@@ -41,7 +41,7 @@ ComparisonRow read_row(const std::vector<std::string>& cells, const Header& head
     ComparisonRow row{cell("case"), cell("model"),           cell("from"),
                       cell("to"),   cell("method"),          cell("prior"),
                       cell("seed"), folder / cell("folder"), {}};
-    for (const char* column : score_columns) {
+    for (const char* column : passed_columns) {
         if (!header.contains(column) || cell(column).empty()) continue;
         char* end = nullptr;
         const std::string text = cell(column);

@@ -17,7 +17,7 @@ constexpr std::array kind_names = {"practice", "rating", "attention"};
 
 nlohmann::json item_json(const StudyItem& item) {
     return {{"id", item.id},
-            {"kind", kind_names[static_cast<std::size_t>(item.kind)]},
+            {"kind", kind_name(item.kind)},
             {"case", item.case_name},
             {"method", item.method},
             {"from", item.from},
@@ -80,6 +80,10 @@ void check_items(const Study& study) {
 }
 
 }  // namespace
+
+std::string_view kind_name(StudyItemKind kind) {
+    return kind_names[static_cast<std::size_t>(kind)];
+}
 
 const StudyItem& Study::item(const std::string& id) const {
     for (const StudyItem& item : items)

@@ -24,6 +24,8 @@ using StudyAnswer = std::array<int, study_questions.size()>;
 inline constexpr int min_rating = 1, max_rating = 5;
 
 enum class StudyItemKind { practice, rating, attention };
+/// As in study.json.
+std::string_view kind_name(StudyItemKind kind);
 
 /// One page of the study.
 struct StudyItem {
