@@ -18,6 +18,7 @@ find_package(ICU REQUIRED COMPONENTS uc)
 find_package(draco CONFIG REQUIRED)
 find_package(meshoptimizer CONFIG REQUIRED)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
+find_package(SQLite3 REQUIRED)
 
 # LibTorch brings headers of another fmt, which the compiler would find first: ours goes before them.
 # The library of the system is compiled; LibTorch's headers would be compiled anew in every file.
@@ -38,5 +39,4 @@ if(NOT ITEM3D_LOADERS_ONLY)
     include(${CMAKE_CURRENT_LIST_DIR}/LibTorch.cmake)
     find_package(embree 3 REQUIRED)
     pkg_check_modules(EXIF REQUIRED IMPORTED_TARGET libexif)
-    find_package(SQLite3 REQUIRED)
 endif()

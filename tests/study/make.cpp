@@ -62,6 +62,11 @@ TEST_F(MakeStudy, HasEveryMethodOfEveryCaseUnderHiddenNames) {
     for (const StudyItem& item : study.items) {
         practice += item.kind == StudyItemKind::practice;
         attention += item.kind == StudyItemKind::attention;
+        if (item.kind == StudyItemKind::attention) {
+            EXPECT_NE(item.expected[0], item.expected[1]);
+            for (const int value : item.expected)
+                EXPECT_TRUE(value >= min_rating && value <= max_rating) << value;
+        }
         for (const std::string& name : {item.id, item.before, item.after, item.turntable})
             for (const std::string& method : study.methods)
                 EXPECT_EQ(name.find(method), std::string::npos) << name;

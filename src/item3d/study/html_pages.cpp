@@ -43,7 +43,7 @@ button:focus-visible, a:focus-visible { outline: 3px solid var(--accent); outlin
 a { color: var(--accent); }
 @media (max-width: 760px) {
   .pair, .below { grid-template-columns: 1fr; gap: 16px; }
-  .below figure { max-width: 288px; margin: 0 auto; width: 100%; }
+  .below figure { max-width: 288px; }
   .scale { gap: 6px; }
   .go { justify-content: space-between; }
 }
@@ -149,7 +149,7 @@ std::string item_page(const ItemPage& shown) {
         html += question_field(study_questions[i], shown.chosen[i]);
     html += "<div class=\"go\"><button>Next</button>";
     if (shown.number > 1)
-        html += fmt::format("<a href=\"{}/{}\">Page before</a>", shown.home, shown.number - 1);
+        html += fmt::format("<a href=\"{}/{}\">Previous page</a>", shown.home, shown.number - 1);
     html += "</div>\n</form>\n</div>\n</main>\n";
     return page_around(fmt::format("Page {} of {}", shown.number, shown.count), html);
 }

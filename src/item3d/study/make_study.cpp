@@ -21,8 +21,7 @@ constexpr const char* draft_consent =
     "You will see objects before and after an edit that was asked for by a sentence, and rate each "
     "edit by two questions. It takes about 30 seconds a page.\n\n"
     "Taking part is voluntary. You may stop at any time by closing the page, and go on later by "
-    "the "
-    "same link. We store your ratings and when you gave them, under a number and without your "
+    "the same link. We store your ratings and when you gave them, under a number and without your "
     "name or address.";
 
 /// Case -> method -> its run of the first seed.
@@ -120,8 +119,11 @@ void add_attention(Study& study, const Runs& runs, ItemWriter& writer, int count
         const auto method = writer.random().index(static_cast<std::int64_t>(run.size()));
         StudyItem item =
             writer.write(std::next(run.begin(), method)->second, StudyItemKind::attention);
-        for (int& answer : item.expected)
-            answer = min_rating + static_cast<int>(writer.random().index(max_rating));
+        // Two different numbers, which no participant who always chooses one gives by chance.
+        const auto first = writer.random().index(max_rating);
+        const auto second = (first + 1 + writer.random().index(max_rating - 1)) % max_rating;
+        item.expected = {min_rating + static_cast<int>(first),
+                         min_rating + static_cast<int>(second)};
         study.items.push_back(std::move(item));
     }
 }
