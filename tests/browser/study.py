@@ -98,7 +98,7 @@ def take_part(context, link, size, methods, output, generator, restart=None):
             if restart:
                 link = restart(link)
             page = context.new_page()
-                page.goto(link)
+            page.goto(link)
             check(f"Page {number} of" in page.content(), "the study did not go on where it was left")
         answer(page, values)
         chosen.append(values)
