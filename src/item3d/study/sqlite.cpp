@@ -8,20 +8,19 @@ namespace item3d {
 
 Sqlite::Sqlite(std::filesystem::path path, bool may_create) : path_(std::move(path)) {
     const int flags = SQLITE_OPEN_READWRITE | (may_create ? SQLITE_OPEN_CREATE : 0);
-    const int code = sqlite3_open_v2(path_.c_str(), &database_, flags, nullptr);
-    if (code != SQLITE_OK) {
-        const std::string message = sqlite3_errmsg(database_);
-        sqlite3_close(database_);
-        throw InputError(path_.string(), "cannot be opened (" + message + ")");
-    }
-    sqlite3_extended_result_codes(database_, 0);
-    sqlite3_busy_timeout(database_, 5000);
+    sqlite3* opened = nullptr;
+    const int code = sqlite3_open_v2(path_.c_str(), &opened, flags, nullptr);
+    database_.reset(opened);  // also of one that could not be opened
+    if (code != SQLITE_OK)
+        throw InputError(path_.string(),
+                         std::string("cannot be opened (") + sqlite3_errmsg(opened) + ")");
+    sqlite3_busy_timeout(opened, 5000);
     // Each answer is on the disk before the participant sees the next page.
     run("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
 }
 
-Sqlite::~Sqlite() {
-    sqlite3_close(database_);
+void Sqlite::Close::operator()(sqlite3* database) const {
+    sqlite3_close(database);
 }
 
 void Sqlite::fail_as_damaged(const std::string& how) const {
@@ -31,7 +30,7 @@ void Sqlite::fail_as_damaged(const std::string& how) const {
 }
 
 void Sqlite::fail(int code) const {
-    const std::string message = sqlite3_errmsg(database_);
+    const std::string message = sqlite3_errmsg(database_.get());
     switch (code) {
         case SQLITE_CORRUPT:
         case SQLITE_NOTADB:
@@ -51,7 +50,7 @@ void Sqlite::expect(int code) const {
 }
 
 void Sqlite::run(const std::string& statements) {
-    expect(sqlite3_exec(database_, statements.c_str(), nullptr, nullptr, nullptr));
+    expect(sqlite3_exec(database_.get(), statements.c_str(), nullptr, nullptr, nullptr));
 }
 
 void Sqlite::check() {
@@ -67,7 +66,7 @@ void Sqlite::check() {
 
 SqliteRows::SqliteRows(Sqlite& database, const std::string& statement) : database_(database) {
     database.expect(
-        sqlite3_prepare_v2(database.database_, statement.c_str(), -1, &statement_, nullptr));
+        sqlite3_prepare_v2(database.database_.get(), statement.c_str(), -1, &statement_, nullptr));
 }
 
 SqliteRows::~SqliteRows() {

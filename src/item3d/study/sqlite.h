@@ -19,7 +19,6 @@ class Sqlite {
   public:
     /// Opens the file; makes it where `may_create`.
     Sqlite(std::filesystem::path path, bool may_create);
-    ~Sqlite();
     Sqlite(const Sqlite&) = delete;
     Sqlite& operator=(const Sqlite&) = delete;
 
@@ -34,8 +33,12 @@ class Sqlite {
     [[noreturn]] void fail_as_damaged(const std::string& how) const;
     void expect(int code) const;
 
+    struct Close {
+        void operator()(sqlite3* database) const;
+    };
+
     std::filesystem::path path_;
-    sqlite3* database_ = nullptr;
+    std::unique_ptr<sqlite3, Close> database_;
 };
 
 /// One statement with parameters ("?"), and its rows.
