@@ -17,6 +17,8 @@ find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(ICU REQUIRED COMPONENTS uc)
 find_package(draco CONFIG REQUIRED)
 find_package(meshoptimizer CONFIG REQUIRED)
+pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
+find_package(SQLite3 REQUIRED)
 
 # LibTorch brings headers of another fmt, which the compiler would find first: ours goes before them.
 # The library of the system is compiled; LibTorch's headers would be compiled anew in every file.

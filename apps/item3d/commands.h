@@ -25,6 +25,8 @@ inline constexpr std::array commands = {
     CommandEntry{"region", "edit", "Show what part of a model selectors take, before an edit"},
     CommandEntry{"layers", "edit", "Apply what edits changed to a model, at any strength"},
     CommandEntry{"compare", "compare", "Run methods on a list of edits; tables and a page of them"},
+    CommandEntry{"study", "study",
+                 "Ask people what they think of edits, and analyze what they say"},
     CommandEntry{"prior", "train", "Train, fetch and inspect priors"},
     CommandEntry{"bench", "bench", "Measure how fast this machine is"},
 };

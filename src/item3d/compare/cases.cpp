@@ -1,6 +1,6 @@
 #include "item3d/compare/cases.h"
 
-#include "item3d/compare/csv.h"
+#include "item3d/core/csv.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"

@@ -1,6 +1,6 @@
 #include "item3d/compare/table.h"
 
-#include "item3d/compare/csv.h"
+#include "item3d/core/csv.h"
 #include "item3d/core/format.h"
 
 #include <algorithm>

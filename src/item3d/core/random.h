@@ -18,21 +18,23 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
 /// Streams of a run's seed. Each use draws from a stream of its own, so that no two draw the same
 /// numbers; a value that changes changes the results of what draws from it.
 enum class RandomStream : std::uint64_t {
-    surface_means = 0,        ///< edit: points at which a material's means are taken
-    noise = 1,                ///< guidance: timestep and noise
-    renoise = 5,              ///< guidance: of the learned source's samples
-    further_noise = 8,        ///< guidance: what methods draw besides
-    spread = 6,               ///< edit: offsets of the points where a material is looked up
-    painting = 7,             ///< edit: which view the detail stage fits next
-    color_points = 9,         ///< edit: where the colour regulariser looks
-    reading = 10,             ///< guidance: noise under which a model reads pictures
-    baseline = 12,            ///< baselines: noise of what is sampled
-    region = 0x726567696f6e,  ///< region: points that a part of a surface is measured at
-    field = 0x6669656c64,     ///< field: first values of the neural texture
-    fit = 0x666974,           ///< field: points that it is fitted at
-    metallic = 0x6d6574616c,  ///< field: points at which its mean metallic is measured
-    view_order = 0x76696577,  ///< reconstruct: in which order the photographs come
-    shape = 0x7368617065,     ///< reconstruct: the search for a shape; generate: its choice of one
+    surface_means = 0,             ///< edit: points at which a material's means are taken
+    noise = 1,                     ///< guidance: timestep and noise
+    renoise = 5,                   ///< guidance: of the learned source's samples
+    further_noise = 8,             ///< guidance: what methods draw besides
+    spread = 6,                    ///< edit: offsets of the points where a material is looked up
+    painting = 7,                  ///< edit: which view the detail stage fits next
+    color_points = 9,              ///< edit: where the colour regulariser looks
+    reading = 10,                  ///< guidance: noise under which a model reads pictures
+    baseline = 12,                 ///< baselines: noise of what is sampled
+    study = 0x7374756479,          ///< study: names of pictures, attention items
+    study_bootstrap = 0x626f6f74,  ///< study: resampled raters
+    region = 0x726567696f6e,       ///< region: points that a part of a surface is measured at
+    field = 0x6669656c64,          ///< field: first values of the neural texture
+    fit = 0x666974,                ///< field: points that it is fitted at
+    metallic = 0x6d6574616c,       ///< field: points at which its mean metallic is measured
+    view_order = 0x76696577,       ///< reconstruct: in which order the photographs come
+    shape = 0x7368617065,  ///< reconstruct: the search for a shape; generate: its choice of one
     refinement = 0x726566696e65,  ///< reconstruct: materials and light
     chamfer = 0x6368616d,         ///< reconstruct: points that two meshes are compared at
 };
@@ -40,12 +42,13 @@ enum class RandomStream : std::uint64_t {
 /// Streams of a seed that an index was mixed into. No such seed is a run's own, so that a value may
 /// be one of RandomStream's (8 is).
 enum class IndexedStream : std::uint64_t {
-    cameras = 2,           ///< edit: of an iteration
-    backgrounds = 3,       ///< edit: of an iteration
-    lights = 4,            ///< edit: of an iteration
-    painting_cameras = 8,  ///< edit: of a view of the detail stage
-    region_cameras = 10,   ///< edit: of a close-up
-    region_looks = 11,     ///< edit: what a close-up looks at
+    cameras = 2,                 ///< edit: of an iteration
+    backgrounds = 3,             ///< edit: of an iteration
+    lights = 4,                  ///< edit: of an iteration
+    painting_cameras = 8,        ///< edit: of a view of the detail stage
+    region_cameras = 10,         ///< edit: of a close-up
+    region_looks = 11,           ///< edit: what a close-up looks at
+    study_pages = 0x7061676573,  ///< study: a participant's order and positions
 };
 
 /// Two streams of one value are a case that is there twice, which does not compile; one that is
@@ -61,6 +64,8 @@ constexpr bool is_listed(RandomStream stream) {
         case RandomStream::color_points:
         case RandomStream::reading:
         case RandomStream::baseline:
+        case RandomStream::study:
+        case RandomStream::study_bootstrap:
         case RandomStream::region:
         case RandomStream::field:
         case RandomStream::fit:
@@ -81,6 +86,7 @@ constexpr bool is_listed(IndexedStream stream) {
         case IndexedStream::painting_cameras:
         case IndexedStream::region_cameras:
         case IndexedStream::region_looks:
+        case IndexedStream::study_pages:
             return true;
     }
     return false;

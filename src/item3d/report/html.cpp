@@ -51,35 +51,6 @@ std::string picture(const ReportImage& image, const std::string& attributes = ""
 
 }  // namespace
 
-std::string html_escape(const std::string& text) {
-    std::string result;
-    result.reserve(text.size());
-    for (const char character : text) {
-        switch (character) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            case '\'':
-                result += "&#39;";
-                break;
-            case '\0':
-                break;
-            default:
-                result += character;
-        }
-    }
-    return result;
-}
-
 std::string data_uri(const Bytes& bytes) {
     return "data:" + media_type(bytes) + ";base64," + base64(bytes);
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "item3d/core/files.h"
+#include "item3d/core/html_escape.h"
 
 #include <string>
 #include <utility>
@@ -20,7 +21,6 @@ struct ReportImage {
 
 using TableRows = std::vector<std::pair<std::string, std::string>>;
 
-std::string html_escape(const std::string& text);
 /// "data:image/png;base64,...".
 std::string data_uri(const Bytes& bytes);
 

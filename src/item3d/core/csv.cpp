@@ -1,4 +1,4 @@
-#include "item3d/compare/csv.h"
+#include "item3d/core/csv.h"
 
 #include "item3d/core/error.h"
 

@@ -1,0 +1,7 @@
+// item3d-study: asks people what they think of edits.
+#include "apps/item3d/run.h"
+#include "apps/item3d/study/commands.h"
+
+int main(int argc, char** argv) {
+    return item3d::run_program(argc, argv, {item3d::add_study_command});
+}

@@ -1,0 +1,189 @@
+// item3d study: a user study of a comparison, served, and what it says.
+#include "apps/item3d/command.h"
+#include "apps/item3d/study/commands.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/study/analysis_tables.h"
+#include "item3d/study/make_study.h"
+#include "item3d/study/server.h"
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <thread>
+
+namespace item3d {
+namespace {
+
+struct MakeOptions : CommonOptions {
+    MakeStudyRequest request;
+};
+
+void run_make(const MakeOptions& options) {
+    const Study study = make_study(options.request);
+    const std::string folder = options.request.output.string();
+    if (options.json) {
+        print_json({{"study", folder}, {"methods", study.methods}, {"pages", study.items.size()}});
+        return;
+    }
+    fmt::print("{}\n", folder);
+    note(
+        fmt::format("{} pages for each participant; read the consent text in {}/study.json, then: "
+                    "item3d study serve {}",
+                    study.items.size(), folder, folder));
+}
+
+void add_make(CLI::App& app) {
+    auto options = std::make_shared<MakeOptions>();
+    CLI::App* command =
+        add_command(app, "make", "Make a study of a comparison's results", *options);
+    MakeStudyRequest& request = options->request;
+    command->add_option("COMPARISON", request.comparison, "The folder that item3d compare wrote")
+        ->required();
+    command->add_option("-o,--output", request.output, "Folder for the study")->required();
+    command->add_option("--title", request.title, "Above the first page")->capture_default_str();
+    command->add_option("--consent", request.consent,
+                        "Text file that participants agree to, with empty lines between "
+                        "paragraphs; without it, a draft");
+    command
+        ->add_option("--practice", request.practice,
+                     "Pages before the others whose answers do not count")
+        ->check(CLI::Range(0, 2))
+        ->capture_default_str();
+    command
+        ->add_option("--attention", request.attention,
+                     "Pages that ask for two numbers, to see who reads")
+        ->check(CLI::Range(0, 10))
+        ->capture_default_str();
+    command->add_option("--seed", request.seed, "Of names, orders and positions")
+        ->capture_default_str();
+    command->callback([options] {
+        start_command(*options);
+        run_make(*options);
+    });
+}
+
+struct ServeOptions : CommonOptions {
+    std::filesystem::path folder;
+    std::string host = "127.0.0.1";
+    int port = 8080;
+    int participants = 33;
+    std::string address;  ///< empty: that of host and port
+};
+
+void print_links(const ServeOptions& options, const std::string& address,
+                 const std::vector<Participant>& participants) {
+    nlohmann::json links = nlohmann::json::array();
+    for (const Participant& participant : participants) {
+        const std::string link = address + participant_path(participant);
+        links.push_back({{"participant", participant.number}, {"link", link}});
+        if (!options.json) fmt::print("{}\t{}\n", participant.number, link);
+    }
+    if (options.json) print_json({{"address", address}, {"links", links}});
+    if (std::fflush(stdout) != 0) throw ResourceError("stdout: cannot be written");
+}
+
+/// Serves until Ctrl-C, which is its end and no error.
+void run_serve(const ServeOptions& options) {
+    const Study study = read_study(options.folder);
+    AnswerStore answers(options.folder, study);
+    answers.add_participants(options.participants);
+    StudySite site(study, answers, options.folder);
+    const StudyServer server(site, options.host, options.port);
+    std::string address = options.address;
+    while (address.ends_with('/'))
+        address.pop_back();
+    if (address.empty()) address = server_address(options.host, server.port());
+    if (!is_loopback(options.host))
+        note(
+            "other machines reach this page, without encryption; put a server with HTTPS before "
+            "it where the network is not yours");
+    print_links(options, address, answers.participants());
+    note(fmt::format("serving {} on {} until Ctrl-C", options.folder.string(),
+                     server_address(options.host, server.port())));
+    while (!interrupted())
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    note("ended; all answers are in " + (options.folder / "answers.sqlite").string());
+}
+
+void add_serve(CLI::App& app) {
+    auto options = std::make_shared<ServeOptions>();
+    CLI::App* command = add_command(
+        app, "serve", "Show a study to participants, each by a link of their own", *options);
+    command->add_option("STUDY", options->folder, "The folder that item3d study make wrote")
+        ->required();
+    command
+        ->add_option("--participants", options->participants,
+                     "How many links there are; more than before adds some")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    command
+        ->add_option("--host", options->host,
+                     "Address to listen on; 0.0.0.0: all of this machine, for other machines too")
+        ->capture_default_str();
+    command->add_option("--port", options->port, "0: a free one")
+        ->check(CLI::Range(0, 65535))
+        ->capture_default_str();
+    command->add_option("--address", options->address,
+                        "What links begin with, where participants reach the page by another "
+                        "address: https://study.example.org");
+    command->callback([options] {
+        start_command(*options);
+        run_serve(*options);
+    });
+}
+
+struct AnalyzeOptions : CommonOptions {
+    std::filesystem::path folder;
+    AnalysisOptions analysis;
+};
+
+void run_analyze(const AnalyzeOptions& options) {
+    const Study study = read_study(options.folder);
+    const auto answers = read_answers(options.folder, study);
+    const StudyAnalysis analysis =
+        analyze_study(study, answers, options.analysis, options.folder.string());
+    write_atomically(options.folder / "ratings.csv", ratings_csv(study, answers));
+    write_atomically(options.folder / "table.csv", analysis_csv(analysis));
+    write_atomically(options.folder / "table.tex", analysis_latex(analysis));
+    if (options.json)
+        print_json(analysis_json(analysis));
+    else
+        fmt::print("{}", analysis_text(analysis));
+}
+
+void add_analyze(CLI::App& app) {
+    auto options = std::make_shared<AnalyzeOptions>();
+    CLI::App* command = add_command(
+        app, "analyze",
+        "Print ratings, tests and agreement; write ratings.csv, table.csv and table.tex", *options);
+    command->add_option("STUDY", options->folder, "The study's folder")->required();
+    command->add_flag("--all", options->analysis.counts_inattentive,
+                      "Count also who answered attention pages otherwise");
+    command
+        ->add_option("--resamples", options->analysis.resamples,
+                     "Of participants, for the intervals")
+        ->check(CLI::Range(100, 1000000))
+        ->capture_default_str();
+    command->add_option("--seed", options->analysis.seed, "Of the resampling")
+        ->capture_default_str();
+    command->callback([options] {
+        start_command(*options);
+        run_analyze(*options);
+    });
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& app) {
+    CLI::App* command = add_command_group(app, "study");
+    command->require_subcommand(1);
+    add_make(*command);
+    add_serve(*command);
+    add_analyze(*command);
+}
+
+}  // namespace item3d

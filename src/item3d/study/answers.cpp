@@ -1,0 +1,189 @@
+#include "item3d/study/answers.h"
+
+#include "item3d/core/error.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* schema = R"(
+CREATE TABLE study(fingerprint TEXT NOT NULL);
+CREATE TABLE participants(
+    number INTEGER PRIMARY KEY,
+    token TEXT NOT NULL UNIQUE,
+    agreed_at TEXT);
+CREATE TABLE answers(
+    participant INTEGER NOT NULL REFERENCES participants(number),
+    item TEXT NOT NULL,
+    photorealism INTEGER NOT NULL CHECK (photorealism BETWEEN 1 AND 5),
+    text_consistency INTEGER NOT NULL CHECK (text_consistency BETWEEN 1 AND 5),
+    given_at TEXT NOT NULL,
+    PRIMARY KEY (participant, item));
+)";
+static_assert(study_questions.size() == 2 && min_rating == 1 && max_rating == 5);
+
+fs::path database_of(const fs::path& folder) {
+    return folder / "answers.sqlite";
+}
+
+int lock_folder(const fs::path& folder) {
+    const fs::path path = folder / "lock";
+    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (file < 0)
+        throw InputError(path.string(),
+                         std::string("cannot be written (") + std::strerror(errno) + ")");
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+    ::close(file);
+    throw InputError(folder.string(), "is served already, by another `item3d study serve`",
+                     "end that one first, or use its links");
+}
+
+/// The database of `study`, whole.
+std::unique_ptr<Sqlite> open_database(const fs::path& folder, const Study& study, bool may_create) {
+    const fs::path path = database_of(folder);
+    const bool is_new = !fs::exists(path);
+    if (is_new && !may_create)
+        throw InputError(path.string(), "is not there: nobody has answered",
+                         "`item3d study serve` asks participants");
+    // SQLite takes an empty file, and one of a single byte, for a new database.
+    if (!is_new && fs::file_size(path) <= 1)
+        throw InputError(path.string(), "is empty: it was cut off",
+                         "put a copy in its place, or remove it to begin anew");
+    auto database = std::make_unique<Sqlite>(path, is_new);
+    if (is_new) {
+        SqliteTransaction transaction(*database);
+        database->run(schema);
+        SqliteRows rows(*database, "INSERT INTO study VALUES (?)");
+        rows.bind(study.fingerprint());
+        rows.next();
+        transaction.commit();
+    }
+    database->check();
+    SqliteRows rows(*database, "SELECT fingerprint FROM study");
+    if (!rows.next() || rows.text(0) != study.fingerprint())
+        throw InputError(path.string(), "has the answers to another study.json",
+                         "put that study.json back, or make a new study in another folder");
+    return database;
+}
+
+std::string new_token() {
+    std::array<unsigned char, 10> bytes{};
+    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+        throw ResourceError(std::string("the system gives no random numbers: ") +
+                            std::strerror(errno));
+    std::string token;
+    for (const unsigned char byte : bytes)
+        token += fmt::format("{:02x}", byte);
+    return token;
+}
+
+Participant read_participant(const SqliteRows& rows) {
+    return {rows.number(0), rows.text(1), !rows.text(2).empty()};
+}
+
+}  // namespace
+
+AnswerStore::AnswerStore(const fs::path& folder, const Study& study) : lock_(lock_folder(folder)) {
+    try {
+        database_ = open_database(folder, study, true);
+    } catch (...) {
+        ::close(lock_);
+        throw;
+    }
+}
+
+AnswerStore::~AnswerStore() {
+    database_.reset();
+    ::close(lock_);
+}
+
+void AnswerStore::add_participants(int count) {
+    auto there = static_cast<int>(participants().size());
+    const std::lock_guard guard(mutex_);
+    SqliteTransaction transaction(*database_);
+    while (there < count) {
+        SqliteRows rows(*database_, "INSERT INTO participants(number, token) VALUES (?, ?)");
+        rows.bind(++there);
+        rows.bind(new_token());
+        rows.next();
+    }
+    transaction.commit();
+}
+
+std::vector<Participant> AnswerStore::participants() {
+    const std::lock_guard guard(mutex_);
+    SqliteRows rows(*database_,
+                    "SELECT number, token, agreed_at FROM participants ORDER BY number");
+    std::vector<Participant> all;
+    while (rows.next())
+        all.push_back(read_participant(rows));
+    return all;
+}
+
+std::optional<Participant> AnswerStore::find(const std::string& token) {
+    const std::lock_guard guard(mutex_);
+    SqliteRows rows(*database_,
+                    "SELECT number, token, agreed_at FROM participants WHERE token = ?");
+    rows.bind(token);
+    if (!rows.next()) return std::nullopt;
+    return read_participant(rows);
+}
+
+void AnswerStore::agree(std::int64_t participant) {
+    const std::lock_guard guard(mutex_);
+    SqliteRows rows(*database_,
+                    "UPDATE participants SET agreed_at = strftime('%Y-%m-%dT%H:%M:%SZ', 'now') "
+                    "WHERE number = ? AND agreed_at IS NULL");
+    rows.bind(participant);
+    rows.next();
+}
+
+void AnswerStore::store(std::int64_t participant, const std::string& item,
+                        const StudyAnswer& answer) {
+    const std::lock_guard guard(mutex_);
+    SqliteRows rows(*database_,
+                    "INSERT OR REPLACE INTO answers VALUES (?, ?, ?, ?, "
+                    "strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))");
+    rows.bind(participant);
+    rows.bind(item);
+    for (const int value : answer)
+        rows.bind(value);
+    rows.next();
+}
+
+AnswersByItem AnswerStore::answers(std::int64_t participant) {
+    const std::lock_guard guard(mutex_);
+    SqliteRows rows(*database_,
+                    "SELECT item, photorealism, text_consistency FROM answers WHERE participant = "
+                    "?");
+    rows.bind(participant);
+    AnswersByItem answers;
+    while (rows.next())
+        answers[rows.text(0)] = {static_cast<int>(rows.number(1)),
+                                 static_cast<int>(rows.number(2))};
+    return answers;
+}
+
+std::map<std::int64_t, AnswersByItem> read_answers(const fs::path& folder, const Study& study) {
+    const auto database = open_database(folder, study, false);
+    SqliteRows rows(*database,
+                    "SELECT participant, item, photorealism, text_consistency FROM answers");
+    std::map<std::int64_t, AnswersByItem> answers;
+    while (rows.next())
+        answers[rows.number(0)][rows.text(1)] = {static_cast<int>(rows.number(2)),
+                                                 static_cast<int>(rows.number(3))};
+    return answers;
+}
+
+}  // namespace item3d

@@ -1,0 +1,33 @@
+// A study's site on a socket.
+#pragma once
+
+#include "item3d/study/site.h"
+
+#include <memory>
+#include <string>
+
+namespace item3d {
+
+/// Answers requests in threads of its own, from the constructor to the destructor.
+class StudyServer {
+  public:
+    /// site outlives it. port 0: a free one. Throws ResourceError where the port is taken and
+    /// InputError where the machine has no such host.
+    StudyServer(StudySite& site, const std::string& host, int port);
+    ~StudyServer();
+    StudyServer(const StudyServer&) = delete;
+    StudyServer& operator=(const StudyServer&) = delete;
+
+    int port() const;
+
+  private:
+    struct Sockets;
+    std::unique_ptr<Sockets> sockets_;
+};
+
+/// "http://HOST:PORT", with this machine's name where the host stands for all of its addresses.
+std::string server_address(const std::string& host, int port);
+/// Whether other machines cannot reach this host.
+bool is_loopback(const std::string& host);
+
+}  // namespace item3d

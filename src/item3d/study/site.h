@@ -1,0 +1,59 @@
+// What a study answers to requests: which page, and what is stored. Knows nothing of sockets.
+//
+//   GET  /p/TOKEN         the participant's next page: consent, an item, or thanks
+//   POST /p/TOKEN/agree   agrees to the consent text
+//   GET  /p/TOKEN/NUMBER  an item that is answered already, or the next one
+//   POST /p/TOKEN/NUMBER  stores an answer: one number from 1 to 5 for each question
+//   GET  /pictures/NAME   a picture of the study
+//   GET  /style.css
+#pragma once
+
+#include "item3d/study/answers.h"
+#include "item3d/study/study.h"
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+namespace item3d {
+
+struct SiteRequest {
+    bool is_post = false;
+    std::string path;                         ///< decoded, without a query
+    std::map<std::string, std::string> form;  ///< fields of a POST
+};
+
+struct SiteReply {
+    int status = 200;
+    std::string type = "text/html; charset=utf-8";
+    std::string body;
+    std::string location;      ///< of a redirection (303)
+    bool may_be_kept = false;  ///< pictures and style alone
+};
+
+/// reply() may be called by several threads.
+class StudySite {
+  public:
+    /// study and answers outlive it; folder: with pictures/.
+    StudySite(const Study& study, AnswerStore& answers, std::filesystem::path folder);
+
+    /// Answers that are no number from 1 to 5, pages that come later and links that nobody has get
+    /// a page that says so (400, 404) and change nothing. Throws what AnswerStore throws.
+    SiteReply reply(const SiteRequest& request);
+
+  private:
+    SiteReply reply_to(const Participant& participant, const SiteRequest& request,
+                       const std::string& rest);
+    SiteReply picture(const std::string& name) const;
+
+    const Study& study_;
+    AnswerStore& answers_;
+    std::filesystem::path folder_;
+    std::set<std::string> pictures_;
+};
+
+/// Path of a participant's link.
+std::string participant_path(const Participant& participant);
+
+}  // namespace item3d

@@ -1,0 +1,129 @@
+#include "item3d/study/study.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/random.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <set>
+#include <stdexcept>
+
+namespace item3d {
+namespace {
+
+constexpr std::array kind_names = {"practice", "rating", "attention"};
+
+nlohmann::json item_json(const StudyItem& item) {
+    return {{"id", item.id},
+            {"kind", kind_name(item.kind)},
+            {"case", item.case_name},
+            {"method", item.method},
+            {"from", item.from},
+            {"to", item.to},
+            {"note", item.note},
+            {"before", item.before},
+            {"after", item.after},
+            {"turntable", item.turntable},
+            {"expected", item.expected},
+            {"scores", item.scores}};
+}
+
+StudyItemKind read_kind(const std::string& name) {
+    for (std::size_t i = 0; i < kind_names.size(); ++i)
+        if (name == kind_names[i]) return static_cast<StudyItemKind>(i);
+    throw std::out_of_range("there is no kind of item '" + name + "'");
+}
+
+/// A name of a file beside others, and no path.
+std::string read_name(const nlohmann::json& name) {
+    const auto text = name.get<std::string>();
+    if (text.find('/') != std::string::npos || text == "..")
+        throw std::out_of_range("'" + text + "' is no name of a picture");
+    return text;
+}
+
+StudyItem read_item(const nlohmann::json& json) {
+    StudyItem item;
+    item.id = json.at("id").get<std::string>();
+    item.kind = read_kind(json.at("kind").get<std::string>());
+    item.case_name = json.at("case").get<std::string>();
+    item.method = json.at("method").get<std::string>();
+    item.from = json.at("from").get<std::string>();
+    item.to = json.at("to").get<std::string>();
+    item.note = json.at("note").get<std::string>();
+    item.before = read_name(json.at("before"));
+    item.after = read_name(json.at("after"));
+    item.turntable = read_name(json.at("turntable"));
+    item.expected = json.at("expected").get<StudyAnswer>();
+    item.scores = json.at("scores").get<std::map<std::string, double>>();
+    return item;
+}
+
+nlohmann::json study_json(const Study& study) {
+    nlohmann::json items = nlohmann::json::array();
+    for (const StudyItem& item : study.items)
+        items.push_back(item_json(item));
+    return {{"format", "item3d study"}, {"version", 1},
+            {"title", study.title},     {"seed", study.seed},
+            {"methods", study.methods}, {"items", items},
+            {"consent", study.consent}};
+}
+
+void check_items(const Study& study) {
+    std::set<std::string> ids;
+    for (const StudyItem& item : study.items) {
+        if (!ids.insert(item.id).second)
+            throw std::out_of_range("two items have the id '" + item.id + "'");
+    }
+}
+
+}  // namespace
+
+std::string_view kind_name(StudyItemKind kind) {
+    return kind_names[static_cast<std::size_t>(kind)];
+}
+
+const StudyItem& Study::item(const std::string& id) const {
+    for (const StudyItem& item : items)
+        if (item.id == id) return item;
+    throw std::out_of_range("no item " + id);
+}
+
+std::string Study::fingerprint() const {
+    std::uint64_t bits = 0;
+    for (const char character : study_json(*this).dump())
+        bits = mix_bits(bits ^ static_cast<unsigned char>(character));
+    return fmt::format("{:016x}", bits);
+}
+
+void write_study(const Study& study, const std::filesystem::path& folder) {
+    write_atomically(folder / "study.json", study_json(study).dump(2) + "\n");
+}
+
+Study read_study(const std::filesystem::path& folder) {
+    const std::filesystem::path path = folder / "study.json";
+    const std::string text = read_text(path);
+    try {
+        const nlohmann::json json = nlohmann::json::parse(text);
+        if (json.at("format") != "item3d study" || json.at("version") != 1)
+            throw std::out_of_range("it is of another format");
+        Study study;
+        study.seed = json.at("seed").get<std::uint64_t>();
+        study.title = json.at("title").get<std::string>();
+        study.consent = json.at("consent").get<std::string>();
+        study.methods = json.at("methods").get<std::vector<std::string>>();
+        for (const nlohmann::json& item : json.at("items"))
+            study.items.push_back(read_item(item));
+        check_items(study);
+        return study;
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw InputError(path.string(), std::string("is no study (") + error.what() + ")",
+                         "make it by `item3d study make`");
+    }
+}
+
+}  // namespace item3d
