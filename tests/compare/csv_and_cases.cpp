@@ -1,7 +1,7 @@
 // Cases from JSON and CSV, and what is refused.
 #include "item3d/compare/cases.h"
-#include "item3d/core/csv.h"
 #include "item3d/compare/runs.h"
+#include "item3d/core/csv.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 

@@ -2,7 +2,9 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/edit/region_choice.h"
+#include "item3d/edit/region_views.h"
 #include "item3d/region/masks.h"
+#include "item3d/scene/sphere.h"
 #include "tests/support/edit.h"
 
 #include <gtest/gtest.h>
@@ -95,6 +97,16 @@ TEST_F(EditTest, auto_is_where_the_sentences_differ) {
         edit_model(request("out", 1,
                            {{"region", {"auto"}}, {"to", "a red cube"}, {"from", "a red cube"}})),
         InputError);
+}
+
+TEST(RegionViews, PartsWhoseNormalsPointInwardsAreSeenFromOutside) {
+    const Model model = make_unit_sphere(24, 32);
+    const at::Tensor places = at::eye(3);
+    const RegionViews views({places, -places}, model, Geometry::from_model(model));
+    std::vector<Camera> cameras(16);
+    views.take_turns(cameras, 0, 0);
+    for (std::size_t i = 0; i < cameras.size(); i += 2)
+        EXPECT_GT(glm::length(cameras[i].position()), 1.05f) << i;
 }
 
 TEST(RegionChoice, AChangeOfColorIsAboutWhatHasIt) {

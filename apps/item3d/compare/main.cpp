@@ -3,5 +3,5 @@
 #include "apps/item3d/run.h"
 
 int main(int argc, char** argv) {
-    return item3d::run_program(argc, argv, {item3d::add_compare_command});
+    item3d::run_program(argc, argv, {item3d::add_compare_command});
 }

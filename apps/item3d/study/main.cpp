@@ -3,5 +3,5 @@
 #include "apps/item3d/study/commands.h"
 
 int main(int argc, char** argv) {
-    return item3d::run_program(argc, argv, {item3d::add_study_command});
+    item3d::run_program(argc, argv, {item3d::add_study_command});
 }

@@ -2,6 +2,7 @@
 
 #include "item3d/core/csv.h"
 #include "item3d/core/format.h"
+#include "item3d/core/latex_escape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,23 +52,6 @@ std::optional<double> spread_over_seeds(const Rows& rows, const char* key) {
     }
     if (count == 0) return std::nullopt;
     return sum / count;
-}
-
-std::string latex_escape(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (std::string_view("&%$#_{}").find(c) != std::string_view::npos)
-            result += std::string("\\") + c;
-        else if (c == '\\')
-            result += "\\textbackslash{}";
-        else if (c == '~')
-            result += "\\textasciitilde{}";
-        else if (c == '^')
-            result += "\\textasciicircum{}";
-        else
-            result += c;
-    }
-    return result;
 }
 
 const std::vector<TableColumn> all_columns = {

@@ -52,9 +52,10 @@ RegionViews::RegionViews(const RegionPoints& points, const Model& model, const G
     const std::int64_t step = std::max<std::int64_t>(1, count / most_looks);
     for (std::int64_t i = 0; i < count; i += step) {
         const Vec3 place = row_of(positions, i);
-        const Vec3 normal = row_of(normals, i);
-        for (int t = 0; t < tries; ++t) {
-            const float turn = widest_turn * static_cast<float>(t) / tries;
+        // Of parts whose normals point inwards the other side is seen.
+        for (int t = 0; t < 2 * tries; ++t) {
+            const Vec3 normal = (t < tries ? 1.0f : -1.0f) * row_of(normals, i);
+            const float turn = widest_turn * static_cast<float>(t % tries) / tries;
             const Vec3 direction = glm::normalize(normal + turn * random_vector(random));
             if (rays.blocked(place + clearance * model_radius_ * normal, direction)) continue;
             looks_.push_back({is_small ? centre : place, direction, radius});

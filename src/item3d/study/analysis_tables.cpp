@@ -1,6 +1,7 @@
 #include "item3d/study/analysis_tables.h"
 
 #include "item3d/core/csv.h"
+#include "item3d/core/latex_escape.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -101,23 +102,6 @@ Json tests_json(const QuestionTests& tests) {
     return json;
 }
 
-std::string study_latex_escape(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (std::string_view("&%$#_{}").find(c) != std::string_view::npos)
-            result += std::string("\\") + c;
-        else if (c == '\\')
-            result += "\\textbackslash{}";
-        else if (c == '~')
-            result += "\\textasciitilde{}";
-        else if (c == '^')
-            result += "\\textasciicircum{}";
-        else
-            result += c;
-    }
-    return result;
-}
-
 /// Whether no method's value is better.
 bool is_best_score(const ScoreColumn& column, const MethodRatings& one,
                    const StudyAnalysis& analysis) {
@@ -213,7 +197,7 @@ std::string analysis_latex(const StudyAnalysis& analysis) {
         text += fmt::format(" & {} $\\uparrow$", title);
     text += " \\\\\n\\midrule\n";
     for (const MethodRatings& method : analysis.methods) {
-        text += study_latex_escape(method.method);
+        text += latex_escape(method.method);
         for (const ScoreColumn& column : score_columns)
             text += latex_cell(score_cell(column, method), is_best_score(column, method, analysis));
         for (std::size_t question = 0; question < study_questions.size(); ++question) {

@@ -1,10 +1,10 @@
 #include "item3d/reconstruct/dataset/find_poses.h"
 
+#include "item3d/core/child_program.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
-#include "item3d/core/child_program.h"
 #include "item3d/reconstruct/dataset/colmap.h"
 #include "item3d/reconstruct/dataset/colmap_program.h"
 #include "item3d/reconstruct/dataset/pose_pictures.h"
