@@ -259,6 +259,37 @@ TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {
               std::string::npos);
 }
 
+TEST_F(PriorTraining, AnInstructorBeginsWithAPriorAndNothingOfItsShapes) {
+    TrainSettings first = settings("shapes");
+    train_diffusion(data_, first, networks_, {});
+    TrainSettings second = settings("instructions");
+    second.condition = picture_condition;
+    second.begin_with = first.output;
+    second.learning_rate = 1e-9f;
+    data_.sources = at::randn({24, latent_channels, 16, 16}).to(at::kHalf);
+    networks_.unet.in_channels = prior_unet_config(second).in_channels;
+    EXPECT_EQ(networks_.unet.in_channels, 2 * latent_channels);
+    train_diffusion(data_, second, networks_, {});
+    const auto input_weight = [](const TrainSettings& of) {
+        return SafeTensors::open(of.output / "unet/diffusion_pytorch_model.safetensors")
+            .tensor("conv_in.weight")
+            .to(at::kFloat);
+    };
+    const at::Tensor was = input_weight(first), is = input_weight(second);
+    EXPECT_GT(was.slice(1, latent_channels).abs().max().item<float>(), 0.01);
+    EXPECT_TRUE(at::allclose(is.slice(1, 0, latent_channels), was.slice(1, 0, latent_channels),
+                             2e-3, 1e-6));
+    EXPECT_LT(is.slice(1, latent_channels).abs().max().item<float>(), 1e-6);
+    // Its data is read back with the pictures, or refused.
+    const LatentData read = LatentData::from_tensors(data_.tensors(), 32, "data.safetensors");
+    EXPECT_TRUE(read.sources.equal(data_.sources));
+    data_.sources = data_.sources.narrow(0, 0, 8);
+    EXPECT_NE(refusal([&] {
+                  LatentData::from_tensors(data_.tensors(), 32, "data.safetensors");
+              }).find("shapes"),
+              std::string::npos);
+}
+
 TEST_F(PriorTraining, WhatItPredictsAndIsToldIsWrittenBesideTheWeights) {
     TrainSettings noise = settings("noise");
     noise.samples = 8;

@@ -69,6 +69,11 @@ void run_train(const TrainOptions& options, at::Device device) {
         note(fmt::format("process {} of {} has joined the others", settings.processes.rank(),
                          settings.processes.size()));
     const bool all = options.part == "all";
+    if (options.part == "instruct") {
+        settings.condition = picture_condition;
+        if (settings.begin_with.empty()) settings.begin_with = find_prior("");
+        train_prior(settings);
+    }
     if (all || options.part == "diffusion") train_prior(settings);
     const bool clip = all || options.part == "clip";
     const bool captioner = all || options.part == "captioner";
@@ -175,8 +180,9 @@ void add_train(CLI::App& app) {
     command
         ->add_option("--part", options->part,
                      "What to train: diffusion (autoencoder, text encoder and U-Net), clip, "
-                     "captioner, segmenter, or all")
-        ->check(CLI::IsMember({"all", "diffusion", "clip", "captioner", "segmenter"}))
+                     "captioner, segmenter, or all of these; instruct (an InstructPix2Pix, begun "
+                     "with the embedded prior)")
+        ->check(CLI::IsMember({"all", "diffusion", "clip", "captioner", "segmenter", "instruct"}))
         ->capture_default_str();
     add_count_settings(*command, *options);
     add_network_settings(*command, *options);
@@ -218,10 +224,11 @@ struct PicturesOptions : CommonOptions {
 
 /// A contact sheet of training pictures; their captions go to stdout, row by row.
 void run_pictures(const PicturesOptions& options) {
-    const Sheet sheet = options.of == "objects"     ? object_sheet(options.sheet)
-                        : options.of == "materials" ? material_sheet(options.sheet)
-                        : options.of == "lights"    ? light_sheet(options.sheet)
-                                                    : example_sheet(options.sheet);
+    const Sheet sheet = options.of == "objects"        ? object_sheet(options.sheet)
+                        : options.of == "instructions" ? instruction_sheet(options.sheet)
+                        : options.of == "materials"    ? material_sheet(options.sheet)
+                        : options.of == "lights"       ? light_sheet(options.sheet)
+                                                       : example_sheet(options.sheet);
     save_image(options.output, sheet.image);
     if (options.json) {
         print_json({{"captions", sheet.captions}});
@@ -238,8 +245,9 @@ void add_pictures(CLI::App& app) {
     command->add_option("-o,--output", options->output, "Image file")->required();
     command
         ->add_option("--of", options->of,
-                     "examples as they come, or every one of the objects, materials or lights")
-        ->check(CLI::IsMember({"examples", "objects", "materials", "lights"}))
+                     "examples or pairs of instructions as they come, or every one of the objects, "
+                     "materials or lights")
+        ->check(CLI::IsMember({"examples", "instructions", "objects", "materials", "lights"}))
         ->capture_default_str();
     command->add_option("--columns", sheet.columns)
         ->check(CLI::Range(1, 64))

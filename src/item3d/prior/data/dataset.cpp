@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/prior/data/captions.h"
+#include "item3d/prior/data/instructions.h"
 #include "item3d/prior/data/shapes/shapes.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/shade.h"
@@ -151,41 +152,79 @@ ExampleSource::ExampleSource(std::vector<ShapeView> views, std::vector<TrainingL
     ITEM3D_CHECK(!views_.empty() && !lights_.empty(), "examples need views and lights");
 }
 
-Example ExampleSource::draw(std::int64_t index) const {
-    Random random(seed_, static_cast<std::uint64_t>(index));
-    const auto view =
-        static_cast<std::size_t>(random.index(static_cast<std::int64_t>(views_.size())));
-    return draw_example(random, views_[view], lights_, wish_);
+const ShapeView& ExampleSource::draw_view(Random& random) const {
+    return views_[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(views_.size())))];
 }
 
-Example draw_example(Random& random, const ShapeView& view,
-                     const std::vector<TrainingLight>& lights, const ExampleWish& wish) {
+Example ExampleSource::draw(std::int64_t index) const {
+    Random random(seed_, static_cast<std::uint64_t>(index));
+    return draw_example(random, draw_view(random), lights_, wish_);
+}
+
+InstructionPair ExampleSource::draw_pair(std::int64_t index) const {
+    Random random(seed_, static_cast<std::uint64_t>(index));
+    return draw_instruction_pair(random, draw_view(random), lights_, wish_);
+}
+
+namespace {
+
+const TrainingLight& draw_light(Random& random, const std::vector<TrainingLight>& lights,
+                                const ExampleWish& wish) {
     ITEM3D_CHECK(wish.light || !lights.empty(), "an example needs a light");
-    const at::NoGradGuard no_grad;
-    const ProceduralMaterial material = make_material(random, wish.material);
-    const TrainingLight& light = wish.light ? *wish.light
-                                            : lights[static_cast<std::size_t>(random.index(
-                                                  static_cast<std::int64_t>(lights.size())))];
-    std::size_t part_index = 0;
-    const std::optional<PartMaterial> part = draw_part(random, view, material, wish, part_index);
-    const PartMaterial* own = part ? &*part : nullptr;
+    if (wish.light) return *wish.light;
+    return lights[static_cast<std::size_t>(random.index(static_cast<std::int64_t>(lights.size())))];
+}
+
+/// All that a picture has beside its view and materials.
+struct Scenery {
+    const TrainingLight& light;
+    float shadow, exposure;
+    bool mirrored;
+    Background background;
+};
+
+Scenery draw_scenery(Random& random, const TrainingLight& light, const ExampleWish& wish) {
     // An edit may render with shadows or without.
     const float shadow = random.chance(.3) ? 0.0f : static_cast<float>(random.uniform(.6, 1));
     const auto exposure =
         static_cast<float>(std::exp(random.normal(0, wish.plain_background ? 0 : .12)));
     const bool mirrored = random.chance(.5);
-
-    Surface surface;
-    MaterialSample sample;
-    fill_points(view, material, own, part_index, light.sky, shadow, surface, sample);
-    const at::Tensor radiance = shade(surface, sample, light.light) * exposure;
-    const at::Tensor encoded = linear_to_srgb(radiance.clamp(0, 1)).contiguous();
-
     Background background = random_background(random, light.kind);
     if (wish.plain_background) background = {Vec3(.8f), Vec3(.8f)};
+    return {light, shadow, exposure, mirrored, background};
+}
+
+/// covered: [S, S], written.
+at::Tensor draw_picture(const ShapeView& view, const Scenery& scenery,
+                        const ProceduralMaterial& rest, const PartMaterial* part,
+                        std::size_t part_index, at::Tensor& covered) {
+    Surface surface;
+    MaterialSample sample;
+    fill_points(view, rest, part, part_index, scenery.light.sky, scenery.shadow, surface, sample);
+    const at::Tensor radiance = shade(surface, sample, scenery.light.light) * scenery.exposure;
+    const at::Tensor encoded = linear_to_srgb(radiance.clamp(0, 1)).contiguous();
+    return to_image(view, encoded, scenery.background, scenery.mirrored, covered);
+}
+
+at::Tensor cells_of(const ShapeView& view, const Scenery& scenery) {
+    return scenery.mirrored ? view.cells.flip(2) : view.cells;
+}
+
+}  // namespace
+
+Example draw_example(Random& random, const ShapeView& view,
+                     const std::vector<TrainingLight>& lights, const ExampleWish& wish) {
+    const at::NoGradGuard no_grad;
+    const ProceduralMaterial material = make_material(random, wish.material);
+    const TrainingLight& light = draw_light(random, lights, wish);
+    std::size_t part_index = 0;
+    const std::optional<PartMaterial> part = draw_part(random, view, material, wish, part_index);
+    const PartMaterial* own = part ? &*part : nullptr;
+    const Scenery scenery = draw_scenery(random, light, wish);
+
     Example example;
-    example.image = to_image(view, encoded, background, mirrored, example.covered);
-    example.cells = mirrored ? view.cells.flip(2) : view.cells;
+    example.image = draw_picture(view, scenery, material, own, part_index, example.covered);
+    example.cells = cells_of(view, scenery);
     const ShapeClass& shape = shape_classes()[static_cast<std::size_t>(view.shape_class)];
     PictureWords words{shape.nouns, material.phrases, light.phrases, {}};
     if (part) words.part = PartWords{part->noun, part->material.phrases};
@@ -194,11 +233,39 @@ Example draw_example(Random& random, const ShapeView& view,
     example.material = material.kind;
     example.light = light.kind;
     example.view = &view;
-    example.mirrored = mirrored;
+    example.mirrored = scenery.mirrored;
     example.own_part = part_index;
     example.phrases = material.phrases;
     if (part) example.part_phrases = part->material.phrases;
     return example;
+}
+
+InstructionPair draw_instruction_pair(Random& random, const ShapeView& view,
+                                      const std::vector<TrainingLight>& lights,
+                                      const ExampleWish& wish) {
+    const at::NoGradGuard no_grad;
+    const ProceduralMaterial material = make_material(random, wish.material);
+    const TrainingLight& light = draw_light(random, lights, wish);
+    std::size_t part_index = 0;
+    const std::optional<PartMaterial> part = draw_part(random, view, material, wish, part_index);
+    const Scenery scenery = draw_scenery(random, light, wish);
+    const ShapeClass& shape = shape_classes()[static_cast<std::size_t>(view.shape_class)];
+
+    InstructionPair pair;
+    at::Tensor covered;
+    pair.cells = cells_of(view, scenery);
+    pair.before = draw_picture(view, scenery, material, nullptr, 0, covered);
+    if (part) {
+        pair.after = draw_picture(view, scenery, material, &*part, part_index, covered);
+        pair.instruction = instruction_for_part(random, part->noun, part->material.phrases);
+        return pair;
+    }
+    ProceduralMaterial other = make_material(random, wish.material);
+    while (other.kind == material.kind && other.color == material.color)
+        other = make_material(random, wish.material);
+    pair.after = draw_picture(view, scenery, other, nullptr, 0, covered);
+    pair.instruction = instruction_for_object(random, shape.nouns, other.phrases);
+    return pair;
 }
 
 }  // namespace item3d

@@ -50,6 +50,18 @@ std::vector<std::size_t> visible_parts(const ShapeView& view);
 Example draw_example(Random& random, const ShapeView& view,
                      const std::vector<TrainingLight>& lights, const ExampleWish& wish = {});
 
+/// One view twice, in the same light: as it was, and as an instruction changes it.
+struct InstructionPair {
+    at::Tensor before, after;  ///< [S, S, 3] float32, sRGB in [0, 1]
+    at::Tensor cells;          ///< as ShapeView::cells
+    std::string instruction;   ///< "make it golden", "give it a red handle"
+};
+
+/// Draws a pair of that view: another material of all of it, or of one of its parts.
+InstructionPair draw_instruction_pair(Random& random, const ShapeView& view,
+                                      const std::vector<TrainingLight>& lights,
+                                      const ExampleWish& wish = {});
+
 /// Draws examples from views and lights; safe to use from several threads.
 class ExampleSource {
   public:
@@ -58,10 +70,13 @@ class ExampleSource {
 
     /// The example of that index depends on the seed and the index alone.
     Example draw(std::int64_t index) const;
+    InstructionPair draw_pair(std::int64_t index) const;
 
     const std::vector<ShapeView>& views() const { return views_; }
 
   private:
+    const ShapeView& draw_view(Random& random) const;
+
     std::vector<ShapeView> views_;
     std::vector<TrainingLight> lights_;
     std::uint64_t seed_;

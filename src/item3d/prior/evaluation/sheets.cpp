@@ -21,10 +21,11 @@ class SheetWriter {
         sheet_.image = Image(options.columns * tile_, rows * tile_, 3, 1.0f);
     }
 
-    void add(const Example& example, const std::string& caption) {
+    /// picture: [S, S, 3]
+    void add(const at::Tensor& picture, const std::string& caption) {
         const int i = static_cast<int>(sheet_.captions.size());
         const int left = i % options_.columns * tile_, top = i / options_.columns * tile_;
-        const auto* pixels = example.image.data_ptr<float>();
+        const auto* pixels = picture.const_data_ptr<float>();
         for (int y = 0; y < options_.picture; ++y)
             for (int x = 0; x < options_.picture; ++x)
                 for (int c = 0; c < 3; ++c)
@@ -55,6 +56,13 @@ ShapeView good_view(const std::string& shape_class, int variant, const SheetOpti
     });
 }
 
+ExampleSource sheet_source(const SheetOptions& options) {
+    std::vector<TrainingLight> lights = make_training_lights(options.seed + 1, 64, 2);
+    return ExampleSource(
+        make_view_pool(false, options.variants, 4, options.seed, 2, options.picture),
+        std::move(lights), options.seed);
+}
+
 TrainingLight sheet_light(const std::string& kind, std::uint64_t seed) {
     Random random(seed, 3);
     return make_training_light(random, kind);
@@ -63,15 +71,24 @@ TrainingLight sheet_light(const std::string& kind, std::uint64_t seed) {
 }  // namespace
 
 Sheet example_sheet(const SheetOptions& options) {
-    std::vector<TrainingLight> lights = make_training_lights(options.seed + 1, 64, 2);
-    const ExampleSource source(
-        make_view_pool(false, options.variants, 4, options.seed, 2, options.picture),
-        std::move(lights), options.seed);
+    const ExampleSource source = sheet_source(options);
     const int count = options.columns * options.rows;
     SheetWriter sheet(options, static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
         const Example example = source.draw(i);
-        sheet.add(example, example.caption);
+        sheet.add(example.image, example.caption);
+    }
+    return sheet.finish();
+}
+
+Sheet instruction_sheet(const SheetOptions& options) {
+    const ExampleSource source = sheet_source(options);
+    const int count = std::max(1, options.columns * options.rows / 2);
+    SheetWriter sheet(options, static_cast<std::size_t>(2 * count));
+    for (int i = 0; i < count; ++i) {
+        const InstructionPair pair = source.draw_pair(i);
+        sheet.add(pair.before, "before");
+        sheet.add(pair.after, pair.instruction);
     }
     return sheet.finish();
 }
@@ -85,7 +102,7 @@ Sheet object_sheet(const SheetOptions& options) {
         ExampleWish wish{{"plain", "gray", ""}, &light, true, "none", {"plain", "salmon", ""}};
         if (view.parts.size() > 1) wish.part = view.parts[1];
         Random random(options.seed, i);
-        sheet.add(draw_example(random, view, {}, wish),
+        sheet.add(draw_example(random, view, {}, wish).image,
                   classes[i].nouns[0] + (classes[i].held_out ? " (held out)" : ""));
     }
     return sheet.finish();
@@ -101,7 +118,7 @@ Sheet material_sheet(const SheetOptions& options) {
         for (std::size_t k = 0; k < views.size(); ++k) {
             Random random(options.seed, 100 * i + k);
             ExampleWish wish{words[i].wish, &light, true, "none", {}};
-            sheet.add(draw_example(random, views[k], {}, wish), words[i].word);
+            sheet.add(draw_example(random, views[k], {}, wish).image, words[i].word);
         }
     return sheet.finish();
 }
@@ -120,7 +137,7 @@ Sheet light_sheet(const SheetOptions& options) {
         for (std::size_t k = 0; k < views.size(); ++k) {
             Random random(options.seed, 9 + k);
             ExampleWish wish{materials[k], &light, true, "none", {}};
-            sheet.add(draw_example(random, views[k], {}, wish), kinds[i]);
+            sheet.add(draw_example(random, views[k], {}, wish).image, kinds[i]);
         }
     }
     return sheet.finish();

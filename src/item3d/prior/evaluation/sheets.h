@@ -24,6 +24,8 @@ struct Sheet {
 
 /// Training pictures as they come.
 Sheet example_sheet(const SheetOptions& options);
+/// Pairs as they come: two pictures beside each other, and what changes between them.
+Sheet instruction_sheet(const SheetOptions& options);
 /// Every class of objects, in grey, or in two colours where it has parts.
 Sheet object_sheet(const SheetOptions& options);
 /// Every material and pattern that is measured, each on two objects.

@@ -11,6 +11,8 @@
 #include "item3d/text/bert_tokenizer.h"
 #include "item3d/text/clip_tokenizer.h"
 
+#include <limits>
+
 namespace item3d {
 namespace {
 
@@ -27,13 +29,15 @@ at::Tensor with_more_inputs(const at::Tensor& weight, const at::Tensor& to) {
     return more > 0 ? at::constant_pad_nd(weight, {0, 0, 0, 0, 0, more}) : weight;
 }
 
+/// kept_inputs: the U-Net's first channels, whose weights are copied.
 void copy_weights(const fs::path& folder, const torch::nn::Module& from, torch::nn::Module& to,
-                  const char* hint = size_hint) {
+                  const char* hint = size_hint,
+                  std::int64_t kept_inputs = std::numeric_limits<std::int64_t>::max()) {
     const at::NoGradGuard no_grad;
     auto given = from.named_parameters();
     auto wanted = to.named_parameters();
     if (at::Tensor* input = given.find("conv_in.weight"))
-        *input = with_more_inputs(*input, wanted["conv_in.weight"]);
+        *input = with_more_inputs(input->slice(1, 0, kept_inputs), wanted["conv_in.weight"]);
     bool fits = given.size() == wanted.size();
     for (const auto& item : wanted) {
         const at::Tensor* value = given.find(item.key());
@@ -65,7 +69,8 @@ void check_begin_with(const TrainSettings& settings) {
     const fs::path file = settings.begin_with / "unet" / "config.json";
     auto given = UNet2DConditionConfig::from_config(Config::read(file));
     const UNet2DConditionConfig wanted = prior_unet_config(settings);
-    if (given.in_channels < wanted.in_channels) given.in_channels = wanted.in_channels;
+    if (given.in_channels < wanted.in_channels || settings.condition == picture_condition)
+        given.in_channels = wanted.in_channels;
     if (given.to_json() != wanted.to_json())
         throw InputError(file.string(), another_size, size_hint);
     begin_with_autoencoder(settings.begin_with, settings.resolution);
@@ -97,8 +102,13 @@ nlohmann::json begin_with_record(const fs::path& folder) {
     return record;
 }
 
-void begin_with_weights(const fs::path& folder, UNet2DCondition& unet, ClipTextModel& text) {
-    copy_weights(folder / "unet", *load_unet(folder / "unet"), *unet);
+void begin_with_weights(const fs::path& folder, UNet2DCondition& unet, ClipTextModel& text,
+                        bool by_pictures) {
+    const UNet2DCondition given = load_unet(folder / "unet");
+    const bool new_inputs =
+        by_pictures && given->config().in_channels != unet->config().in_channels;
+    copy_weights(folder / "unet", *given, *unet, size_hint,
+                 new_inputs ? given->config().out_channels : given->config().in_channels);
     copy_weights(folder / "text_encoder", *load_clip_text(folder / "text_encoder"), *text);
 }
 

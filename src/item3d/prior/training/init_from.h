@@ -32,9 +32,11 @@ nlohmann::json autoencoder_record(const std::filesystem::path& folder);
 nlohmann::json begin_with_record(const std::filesystem::path& folder);
 
 /// Copies the weights of the prior in `folder`. Where its U-Net is told less of the shape than this
-/// one, weights for the rest are 0. Throws InputError where its networks are of other sizes.
+/// one, weights for the rest are 0. by_pictures: this one is told of pictures; of one that was told
+/// of shapes, the weights for these become 0 too. Throws InputError where its networks are of other
+/// sizes.
 void begin_with_weights(const std::filesystem::path& folder, UNet2DCondition& unet,
-                        ClipTextModel& text);
+                        ClipTextModel& text, bool by_pictures = false);
 
 /// The captioner's, CLIP's or segmenter's folder of the prior that a training begins with; empty
 /// where it begins with none, or with one that has no such part.

@@ -71,6 +71,7 @@ nlohmann::json data_settings_json(const TrainSettings& s) {
             {"views_each", s.views_each},
             {"lights", s.lights},
             {"pattern_weight", as_written(s.pattern_weight)},
+            {"pairs", s.condition == picture_condition},
             {"replicas", s.replicas * s.processes.size()},
             {"batch", s.batch}};
 }

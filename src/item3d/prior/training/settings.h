@@ -14,6 +14,9 @@
 
 namespace item3d {
 
+/// What an InstructPix2Pix is told: the latents of the picture that it changes.
+inline constexpr const char* picture_condition = "picture";
+
 struct TrainSettings {
     std::filesystem::path output;  ///< the diffusers folder
     std::filesystem::path work;    ///< data, checkpoints; may be deleted afterwards
@@ -41,7 +44,7 @@ struct TrainSettings {
     float pattern_weight = 1;
     /// Widths of the U-Net's levels, multiples of 16.
     std::vector<int> widths{48, 96, 144};
-    std::string condition = "surface";             ///< what it is told: or "depth", or "none"
+    std::string condition = "surface";  ///< what it is told: or "depth", "none", picture_condition
     std::string prediction_type = "v_prediction";  ///< or "epsilon"
     std::string optimizer = "muon";                ///< of all but the autoencoder; or "adamw"
     int replicas = 2;                              ///< of each process; 1 on a CUDA device

@@ -78,41 +78,53 @@ PictureData draw_pictures(const ExampleSource& source, std::int64_t count,
     return data;
 }
 
+/// pictures: [S, S, 3] each, sRGB in [0, 1]. Returns [N, latent_channels, 16, 16] float32, not
+/// scaled.
+at::Tensor encode(AutoencoderTiny& autoencoder, const std::vector<at::Tensor>& pictures) {
+    // [N, H, W, 3] seen as [N, 3, H, W] is channels-last already.
+    const at::Tensor values = at::stack(pictures).permute({0, 3, 1, 2}) * 2 - 1;
+    const Autocast autocast(at::kCPU);
+    return autoencoder.encode(values).to(at::kFloat);
+}
+
 LatentData draw_latents(const ExampleSource& source, AutoencoderTiny& autoencoder,
                         const ClipTokenizer& tokenizer, const TrainSettings& settings) {
     constexpr std::int64_t at_once = 32;
     const std::int64_t count = settings.data_samples / at_once * at_once;
+    const bool pairs = settings.condition == picture_condition;
     LatentData data;
     data.latents = at::empty({count, latent_channels, latent_size, latent_size}, at::kHalf);
+    if (pairs) data.sources = at::empty_like(data.latents);
     data.cells = at::empty({count, shape_cell_channels, latent_size, latent_size}, at::kHalf);
     data.tokens = at::empty({count, text_length}, at::kShort);
     data.empty_tokens = tokenizer.encode_batch({""}, text_length)[0].to(at::kShort);
-    Progress progress("examples", count);
+    Progress progress(pairs ? "pairs" : "examples", count);
     std::atomic<std::int64_t> done = 0;
     std::mutex mutex;
     run_workers(count / at_once, drawing_threads(settings), [&](std::int64_t job) {
-        std::vector<at::Tensor> images, cells;
-        std::vector<std::string> captions;
+        std::vector<at::Tensor> images, before, cells;
+        std::vector<std::string> texts;
         for (std::int64_t i = job * at_once; i < (job + 1) * at_once; ++i) {
-            Example example = source.draw(i);
-            images.push_back(std::move(example.image));
-            cells.push_back(std::move(example.cells));
-            captions.push_back(std::move(example.caption));
+            if (pairs) {
+                InstructionPair pair = source.draw_pair(i);
+                images.push_back(std::move(pair.after));
+                before.push_back(std::move(pair.before));
+                cells.push_back(std::move(pair.cells));
+                texts.push_back(std::move(pair.instruction));
+            } else {
+                Example example = source.draw(i);
+                images.push_back(std::move(example.image));
+                cells.push_back(std::move(example.cells));
+                texts.push_back(std::move(example.caption));
+            }
         }
-        // [N, H, W, 3] seen as [N, 3, H, W] is channels-last already.
-        const at::Tensor pictures = at::stack(images).permute({0, 3, 1, 2}) * 2 - 1;
-        at::Tensor latents;
-        {
-            const Autocast autocast(at::kCPU);
-            latents = autoencoder.encode(pictures);
-        }
-        latents = latents.to(at::kFloat) * autoencoder.scaling_factor();
         const auto rows = [&](at::Tensor& all) {
             return all.slice(0, job * at_once, (job + 1) * at_once);
         };
-        rows(data.latents).copy_(latents);
+        rows(data.latents).copy_(encode(autoencoder, images) * autoencoder.scaling_factor());
+        if (pairs) rows(data.sources).copy_(encode(autoencoder, before));
         rows(data.cells).copy_(at::stack(cells));
-        rows(data.tokens).copy_(tokenizer.encode_batch(captions, text_length));
+        rows(data.tokens).copy_(tokenizer.encode_batch(texts, text_length));
         const std::lock_guard lock(mutex);
         progress.update(done += at_once);
     });
@@ -278,7 +290,8 @@ void train_prior(const TrainSettings& settings) {
         hand_on(processes, processes.first() ? prepare_or_read(settings) : Prepared{});
     train_diffusion(prepared.data, settings, {prior_unet_config(settings), prepared.text},
                     prepared.record);
-    if (processes.first())
+    // Words are asked of the shape's network; an instruction says nothing of the whole picture.
+    if (processes.first() && settings.condition != picture_condition)
         write_measurement(settings.output, settings.word_pictures, drawing_threads(settings));
     processes.wait_for_first();
 }

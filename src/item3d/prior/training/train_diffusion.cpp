@@ -66,7 +66,9 @@ at::Tensor diffusion_loss(Networks networks, const LatentData& data, const Noise
     const at::Tensor cells = data.cells.index_select(0, index).to(at::kFloat);
     const at::Tensor weights = object_weights(cells.slice(1, 0, 1));
     const auto more = static_cast<int>(networks.unet->config().in_channels - latents.size(1));
-    at::Tensor condition = shape_condition(cells, more);
+    at::Tensor condition = data.sources.defined()
+                               ? data.sources.index_select(0, index).to(at::kFloat)
+                               : shape_condition(cells, more);
     at::Tensor tokens = data.tokens.index_select(0, index).to(at::kLong);
     std::vector<std::int64_t> times;
     for (std::int64_t i = 0; i < count; ++i) {
@@ -109,15 +111,18 @@ int heads_of(int width) {
 int condition_channels_of(const std::string& condition) {
     if (condition == "none") return 0;
     if (condition == "depth") return 1;
-    ITEM3D_CHECK(condition == "surface", "a U-Net is told surface, depth or none");
+    if (condition == picture_condition) return latent_channels;
+    ITEM3D_CHECK(condition == "surface", "a U-Net is told surface, depth, a picture or none");
     return surface_condition_channels;
 }
 
 }  // namespace
 
 NamedTensors LatentData::tensors() const {
-    return {
+    NamedTensors all{
         {"latents", latents}, {"cells", cells}, {"tokens", tokens}, {"empty_tokens", empty_tokens}};
+    if (sources.defined()) all.emplace_back("sources", sources);
+    return all;
 }
 
 LatentData LatentData::from_tensors(const NamedTensors& tensors, std::size_t vocabulary,
@@ -128,15 +133,22 @@ LatentData LatentData::from_tensors(const NamedTensors& tensors, std::size_t voc
             if (name == wanted && tensor.scalar_type() == dtype) return tensor;
         throw InputError(file.string(), fmt::format("has no '{}' of the right type", wanted), hint);
     };
-    const LatentData data{take("latents", at::kHalf), take("cells", at::kHalf),
-                          take("tokens", at::kShort), take("empty_tokens", at::kShort)};
+    LatentData data{take("latents", at::kHalf),
+                    take("cells", at::kHalf),
+                    take("tokens", at::kShort),
+                    take("empty_tokens", at::kShort),
+                    {}};
+    if (std::any_of(tensors.begin(), tensors.end(),
+                    [](const auto& each) { return each.first == "sources"; }))
+        data.sources = take("sources", at::kHalf);
     const std::int64_t rows = data.latents.dim() > 0 ? data.latents.size(0) : 0;
     const auto has = [](const at::Tensor& tensor, const std::vector<std::int64_t>& shape) {
         return tensor.sizes().vec() == shape;
     };
     if (rows == 0 || !has(data.latents, {rows, latent_channels, latent_size, latent_size}) ||
         !has(data.cells, {rows, shape_cell_channels, latent_size, latent_size}) ||
-        !has(data.tokens, {rows, text_length}) || !has(data.empty_tokens, {text_length}))
+        !has(data.tokens, {rows, text_length}) || !has(data.empty_tokens, {text_length}) ||
+        (data.sources.defined() && data.sources.sizes() != data.latents.sizes()))
         throw InputError(file.string(), "its tensors do not have the shapes of this program's data",
                          hint);
     const auto lowest = std::min(data.tokens.min().item<std::int16_t>(),
@@ -195,7 +207,8 @@ nlohmann::json train_diffusion(const LatentData& data, const TrainSettings& sett
         Networks networks = make_networks(settings, config);
         // The loop copies the first replica's values to all others.
         if (rank == 0 && settings.processes.first() && !settings.begin_with.empty())
-            begin_with_weights(settings.begin_with, networks.unet, networks.text);
+            begin_with_weights(settings.begin_with, networks.unet, networks.text,
+                               data.sources.defined());
         for (const auto& module : networks.modules())
             module->to(settings.device);
         const int stream = global_rank(settings, rank);

@@ -26,6 +26,9 @@ struct LatentData {
     at::Tensor cells;         ///< [N, 7, 16, 16] fp16, shape_cells()
     at::Tensor tokens;        ///< [N, text_length] int16
     at::Tensor empty_tokens;  ///< [text_length] int16, the empty prompt
+    /// [N, latent_channels, 16, 16] fp16, not scaled: of the pictures that instructions change.
+    /// Undefined where a U-Net is told of a shape instead.
+    at::Tensor sources;
 };
 
 UNet2DConditionConfig prior_unet_config(const TrainSettings& settings = {});
