@@ -13,6 +13,7 @@ TEST_F(Program, LayersThatCannotBeAppliedAreNamed) {
     std::ofstream(file, std::ios::binary)
         << static_cast<char>(header.size()) << std::string(7, '\0') << header;
     expect_error(layers + quoted(file) + to, 3, "is no layer of an edit");
+    expect_error(layers + quoted(file) + " -o " + quoted(cube_), 3, "is the model itself");
     expect_error(layers + quoted(file) + ":nan" + to, 2, "'nan' is no strength");
     expect_error(layers + quoted(file) + ":1:colour" + to, 2, "there is no channel 'colour'");
     EXPECT_FALSE(fs::exists(folder_ / "out.glb"));

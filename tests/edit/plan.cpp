@@ -109,6 +109,8 @@ TEST(EditPlan, prior_defaults_and_overrides_are_merged_and_checked) {
     EXPECT_EQ(inverted.cfg, 5);
     EXPECT_EQ(inverted.resolution, 64);
     EXPECT_EQ(resolve_plan(folder, {{"optimize", "light"}}).guidance, "dds");
+    EXPECT_THROW(resolve_plan(folder, {{"optimize", "light"}, {"region", {"auto"}}}), InputError);
+    EXPECT_NO_THROW(resolve_plan(folder, {{"optimize", "light"}, {"region", {"all"}}}));
     EXPECT_THROW(resolve_plan(folder, {{"timesteps", {0.9, 0.1}}}), InputError);
     EXPECT_THROW(resolve_plan(folder, {{"keep", {"colour"}}}), InputError);
     EXPECT_THROW(resolve_plan(folder, {{"batch", 0}}), InputError);

@@ -26,7 +26,7 @@ TEST(PriorInstructions, AreSaidInManyWays) {
 
 /// Of which a part can be seen well.
 ShapeView view_with_a_handle() {
-    for (const ShapeView& view : make_views("mug", 0, 8, 5, 48))
+    for (const ShapeView& view : make_views("mug", 0, 4, 5, 32))
         if (!visible_parts(view).empty()) return view;
     ADD_FAILURE() << "no view shows the handle";
     return {};

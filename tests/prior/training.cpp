@@ -261,8 +261,10 @@ TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {
 
 TEST_F(PriorTraining, AnInstructorBeginsWithAPriorAndNothingOfItsShapes) {
     TrainSettings first = settings("shapes");
+    first.samples = 8;
     train_diffusion(data_, first, networks_, {});
     TrainSettings second = settings("instructions");
+    second.samples = 8;
     second.condition = picture_condition;
     second.begin_with = first.output;
     second.learning_rate = 1e-9f;

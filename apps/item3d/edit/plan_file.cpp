@@ -17,7 +17,24 @@ constexpr const char* example =
     R"(as {"edits": [{"from": "a cow", "to": "a golden cow", "region": ["named=black"]}]})";
 
 json read_json(const fs::path& path) {
-    return json::parse(read_text(path), nullptr, /*allow_exceptions=*/false);
+    const std::string text = read_text(path);
+    try {
+        return json::parse(text);
+    } catch (const json::parse_error& error) {
+        const auto end =
+            text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+        throw InputError(
+            path.string(),
+            fmt::format("is no JSON from line {} on", 1 + std::count(text.begin(), end, '\n')),
+            "look for a comma, a quotation mark or a bracket too many or too few");
+    }
+}
+
+/// One selector may stand for a list of one.
+json with_lists(json edit) {
+    for (const char* name : {"region", "exclude"})
+        if (edit.contains(name) && edit[name].is_string()) edit[name] = json::array({edit[name]});
+    return edit;
 }
 
 /// Throws InputError where a value is of another type than its setting.
@@ -41,9 +58,10 @@ std::vector<json> read_plan_file(const fs::path& path) {
         document["edits"].empty())
         throw InputError(path.string(), "a list of edits was expected", example);
     std::vector<json> edits;
-    for (const json& edit : document["edits"]) {
+    for (const json& given : document["edits"]) {
         const std::string place = fmt::format("{}: edit {}", path.string(), edits.size() + 1);
-        if (!edit.is_object()) throw InputError(place, "an object was expected", example);
+        if (!given.is_object()) throw InputError(place, "an object was expected", example);
+        const json edit = with_lists(given);
         for (const auto& [name, value] : edit.items()) {
             const auto& table = settings_table();
             if (std::none_of(table.begin(), table.end(),

@@ -28,6 +28,7 @@
 #include "item3d/report/model_pictures.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <set>
 #include <string>
@@ -79,14 +80,22 @@ json names_of(const Model& model) {
     return names;
 }
 
-void print_names(const json& names) {
-    for (const auto& [kind, list] : names.items()) {
+/// record: of region.json.
+void print_names(const json& record) {
+    const auto bounds = record["bounds"].get<std::array<std::array<float, 3>, 2>>();
+    fmt::print("box: {:.4g} (the file's x, y and z, least and largest)\n",
+               fmt::join(std::array{bounds[0][0], bounds[0][1], bounds[0][2], bounds[1][0],
+                                    bounds[1][1], bounds[1][2]},
+                         ","));
+    for (const auto& [kind, list] : record["names"].items()) {
         const std::size_t shown = std::min<std::size_t>(list.size(), 12);
         std::string line;
         for (std::size_t i = 0; i < shown; ++i)
             line += (i > 0 ? ", " : "") + list[i].get<std::string>();
         fmt::print("{}: {}{}\n", kind, line,
-                   list.size() > shown ? fmt::format(" and {} more", list.size() - shown) : "");
+                   list.size() > shown
+                       ? fmt::format(" and {} more (--json lists all)", list.size() - shown)
+                       : "");
     }
 }
 
@@ -154,7 +163,12 @@ class RegionOutput {
     }
 
     json write() {
-        json record{{"model", options_.model}, {"names", names_of(model_)}};
+        const auto [low, high] = model_.bounds();
+        const Vec3 origin(model_.origin);
+        const auto numbers = [](Vec3 v) { return json{v.x, v.y, v.z}; };
+        json record{{"model", options_.model},
+                    {"names", names_of(model_)},
+                    {"bounds", {numbers(low + origin), numbers(high + origin)}}};
         // A selector that cannot be used is told before anything is written.
         const std::vector<int> materials = select_materials(model_, options_.materials);
         const FieldSpace space(model_, materials, geometry_.positions.device());
@@ -176,10 +190,26 @@ class RegionOutput {
         save_image(folder_ / "region.png", contact_sheet(tiles, sheet));
         record["share"] = region->share();
         record["materials"] = write_masks(*region, space);
+        warn_of_other_masks(record["materials"]);
         return record;
     }
 
   private:
+    /// Masks of an earlier call may have been painted on: they stay.
+    void warn_of_other_masks(const json& records) const {
+        std::set<std::string> written, others;
+        for (const json& record : records)
+            if (record.contains("mask")) written.insert(record["mask"].get<std::string>());
+        for (const auto& entry : fs::directory_iterator(folder_)) {
+            const std::string name = entry.path().filename().string();
+            if (name.starts_with("mask_") && name.ends_with(".png") && !written.contains(name))
+                others.insert(name);
+        }
+        if (!others.empty())
+            warn(fmt::format("{}: not of this region, but there before: {}", folder_.string(),
+                             fmt::join(others, ", ")));
+    }
+
     void write_views() const {
         const at::Tensor linear = ModelDrawing(model_, light_).draw(cameras_, options_.size);
         for (std::size_t i = 0; i < cameras_.size(); ++i)
@@ -241,7 +271,7 @@ void run_region(const RegionCommand& options, at::Device device) {
     if (record.contains("share"))
         fmt::print("{:.1f} % of the surface\n", 100 * record["share"].get<double>());
     else
-        print_names(record["names"]);
+        print_names(record);
     fmt::print("{}\n", options.output);
 }
 

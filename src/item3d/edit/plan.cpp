@@ -96,6 +96,12 @@ EditSettings merge_settings(const std::filesystem::path& prior, const nlohmann::
 }  // namespace
 
 EditPlan::EditPlan(EditSettings settings) : EditSettings(std::move(settings)) {
+    const bool is_whole = region.empty() || region == std::vector<std::string>{"all"};
+    if (optimize == Optimize::light && !(is_whole && exclude.empty()))
+        throw InputError(
+            is_whole ? "--exclude" : "--region",
+            "a light shines on all of the model, and --optimize light changes it alone",
+            "leave one of them out");
     const bool small_prior = resolution <= small_prior_pixels;
     const bool target_names_detail = names_detail(*this);
     paints_views = item3d::paints_views(method);

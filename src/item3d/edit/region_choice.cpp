@@ -50,8 +50,15 @@ std::unique_ptr<Region> region_of_color(const std::string& color, const RegionRe
     try {
         region = make_region(colored, scene, readers);
     } catch (const InputError&) {
+        note(fmt::format(
+            "nothing is {} by its base colour, so all is edited; --region takes a part", color));
         return nullptr;
     }
+    if (region->share() < least_share)
+        note(
+            fmt::format("only {:.1f} % of the surface is {} by its base colour, so all is edited; "
+                        "--region named={} takes that alone",
+                        100 * region->share(), color, color));
     if (region->share() < least_share || region->share() > largest_share) return nullptr;
     note(fmt::format("only what is {} is edited, {:.0f} % of the surface; --region all edits all",
                      color, 100 * region->share()));

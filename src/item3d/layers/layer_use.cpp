@@ -69,7 +69,14 @@ LayerUse parse_layer_use(const std::string& text) {
     const std::size_t end = end_of_path(text);
     use.layer = text.substr(0, end);
     std::error_code ignored;
-    if (fs::is_directory(use.layer, ignored)) use.layer /= "layer.safetensors";
+    if (fs::is_directory(use.layer, ignored)) {
+        const fs::path file = use.layer / "layer.safetensors";
+        if (!fs::exists(file, ignored))
+            throw InputError(use.layer.string(), "has no layer.safetensors",
+                             "name the folder of one edit (of a plan: its folders 1, 2, ...); "
+                             "methods that paint views and edits of the light leave no layer");
+        use.layer = file;
+    }
     if (end >= text.size()) return use;
     const std::size_t second = text.find(':', end + 1);
     use.strength = parse_strength(

@@ -116,6 +116,11 @@ json record_of(const LayeredModelRequest& request, const Model& model,
 }  // namespace
 
 json write_layered_model(const LayeredModelRequest& request) {
+    std::error_code ignored;
+    if (std::filesystem::equivalent(request.output, request.model, ignored))
+        throw InputError(request.output.string(),
+                         "is the model itself: the layers would have nothing left to apply to",
+                         "give another file with -o");
     std::vector<AppliedLayer> layers;
     std::string variant;
     for (const LayerUse& use : request.layers) {

@@ -108,7 +108,7 @@ std::unique_ptr<Selector> select_color(const SelectorText& text, const RegionSce
     }
     Vec3 srgb;
     try {
-        srgb = parse_color(text.value.substr(0, tilde));
+        srgb = parse_color(to_lower(text.value.substr(0, tilde)));
     } catch (const InputError&) {
         throw InputError(text.whole, "it is no colour",
                          "give a basic colour's name, #rrggbb, or r,g,b in [0, 1]");
@@ -118,8 +118,9 @@ std::unique_ptr<Selector> select_color(const SelectorText& text, const RegionSce
 
 std::unique_ptr<Selector> select_named(const SelectorText& text, const RegionScene& scene) {
     std::vector<std::string> names;
+    const std::string wanted = to_lower(text.value);
     for (const NamedColor& color : basic_colors()) {
-        if (color.name == (text.value == "grey" ? "gray" : text.value))
+        if (color.name == (wanted == "grey" ? "gray" : wanted))
             return std::make_unique<NamedSelector>(scene.textured, names.size());
         names.push_back(color.name);
     }

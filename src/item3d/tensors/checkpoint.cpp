@@ -76,7 +76,11 @@ std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path) {
     Checkpoint checkpoint;
     checkpoint.identity = nlohmann::json::parse(identity->second, nullptr, false);
     checkpoint.iteration = std::strtoll(iteration->second.c_str(), nullptr, 10);
-    checkpoint.tensors = whole_tensors(file);
+    try {
+        checkpoint.tensors = whole_tensors(file);
+    } catch (const InputError& error) {
+        throw InputError(path.string(), "is damaged", "remove it, or leave out --resume");
+    }
     return checkpoint;
 }
 

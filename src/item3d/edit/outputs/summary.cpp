@@ -257,10 +257,14 @@ json write_summary(const EditRequest& request, const EditScene& scene, const Edi
     report.turntable = pictures.turntable;
     if (scene.region) {
         report.region = pictures.region;
-        report.region_note = fmt::format(
-            "The region, in orange, is {:.1f} % of the edited materials' surface. Outside of "
-            "it {} of {} texels changed.",
-            100 * scene.region->share(), pictures.outside.changed, pictures.outside.compared);
+        const std::string outside =
+            pictures.outside.compared > 0
+                ? fmt::format("Outside of it {} of {} texels changed.", pictures.outside.changed,
+                              pictures.outside.compared)
+                : "The model had no texture with which texels outside of it could be compared.";
+        report.region_note =
+            fmt::format("The region, in orange, is {:.1f} % of the edited materials' surface. {}",
+                        100 * scene.region->share(), outside);
     }
     report.textures = edited.textures;
     report.scores = scores_of(pictures);

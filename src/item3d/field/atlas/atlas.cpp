@@ -87,7 +87,8 @@ Atlas choose_uvs(const Model& model, const FieldSpace& space, const std::vector<
             (policy == UvPolicy::recolored && (has_textures || !has_vertex_colors(model, set)));
         if (keeps && !problem.empty() && have_uvs(model, set.primitives)) {
             note(names_of(model, set) + ": " + problem +
-                 ", and is kept: places that share texels change alike (--uv new gives each its "
+                 ", and is kept: places that share texels change alike (item3d edit --uv new gives "
+                 "each its "
                  "own, in a new UV map)");
             set.shared = problem;
         } else if (!problem.empty() || policy == UvPolicy::make_new) {
