@@ -56,15 +56,16 @@ TEST_F(Program, CaptionAndScoreTakeTheEmbeddedNetworks) {
         return nlohmann::json::parse(result.out).at("global").get<double>();
     };
     EXPECT_GT(score("a red mug"), score("a blue chair"));
-    const Result cut = run("score " + mug + " " + mug + " --views 1 --from 'a mug' --to '" +
+    const std::string cube = quoted(cube_);
+    const Result cut = run("score " + cube + " " + cube + " --views 1 --from 'a mug' --to '" +
                            std::string(18, 'a') + " a red mug a red mug a red mug a red mug'");
     EXPECT_EQ(cut.code, 0);
     EXPECT_NE(cut.error.find("warning: --to: is longer than the 24 tokens"), std::string::npos)
         << cut.error;
 
     const std::string nothing = "ITEM3D_ASSETS=" + quoted(folder_) + " ";
-    EXPECT_NE(run("caption " + mug, nothing).error.find("--captioner"), std::string::npos);
-    EXPECT_NE(run("score " + mug + " " + mug + " --from a --to b", nothing).error.find("--clip"),
+    EXPECT_NE(run("caption " + cube, nothing).error.find("--captioner"), std::string::npos);
+    EXPECT_NE(run("score " + cube + " " + cube + " --from a --to b", nothing).error.find("--clip"),
               std::string::npos);
 }
 

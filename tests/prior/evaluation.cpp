@@ -28,7 +28,7 @@ class PriorEvaluation : public ::testing::Test {
 TEST_F(PriorEvaluation, ColorsAreToldApartOnAHeldOutMug) {
     MeasureOptions options;
     options.words = {"a", "red", "blue", "green", "white"};
-    options.pictures = 4;
+    options.pictures = 2;
     const nlohmann::json measured = measure_prior(pipeline_, views_, options);
     ASSERT_EQ(measured["vocabulary"].size(), 1u);
     EXPECT_EQ(measured["kinds"]["colors"]["words"], 4);
