@@ -131,7 +131,7 @@ void StageRunner::save(const Stage& stage) const {
 
 void StageRunner::interrupt(const Stage& stage) const {
     save(stage);
-    const bool said = request_.command.ends_with(" --resume");
+    const bool said = request_.command.find(" --resume") != std::string::npos;
     throw Interrupted(fmt::format("iteration {} of {} is kept; go on with: {}{}",
                                   behind_ + stage.iteration(), total_iterations(), request_.command,
                                   said ? "" : " --resume"));

@@ -19,8 +19,10 @@ constexpr int preview_size = 256;  ///< pixels
 
 void interrupt(const EditRequest& request, const EditState& state) {
     save_state(request, state);
-    throw Interrupted(fmt::format("iteration {} of {} is kept; go on with: {} --resume",
-                                  state.iteration, request.plan.total_iterations, request.command));
+    const bool said = request.command.find(" --resume") != std::string::npos;
+    throw Interrupted(fmt::format("iteration {} of {} is kept; go on with: {}{}", state.iteration,
+                                  request.plan.total_iterations, request.command,
+                                  said ? "" : " --resume"));
 }
 
 Preview::Preview(std::filesystem::path path, const EditScene& scene)
