@@ -71,6 +71,13 @@ class PriorTraining : public ::testing::Test {
         return SafeTensors::open(settings.work / "checkpoint.safetensors").tensors();
     }
 
+    /// Weights of the U-Net's first layer, as they were written.
+    static at::Tensor input_weight(const TrainSettings& of) {
+        return SafeTensors::open(of.output / "unet/diffusion_pytorch_model.safetensors")
+            .tensor("conv_in.weight")
+            .to(at::kFloat);
+    }
+
     LatentData data_;
     DiffusionConfig networks_;
     fs::path root_ = fs::temp_directory_path() / ("item3d_training_" + std::to_string(::getpid()));
@@ -241,11 +248,6 @@ TEST_F(PriorTraining, AUNetThatIsToldMoreBeginsAsItWas) {
     second.learning_rate = 1e-9f;
     networks_.unet.in_channels = prior_unet_config(second).in_channels;
     train_diffusion(data_, second, networks_, {});
-    const auto input_weight = [](const TrainSettings& of) {
-        return SafeTensors::open(of.output / "unet/diffusion_pytorch_model.safetensors")
-            .tensor("conv_in.weight")
-            .to(at::kFloat);
-    };
     const at::Tensor was = input_weight(first), is = input_weight(second);
     EXPECT_EQ(was.size(1), latent_channels + 1);
     EXPECT_EQ(is.size(1), latent_channels + surface_condition_channels);
@@ -272,11 +274,6 @@ TEST_F(PriorTraining, AnInstructorBeginsWithAPriorAndNothingOfItsShapes) {
     networks_.unet.in_channels = prior_unet_config(second).in_channels;
     EXPECT_EQ(networks_.unet.in_channels, 2 * latent_channels);
     train_diffusion(data_, second, networks_, {});
-    const auto input_weight = [](const TrainSettings& of) {
-        return SafeTensors::open(of.output / "unet/diffusion_pytorch_model.safetensors")
-            .tensor("conv_in.weight")
-            .to(at::kFloat);
-    };
     const at::Tensor was = input_weight(first), is = input_weight(second);
     EXPECT_GT(was.slice(1, latent_channels).abs().max().item<float>(), 0.01);
     EXPECT_TRUE(at::allclose(is.slice(1, 0, latent_channels), was.slice(1, 0, latent_channels),

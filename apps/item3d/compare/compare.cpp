@@ -5,7 +5,6 @@
 #include "apps/item3d/compare/commands.h"
 #include "item3d/baselines/methods.h"
 #include "item3d/compare/suites.h"
-#include "item3d/compare/verdict.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -70,7 +69,7 @@ CompareSuite suite_named(const CompareCommand& command) {
     throw UsageError("--suite: there is no suite '" + command.suite + "': there are " + list);
 }
 
-/// Of the suite's, or of all that there are where it has none of its own.
+/// The methods of that name among the suite's, or among all where it has none of its own.
 std::vector<CompareMethod> chosen_methods(const std::vector<std::string>& names,
                                           const CompareSuite& suite) {
     std::vector<CompareMethod> known = suite.methods;
@@ -121,7 +120,6 @@ void run_compare(const CompareCommand& command) {
                            command.meshes.empty() ? Meshes() : suite_meshes(command.meshes));
     } else {
         options.cases = read_compare_cases(command.cases);
-        check_expectations(options);
     }
     for (const std::string& option : command.settings)
         set_option(options.cases, option);

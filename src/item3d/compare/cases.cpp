@@ -24,7 +24,7 @@ const std::vector<std::string> text_options = {"clip",      "captioner", "inpain
                                                "teacher",   "segmenter", "textures",   "variant",
                                                "precision", "memory",    "device"};
 const std::vector<std::string> other_options = {"picture-size", "allow-missing-textures"};
-/// What a case has beside options of the edit.
+/// Columns beside the options of an edit.
 const std::vector<std::string> case_columns = {"name", "model", "from", "to", "expect"};
 /// Settings that the comparison itself decides.
 const std::vector<std::string> own_options = {"method", "seed"};

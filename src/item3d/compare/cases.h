@@ -20,7 +20,7 @@ struct CompareCase {
     nlohmann::json options = nlohmann::json::object();
 };
 
-/// Of a JSON list of objects, or a CSV file with a header. Columns: name and expect
+/// Reads a JSON list of objects, or a CSV file with a header. Columns: name and expect
 /// (optional), model (a path from the file's folder), from, to, and long options of `item3d edit`
 /// with - or _. Empty fields say nothing. Throws InputError that names file, case and column: a
 /// case without model, from or to, a model that is not there, an unknown column (with the nearest
@@ -31,9 +31,9 @@ std::vector<CompareCase> read_compare_cases(const std::filesystem::path& file);
 /// UsageError for a text without "=", InputError as read_compare_cases().
 void set_option(std::vector<CompareCase>& cases, const std::string& option);
 
-/// What `options` are on the command line: --light noon --region a --region b. A list is given with
-/// commas where the option takes it so, else the option is repeated; allow-missing-textures is a
-/// bare flag where it is true.
+/// Options as they stand on the command line: --light noon --region a --region b. A list is given
+/// with commas where the option takes it so, else the option is repeated; allow-missing-textures is
+/// a bare flag where it is true.
 std::vector<std::string> option_arguments(const nlohmann::json& options);
 
 }  // namespace item3d

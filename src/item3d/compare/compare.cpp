@@ -30,6 +30,9 @@ nlohmann::json compare_methods(const CompareOptions& options, const std::string&
             if (error.code() == ExitCode::interrupted) throw;
             row = row_of(run, test);
             row["error"] = fmt::format("cannot be measured: {}", error.what());
+        } catch (const nlohmann::json::exception&) {
+            row = row_of(run, test);
+            row["error"] = "its edit.json lacks a value; remove the run's folder to run it again";
         }
         if (row.contains("error")) ++failed;
         rows.push_back(std::move(row));

@@ -74,7 +74,7 @@ double drawn_difference(const Surface& points, const Geometry& geometry,
     return view_difference(views);
 }
 
-/// Of the pictures in views/ that controlnet-2d drew, pixels of the prior's size.
+/// The same of the pictures in views/ that controlnet-2d drew, pixels of the prior's size.
 double painted_difference(const fs::path& folder, const std::vector<std::string>& files,
                           const Model& model, const Surface& points, const Geometry& geometry,
                           double radius) {
@@ -111,7 +111,7 @@ LoadOptions load_options(const CompareCase& test) {
     return options;
 }
 
-/// What is drawn and judged anew when more is asked for.
+/// The wishes that measures.json was made for: others are drawn and judged anew.
 Json asked_of(const CompareCase& test, const PictureWishes& wishes) {
     return {{"lights", wishes.lights}, {"all_views", wishes.all_views}, {"expect", test.expect}};
 }

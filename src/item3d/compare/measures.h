@@ -1,4 +1,4 @@
-// What is measured of a run that has ended, beside what the edit says of itself.
+// Measurements of a run that has ended, beside the edit's own record.
 #pragma once
 
 #include "item3d/compare/runs.h"
@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// What a row of the table says of any run: {"case", "model", "from", "to", "method", "prior",
+/// The part of a row that every run has: {"case", "model", "from", "to", "method", "prior",
 /// "seed", "folder"}.
 nlohmann::json row_of(const CompareRun& run, const CompareCase& test);
 

@@ -16,7 +16,7 @@ namespace item3d {
 inline constexpr int run_view_count = 6;
 inline constexpr int run_view_pixels = 256;
 
-/// What a run started from and what it made, each with the light that it is shown in.
+/// The models before and after a run, each with the light that it is shown in.
 struct RunModels {
     Model before, after;
     Image light_before, light_after;

@@ -81,7 +81,9 @@ std::vector<std::string> methods_of_prior(const fs::path& prior,
                                           const std::vector<std::string>& methods) {
     const fs::path config = prior / "unet" / "config.json";
     const Json unet = fs::exists(config) ? Json::parse(read_text(config), nullptr, false) : Json();
-    const bool instructed = unet.is_object() && unet.value("in_channels", Json(4)) == Json(8);
+    // A U-Net that reads the latents of a picture beside its own.
+    const bool instructed = unet.is_object() && unet.value("in_channels", Json(4)) ==
+                                                    Json(2 * unet.value("out_channels", 4));
     std::vector<std::string> able;
     for (const std::string& method : methods) {
         if (method == "in2n" && !instructed) continue;

@@ -25,7 +25,7 @@ struct CompareMethod {
 /// A method of edit_method_names() as it is.
 CompareMethod plain_method(const std::string& name);
 
-/// What is drawn of each run beside two views in the edit's light.
+/// Pictures of each run beside two views in the edit's light.
 struct PictureWishes {
     std::vector<std::string> lights;  ///< presets or files: two views in each
     bool all_views = false;           ///< six views; of controlnet-2d, what it drew

@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// What a picture shows of P points of a surface.
+/// Colours that a picture shows of P points of a surface.
 struct PointColors {
     at::Tensor colors;  ///< [P, 3] sRGB
     at::Tensor seen;    ///< [P] bool

@@ -50,11 +50,13 @@ std::unique_ptr<Region> region_of_color(const std::string& color, const RegionRe
     try {
         region = make_region(colored, scene, readers);
     } catch (const InputError&) {
-        note(fmt::format(
-            "nothing is {} by its base colour, so all is edited; --region takes a part", color));
+        if (request.is_everything())
+            note(fmt::format(
+                "nothing is {} by its base colour, so all is edited; --region takes a part",
+                color));
         return nullptr;
     }
-    if (region->share() < least_share)
+    if (region->share() < least_share && request.is_everything())
         note(
             fmt::format("only {:.1f} % of the surface is {} by its base colour, so all is edited; "
                         "--region named={} takes that alone",

@@ -1,4 +1,4 @@
-// What the ratings of a study say of its methods.
+// Statistics of a study's ratings, by method.
 #pragma once
 
 #include "item3d/study/answers.h"

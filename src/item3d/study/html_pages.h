@@ -13,7 +13,7 @@ namespace item3d {
 /// /style.css of all pages.
 extern const char* const study_style;
 
-/// What the study is and a button that agrees. home: path of the participant's link.
+/// The study's description and a button that agrees. home: path of the participant's link.
 std::string consent_page(const Study& study, const std::string& home, std::size_t pages);
 
 /// One item with its questions.

@@ -1,4 +1,4 @@
-// What a study answers to requests: which page, and what is stored. Knows nothing of sockets.
+// Replies of a study to requests: which page, and what is stored. Knows nothing of sockets.
 //
 //   GET  /p/TOKEN         the participant's next page: consent, an item, or thanks
 //   POST /p/TOKEN/agree   agrees to the consent text

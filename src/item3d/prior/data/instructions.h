@@ -1,4 +1,4 @@
-// What an editor is told to change, in the words of InstructPix2Pix's users.
+// Instructions: what is to change in a picture, in the words of InstructPix2Pix's users.
 #pragma once
 
 #include "item3d/core/random.h"
