@@ -2,6 +2,7 @@
 
 #include "item3d/baselines/texel_view.h"
 #include "item3d/core/error.h"
+#include "item3d/region/color_selector.h"
 #include "item3d/render/srgb.h"
 
 #include <cmath>
@@ -13,23 +14,6 @@ namespace {
 constexpr double least_cosine = 0.5;
 constexpr double whole_share = 0.999;
 constexpr float tolerance = 0.01f;  ///< of the radius, behind what the view sees
-
-/// [P, 3] sRGB to CIELAB, as linear_to_lab().
-at::Tensor to_lab(const at::Tensor& encoded) {
-    const at::Tensor linear =
-        srgb_to_linear(encoded.to(at::kFloat).clamp(0, 1)).to(at::kDouble).cpu();
-    const at::Tensor to_xyz = at::tensor({0.4124564 / 0.95047, 0.2126729, 0.0193339 / 1.08883,
-                                          0.3575761 / 0.95047, 0.7151522, 0.1191920 / 1.08883,
-                                          0.1804375 / 0.95047, 0.0721750, 0.9503041 / 1.08883},
-                                         at::kDouble)
-                                  .reshape({3, 3});
-    constexpr double delta = 6.0 / 29.0;
-    const at::Tensor t = linear.matmul(to_xyz);
-    const at::Tensor f = at::where(t > delta * delta * delta, t.clamp_min(1e-9).pow(1.0 / 3),
-                                   t / (3 * delta * delta) + 4.0 / 29.0);
-    const at::Tensor x = f.select(1, 0), y = f.select(1, 1), z = f.select(1, 2);
-    return at::stack({116 * y - 16, 500 * (x - y), 200 * (y - z)}, 1);
-}
 
 }  // namespace
 
@@ -49,7 +33,7 @@ double view_difference(const std::vector<PointColors>& views) {
         ITEM3D_CHECK(view.colors.dim() == 2 && view.colors.size(1) == 3 &&
                          view.seen.size(0) == view.colors.size(0),
                      "colours must be [P, 3], what is seen [P]");
-        labs.push_back(to_lab(view.colors));
+        labs.push_back(lab_of(srgb_to_linear(view.colors.to(at::kFloat).clamp(0, 1)).cpu()));
     }
     for (std::size_t a = 0; a < views.size(); ++a) {
         for (std::size_t b = a + 1; b < views.size(); ++b) {
