@@ -185,6 +185,7 @@ void run_edit(EditCommandOptions& options) {
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
     if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
     if (request.segmenter.empty()) request.segmenter = find_in_prior(request.prior, "segmenter");
+    if (request.instruct.empty()) request.instruct = find_in_prior(request.prior, "instruct");
     const nlohmann::json summary =
         options.plan_file.empty() ? edit_once(options) : edit_by_plan(options);
     if (options.json) {
@@ -222,7 +223,7 @@ void add_edit_command(CLI::App& app) {
                         "it, latents are blended");
     command->add_option("--instruct", request.instruct,
                         "InstructPix2Pix in the diffusers layout, for --method in2n; without it, "
-                        "the prior must be one");
+                        "the one that the prior brings along, else the prior must be one");
     command->add_option("--teacher", request.teacher,
                         "CLIP model that --method clip follows; without it, the one of --clip");
     command->add_option("--segmenter", request.segmenter,

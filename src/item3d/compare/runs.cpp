@@ -86,7 +86,7 @@ std::vector<std::string> methods_of_prior(const fs::path& prior,
                                                     Json(2 * unet.value("out_channels", 4));
     std::vector<std::string> able;
     for (const std::string& method : methods) {
-        if (method == "in2n" && !instructed) continue;
+        if (method == "in2n" && !instructed && find_in_prior(prior, "instruct").empty()) continue;
         if (method == "clip" && find_in_prior(prior, "clip").empty()) continue;
         able.push_back(method);
     }

@@ -18,7 +18,8 @@ nlohmann::json identity_of(const EditRequest& request, const EditState& state) {
     if (request.plan.method == "clip")
         identity["teacher"] = (request.teacher.empty() ? request.clip : request.teacher).string();
     if (!request.inpainting.empty()) identity["inpainting"] = request.inpainting.string();
-    if (!request.instruct.empty()) identity["instruct"] = request.instruct.string();
+    if (request.plan.method == "in2n" && !request.instruct.empty())
+        identity["instruct"] = request.instruct.string();
     if (request.plan.asks_captioner) identity["captioner"] = request.captioner.string();
     return identity;
 }
