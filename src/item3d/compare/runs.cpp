@@ -1,10 +1,10 @@
 #include "item3d/compare/runs.h"
 
+#include "item3d/core/digest.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/version.h"
-#include "item3d/hub/digest.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/tensors/checkpoint.h"
 
@@ -22,12 +22,6 @@ using Json = nlohmann::json;
 /// Options that `item3d edit` takes with one method alone.
 const std::map<std::string, std::string> owners = {
     {"guidance", "item3d"}, {"clip-loss", "clip"}, {"instruction", "in2n"}, {"image-cfg", "in2n"}};
-
-std::string sha256(const std::string& text) {
-    Digest digest(DigestKind::sha256, text.size());
-    digest.update({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    return digest.finish();
-}
 
 std::string settings_of(const fs::path& prior) {
     const fs::path file = prior / "prior.json";

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "item3d/edit/plan.h"
+#include "item3d/provenance/signing.h"
 #include "item3d/tensors/tensor.h"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,7 +35,8 @@ struct EditRequest {
     std::string memory = "auto";     ///< auto, low (less memory, more time), high
     int picture_pixels = 384;        ///< side of the report's views; its turntable has 3/4 of it
     bool draws_turntable = true;
-    std::string command;  ///< as typed, for edit.json and the resume hint
+    std::shared_ptr<const SigningKey> sign_key;  ///< signs what is written; null: nothing does
+    std::string command;                         ///< as typed, for edit.json and the resume hint
 };
 
 }  // namespace item3d

@@ -1,5 +1,6 @@
 #include "item3d/edit/optimize/begin.h"
 
+#include "item3d/core/date.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/optimize/checkpoint_state.h"
@@ -74,6 +75,7 @@ void fit_field(const EditScene& scene, const EditPlan& plan, EditState& state) {
 EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     const EditPlan& plan = request.plan;
     EditState state;
+    state.begun = utc_date();
     state.field = NeuralTexture(suggest_field_options(
         scene.geometry, *scene.space, finest_texture(scene, plan.texture_size), plan.seed));
     state.field->to(scene.device);

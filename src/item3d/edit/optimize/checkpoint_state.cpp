@@ -87,6 +87,7 @@ void append_field(NamedTensors& tensors, const EditState& state) {
 void save_state(const EditRequest& request, const EditState& state) {
     Checkpoint checkpoint;
     checkpoint.identity = identity_of(request, state);
+    checkpoint.identity["begun"] = state.begun;
     checkpoint.iteration = state.iteration;
     if (state.painter) {
         for (const auto& [name, tensor] : state.painter->state())
@@ -108,6 +109,7 @@ bool load_state(const EditRequest& request, EditState& state) {
 
     const CheckpointReader reader(checkpoint_path(request).string(), checkpoint->tensors);
     state.iteration = checkpoint->iteration;
+    state.begun = checkpoint->identity.value("begun", state.begun);
     if (reader.has("unet_rows"))
         state.earlier_unet_rows = reader.get("unet_rows").item<std::int64_t>();
     if (state.painter) {
