@@ -64,24 +64,45 @@ void EditSession::keep_model(const std::filesystem::path& path, const std::strin
     model_ = KeptModel{path, variant, std::move(model)};
 }
 
+std::shared_ptr<DiffusionModel> EditSession::loaded_prior() const {
+    if (!prior_.valid()) return nullptr;
+    try {
+        return prior_.get();
+    } catch (const std::exception&) {
+        return nullptr;  // the edit that waited for it was told
+    }
+}
+
+PriorNeeds EditSession::needs_of(const EditRequest& request, const PriorUse& use) const {
+    PriorNeeds needs{use.device, use.precision, request.plan.asks_captioner, {}, false};
+    const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
+    add_needs(needs, request, request.plan, vocabulary);
+    for (const EditPlan& plan : plans_)
+        add_needs(needs, request, plan, vocabulary);
+    return needs;
+}
+
 bool EditSession::has_prior(const EditRequest& request, const PriorUse& use) const {
-    return prior_.valid() && prior_key_ == key_of(request, use);
+    if (prior_key_ != key_of(request, use)) return false;
+    const std::shared_ptr<DiffusionModel> prior = loaded_prior();
+    if (!prior) return false;
+    const PriorNeeds needs = needs_of(request, use);
+    return (prior_decodes_ || !needs.decoder) &&
+           (prior->can_learn_prompts() || prior->knows_prompts(needs.sentences));
 }
 
 std::shared_future<std::shared_ptr<const DiffusionModel>> EditSession::prior(
     const EditRequest& request, const PriorUse& use) {
+    const PriorNeeds needs = needs_of(request, use);
     if (!has_prior(request, use)) {
         prior_key_ = key_of(request, use);
-        PriorNeeds needs{use.device, use.precision, request.plan.asks_captioner, {}, false};
-        const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
-        add_needs(needs, request, request.plan, vocabulary);
-        for (const EditPlan& plan : plans_)
-            add_needs(needs, request, plan, vocabulary);
+        prior_decodes_ = needs.decoder || needs.any_sentence;
         prior_ = {};  // the one before is released first
         prior_ = std::async(std::launch::async, load_networks, request, needs).share();
     }
-    const auto make_ready = [loading = prior_, request, low = use.low_memory] {
+    const auto make_ready = [loading = prior_, request, needs, low = use.low_memory] {
         const std::shared_ptr<DiffusionModel>& prior = loading.get();
+        prior->learn_prompts(needs.sentences);
         make_prior_ready(*prior, request.plan, low);
         return std::shared_ptr<const DiffusionModel>(prior);
     };
@@ -99,18 +120,33 @@ std::shared_future<std::string> EditSession::prior_hash(const std::filesystem::p
 std::shared_ptr<const Captioner> EditSession::captioner(const EditRequest& request,
                                                         at::ScalarType precision) {
     if (!request.plan.asks_captioner) return nullptr;
-    if (!captioner_) captioner_ = load_wanted_captioner(request, precision);
+    const nlohmann::json key{request.captioner.string(), request.device.str(),
+                             static_cast<int>(precision)};
+    if (captioner_key_ != key) {
+        captioner_ = nullptr;  // the one before is released first
+        captioner_key_ = nullptr;
+        captioner_ = load_wanted_captioner(request, precision);
+        captioner_key_ = key;
+    }
     return captioner_;
 }
 
 std::shared_ptr<const Clip> EditSession::clip(const std::filesystem::path& folder) {
-    if (!clip_ && !folder.empty()) clip_ = std::make_shared<const Clip>(Clip::load(folder));
+    if (folder.empty()) return nullptr;
+    if (clip_folder_ != folder) {
+        clip_ = nullptr;
+        clip_folder_.clear();
+        clip_ = std::make_shared<const Clip>(Clip::load(folder));
+        clip_folder_ = folder;
+    }
     return clip_;
 }
 
 std::shared_ptr<LightRig> EditSession::lights(const EditPlan& plan, at::Device device) {
     const nlohmann::json key{plan.light, static_cast<int>(plan.light_variation),
                              plan.light_cube_size, device.str()};
+    constexpr std::size_t max_lights = 8;
+    if (lights_.size() >= max_lights && !lights_.contains(key.dump())) lights_.clear();
     std::shared_ptr<LightRig>& rig = lights_[key.dump()];
     if (!rig)
         rig = std::make_shared<LightRig>(plan.light, plan.light_variation, plan.light_cube_size,

@@ -56,4 +56,10 @@ std::string Digest::finish() {
     return text;
 }
 
+std::string sha256_of(std::string_view text) {
+    Digest digest(DigestKind::sha256, text.size());
+    digest.update({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    return digest.finish();
+}
+
 }  // namespace item3d

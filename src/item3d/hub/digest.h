@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace item3d {
 
@@ -36,5 +37,8 @@ class Digest {
     struct Context;
     std::unique_ptr<Context> context_;  ///< null for DigestKind::none
 };
+
+/// SHA-256 of a whole text or file's content, lower-case hexadecimal.
+std::string sha256_of(std::string_view text);
 
 }  // namespace item3d
