@@ -1,5 +1,6 @@
 #include "item3d/batch/attempt.h"
 
+#include "item3d/core/disk_full.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -16,6 +17,7 @@ using nlohmann::json;
 using Stop = AttemptEnd::Stop;
 
 constexpr const char* checkpoint_name = "checkpoint.safetensors";
+constexpr const char* plan_state_name = "plan_state.json";
 constexpr const char* event_name = "job.json";
 
 std::string one_line(const std::string& text) {
@@ -30,9 +32,9 @@ bool says_disk_full(const std::exception& error) {
 }
 
 void write_event(const Claim& claim, const JobEvent& event) {
-    write_atomically(claim.folder() / event_name,
-                     std::string_view(
-                         json(event).dump(2, ' ', false, json::error_handler_t::replace) + "\n"));
+    write_atomically(
+        claim.folder() / event_name,
+        std::string_view(json(event).dump(2, ' ', false, json::error_handler_t::replace) + "\n"));
 }
 
 AttemptEnd publish(const Claim& claim, JobEvent event, JobState state) {
@@ -64,20 +66,21 @@ json run_or_begin_anew(const ClaimedJob& job, const Claim& claim, const JobRunne
     }
     warn(title_of(job.job) + ": cannot go on from its checkpoint and begins anew");
     fs::remove(job.folder / checkpoint_name);
+    fs::remove(job.folder / plan_state_name);
     return run({job.job, job.model, job.folder, false});
 }
 
 AttemptEnd after_error(const Claim& claim, JobEvent event, const std::exception& error,
                        const AttemptLimits& limits) {
     if (!claim.is_held()) return {std::move(event), true, Stop::none, ""};
-    if (says_disk_full(error)) return release(claim, std::move(event), Stop::disk_full, error.what());
+    if (says_disk_full(error))
+        return release(claim, std::move(event), Stop::disk_full, error.what());
     if (dynamic_cast<const Interrupted*>(&error))
         return release(claim, std::move(event), Stop::interrupted, "");
     ++event.errors;
     event.message = one_line(error.what());
     const bool is_final = dynamic_cast<const InputError*>(&error) ||
-                          dynamic_cast<const UsageError*>(&error) ||
-                          event.errors > limits.retries;
+                          dynamic_cast<const UsageError*>(&error) || event.errors > limits.retries;
     return is_final ? publish(claim, std::move(event), JobState::failed)
                     : release(claim, std::move(event), Stop::none, "");
 }
@@ -121,7 +124,9 @@ AttemptEnd run_attempt(const BatchJob& job, const fs::path& model, const Claim& 
                            fmt::format("its worker died {} times while it ran, as for want of "
                                        "memory",
                                        event.deaths));
-        const bool resume = fs::exists(claim.folder() / checkpoint_name);
+        // Between two edits of a plan there is no checkpoint.
+        const bool resume = fs::exists(claim.folder() / checkpoint_name) ||
+                            fs::exists(claim.folder() / plan_state_name);
         note(fmt::format("{}: {}{}", title_of(job), job.folder,
                          resume ? ", from its checkpoint" : ""));
         event.outcome = run_or_begin_anew({job, model, claim.folder(), resume}, claim, run);

@@ -20,15 +20,15 @@ constexpr std::uintmax_t least_space = 1 << 20;
 /// Throws InputError where the mark is not that of a batch that this program knows.
 void check_mark(const fs::path& folder) {
     const json mark = json::parse(read_text(folder / mark_name), nullptr, false);
-    const std::string format = mark.is_object() && mark.contains("format") &&
-                                       mark["format"].is_string()
-                                   ? mark["format"].get<std::string>()
-                                   : "";
+    const std::string format =
+        mark.is_object() && mark.contains("format") && mark["format"].is_string()
+            ? mark["format"].get<std::string>()
+            : "";
     if (format != format_name)
         throw InputError((folder / mark_name).string(),
-                         format.empty() ? "is not the mark of a batch"
-                                        : "is of the format '" + format + "', expected '" +
-                                              format_name + "'",
+                         format.empty()
+                             ? "is not the mark of a batch"
+                             : "is of the format '" + format + "', expected '" + format_name + "'",
                          "choose another folder");
 }
 

@@ -1,5 +1,6 @@
 #include "item3d/batch/claim.h"
 
+#include "item3d/core/disk_full.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 

@@ -1,7 +1,7 @@
 #include "item3d/batch/columns.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/words.h"
+#include "item3d/core/names.h"
 
 #include <algorithm>
 
@@ -16,8 +16,10 @@ std::string column_named(std::string name, const JobCommand& command, const std:
     for (const auto& [option, kind] : command.options)
         known.push_back(option);
     throw InputError(subject, "there is no column '" + name + "'",
-                     "did you mean '" + nearest_name(name, known) + "'? Columns are name, command, "
-                     "model, after and what item3d " + command.name + " --help lists");
+                     "did you mean '" + nearest_name(name, known) +
+                         "'? Columns are name, command, "
+                         "model, after and what item3d " +
+                         command.name + " --help lists");
 }
 
 }  // namespace item3d

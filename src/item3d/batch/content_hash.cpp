@@ -79,8 +79,8 @@ std::vector<std::string> files_of_obj(const fs::path& path) {
     std::vector<std::string> names = last_words(path, {"mtllib"});
     const std::vector<std::string> libraries = names;
     for (const std::string& library : libraries)
-        for (const std::string& name : last_words(path.parent_path() / library,
-                                                  {"map_", "norm", "bump", "refl", "disp"}))
+        for (const std::string& name :
+             last_words(path.parent_path() / library, {"map_", "norm", "bump", "refl", "disp"}))
             names.push_back((fs::path(library).parent_path() / name).string());
     return names;
 }

@@ -44,8 +44,11 @@ void Heartbeat::beat_on() {
 
 void Heartbeat::write(bool ended) {
     ++beat_;
-    const nlohmann::json state = {{"worker", worker_},   {"beat", beat_},   {"job", job_},
-                                  {"process", process_}, {"ended", ended}};
+    const nlohmann::json state = {{"worker", worker_},
+                                  {"beat", beat_},
+                                  {"job", job_},
+                                  {"process", process_},
+                                  {"ended", ended}};
     // Not write_atomically(): a sign of life need not survive a power cut, and waits for no disk.
     const std::filesystem::path temporary = file_.string() + ".tmp";
     {

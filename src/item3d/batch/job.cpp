@@ -1,12 +1,12 @@
 #include "item3d/batch/job.h"
 
-#include "item3d/core/words.h"
+#include "item3d/core/names.h"
 
 namespace item3d {
 
 void to_json(nlohmann::json& value, const BatchJob& job) {
     value = {{"id", job.id},           {"key", job.key},         {"place", job.place},
-            {"command", job.command}, {"version", job.version}, {"folder", job.folder}};
+             {"command", job.command}, {"version", job.version}, {"folder", job.folder}};
     // What is empty is left out: a batch may have a hundred thousand of these.
     const auto add = [&](const char* key, const auto& member) {
         if (!member.empty()) value[key] = member;

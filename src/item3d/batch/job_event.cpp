@@ -7,9 +7,9 @@ NLOHMANN_JSON_SERIALIZE_ENUM(JobState, {{JobState::waiting, "waiting"},
                                         {JobState::failed, "failed"}})
 
 void to_json(nlohmann::json& value, const JobEvent& event) {
-    value = {{"job", event.job},        {"state", event.state},   {"worker", event.worker},
-            {"attempt", event.attempt}, {"errors", event.errors}, {"deaths", event.deaths},
-            {"seconds", event.seconds}};
+    value = {{"job", event.job},         {"state", event.state},   {"worker", event.worker},
+             {"attempt", event.attempt}, {"errors", event.errors}, {"deaths", event.deaths},
+             {"seconds", event.seconds}};
     if (!event.message.empty()) value["message"] = event.message;
     if (!event.outcome.is_null()) value["outcome"] = event.outcome;
 }

@@ -11,9 +11,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 const std::vector<std::string> file_options = {
-    "captioner", "clip",       "controlnet", "embedding", "exclude",  "from-light",
-    "inpainting", "instruct",  "light",      "lora",      "plan",     "prior",
-    "region",    "segmenter",  "teacher",    "textures",  "vae"};
+    "captioner",  "clip",      "controlnet", "embedding", "exclude", "from-light",
+    "inpainting", "instruct",  "light",      "lora",      "plan",    "prior",
+    "region",     "segmenter", "teacher",    "textures",  "vae"};
 
 /// Where a path may begin and end within a value.
 struct Part {
@@ -38,7 +38,7 @@ Part path_in(const std::string& value, const fs::path& folder) {
     return {0, 0};
 }
 
-std::string text_of(const json& value, const std::string& option, const std::string& subject) {
+std::string value_text(const json& value, const std::string& option, const std::string& subject) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number() || value.is_boolean()) return value.dump();
     throw InputError(subject, option + " cannot be " + value.dump(),
@@ -90,7 +90,7 @@ JobOptions job_options(const json& values, const JobCommand& command, const fs::
         const std::string flag = "--" + option;
         const ColumnKind kind = command.options.at(option);
         if (option == "prior") {  // its weights are hashed apart, and what lies beside them is not
-            add(flag, with_absolute_path(option, text_of(value, option, subject), folder));
+            add(flag, with_absolute_path(option, value_text(value, option, subject), folder));
             continue;
         }
         options.identity += flag + '\0';
@@ -103,7 +103,7 @@ JobOptions job_options(const json& values, const JobCommand& command, const fs::
         const json list = kind == ColumnKind::single ? json::array({value}) : as_list(value);
         std::string together;
         for (const json& one : list) {
-            const std::string text = text_of(one, option, subject);
+            const std::string text = value_text(one, option, subject);
             const std::string absolute = with_absolute_path(option, text, folder);
             const Part path = may_name_a_file(option) ? path_in(absolute, "/") : Part{0, 0};
             options.identity += path.size == 0

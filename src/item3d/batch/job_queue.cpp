@@ -59,9 +59,9 @@ std::deque<std::size_t>* JobQueue::fresh_queue() {
     if (fresh_.empty()) return nullptr;
     if (!has_session_) {
         has_session_ = true;
-        session_ = std::next(fresh_.begin(),
-                             static_cast<std::ptrdiff_t>(first_session_ % fresh_.size()))
-                       ->first;
+        session_ =
+            std::next(fresh_.begin(), static_cast<std::ptrdiff_t>(first_session_ % fresh_.size()))
+                ->first;
     }
     auto found = fresh_.lower_bound(session_);
     if (found == fresh_.end()) found = fresh_.begin();

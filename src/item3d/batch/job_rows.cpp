@@ -112,9 +112,10 @@ std::vector<JobRow> read_job_rows(const fs::path& file) {
 
 std::vector<JobRow> matrix_rows(const JobMatrix& matrix) {
     if (matrix.from.size() != 1 && matrix.from.size() != matrix.to.size())
-        throw UsageError(fmt::format("--from is given {} times and --to {} times: expected --from "
-                                     "once, or as often as --to",
-                                     matrix.from.size(), matrix.to.size()));
+        throw UsageError(
+            fmt::format("--from is given {} times and --to {} times: expected --from "
+                        "once, or as often as --to",
+                        matrix.from.size(), matrix.to.size()));
     std::vector<JobRow> rows;
     for (const std::string& pattern : matrix.models)
         for (const std::string& model : files_of(pattern))
@@ -134,8 +135,8 @@ std::vector<JobRow> with_values(const std::vector<JobRow>& rows,
         std::vector<JobRow> longer;
         for (const JobRow& row : result) {
             if (choices.size() > 1 && (row.values.contains("name") || row.values.contains("after")))
-                throw UsageError(row.place + ": has a name or comes after another job, and " + name +
-                                 " has several values: leave out one of them");
+                throw UsageError(row.place + ": has a name or comes after another job, and " +
+                                 name + " has several values: leave out one of them");
             for (const std::string& choice : choices) {
                 JobRow next = row;
                 next.values[name] = choice;

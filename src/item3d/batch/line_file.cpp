@@ -13,8 +13,8 @@ bool append_line(const fs::path& path, const std::string& line) {
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (file < 0) return false;
     const std::string text = line + "\n";
-    const bool is_whole = ::write(file, text.data(), text.size()) ==
-                          static_cast<ssize_t>(text.size());
+    const bool is_whole =
+        ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
     return ::close(file) == 0 && is_whole;
 }
 

@@ -20,10 +20,9 @@ using nlohmann::json;
 constexpr std::size_t id_digits = 16;
 
 /// Options that say which networks a job runs, and how.
-const std::vector<std::string> session_options = {"controlnet", "controlnet-scale", "device",
-                                                  "embedding",  "instruct",         "lora",
-                                                  "method",     "precision",        "prior",
-                                                  "vae"};
+const std::vector<std::string> session_options = {
+    "controlnet", "controlnet-scale", "device",    "embedding", "instruct",
+    "lora",       "method",           "precision", "prior",     "vae"};
 const std::vector<std::string> sentence_options = {"from", "to", "instruction", "negative-prompt",
                                                    "lit"};
 
@@ -35,7 +34,7 @@ struct Draft {
     json options = json::object();
 };
 
-std::string text_of(const json& value, const std::string& column, const std::string& place) {
+std::string column_text(const json& value, const std::string& column, const std::string& place) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_number()) return value.dump();
     throw InputError(place, column + " cannot be " + value.dump(), "a text is expected");
@@ -43,7 +42,7 @@ std::string text_of(const json& value, const std::string& column, const std::str
 
 const JobCommand& command_of(const JobRow& row, const std::vector<JobCommand>& commands) {
     if (!row.values.contains("command")) return commands.front();
-    const std::string name = text_of(row.values["command"], "command", row.place);
+    const std::string name = column_text(row.values["command"], "command", row.place);
     std::string list;
     for (const JobCommand& command : commands) {
         if (command.name == name) return command;
@@ -58,11 +57,11 @@ Draft draft_of(const JobRow& row, const std::vector<JobCommand>& commands) {
         const std::string column = column_named(given, *draft.command, row.place);
         if (column == "command") continue;
         if (column == "name")
-            draft.name = text_of(value, column, row.place);
+            draft.name = column_text(value, column, row.place);
         else if (column == "model")
-            draft.model = text_of(value, column, row.place);
+            draft.model = column_text(value, column, row.place);
         else if (column == "after")
-            draft.after = text_of(value, column, row.place);
+            draft.after = column_text(value, column, row.place);
         else
             draft.options[column] = value;
     }
@@ -84,9 +83,9 @@ std::map<std::string, std::size_t> names_of(const std::vector<Draft>& drafts) {
         if (drafts[i].name.empty()) continue;
         const auto [found, is_new] = names.emplace(drafts[i].name, i);
         if (!is_new)
-            throw InputError(drafts[i].row->place, "the name '" + drafts[i].name +
-                                                       "' is that of " +
-                                                       drafts[found->second].row->place + " too",
+            throw InputError(drafts[i].row->place,
+                             "the name '" + drafts[i].name + "' is that of " +
+                                 drafts[found->second].row->place + " too",
                              "give each job a name of its own");
     }
     return names;
@@ -102,8 +101,7 @@ std::string spoken_name(const fs::path& model) {
 
 std::string with_name(std::string sentence, const std::string& name) {
     constexpr std::string_view mark = "{name}";
-    for (std::size_t at = 0; (at = sentence.find(mark, at)) != std::string::npos;
-         at += name.size())
+    for (std::size_t at = 0; (at = sentence.find(mark, at)) != std::string::npos; at += name.size())
         sentence.replace(at, mark.size(), name);
     return sentence;
 }
@@ -146,8 +144,10 @@ class Planner {
         if (const auto found = names_.find(draft.after); found != names_.end())
             return found->second;
         if (planning_.known_names.contains(draft.after)) return std::nullopt;
-        throw InputError(draft.row->place, "comes after '" + draft.after + "', which no job is "
-                                           "named",
+        throw InputError(draft.row->place,
+                         "comes after '" + draft.after +
+                             "', which no job is "
+                             "named",
                          "`after` is the name (column `name`) of another job");
     }
 
@@ -184,7 +184,7 @@ class Planner {
         for (const std::string& option : sentence_options)
             if (options.contains(option))
                 options[option] =
-                    with_name(text_of(options[option], option, place), spoken_name(models_[index]));
+                    with_name(column_text(options[option], option, place), spoken_name(models_[index]));
         const JobOptions given =
             job_options(options, *draft.command, draft.row->folder, place, hashes_);
         job.arguments = given.arguments;

@@ -52,7 +52,8 @@ std::string host_name() {
 
 nlohmann::json this_process() {
     const long pid = ::getpid();
-    return {{"host", host_name()}, {"pid", pid}, {"start", start_of(pid)}, {"space", space_of_ids()}};
+    return {
+        {"host", host_name()}, {"pid", pid}, {"start", start_of(pid)}, {"space", space_of_ids()}};
 }
 
 bool has_ended(const nlohmann::json& process) {

@@ -6,6 +6,7 @@
 #include "item3d/batch/line_file.h"
 #include "item3d/batch/time_limit.h"
 #include "item3d/batch/worker_watch.h"
+#include "item3d/core/disk_full.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"

@@ -4,7 +4,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
-#include "item3d/core/words.h"
+#include "item3d/core/names.h"
 #include "item3d/edit/settings_table.h"
 
 #include <algorithm>

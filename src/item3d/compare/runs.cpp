@@ -4,7 +4,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/version.h"
-#include "item3d/core/words.h"
+#include "item3d/core/names.h"
 #include "item3d/hub/digest.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/tensors/checkpoint.h"

@@ -50,8 +50,8 @@ double of_the_groups() {
          folder = folder.parent_path()) {
         const double limit = number_in(folder / "memory.max", unlimited);
         if (limit < unlimited)
-            left = std::min(
-                left, limit - number_in(folder / "memory.current", 0) + reclaimable(folder));
+            left = std::min(left,
+                            limit - number_in(folder / "memory.current", 0) + reclaimable(folder));
     }
     return std::max(0.0, left);
 }

@@ -48,12 +48,6 @@ class ResourceError : public Error {
     explicit ResourceError(const std::string& message) : Error(ExitCode::no_resource, message) {}
 };
 
-/// No space, or no quota, for a file.
-class DiskFull : public ResourceError {
-  public:
-    using ResourceError::ResourceError;
-};
-
 /// Ctrl-C or SIGTERM, thrown from a safe point after what must be kept was written.
 class Interrupted : public Error {
   public:

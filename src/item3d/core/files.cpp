@@ -1,6 +1,6 @@
 #include "item3d/core/files.h"
 
-#include "item3d/core/error.h"
+#include "item3d/core/disk_full.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,5 +1,7 @@
 #include "item3d/core/interrupt.h"
 
+#include "item3d/core/progress.h"
+
 #include <atomic>
 #include <csignal>
 
@@ -11,6 +13,7 @@ std::atomic<bool> wanted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
 void on_interrupt(int signal) {
+    // Schedulers may send SIGTERM several times: a second Ctrl-C alone ends the program at once.
     const bool is_second = wanted.exchange(true);
     if (!is_second || signal != SIGINT) return;
     std::signal(signal, SIG_DFL);

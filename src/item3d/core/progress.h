@@ -1,8 +1,6 @@
 // What a command tells people while it works: all of it on stderr, results alone go to stdout.
 #pragma once
 
-#include "item3d/core/interrupt.h"
-
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -51,5 +49,10 @@ class Progress {
 
 /// "3 s", "2 min 05 s", "1 h 10 min".
 std::string format_duration(double seconds);
+
+/// Becomes true after Ctrl-C or SIGTERM once install_interrupt_handler was called. Loops poll it at
+/// safe points. A second Ctrl-C ends the program at once.
+void install_interrupt_handler();
+bool interrupted();
 
 }  // namespace item3d

@@ -93,7 +93,6 @@ void make_prior_ready(DiffusionModel& prior, const EditPlan& plan, bool low_memo
     for (const auto& [option, text] : {std::pair("--from", plan.from), std::pair("--to", plan.to)})
         warn_of_lost_words(prior.tokenizer(), option, text);
     prior.recompute_in_backward(low_memory);
-    prior.count_rows_anew();
 }
 
 std::shared_ptr<const DiffusionModel> load_inpainter(const EditRequest& request, at::Device device,

@@ -1,6 +1,7 @@
 #include "item3d/edit/session.h"
 
 #include "item3d/io/load.h"
+#include "item3d/networks/diffusion/running_pipeline.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/tensors/checkpoint.h"
 #include "item3d/tensors/precision.h"
@@ -19,6 +20,28 @@ nlohmann::json key_of(const EditRequest& request, const PriorUse& use) {
             {"precision", precision_name(use.precision)},
             {"any_sentence", request.plan.asks_captioner},
             {"extras", extras}};
+}
+
+/// What the edits that are known by now ask of the request's prior.
+PriorNeeds needs_of(const EditRequest& request, const std::vector<EditPlan>& plans,
+                    const PriorUse& use) {
+    PriorNeeds needs{use.device, use.precision, request.plan.asks_captioner, {}, false};
+    const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
+    add_needs(needs, request, request.plan, vocabulary);
+    for (const EditPlan& plan : plans)
+        add_needs(needs, request, plan, vocabulary);
+    return needs;
+}
+
+/// Whether a loaded prior can be asked for these, after it learned new sentences.
+bool can_serve(const std::shared_future<std::shared_ptr<DiffusionModel>>& prior,
+               const PriorNeeds& needs) {
+    try {
+        const auto* running = dynamic_cast<const RunningPipeline*>(prior.get().get());
+        return !running || running->can_learn_prompts() || running->knows_prompts(needs.sentences);
+    } catch (const std::exception&) {
+        return false;  // it could not be loaded, of which the edit before was told
+    }
 }
 
 }  // namespace
@@ -64,45 +87,30 @@ void EditSession::keep_model(const std::filesystem::path& path, const std::strin
     model_ = KeptModel{path, variant, std::move(model)};
 }
 
-std::shared_ptr<DiffusionModel> EditSession::loaded_prior() const {
-    if (!prior_.valid()) return nullptr;
-    try {
-        return prior_.get();
-    } catch (const std::exception&) {
-        return nullptr;  // the edit that waited for it was told
-    }
-}
-
-PriorNeeds EditSession::needs_of(const EditRequest& request, const PriorUse& use) const {
-    PriorNeeds needs{use.device, use.precision, request.plan.asks_captioner, {}, false};
-    const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
-    add_needs(needs, request, request.plan, vocabulary);
-    for (const EditPlan& plan : plans_)
-        add_needs(needs, request, plan, vocabulary);
-    return needs;
-}
-
 bool EditSession::has_prior(const EditRequest& request, const PriorUse& use) const {
-    if (prior_key_ != key_of(request, use)) return false;
-    const std::shared_ptr<DiffusionModel> prior = loaded_prior();
-    if (!prior) return false;
-    const PriorNeeds needs = needs_of(request, use);
-    return (prior_decodes_ || !needs.decoder) &&
-           (prior->can_learn_prompts() || prior->knows_prompts(needs.sentences));
+    if (!prior_.valid()) return false;
+    const PriorNeeds needs = needs_of(request, plans_, use);
+    nlohmann::json key = key_of(request, use);
+    // One with a decoder serves those as well that need none.
+    key["decoder"] = needs.decoder || prior_key_.value("decoder", false);
+    return prior_key_ == key && can_serve(prior_, needs);
 }
 
 std::shared_future<std::shared_ptr<const DiffusionModel>> EditSession::prior(
     const EditRequest& request, const PriorUse& use) {
-    const PriorNeeds needs = needs_of(request, use);
+    const PriorNeeds needs = needs_of(request, plans_, use);
     if (!has_prior(request, use)) {
         prior_key_ = key_of(request, use);
-        prior_decodes_ = needs.decoder || needs.any_sentence;
+        prior_key_["decoder"] = needs.decoder;
         prior_ = {};  // the one before is released first
         prior_ = std::async(std::launch::async, load_networks, request, needs).share();
     }
     const auto make_ready = [loading = prior_, request, needs, low = use.low_memory] {
-        const std::shared_ptr<DiffusionModel>& prior = loading.get();
-        prior->learn_prompts(needs.sentences);
+        std::shared_ptr<DiffusionModel> prior = loading.get();
+        if (auto* running = dynamic_cast<RunningPipeline*>(prior.get())) {
+            running->learn_prompts(needs.sentences);
+            prior = std::make_shared<RunningPipeline>(running->renewed());
+        }
         make_prior_ready(*prior, request.plan, low);
         return std::shared_ptr<const DiffusionModel>(prior);
     };
@@ -120,25 +128,12 @@ std::shared_future<std::string> EditSession::prior_hash(const std::filesystem::p
 std::shared_ptr<const Captioner> EditSession::captioner(const EditRequest& request,
                                                         at::ScalarType precision) {
     if (!request.plan.asks_captioner) return nullptr;
-    const nlohmann::json key{request.captioner.string(), request.device.str(),
-                             static_cast<int>(precision)};
-    if (captioner_key_ != key) {
-        captioner_ = nullptr;  // the one before is released first
-        captioner_key_ = nullptr;
-        captioner_ = load_wanted_captioner(request, precision);
-        captioner_key_ = key;
-    }
+    if (!captioner_) captioner_ = load_wanted_captioner(request, precision);
     return captioner_;
 }
 
 std::shared_ptr<const Clip> EditSession::clip(const std::filesystem::path& folder) {
-    if (folder.empty()) return nullptr;
-    if (clip_folder_ != folder) {
-        clip_ = nullptr;
-        clip_folder_.clear();
-        clip_ = std::make_shared<const Clip>(Clip::load(folder));
-        clip_folder_ = folder;
-    }
+    if (!clip_ && !folder.empty()) clip_ = std::make_shared<const Clip>(Clip::load(folder));
     return clip_;
 }
 

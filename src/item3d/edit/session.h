@@ -48,8 +48,7 @@ class EditSession {
     void keep_groups(const Model& model);
 
     /// The prior with what the plan adds to it; loads in the background unless the last request
-    /// wanted the same. Sentences that it was not loaded with are learned
-    /// (DiffusionModel::learn_prompts). Warns of words of the sentences that it cuts off.
+    /// wanted the same. Warns of words of the sentences that it cuts off.
     std::shared_future<std::shared_ptr<const DiffusionModel>> prior(const EditRequest& request,
                                                                     const PriorUse& use);
     /// Whether prior() would load nothing.
@@ -67,9 +66,6 @@ class EditSession {
 
   private:
     void add_groups(Model& model) const;
-    PriorNeeds needs_of(const EditRequest& request, const PriorUse& use) const;
-    /// Null where none was loaded, or loading failed.
-    std::shared_ptr<DiffusionModel> loaded_prior() const;
 
     std::vector<EditPlan> plans_;
     struct KeptModel {
@@ -81,13 +77,10 @@ class EditSession {
     std::vector<std::vector<std::string>> groups_;
     std::vector<std::vector<int>> triangle_groups_;  ///< of each primitive
     nlohmann::json prior_key_;
-    bool prior_decodes_ = false;  ///< its decoder was loaded
     std::shared_future<std::shared_ptr<DiffusionModel>> prior_;
     std::filesystem::path hashed_;
     std::shared_future<std::string> hash_;
-    nlohmann::json captioner_key_;
     std::shared_ptr<const Captioner> captioner_;
-    std::filesystem::path clip_folder_;
     std::shared_ptr<const Clip> clip_;
     std::map<std::string, std::shared_ptr<LightRig>> lights_;
 };

@@ -23,13 +23,6 @@ class DiffusionModel {
 
     /// float32, a row for each prompt; see TextEncoders::encode().
     virtual TextEmbedding encode_text(const std::vector<std::string>& prompts) const = 0;
-    /// Makes encode_text() ready for these. Throws as loading the text encoders does. Where
-    /// can_learn_prompts() is false it may only be called for prompts that are known already.
-    virtual void learn_prompts(const std::vector<std::string>& /*prompts*/) {}
-    /// Whether encode_text() can be asked for prompts that the model was not loaded with.
-    virtual bool can_learn_prompts() const { return true; }
-    /// Whether encode_text() is ready for all of these.
-    virtual bool knows_prompts(const std::vector<std::string>& /*prompts*/) const { return true; }
     /// One row: what classifier-free guidance goes away from when nobody says what. The empty
     /// prompt, or zeros where model_index.json says force_zeros_for_empty_prompt (SDXL).
     TextEmbedding encode_no_text() const;
@@ -57,10 +50,8 @@ class DiffusionModel {
     at::Tensor cross_attention(const at::Tensor& noisy_latents, const at::Tensor& timesteps,
                                const TextEmbedding& text, const at::Tensor& condition = {}) const;
 
-    /// Rows that the U-Net was asked for since it was loaded or count_rows_anew() was called: what a
-    /// method costs.
+    /// Rows that the U-Net was asked for since it was loaded: what a method costs.
     std::int64_t predicted_rows() const { return *predicted_rows_; }
-    void count_rows_anew() { *predicted_rows_ = 0; }
 
     const NoiseSchedule& schedule() const;
     const ClipTokenizer& tokenizer() const { return *tokenizer_; }

@@ -86,6 +86,18 @@ void RunningPipeline::learn_prompts(const std::vector<std::string>& prompts) {
     malloc_trim(0);
 }
 
+RunningPipeline RunningPipeline::renewed() const {
+    RunningPipeline other;  // with a count of its own
+    other.tokenizer_ = tokenizer_;
+    other.networks_ = networks_;
+    other.sdxl_ = sdxl_;
+    other.force_zeros_for_empty_prompt_ = force_zeros_for_empty_prompt_;
+    other.folder_ = folder_;
+    other.extras_ = extras_;
+    other.encoded_ = encoded_;
+    return other;
+}
+
 TextEmbedding RunningPipeline::encode_text(const std::vector<std::string>& prompts) const {
     TextEmbedding known;
     for (const std::string& prompt : prompts) {

@@ -29,9 +29,12 @@ class RunningPipeline : public DiffusionModel {
 
     /// Loads the text encoders once more where a prompt is new, and releases them. A LoRA is fused
     /// into text encoders and U-Net together, so a pipeline with one cannot learn.
-    void learn_prompts(const std::vector<std::string>& prompts) override;
-    bool can_learn_prompts() const override { return extras_.lora.empty(); }
-    bool knows_prompts(const std::vector<std::string>& prompts) const override;
+    void learn_prompts(const std::vector<std::string>& prompts);
+    bool can_learn_prompts() const { return extras_.lora.empty(); }
+    /// Whether encode_text() is ready for all of these.
+    bool knows_prompts(const std::vector<std::string>& prompts) const;
+    /// The same networks for another edit, with predicted_rows() counted from 0.
+    RunningPipeline renewed() const;
 
   private:
     std::filesystem::path folder_;
