@@ -54,7 +54,8 @@ class Worker {
                 idle_since = Clock::now();
                 continue;
             }
-            if (queue_.open_foreign() == view_.open_count())
+            const std::size_t foreign = queue_.open_foreign();
+            if (foreign > 0 && foreign == view_.open_count())
                 throw InputError(folder_.path().string(),
                                  "all jobs that are left were planned by another version of item3d",
                                  "give `item3d batch` the jobs once more, or use that version");
