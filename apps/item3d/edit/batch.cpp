@@ -100,16 +100,21 @@ std::vector<JobRow> rows_of(const BatchCommand& command) {
                        values);
 }
 
-/// Adds what the batch does not have yet. Returns how many jobs were asked for and are open.
-void add_jobs(const BatchFolder& folder, const std::vector<JobRow>& rows) {
-    const BatchView view(folder);
+/// Plans the jobs before anything is written, and adds those that the batch does not have yet.
+BatchFolder add_jobs(const fs::path& output, const std::vector<JobRow>& rows) {
     JobPlanning planning{job_commands(), version(), identity_of_prior, check_job, {}};
-    for (const BatchEntry& entry : view.entries())
-        if (entry.is_current() && !entry.job.name.empty())
-            planning.known_names[entry.job.name] = entry.job.id;
+    if (BatchFolder::is_begun(output)) {
+        const BatchView view(BatchFolder::open(output));
+        for (const BatchEntry& entry : view.entries())
+            if (entry.is_current() && !entry.job.name.empty())
+                planning.known_names[entry.job.name] = entry.job.id;
+    }
+    std::vector<BatchJob> jobs = plan_jobs(rows, planning);
+    const BatchFolder folder = BatchFolder::create(output);
+    const BatchView view(folder);
     std::vector<BatchJob> added;
     std::size_t known = 0, replaced = 0;
-    for (BatchJob& job : plan_jobs(rows, planning)) {
+    for (BatchJob& job : jobs) {
         const auto before = view.find_key(job.key);
         if (before && view.entry(*before).job.id == job.id) {
             ++known;
@@ -147,9 +152,7 @@ void conclude(const BatchFolder& folder, bool json) {
 
 void run_batch(const BatchCommand& command) {
     if (command.output.empty()) throw UsageError("-o is required: a folder for the batch");
-    const std::vector<JobRow> rows = rows_of(command);
-    const BatchFolder folder = BatchFolder::create(command.output);
-    add_jobs(folder, rows);
+    const BatchFolder folder = add_jobs(command.output, rows_of(command));
     if (command.workers == 0) return;
     SupervisorOptions options;
     options.command = {fs::read_symlink("/proc/self/exe").string(), "batch", "work",

@@ -43,16 +43,21 @@ std::string random_suffix() {
     return fmt::format("{:04x}", device() & 0xffff);
 }
 
-BatchFolder BatchFolder::create(const fs::path& path) {
-    const fs::path whole = fs::absolute(path).lexically_normal();
+bool BatchFolder::is_begun(const fs::path& path) {
     std::error_code code;
-    if (fs::exists(whole / mark_name, code)) {
-        check_mark(whole);
-        return BatchFolder(whole);
+    if (fs::exists(path / mark_name, code)) {
+        check_mark(path);
+        return true;
     }
-    if (fs::is_directory(whole, code) && !fs::is_empty(whole, code))
+    if (fs::exists(path, code) && !(fs::is_directory(path, code) && fs::is_empty(path, code)))
         throw InputError(path.string(), "holds something else than a batch",
                          "choose a new folder, or that of a batch");
+    return false;
+}
+
+BatchFolder BatchFolder::create(const fs::path& path) {
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    if (is_begun(whole)) return BatchFolder(whole);
     make_output_folder(whole);
     BatchFolder folder(whole);
     fs::create_directories(folder.jobs());

@@ -17,8 +17,11 @@ namespace item3d {
 
 class BatchFolder {
   public:
-    /// Makes the folder, or takes one that is a batch's already. Throws InputError for a folder
-    /// that holds something else, or cannot be written.
+    /// Whether the folder is a batch's already. Throws InputError for one that holds something
+    /// else, or a batch of a later version's layout.
+    static bool is_begun(const std::filesystem::path& path);
+    /// Makes the folder, or takes one that is a batch's already. Throws as is_begun(), and
+    /// InputError where it cannot be written.
     static BatchFolder create(const std::filesystem::path& path);
     /// Throws InputError where there is no batch, or one of a later version's layout.
     static BatchFolder open(const std::filesystem::path& path);

@@ -117,10 +117,7 @@ class Supervisor {
             }
             may_go_on = may_go_on || !worker.has_ended;
         }
-        if (!may_go_on && is_full_)
-            throw DiskFull(folder_.path().string() +
-                           ": the disk is full: workers have stopped; free some space, then the "
-                           "same command goes on");
+        if (!may_go_on && !full_.empty()) throw DiskFull(full_);
         return may_go_on;
     }
 
@@ -153,8 +150,8 @@ class Supervisor {
         }
         const std::string reason = last_error(worker.log);
         if (code == static_cast<int>(ExitCode::no_resource) &&
-            (folder_.is_full() || reason.find("no more jobs are claimed") != std::string::npos)) {
-            is_full_ = true;
+            reason.find("no more jobs are claimed") != std::string::npos) {
+            full_ = reason;
             worker.has_ended = true;
             return;
         }
@@ -195,7 +192,7 @@ class Supervisor {
     std::vector<LocalWorker> workers_;
     int threads_ = 1;
     int vain_deaths_ = 0;
-    bool is_full_ = false;
+    std::string full_;  ///< why workers stopped that had no space left; "" where none did
     double largest_ = 0;  ///< bytes that a job took at most
     Clock::time_point looked_;
 };
