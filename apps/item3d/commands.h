@@ -26,6 +26,7 @@ inline constexpr std::array commands = {
     CommandEntry{"layers", "edit", "Apply what edits changed to a model, at any strength"},
     CommandEntry{"variants", "edit", "Put several edits of a model into one file, as looks of it"},
     CommandEntry{"provenance", "edit", "Say how a model or an image was edited, and who signed it"},
+    CommandEntry{"batch", "edit", "Run many edits by as many workers as there are"},
     CommandEntry{"compare", "compare", "Run methods on a list of edits; tables and a page of them"},
     CommandEntry{"study", "study",
                  "Ask people what they think of edits, and analyze what they say"},

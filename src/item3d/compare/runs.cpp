@@ -4,12 +4,12 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/names.h"
 #include "item3d/core/version.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/tensors/checkpoint.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 
@@ -26,15 +26,6 @@ const std::map<std::string, std::string> owners = {
 std::string settings_of(const fs::path& prior) {
     const fs::path file = prior / "prior.json";
     return fs::exists(file) ? read_text(file) : "";
-}
-
-std::uint64_t number_of(const std::string& text, const std::string& whole) {
-    std::uint64_t value = 0;
-    const char* end = text.data() + text.size();
-    const auto parsed = std::from_chars(text.data(), end, value);
-    if (parsed.ec != std::errc() || parsed.ptr != end)
-        throw UsageError("--seeds " + whole + ": expected 0..2, or numbers with commas");
-    return value;
 }
 
 /// Options of the case that this method takes, under those of the method.
@@ -56,21 +47,6 @@ CompareMethod plain_method(const std::string& name) {
     return {name, {{"method", name}}};
 }
 
-std::string slug(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (std::isalnum(byte))
-            result += static_cast<char>(std::tolower(byte));
-        else if (!result.empty() && result.back() != '-')
-            result += '-';
-    }
-    result = result.substr(0, 40);
-    while (!result.empty() && result.back() == '-')
-        result.pop_back();
-    return result.empty() ? "case" : result;
-}
-
 std::vector<std::string> methods_of_prior(const fs::path& prior,
                                           const std::vector<std::string>& methods) {
     const fs::path config = prior / "unet" / "config.json";
@@ -85,28 +61,6 @@ std::vector<std::string> methods_of_prior(const fs::path& prior,
         able.push_back(method);
     }
     return able;
-}
-
-std::vector<std::uint64_t> parse_seeds(const std::string& text) {
-    constexpr std::uint64_t most = 1000;
-    std::vector<std::uint64_t> seeds;
-    if (const std::size_t dots = text.find(".."); dots != std::string::npos) {
-        const std::uint64_t first = number_of(text.substr(0, dots), text);
-        const std::uint64_t last = number_of(text.substr(dots + 2), text);
-        if (last < first || last - first >= most)
-            throw UsageError(fmt::format(
-                "--seeds {}: the last is before the first, or more than {} seeds", text, most));
-        for (std::uint64_t seed = first; seed <= last; ++seed)
-            seeds.push_back(seed);
-        return seeds;
-    }
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t comma = std::min(text.find(',', begin), text.size());
-        const std::uint64_t seed = number_of(text.substr(begin, comma - begin), text);
-        if (std::find(seeds.begin(), seeds.end(), seed) == seeds.end()) seeds.push_back(seed);
-        begin = comma + 1;
-    }
-    return seeds;
 }
 
 std::vector<CompareRun> plan_runs(const CompareOptions& options) {

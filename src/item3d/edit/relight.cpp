@@ -25,10 +25,10 @@ nlohmann::json values_json(const PhysicalValues& values) {
 
 }  // namespace
 
-FoundLight find_light(const EditRequest& request) {
+FoundLight find_light(const EditRequest& request, EditSession& session) {
     ITEM3D_CHECK(!request.plan.edits_texture, "find_light changes no texture");
     StageTimes times;
-    const EditScene scene = load_scene(request);
+    const EditScene scene = load_scene(request, session);
     EditState state = begin_or_resume(request, scene);
     FoundLight found;
     found.first = state.light->image(found_light_height);
