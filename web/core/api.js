@@ -1,0 +1,58 @@
+// Requests to the server. Addresses are relative, so that the page works behind a prefix and a tunnel.
+
+/** An answer of the server that is no success: its message, and what to try. */
+export class ApiError extends Error {
+  /** @param {string} message @param {string} hint @param {number} status */
+  constructor(message, hint, status) {
+    super(message);
+    this.hint = hint;
+    this.status = status;
+  }
+}
+
+/**
+ * @param {string} path
+ * @param {{method?: string, json?: any, body?: BodyInit, signal?: AbortSignal}} [options]
+ * @returns {Promise<any>} the answer's JSON
+ */
+export async function api(path, { method, json, body, signal } = {}) {
+  const response = await fetch(`api/${path}`, {
+    method: method ?? (json !== undefined || body !== undefined ? 'POST' : 'GET'),
+    body: json !== undefined ? JSON.stringify(json) : body,
+    headers: json !== undefined ? { 'Content-Type': 'application/json' } : body instanceof FormData || body === undefined ? {} : { 'Content-Type': 'application/octet-stream' },
+    signal,
+  });
+  const answer = await response.json().catch(() => null);
+  if (!response.ok) throw new ApiError(answer?.error ?? `${response.status} ${response.statusText}`, answer?.hint ?? '', response.status);
+  return answer;
+}
+
+/** @param {string} result @param {string} name */
+export function fileUrl(result, name) {
+  return `api/results/${encodeURIComponent(result)}/files/${name.split('/').map(encodeURIComponent).join('/')}`;
+}
+
+/**
+ * Listens to the server's events. The browser reconnects by itself; `lost` and `back` tell when.
+ * @param {{result: (data: any) => void, preview: (data: any) => void, lost: () => void, back: () => void}} on
+ */
+export function listen(on) {
+  let broken = false;
+  /** @type {EventSource} */
+  let source;
+  const connect = () => {
+    source = new EventSource('api/events');
+    source.addEventListener('result', (event) => on.result(JSON.parse(event.data)));
+    source.addEventListener('preview', (event) => on.preview(JSON.parse(event.data)));
+    source.onopen = () => {
+      if (broken) on.back();
+      broken = false;
+    };
+    source.onerror = () => {
+      if (!broken) on.lost();
+      broken = true;
+      if (source.readyState === EventSource.CLOSED) setTimeout(connect, 2000);
+    };
+  };
+  connect();
+}

@@ -1,0 +1,105 @@
+// All words that the page says.
+import { duration, size } from './core/format.js';
+
+export const text = {
+  title: 'item3d studio',
+  loading: 'Loading …',
+  open: 'Open a model',
+  openDemo: 'Open the demo',
+  photographs: 'From photographs',
+  projects: 'Projects',
+  noProjects: 'No other projects yet.',
+  dropHere: 'Drop a model here',
+  empty: {
+    title: 'What would you like to change?',
+    lede: 'Open a 3D model and say in two sentences what it is and what it should be. Everything stays on this computer.',
+    kinds: '.glb · .gltf · .obj · a .zip of a model folder',
+  },
+  tooLarge: (/** @type {number} */ bytes) => `The file has ${size(bytes)}; a model may have 512 MB at most.`,
+  wrongKind: (/** @type {string} */ name) => `${name} is no model that can be opened. Choose a .glb, .gltf, .obj or a .zip of a model folder.`,
+  uploading: (/** @type {string} */ name) => `Opening ${name} …`,
+  theme: 'Light or dark',
+  help: 'Keyboard',
+  close: 'Close',
+  cancel: 'Cancel',
+  copied: 'Copied',
+  undo: 'Undo',
+  redo: 'Redo',
+  lost: 'The connection to the server is gone. Trying again; what runs goes on.',
+  back: 'Connected again.',
+  skip: 'To the edit',
+  failed: (/** @type {string} */ what) => `${what}`,
+
+  history: {
+    title: 'History', source: 'Original', filter: 'Filter by words or notes', favourites: 'Favourites only', none: 'Edits appear here.',
+    noMatch: 'Nothing matches.', compare: 'Side by side', favourite: 'Favourite', count: (/** @type {number} */ n) => n === 1 ? '1 result' : `${n} results`,
+  },
+  states: { waiting: 'waiting', running: 'running', paused: 'paused', done: 'done', failed: 'failed', cancelled: 'cancelled' },
+  kinds: { edit: 'edit', relight: 'light', reconstruct: 'photographs' },
+
+  viewer: {
+    label: 'The model. Drag to turn, scroll to zoom, right drag to move.',
+    views: { shaded: 'Shaded', base_color: 'Base colour', roughness: 'Roughness', metallic: 'Metallic', occlusion: 'Occlusion', normal: 'Normal', uv: 'UV' },
+    view: 'View', wires: 'Wireframe', turn: 'Turntable', frame: 'Frame the model', picture: 'Save a picture', layout: 'Compare',
+    single: 'One', wipe: 'Wipe: before and after', side: 'Side by side', before: 'Before', after: 'After', wipeBar: 'Where before ends and after begins',
+    noWebGL: 'This browser has no WebGL 2, so the model cannot be turned here: pictures are shown instead. Everything else works.',
+    noPicture: 'No picture yet. One comes when an edit has run.',
+    model: (/** @type {number} */ triangles, /** @type {number} */ materials) => `${triangles.toLocaleString('en')} triangles · ${materials} ${materials === 1 ? 'material' : 'materials'}`,
+    failed: 'The model cannot be shown',
+  },
+
+  tabs: { edit: 'Edit', layers: 'Layers', light: 'Light', result: 'Result' },
+  edit: {
+    what: 'What', from: 'It is', to: 'It should be', fromHint: 'a red mug', toHint: 'a golden mug',
+    looks: 'Materials and patterns the prior knows', where: 'Where', how: 'How', start: 'Start', starting: 'Starting …',
+    startFrom: (/** @type {string} */ name) => `Edits “${name}”`, startSource: 'Edits the original',
+    unknown: (/** @type {string[]} */ words) => `The prior does not know ${words.map((word) => `“${word}”`).join(', ')}.`,
+    unknownHint: 'It reads an unknown thing as “object”; unknown colours and materials have no effect.',
+    nearest: (/** @type {string} */ word) => `Use “${word}”`,
+    same: 'Both sentences say the same.', missing: 'Say what the model is and what it should be.',
+    estimate: (/** @type {number} */ seconds, /** @type {number} */ bytes) => `About ${duration(seconds)} · ${size(bytes)} of memory`,
+    quality: 'Quality', advanced: 'All settings', changed: (/** @type {number} */ n) => `${n} changed`, search: 'Find a setting', reset: 'Back to the default', none: 'No setting matches.',
+    presets: { draft: 'Draft', standard: 'Standard', fine: 'Fine' },
+    presetHints: { draft: 'A third of the iterations, no detail stage', standard: "The prior's own settings", fine: 'One and a half times the iterations, detail always' },
+  },
+  region: {
+    everything: 'Everywhere', part: 'Click on the model', brush: 'Paint on the model', box: 'A box', words: 'By words', color: 'By colour',
+    partHint: 'Click on the model to choose its material, part or colour.', brushHint: 'Paint on the model. Hold Alt to erase.', boxHint: 'Drag the faces of the box.',
+    radius: 'Brush', erase: 'Erase', clear: 'Clear', use: 'Use', feather: 'Soft edge', add: 'Add to the region', subtract: 'Leave out', remove: 'Remove', invert: 'Add or leave out',
+    phrase: 'the handle', knownParts: 'Parts that the segmenter knows', named: 'Where people would call it', copy: 'Copy for the command line',
+    share: (/** @type {number} */ share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} % of the surface`, measuring: 'Measuring the region …',
+    atPoint: 'At this place', material: 'Material', node: 'Part', colorHere: 'This colour', sphere: 'Around here', auto: 'Where the sentences differ', includes: 'Region', excludes: 'without',
+  },
+  job: {
+    pause: 'Pause', resume: 'Resume', cancel: 'Cancel', retry: 'Run again', left: (/** @type {number} */ s) => `${duration(s)} left`, took: (/** @type {number} */ s) => `took ${duration(s)}`,
+    direction: 'Length of the direction', waiting: (/** @type {number} */ ahead) => ahead ? `Waits for ${ahead} ${ahead === 1 ? 'other' : 'others'}` : 'Starts in a moment', failedTitle: 'The edit failed',
+    iterations: (/** @type {number} */ done, /** @type {number} */ total) => `${done} of ${total}`,
+    stages: /** @type {Record<string, string>} */ ({ load: 'Loading', fit: 'Reading the materials', optimize: 'Editing', edit: 'Editing', detail: 'Painting detail', bake: 'Writing textures', report: 'Pictures' }),
+  },
+  layers: {
+    title: 'Layers', none: 'When an edit is done, it becomes a layer: its strength and channels can be changed here at once.', strength: 'Strength',
+    channels: { base_color: 'Colour', roughness: 'Roughness', metallic: 'Metallic', occlusion: 'Occlusion', normal: 'Normal' },
+    other: 'This edit has a UV map of its own, so the page cannot blend it; “Save” can.', save: 'Save as .glb', reset: 'Reset', saving: 'Applying layers …', on: 'Layer shown',
+  },
+  light: {
+    presets: 'Light', own: 'Open an HDR …', rotation: 'Turn', exposure: 'Exposure', backdrop: 'Show the light behind the model', sun: 'Sun', sunHint: 'Drag the sun: the middle is overhead, the rim the horizon. The viewer looks from below.',
+    noSun: 'As the light has it', hour: 'Hour', sky: 'Clear sky', words: 'In words', wordsHint: 'low in the west', tint: 'Tint', noTint: 'none', reset: 'Reset', download: 'Save this light (.hdr)',
+    render: 'Pictures in this light', find: 'Find a light by words', findHint: 'a mug at sunset, lit from the left', findStart: 'Find', compass: ['N', 'E', 'S', 'W'], sunAt: (/** @type {number} */ az, /** @type {number} */ el) => `${az}° · ${el}° high`,
+  },
+  result: {
+    none: 'Choose a result in the history.', note: 'Note', notePlaceholder: 'What is good about it, what is not', export: 'Export', command: 'As a command', copyCommand: 'Copy as command', scores: 'Measured', remove: 'Delete', removed: 'Deleted.', settings: 'Settings', folder: 'In the history of',
+    files: /** @type {Record<string, string>} */ ({ 'model.glb': 'Model (glTF)', 'model.vrm': 'Model (VRM)', 'turntable.webp': 'Turntable', 'report.html': 'Report', 'before.png': 'Pictures before', 'after.png': 'Pictures after', 'light.hdr': 'Light', 'layer.safetensors': 'Layer', 'edit.json': 'Settings and scores', 'sheet.png': 'Contact sheet' }),
+    textures: 'Textures', variants: 'Variants of all favourites (glTF)', variantsHint: 'One .glb with a look for each favourite', reuse: 'Edit again with these settings',
+    detail: 'Detail kept', baseColor: 'Base colour', roughness: 'Roughness', metallic: 'Metallic',
+  },
+  photos: {
+    title: 'A model from photographs', lede: 'Choose the folder of photographs of one thing, taken from all around. With transforms.json (NeRF-synthetic) beside them, cameras are known.', choose: 'Choose a folder', count: (/** @type {number} */ n, /** @type {number} */ bytes) => `${n} photographs, ${size(bytes)}`,
+    cameras: (/** @type {number} */ n) => `${n} cameras, seen from above`, noCameras: 'No transforms.json among them: cameras are estimated where the program can, else an error says so.', start: 'Reconstruct', none: 'There is no photograph in that folder.', tooMany: 'At most 1 GB at once.', masks: (/** @type {number} */ n) => `${n} masks`,
+  },
+  keys: {
+    title: 'Keyboard', list: [
+      ['Ctrl Enter', 'Start the edit'], ['F', 'Frame the model'], ['1 … 7', 'Shaded, base colour, roughness, metallic, occlusion, normal, UV'], ['W', 'Wireframe'], ['T', 'Turntable'],
+      ['C', 'Wipe between before and after'], ['S', 'Save a picture'], ['← → ↑ ↓', 'Turn the model (when it has the focus), move in the history'], ['+ −', 'Zoom'], ['Ctrl Z, Ctrl Shift Z', 'Undo and redo: region, layers, sentences'], ['*', 'Favourite'], ['Esc', 'Leave a tool'], ['?', 'This list'],
+    ],
+  },
+};
