@@ -1,5 +1,5 @@
 // What a person can do: each action talks to the server and sets the state that follows from it.
-import { api } from './core/api.js';
+import { api, asResult } from './core/api.js';
 import { h } from './core/dom.js';
 import { editBody } from './panels/edit_form.js';
 import { lightBody } from './panels/light_panel.js';
@@ -22,9 +22,10 @@ export class Actions {
     }
   }
 
-  /** Opens what the address names, else the newest project. */
-  async first() {
-    const [, project, result] = location.hash.match(/^#([\w-]+)(?:\/([\w-]+))?/) ?? [];
+  /** Opens what the address names, else the newest project. @param {string} [asked] a project */
+  async first(asked = '') {
+    const [, hashed, result] = location.hash.match(/^#([\w-]+)(?:\/([\w-]+))?/) ?? [];
+    const project = hashed ?? asked;
     if (project) {
       try {
         return await this.openProject(project, result);
@@ -36,8 +37,9 @@ export class Actions {
 
   /** @param {string} id @param {string} [result] to choose */
   async openProject(id, result) {
-    const project = await api(`projects/${encodeURIComponent(id)}`);
-    const results = /** @type {Result[]} */ (project.results).sort((a, b) => a.created < b.created ? -1 : 1);
+    const answer = await api(`projects/${encodeURIComponent(id)}`);
+    const project = { ...answer, id: String(answer.id) };
+    const results = ordered(answer.results);
     const chosen = results.find((other) => other.id === result) ?? results.findLast(({ state }) => state === 'running');
     const last = chosen ?? results.at(-1);
     this.store.set({
@@ -58,9 +60,8 @@ export class Actions {
     const { project, selected } = this.store.state;
     if (!project) return;
     try {
-      const { results } = await api(`projects/${project.id}`);
-      results.sort((/** @type {Result} */ a, /** @type {Result} */ b) => a.created < b.created ? -1 : 1);
-      this.store.set({ results, selected: results.some((/** @type {Result} */ r) => r.id === selected) ? selected : '' });
+      const results = ordered((await api(`projects/${project.id}`)).results);
+      this.store.set({ results, selected: results.some(({ id }) => id === selected) ? selected : '' });
     } catch (error) {
       failed(error);
     }
@@ -94,7 +95,7 @@ export class Actions {
 
   async start() {
     const { project } = this.store.state;
-    const result = await api(`projects/${project?.id}/edits`, { json: editBody(this.store.state) });
+    const result = asResult(await api(`projects/${project?.id}/edits`, { json: editBody(this.store.state) }));
     this.arrived(result);
     this.select(result.id);
   }
@@ -102,7 +103,8 @@ export class Actions {
   /** @param {Result} result to run again as it was */
   async retry(result) {
     try {
-      const again = await api(`projects/${result.project}/edits`, { json: { from: result.from, to: result.to, settings: result.settings, region: result.region, parent: result.parent } });
+      const { from, to, settings, region, exclude, feather, parent } = result;
+      const again = asResult(await api(`projects/${result.project}/edits`, { json: { from, to, settings, region, exclude, feather, parent } }));
       this.arrived(again);
       this.select(again.id);
     } catch (error) {
@@ -114,7 +116,7 @@ export class Actions {
   async act(result, what) {
     try {
       const answer = await api(`results/${result.id}/${what}`, { method: 'POST' });
-      if (answer?.id) this.arrived(answer);
+      if (answer?.id) this.arrived(asResult(answer));
     } catch (error) {
       failed(error);
     }
@@ -161,7 +163,7 @@ export class Actions {
   async patch(result, patch) {
     this.arrived({ ...result, ...patch });
     try {
-      this.arrived(await api(`results/${result.id}`, { method: 'PATCH', json: patch }));
+      this.arrived(asResult(await api(`results/${result.id}`, { method: 'PATCH', json: patch })));
     } catch (error) {
       this.arrived(result);
       failed(error);
@@ -172,12 +174,20 @@ export class Actions {
   async remove(result) {
     try {
       await api(`results/${result.id}`, { method: 'DELETE' });
-      const { results } = this.store.state;
-      this.store.set({ results: results.filter(({ id }) => id !== result.id), selected: result.parent ?? '', layout: 'single', layers: this.store.state.layers.filter(({ id }) => id !== result.id) });
+      this.removed(result.id);
       toast(text.result.removed);
     } catch (error) {
       failed(error);
     }
+  }
+
+  /** A result is gone. @param {string} id */
+  removed(id) {
+    const { results, selected, layers, side } = this.store.state;
+    const gone = results.find((result) => result.id === id);
+    if (!gone) return;
+    this.store.set({ results: results.filter((result) => result !== gone), layers: layers.filter((layer) => layer.id !== id) });
+    if (selected === id || side.includes(id)) this.store.set({ selected: selected === id ? gone.parent ?? '' : selected, layout: 'single', side: [] });
   }
 
   /** @param {Result} result */
@@ -191,7 +201,7 @@ export class Actions {
     this.store.set({ busy: text.layers.saving });
     try {
       const { url } = await api(`projects/${project?.id}/layers`, { json: { layers: layers.filter(({ on }) => on).map(({ id, strength, channels }) => ({ result: id, strength, channels })) } });
-      download(url, `${project?.name ?? 'model'}_layers.glb`);
+      download(url, `${stem(project?.name)}_layers.glb`);
     } catch (error) {
       failed(error);
     } finally {
@@ -203,7 +213,7 @@ export class Actions {
     const { project, results } = this.store.state;
     try {
       const { url } = await api(`projects/${project?.id}/variants`, { json: { results: results.filter(({ favourite, state }) => favourite && state === 'done').map(({ id }) => id) } });
-      download(url, `${project?.name ?? 'model'}_variants.glb`);
+      download(url, `${stem(project?.name)}_variants.glb`);
     } catch (error) {
       failed(error);
     }
@@ -218,7 +228,7 @@ export class Actions {
   /** Pictures under the light that the viewer has. */
   async relight() {
     const { project, light } = this.store.state;
-    const result = await api(`projects/${project?.id}/relight`, { json: { ...lightBody(light), parent: this.parent() } });
+    const result = asResult(await api(`projects/${project?.id}/relight`, { json: { ...lightBody(light), parent: this.parent() } }));
     this.arrived(result);
     this.select(result.id);
   }
@@ -226,7 +236,7 @@ export class Actions {
   /** Optimises a light for two sentences. @param {string} to */
   async findLight(to) {
     const { project, light, from } = this.store.state;
-    const result = await api(`projects/${project?.id}/relight`, { json: { light: light.name, from: from || 'an object', to, parent: this.parent() } });
+    const result = asResult(await api(`projects/${project?.id}/relight`, { json: { light: light.name, from: from || 'an object', to, parent: this.parent() } }));
     this.arrived(result);
     this.select(result.id);
   }
@@ -235,6 +245,16 @@ export class Actions {
     const { results, selected } = this.store.state;
     return results.some(({ id, state, kind }) => id === selected && state === 'done' && kind === 'edit') ? selected : null;
   }
+}
+
+/** A name without its ending. @param {string} [name] */
+export function stem(name = 'model') {
+  return name.replace(/\.\w{2,4}$/, '');
+}
+
+/** The oldest first. @param {any[]} results */
+function ordered(results) {
+  return results.map(asResult).sort((a, b) => a.created === b.created ? Number(a.id) - Number(b.id) : a.created < b.created ? -1 : 1);
 }
 
 /** @param {string} url @param {string} name */

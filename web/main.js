@@ -18,9 +18,10 @@ import { hasWebGL } from './viewer/stage.js';
 import { Viewer } from './viewer/viewer.js';
 import { text } from './text.js';
 import { keyboard } from './keyboard.js';
-import { Actions } from './actions.js';
+import { Actions, stem } from './actions.js';
 
 applyTheme();
+const asked = new URLSearchParams(location.search).get('project') ?? '';
 if (location.search) history.replaceState(null, '', location.pathname + location.hash); // the token does not stay in sight
 
 const NOTHING = { include: [], exclude: [], feather: 0 };
@@ -43,7 +44,7 @@ const file = h('input', { type: 'file', accept: '.glb,.gltf,.obj,.zip,.vrm', hid
   file.value = '';
 } });
 const upload = () => file.click();
-const photographs = () => photographsDialog((answer) => actions.openProject(answer.project, answer.id));
+const photographs = () => photographsDialog((answer) => actions.openProject(String(answer.project), String(answer.id)).catch(failed));
 
 const panels = {
   edit: editForm(store, { start: actions.start, remember, tools }),
@@ -68,7 +69,7 @@ store.on(['tab'], ({ tab }) => {
 const picture = async () => {
   if (!viewer) return;
   const blob = await viewer.stage.picture();
-  const link = h('a', { href: URL.createObjectURL(blob), download: `${store.state.project?.name ?? 'model'}.png` });
+  const link = h('a', { href: URL.createObjectURL(blob), download: `${stem(store.state.project?.name)}.png` });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 };
@@ -77,13 +78,13 @@ const undoButton = iconButton('undo', text.undo, () => undo.undo()), redoButton 
 const bar = h('header.top', {},
   h('a.skip', { href: '#from' }, text.skip),
   h('span.brand', {}, h('img', { src: 'app/icon.svg', alt: '', width: 18, height: 18 }), text.title),
-  projectMenu(store, { open: (id) => actions.openProject(id), upload, photographs, demo: actions.demo }),
+  projectMenu(store, { open: (id) => actions.openProject(id).catch(failed), upload, photographs, demo: actions.demo }),
   iconButton('open', text.open, upload, { id: 'open' }), iconButton('camera', text.photographs, photographs, { id: 'photographs' }),
   h('span.spring'), facts, undoButton, redoButton, iconButton('theme', text.theme, switchTheme), iconButton('help', text.help, keysDialog));
 const empty = h('div.empty', { hidden: true },
   h('img', { src: 'app/icon.svg', alt: '', width: 48, height: 48 }), h('h1', {}, text.empty.title), h('p', {}, text.empty.lede),
   h('div.row', {}, h('button.primary', { type: 'button', onclick: upload }, icon('open'), text.open), h('button', { type: 'button', onclick: photographs }, icon('camera'), text.photographs),
-    h('button', { type: 'button', id: 'demo', hidden: true, onclick: actions.demo }, text.openDemo)), h('p.hint', {}, text.empty.kinds));
+    h('button', { type: 'button', id: 'demo', onclick: actions.demo }, text.openDemo)), h('p.hint', {}, text.empty.kinds));
 const busy = h('div.busy', { role: 'status', hidden: true });
 host.append(busy, job);
 document.body.append(h('div.app', {}, bar, historyPanel(store, { select: actions.select, compare: actions.compare, favourite: (result) => actions.patch(result, { favourite: !result.favourite }) }),
@@ -92,10 +93,9 @@ document.body.append(h('div.app', {}, bar, historyPanel(store, { select: actions
 if (viewer) paneLabels(viewer.stage);
 else showPictures(host, store);
 
-store.on(['project', 'about'], ({ project, about }) => {
+store.on(['project'], ({ project }) => {
   document.title = project ? `${project.name} · ${text.title}` : text.title;
   fill(facts, project ? text.viewer.model(project.model.triangles, project.model.materials.length) : '');
-  /** @type {any} */ (empty.querySelector('#demo')).hidden = !about?.demo;
   document.body.classList.toggle('no-project', !project);
 });
 store.on(['busy'], (state) => {
@@ -123,7 +123,9 @@ keyboard(store, { undo, frame: () => viewer?.stage.frame(), picture, start: () =
 /** @type {(() => void)|null} */
 let lost = null;
 listen({
-  result: (result) => actions.arrived(result),
+  result: actions.arrived,
+  removed: actions.removed,
+  reset: actions.refresh,
   preview: (preview) => {
     viewer?.preview(preview);
     if (preview.id === store.state.selected && preview.direction) job.direction(preview.direction);
@@ -137,7 +139,7 @@ listen({
   },
 });
 
-Promise.all([api('about'), actions.first()]).then(([about]) => {
+Promise.all([api('about'), actions.first(asked)]).then(([about]) => {
   store.set({ about });
   document.body.classList.toggle('no-project', !store.state.project);
   empty.hidden = Boolean(store.state.project);

@@ -1,5 +1,7 @@
 // Requests to the server. Addresses are relative, so that the page works behind a prefix and a tunnel.
 
+import { text } from '../text.js';
+
 /** An answer of the server that is no success: its message, and what to try. */
 export class ApiError extends Error {
   /** @param {string} message @param {string} hint @param {number} status */
@@ -23,8 +25,15 @@ export async function api(path, { method, json, body, signal } = {}) {
     signal,
   });
   const answer = await response.json().catch(() => null);
+  if (response.status === 403 && answer === null) throw new ApiError(text.forbidden, text.forbiddenHint, 403);
   if (!response.ok) throw new ApiError(answer?.error ?? `${response.status} ${response.statusText}`, answer?.hint ?? '', response.status);
   return answer;
+}
+
+/** Identifiers are text on the page. @param {any} result @returns {import('./types.js').Result} */
+export function asResult(result) {
+  const { id, project, parent } = result;
+  return { ...result, id: String(id), project: String(project), parent: parent === null || parent === undefined ? null : String(parent) };
 }
 
 /** @param {string} result @param {string} name */
@@ -34,7 +43,7 @@ export function fileUrl(result, name) {
 
 /**
  * Listens to the server's events. The browser reconnects by itself; `lost` and `back` tell when.
- * @param {{result: (data: any) => void, preview: (data: any) => void, lost: () => void, back: () => void}} on
+ * @param {{result: (data: any) => void, removed: (id: string) => void, preview: (data: any) => void, reset: () => void, lost: () => void, back: () => void}} on
  */
 export function listen(on) {
   let broken = false;
@@ -42,8 +51,13 @@ export function listen(on) {
   let source;
   const connect = () => {
     source = new EventSource('api/events');
-    source.addEventListener('result', (event) => on.result(JSON.parse(event.data)));
-    source.addEventListener('preview', (event) => on.preview(JSON.parse(event.data)));
+    source.addEventListener('result', (event) => on.result(asResult(JSON.parse(event.data))));
+    source.addEventListener('removed', (event) => on.removed(String(JSON.parse(event.data).id)));
+    source.addEventListener('preview', (event) => {
+      const data = JSON.parse(event.data);
+      on.preview({ ...data, id: String(data.id) });
+    });
+    source.addEventListener('reset', () => on.reset());
     source.onopen = () => {
       if (broken) on.back();
       broken = false;

@@ -13,6 +13,8 @@
  * @property {string} [name]
  * @property {Record<string, any>} settings
  * @property {string[]} region
+ * @property {string[]} [exclude]
+ * @property {number} [feather]
  * @property {string} command
  * @property {ResultState} state
  * @property {{stage: string, done: number, total: number, seconds: number, seconds_left: number}} [progress]
@@ -36,9 +38,8 @@
  * @property {string} flag
  * @property {string} type
  * @property {any} default
- * @property {number} [minimum]
- * @property {number} [maximum]
- * @property {string[]} [values]
+ * @property {string} values  as the settings page says: "integer: 1 or more", "choice: a, b or c"
+ * @property {boolean} [path]  names a file of the server's machine: not for a page
  * @property {string} help
  * @property {string} [group]
  *
@@ -48,7 +49,6 @@
  * @property {{colors: string[], materials: string[], patterns: string[], objects: string[], lights: string[], all?: string[], parts?: string[]}} words
  * @property {Setting[]} settings
  * @property {string[]} lights
- * @property {boolean} [demo]
  *
  * @typedef {{include: string[], exclude: string[], feather: number}} Region
  * @typedef {{id: string, on: boolean, strength: number, channels: string[]}} Layer

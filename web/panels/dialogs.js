@@ -49,9 +49,9 @@ export function projectMenu(store, actions) {
     if (menu.hidden) return;
     const list = h('div.list', {}, h('p.hint', {}, text.loading));
     fill(menu, item('open', text.open, actions.upload), item('camera', text.photographs, actions.photographs),
-      store.state.about?.demo && item('box', text.openDemo, actions.demo), h('h3', {}, text.projects), list);
+      item('box', text.openDemo, actions.demo), h('h3', {}, text.projects), list);
     const projects = await api('projects?limit=100').catch(failed) ?? [];
-    fill(list, ...projects.map((/** @type {any} */ project) => h('button.item', { type: 'button', 'aria-current': String(project.id === store.state.project?.id), onclick: () => { close(); actions.open(project.id); } },
+    fill(list, ...projects.map((/** @type {any} */ project) => h('button.item', { type: 'button', 'aria-current': String(String(project.id) === store.state.project?.id), onclick: () => { close(); actions.open(String(project.id)); } },
       h('span', {}, project.name), h('small', {}, `${text.history.count(project.results)} · ${when(project.modified)}`))), !projects.length && h('p.hint', {}, text.noProjects));
   };
   document.addEventListener('pointerdown', (event) => { if (!element.contains(/** @type {Node} */ (event.target))) close(); });

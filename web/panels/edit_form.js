@@ -58,8 +58,7 @@ export function editForm(store, { start, remember, tools }) {
   store.on(['about'], ({ about }) => {
     if (!about) return;
     vocabulary = new Vocabulary(about.words);
-    const names = [...about.words.materials.slice(0, 26), ...about.words.patterns.slice(0, 14)];
-    fill(looks, ...[...new Set(names)].map((name) => h('button', { type: 'button', onclick: () => {
+    fill(looks, ...adjectives([...about.words.materials, ...about.words.patterns]).map((name) => h('button', { type: 'button', onclick: () => {
       remember();
       store.set({ to: withLook(store.state.to || store.state.from, name, store.state.from, about.words) });
     } }, name)));
@@ -97,6 +96,11 @@ export function editForm(store, { start, remember, tools }) {
     regionForm(store, tools, remember),
     h('section', {}, h('div.heading', {}, h('h2', {}, text.edit.how), quality), settings),
     h('footer.sticky', {}, problem, h('div.row', {}, h('div.facts', {}, basis, estimate), button)));
+}
+
+/** One spelling of each look: of "gold" and "golden", "rust" and "rusty", the adjective. @param {string[]} names */
+function adjectives(names) {
+  return [...new Set(names)].filter((name) => !names.some((other) => other.length > name.length && other.length < name.length + 4 && other.startsWith(name)));
 }
 
 /** What an edit's request says. @param {State} state */

@@ -129,7 +129,7 @@ export class RegionTools {
     const { project } = this.store.state;
     try {
       for (const { name, blob } of await this.brush?.pictures() ?? []) {
-        const { selector } = await api(`projects/${project?.id}/masks?material=${encodeURIComponent(name)}`, { body: blob });
+        const { selector } = await api(`projects/${project?.id}/masks?material=${encodeURIComponent(name)}&name=painted`, { body: blob });
         this.add(selector);
       }
       this.clearBrush();

@@ -42,7 +42,7 @@ export function settingsForm(store, remember) {
     count.textContent = n ? text.edit.changed(n) : '';
   };
   store.on(['about'], ({ about }) => {
-    rows = (about?.settings ?? []).filter(({ name }) => !ELSEWHERE.has(name)).map((setting) => {
+    rows = (about?.settings ?? []).filter(({ name, path }) => !ELSEWHERE.has(name) && !path).map((setting) => {
       const { input, show } = control(setting, (value) => change(setting.name, value, setting.default));
       const row = h('div.setting', {},
         h('label', { htmlFor: input.id }, h('code', {}, setting.flag || setting.name)),
@@ -64,25 +64,34 @@ export function settingsForm(store, remember) {
  */
 function control(setting, change) {
   const id = `setting-${setting.name}`;
-  if (setting.values?.length) {
-    const input = h('select', { id, onchange: () => change(input.value) }, ...setting.values.map((value) => h('option', { value }, value)));
+  if (setting.type === 'choice') {
+    const choices = setting.values.replace(/^choice: /, '').split(/, | or /);
+    const input = h('select', { id, onchange: () => change(input.value) }, ...choices.map((value) => h('option', { value }, value)));
     return { input, show: (value) => { input.value = String(value ?? ''); } };
   }
-  if (setting.type === 'boolean' || setting.type === 'flag') {
-    const input = h('input', { id, type: 'checkbox', onchange: () => change(input.checked) });
-    return { input, show: (value) => { input.checked = Boolean(value); } };
-  }
   if (setting.type === 'integer' || setting.type === 'number') {
-    const input = h('input', { id, type: 'number', min: setting.minimum, max: setting.maximum, step: setting.type === 'integer' ? 1 : 'any',
+    const { least, most } = rangeOf(setting.values);
+    const input = h('input', { id, type: 'number', min: least, max: most, title: setting.values, step: setting.type === 'integer' ? 1 : 'any',
       onchange: () => change(input.value === '' || !input.validity.valid ? undefined : Number(input.value)) });
     return { input, show: (value) => { input.value = String(value ?? ''); } };
   }
-  const several = ['texts', 'numbers', 'list'].includes(setting.type);
+  if (setting.type === 'repeated_texts') {
+    const input = h('textarea', { id, rows: 2, spellcheck: false, title: setting.values, onchange: () => change(input.value.split('\n').map((/** @type {string} */ line) => line.trim()).filter(Boolean)) });
+    return { input, show: (value) => { input.value = (value ?? []).join('\n'); } };
+  }
+  const several = setting.type === 'texts' || setting.type === 'numbers';
   const parse = (/** @type {string} */ value) => {
     if (!several) return value;
     const items = value.split(',').map((item) => item.trim()).filter(Boolean);
     return setting.type === 'numbers' ? items.map(Number) : items;
   };
-  const input = h('input', { id, type: 'text', spellcheck: false, onchange: () => change(parse(input.value)) });
+  const input = h('input', { id, type: 'text', spellcheck: false, title: setting.values, onchange: () => change(parse(input.value)) });
   return { input, show: (value) => { input.value = Array.isArray(value) ? value.join(', ') : String(value ?? ''); } };
+}
+
+/** Bounds that "between 1 and 64 ..." and "0 or more" name. @param {string} values */
+function rangeOf(values) {
+  const between = values.match(/between (-?[\d.]+)[^\d]* and (-?[\d.e]+)/), least = values.match(/: (\d+) or more/);
+  const orZero = / or 0 /.test(values);
+  return { least: orZero ? 0 : between ? Number(between[1]) : least ? Number(least[1]) : undefined, most: between ? Number(between[2]) : undefined };
 }

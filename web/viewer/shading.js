@@ -99,7 +99,8 @@ else if (studioView == 5) {
 }
 if (studioMaskShown > 0.0) {
   float weight = texture2D(studioMask, vStudioUv).r * studioMaskShown;
-  gl_FragColor.rgb = mix(gl_FragColor.rgb, studioMaskColor, 0.62 * weight);
+  vec3 veil = studioMaskColor * (0.5 + 0.9 * luminance(gl_FragColor.rgb));
+  gl_FragColor.rgb = mix(gl_FragColor.rgb, veil, 0.75 * weight);
 }
 `;
 
