@@ -3,13 +3,20 @@
 # downloads of scripts/wheels.txt, unpacked into .deps/. Does nothing when all is there; goes on
 # where an interrupted run stopped. Works as root and as a user who may use sudo.
 #
-# usage: scripts/setup.sh [cuda]    cuda: the CUDA compiler too, for `make cuda` and `make test`
+# usage: scripts/setup.sh [cuda] [browser]
+#   cuda     the CUDA compiler too, for `make cuda` and `make test`
+#   browser  Chromium and Playwright too, for `make test` (50 MB, and 100 MB of Debian packages)
 #
 #   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
+#   ITEM3D_NO_BROWSER=1       leave the browser out: its tests do not run
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
 deps=$root/.deps
+
+wants() { [[ " $arguments " == *" $1 "* ]]; }
+arguments=$*
+if [[ -n ${ITEM3D_NO_BROWSER:-} ]]; then arguments=${arguments//browser/}; fi
 
 say() { echo "setup: $*" >&2; }
 fail() {
@@ -23,7 +30,7 @@ missing_packages() {
     while read -r package; do
         [[ $(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) == installed ]] ||
             echo "$package"
-    done < <(grep -vE '^[[:space:]]*(#|$)' scripts/packages.txt)
+    done < <(grep -vE '^[[:space:]]*(#|$)' scripts/packages.txt; ! wants browser || echo chromium)
 }
 
 install_packages() {
@@ -146,7 +153,7 @@ wheel_options=(--only-binary=:all: --implementation cp --python-version 3.11 --a
 # unless .deps/NAME came from the same pins by the same UNPACK.
 component() {
     local name=$1 pins=$2 unpack=$3 wanted temporary
-    wanted=$({ grep -E "^($pins)==" scripts/wheels.txt; declare -f "$unpack"; } | sha256sum | cut -d ' ' -f 1)
+    wanted=$({ grep -hE "^($pins)==" scripts/wheels.txt scripts/browser.txt; declare -f "$unpack"; } | sha256sum | cut -d ' ' -f 1)
     [[ -f $deps/$name/.pins && $(<"$deps/$name/.pins") == "$wanted" ]] && return
     temporary=$deps/$name.unpacking
     rm -rf "$temporary"
@@ -235,6 +242,16 @@ unpack_three() {
     sed -i "s|from 'three'|from '../../three.module.min.js'|" "$into"/addons/*/*.js
 }
 
+# For the Python that runs the tests.
+unpack_browser() {
+    local into=$1
+    say "downloading $(grep -o '^playwright==[^ ]*' scripts/browser.txt)"
+    "$(find_pip)" -m pip install --require-hashes --only-binary=:all: --no-cache-dir --no-compile \
+        --retries 5 --timeout 60 --progress-bar off -q --disable-pip-version-check \
+        --root-user-action=ignore --target "$into" -r scripts/browser.txt >"$deps/pip.log" 2>&1 ||
+        fail "downloading Playwright failed: $(grep -i error "$deps/pip.log" | tail -n 1) (all of it: .deps/pip.log; ITEM3D_NO_BROWSER=1 leaves it out)"
+}
+
 mkdir -p "$deps" || fail "cannot write to $root"
 exec 9>"$deps/lock"
 flock 9 # a second `make` waits here and then finds all done
@@ -250,7 +267,10 @@ fi
 component xatlas xatlas unpack_xatlas
 component basis_universal basis-universal-sys unpack_basis_universal
 component three three unpack_three
-if [[ ${1:-} == cuda ]]; then
+if wants browser && [[ $(uname -m) == x86_64 ]]; then
+    component browser 'playwright|greenlet' unpack_browser
+fi
+if wants cuda; then
     component cuda 'nvidia-cuda-nvcc|nvidia-cuda-crt|nvidia-nvvm|nvidia-cuda-runtime|nvidia-nvtx' \
         unpack_cuda
 fi
