@@ -85,13 +85,13 @@ export const text = {
   },
   light: {
     presets: 'Light', own: 'Open an HDR …', rotation: 'Turn', exposure: 'Exposure', backdrop: 'Show the light behind the model', sun: 'Sun', sunHint: 'Drag the sun: the middle is overhead, the rim the horizon. The viewer looks from below.',
-    noSun: 'As the light has it', hour: 'Hour', sky: 'Clear sky', words: 'In words', wordsHint: 'low in the west', tint: 'Tint', noTint: 'none', reset: 'Reset', download: 'Save this light (.hdr)',
+    noSun: 'As the light has it', hour: 'Hour', sky: 'Clear sky', words: 'In words', wordsHint: 'low in the west', tint: 'Tint', noTint: 'none', reset: 'Reset', download: 'Save this light as .hdr',
     render: 'Pictures in this light', find: 'Find a light by words', findHint: 'a mug at sunset, lit from the left', findStart: 'Find', compass: ['N', 'E', 'S', 'W'], sunAt: (/** @type {number} */ az, /** @type {number} */ el) => `${az}° · ${el}° high`,
   },
   result: {
     none: 'Choose a result in the history.', note: 'Note', notePlaceholder: 'What is good about it, what is not', export: 'Export', command: 'As a command', copyCommand: 'Copy as command', scores: 'Measured', remove: 'Delete', removed: 'Deleted.', settings: 'Settings', folder: 'In the history of',
     files: /** @type {Record<string, string>} */ ({ 'model.glb': 'Model (glTF)', 'model.vrm': 'Model (VRM)', 'turntable.webp': 'Turntable', 'report.html': 'Report', 'before.png': 'Pictures before', 'after.png': 'Pictures after', 'light.hdr': 'Light', 'layer.safetensors': 'Layer', 'edit.json': 'Settings and scores', 'sheet.png': 'Contact sheet' }),
-    textures: 'Textures', variants: 'Variants of all favourites (glTF)', variantsHint: 'One .glb with a look for each favourite', reuse: 'Edit again with these settings',
+    textures: 'Textures', variants: 'Variants of all favourites (glTF)', variantsHint: 'One .glb with a look for each favourite', reuse: 'Edit again',
     detail: 'Detail kept', baseColor: 'Base colour', roughness: 'Roughness', metallic: 'Metallic',
   },
   photos: {

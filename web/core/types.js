@@ -43,10 +43,13 @@
  * @property {string} help
  * @property {string} [group]
  *
+ * A word that the prior was measured on; the caption has {o} for the object, the colour is linear.
+ * @typedef {{word: string, spellings: string[], caption: string, base_color: number[]|null, accuracy: number}} Word
+ *
  * @typedef {object} About
  * @property {string} version
  * @property {{name: string, hash?: string}} prior
- * @property {{colors: string[], materials: string[], patterns: string[], objects: string[], lights: string[], all?: string[], parts?: string[]}} words
+ * @property {{colors: Word[], materials: Word[], patterns: Word[], objects: Word[], lights: Word[], all?: string[], parts?: string[]}} words
  * @property {Setting[]} settings
  * @property {string[]} lights
  *

@@ -58,10 +58,10 @@ export function editForm(store, { start, remember, tools }) {
   store.on(['about'], ({ about }) => {
     if (!about) return;
     vocabulary = new Vocabulary(about.words);
-    fill(looks, ...adjectives([...about.words.materials, ...about.words.patterns]).map((name) => h('button', { type: 'button', onclick: () => {
+    fill(looks, ...[...about.words.materials, ...about.words.patterns].map((word) => h('button', { type: 'button', title: withLook(word, store.state.from || text.edit.fromHint, about.words), onclick: () => {
       remember();
-      store.set({ to: withLook(store.state.to || store.state.from, name, store.state.from, about.words) });
-    } }, name)));
+      store.set({ to: withLook(word, store.state.from || store.state.to, about.words) });
+    } }, word.base_color && h('i.swatch', { style: `--c:color(srgb-linear ${word.base_color.join(' ')})` }), nameOf(word))));
     from.set(store.state.from);
     to.set(store.state.to);
   });
@@ -96,11 +96,6 @@ export function editForm(store, { start, remember, tools }) {
     regionForm(store, tools, remember),
     h('section', {}, h('div.heading', {}, h('h2', {}, text.edit.how), quality), settings),
     h('footer.sticky', {}, problem, h('div.row', {}, h('div.facts', {}, basis, estimate), button)));
-}
-
-/** One spelling of each look: of "gold" and "golden", "rust" and "rusty", the adjective. @param {string[]} names */
-function adjectives(names) {
-  return [...new Set(names)].filter((name) => !names.some((other) => other.length > name.length && other.length < name.length + 4 && other.startsWith(name)));
 }
 
 /** What an edit's request says. @param {State} state */
@@ -140,16 +135,18 @@ function presetOf(state) {
   return ['draft', 'standard', 'fine'].find((name) => JSON.stringify(PRESET_KEYS.map((key) => presetSettings(name, state)[key])) === now) ?? '';
 }
 
+/** A look as captions say it: "golden", "leopard print", "covered in sprinkles". @param {import('../core/types.js').Word} word */
+function nameOf({ caption, word }) {
+  return caption.replace('{o}', '').replace('{c}', '').replace(/^an?\s+/, '').replace(/\s+/g, ' ').trim() || word;
+}
+
 /**
- * The sentence with another look: in place of the look that it has, else before its noun.
- * @param {string} sentence @param {string} look @param {string} from @param {import('../core/types.js').About['words']} words
+ * What a thing is called with another look.
+ * @param {import('../core/types.js').Word} word @param {string} from what it is now @param {import('../core/types.js').About['words']} words
  */
-export function withLook(sentence, look, from, words) {
-  const looks = [...words.colors, ...words.materials, ...words.patterns].sort((a, b) => b.length - a.length);
-  const base = sentence.trim() || 'an object';
-  const old = looks.find((name) => new RegExp(`\\b${name}\\b`, 'i').test(base));
-  let result;
-  if (old) result = base.replace(new RegExp(`\\b${old}\\b`, 'i'), look);
-  else result = base.replace(/^(an?|the)?\s*/i, (article) => `${article.trim() || 'a'} ${look} `);
-  return result.replace(/^(an?)\s+(\w)/i, (_, article, letter) => `${/[aeiou]/i.test(letter) ? 'an' : 'a'} ${letter}`);
+export function withLook({ caption }, from, words) {
+  const said = from.toLowerCase().match(/[\p{L}\p{N}'-]+/gu) ?? [];
+  const known = words.objects.flatMap(({ spellings }) => spellings);
+  const thing = said.findLast((one) => known.includes(one)) ?? said.at(-1) ?? 'object';
+  return caption.replace('{o}', thing).replace('{c} ', '').replace(/^an?\s+(?=(\w))/, (_, letter) => /[aeiou]/.test(letter) ? 'an ' : 'a ');
 }

@@ -54,7 +54,7 @@ export function lightPanel(store, { own, render, find }) {
   };
   const words = h('input', { type: 'text', placeholder: text.light.findHint, 'aria-label': text.light.find,
     onkeydown: (/** @type {KeyboardEvent} */ event) => { if (event.key === 'Enter') guarded(() => find(words.value.trim()))(); } });
-  const download = h('a.button', { download: 'light.hdr' }, icon('down'), text.light.download);
+  const download = h('a.button', { download: 'light.hdr', title: text.light.download, 'aria-label': text.light.download }, icon('down'), '.hdr');
 
   store.on(['about', 'light'], ({ about, light }) => {
     const names = [...(about?.lights ?? ['studio'])];

@@ -12,7 +12,7 @@ export class Vocabulary {
     this.kinds = new Map();
     for (const word of words.all ?? []) this.kinds.set(word, '');
     for (const kind of /** @type {const} */ (['lights', 'objects', 'patterns', 'materials', 'colors']))
-      for (const phrase of words[kind] ?? []) this.kinds.set(phrase, kind);
+      for (const { spellings } of words[kind] ?? []) for (const spelling of spellings) this.kinds.set(spelling, kind);
     this.single = new Set([...GLUE, ...[...this.kinds.keys()].flatMap((phrase) => phrase.split(/[\s-]+/))]);
     this.list = [...this.kinds.keys()].sort();
   }
