@@ -75,15 +75,8 @@ class Page:
         self.tab = self.context.new_page()
         self.tab.set_default_timeout(PATIENCE * 1000)
         self.errors = []
-        self.bytes = {}
         self.tab.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.tab.on("response", self.count)
         self.open(address)
-
-    def count(self, response):
-        path = response.url.split("?")[0]
-        if "/api/" not in path:
-            self.bytes[path] = int(response.headers.get("content-length", 0))
 
     def open(self, address):
         begin = time.monotonic()

@@ -30,6 +30,11 @@ export class RegionTools {
     this.menu = h('div.popover.point', { hidden: true, role: 'menu' });
     stage.host.append(this.menu);
     this.asked = 0;
+    this.timer = 0;
+    /** @type {{x: number, y: number}|null} where the button went down */
+    this.pressed = null;
+    /** @type {THREE.Vector3|null} the stroke's last place */
+    this.last = null;
 
     const canvas = stage.canvas;
     canvas.addEventListener('pointerdown', (event) => this.down(event), { capture: true });
@@ -102,7 +107,7 @@ export class RegionTools {
 
   /** @param {PointerEvent} event */
   up(event) {
-    this.last = undefined;
+    this.last = null;
     this.stage.controls.enabled = true;
     this.box.up();
     const still = this.pressed && Math.hypot(event.clientX - this.pressed.x, event.clientY - this.pressed.y) < 4;

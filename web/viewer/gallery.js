@@ -16,6 +16,8 @@ export class Gallery {
     /** @type {Map<string, {look: Look, revision: number}>} */
     this.live = new Map();
     this.modelUrl = '';
+    /** @type {Set<string>} results whose textures layers are blended from */
+    this.pinned = new Set();
   }
 
   /** Another model: nothing of the old one stays. @param {string} modelUrl */
@@ -47,7 +49,7 @@ export class Gallery {
       if (this.looks.size <= KEPT) return;
       if (id === '') continue;
       const look = await promise.catch(() => null);
-      if (!look || this.stage.shown.some((shown) => shown.look === look) || this.pinned?.has(id)) continue;
+      if (!look || this.stage.shown.some((shown) => shown.look === look) || this.pinned.has(id)) continue;
       this.looks.delete(id);
       look.dispose();
     }

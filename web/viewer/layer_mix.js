@@ -186,7 +186,7 @@ function factorOf(material, slot) {
 
 /** @param {THREE.MeshStandardMaterial[]} materials @param {Slot} slot */
 function sizeOf(materials, slot) {
-  const images = materials.map((material) => mainOf(material, slot)?.image).filter(Boolean);
+  const images = /** @type {ImageBitmap[]} */ (materials.map((material) => mainOf(material, slot)?.image).filter(Boolean));
   return [Math.max(1, ...images.map((image) => image.width)), Math.max(1, ...images.map((image) => image.height))];
 }
 

@@ -39,8 +39,8 @@ export class StageLight {
       const body = await response.json().catch(() => null);
       throw new Error(body?.error ?? `${response.status} ${response.statusText}`);
     }
-    const { data, width, height } = this.loader.parse(await response.arrayBuffer());
-    const { pixels, across } = fitted(/** @type {Float32Array} */ (data), width, height);
+    const { data, width, height } = /** @type {{data: Float32Array, width: number, height: number}} */ (this.loader.parse(await response.arrayBuffer()));
+    const { pixels, across } = fitted(data, width, height);
     const levels = await new Promise((resolve) => {
       this.waiting.set(request, resolve);
       this.worker.postMessage({ id: request, pixels, width: across, size: across / 4 }, [pixels.buffer]);

@@ -25,6 +25,9 @@ export class Viewer {
     this.project = '';
     this.turn = 0;
     this.light = '';
+    this.lighting = false;
+    this.sharpen = 0;
+    this.shownKey = '';
     /** @type {Set<string>} results that have a UV map of their own */
     this.apart = new Set();
 
@@ -130,6 +133,7 @@ export class Viewer {
     const source = await this.gallery.get('');
     this.mix ??= new LayerMix(this.stage.renderer, source, this.stage.shared);
     const layers = [];
+    this.gallery.pinned = new Set(state.layers.filter(({ on }) => on).flatMap(({ id }) => [id, state.results.find((other) => other.id === id)?.parent ?? '']));
     for (const { id, on, strength, channels } of state.layers) {
       const result = state.results.find((other) => other.id === id);
       if (!on || !result) continue;
