@@ -1,5 +1,5 @@
 // What a person can do: each action talks to the server and sets the state that follows from it.
-import { api, asResult } from './core/api.js';
+import { api, asNumber, asResult } from './core/api.js';
 import { h } from './core/dom.js';
 import { editBody } from './panels/edit_form.js';
 import { lightBody } from './panels/light_panel.js';
@@ -55,6 +55,14 @@ export class Actions {
     history.replaceState(null, '', `#${project?.id ?? ''}${selected ? `/${selected}` : ''}`);
   }
 
+  /** A project has another name, or is gone. @param {any} changed */
+  projectChanged(changed) {
+    const { project } = this.store.state;
+    if (!project || String(changed.id) !== project.id) return;
+    if (changed.removed) this.store.set({ project: null, results: [], selected: '' });
+    else if (changed.name) this.store.set({ project: { ...project, name: changed.name } });
+  }
+
   /** After a lost connection: what has changed since. */
   async refresh() {
     const { project, selected } = this.store.state;
@@ -104,7 +112,7 @@ export class Actions {
   async retry(result) {
     try {
       const { from, to, settings, region, exclude, feather, parent } = result;
-      const again = asResult(await api(`projects/${result.project}/edits`, { json: { from, to, settings, region, exclude, feather, parent } }));
+      const again = asResult(await api(`projects/${result.project}/edits`, { json: { from, to, settings, region, exclude, feather, parent: asNumber(parent) } }));
       this.arrived(again);
       this.select(again.id);
     } catch (error) {
@@ -128,6 +136,7 @@ export class Actions {
     if (result.project !== project?.id) return;
     const at = results.findIndex(({ id }) => id === result.id);
     this.store.set({ results: at < 0 ? [...results, result] : results.with(at, result) });
+    if (result.kind === 'reconstruct' && result.state === 'done' && !project.model) this.openProject(project.id, result.id).catch(failed); // it has a model now
   }
 
   /** @param {string} id */
@@ -200,7 +209,7 @@ export class Actions {
     const { project, layers } = this.store.state;
     this.store.set({ busy: text.layers.saving });
     try {
-      const { url } = await api(`projects/${project?.id}/layers`, { json: { layers: layers.filter(({ on }) => on).map(({ id, strength, channels }) => ({ result: id, strength, channels })) } });
+      const { url } = await api(`projects/${project?.id}/layers`, { json: { layers: layers.filter(({ on }) => on).map(({ id, strength, channels }) => ({ result: asNumber(id), strength, channels })) } });
       download(url, `${stem(project?.name)}_layers.glb`);
     } catch (error) {
       failed(error);
@@ -212,7 +221,7 @@ export class Actions {
   async variants() {
     const { project, results } = this.store.state;
     try {
-      const { url } = await api(`projects/${project?.id}/variants`, { json: { results: results.filter(({ favourite, state }) => favourite && state === 'done').map(({ id }) => id) } });
+      const { url } = await api(`projects/${project?.id}/variants`, { json: { results: results.filter(({ favourite, state }) => favourite && state === 'done').map(({ id }) => asNumber(id)) } });
       download(url, `${stem(project?.name)}_variants.glb`);
     } catch (error) {
       failed(error);
@@ -243,7 +252,7 @@ export class Actions {
 
   parent() {
     const { results, selected } = this.store.state;
-    return results.some(({ id, state, kind }) => id === selected && state === 'done' && kind === 'edit') ? selected : null;
+    return results.some(({ id, state, kind }) => id === selected && state === 'done' && kind === 'edit') ? asNumber(selected) : null;
   }
 }
 

@@ -95,7 +95,7 @@ else showPictures(host, store);
 
 store.on(['project'], ({ project }) => {
   document.title = project ? `${project.name} · ${text.title}` : text.title;
-  fill(facts, project ? text.viewer.model(project.model.triangles, project.model.materials.length) : '');
+  fill(facts, project?.model ? text.viewer.model(project.model.triangles, project.model.materials.length) : '');
   document.body.classList.toggle('no-project', !project);
 });
 store.on(['busy'], (state) => {
@@ -125,6 +125,7 @@ let lost = null;
 listen({
   result: actions.arrived,
   removed: actions.removed,
+  project: actions.projectChanged,
   reset: actions.refresh,
   preview: (preview) => {
     viewer?.preview(preview);
@@ -144,6 +145,6 @@ Promise.all([api('about'), actions.first(asked)]).then(([about]) => {
   document.body.classList.toggle('no-project', !store.state.project);
   empty.hidden = Boolean(store.state.project);
 }).catch(failed);
-store.on(['project'], ({ project }) => { if (project) empty.hidden = true; });
+store.on(['project'], ({ project }) => { empty.hidden = Boolean(project) || !store.state.about; });
 /** @type {any} */ (window).studio = { store, viewer }; // for the browser's console, and for tests
 

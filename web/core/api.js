@@ -30,6 +30,11 @@ export async function api(path, { method, json, body, signal } = {}) {
   return answer;
 }
 
+/** An identifier as the server has it. @param {string|null} id */
+export function asNumber(id) {
+  return id === null ? null : Number(id);
+}
+
 /** Identifiers are text on the page. @param {any} result @returns {import('./types.js').Result} */
 export function asResult(result) {
   const { id, project, parent } = result;
@@ -43,7 +48,7 @@ export function fileUrl(result, name) {
 
 /**
  * Listens to the server's events. The browser reconnects by itself; `lost` and `back` tell when.
- * @param {{result: (data: any) => void, removed: (id: string) => void, preview: (data: any) => void, reset: () => void, lost: () => void, back: () => void}} on
+ * @param {{result: (data: any) => void, removed: (id: string) => void, project: (project: any) => void, preview: (data: any) => void, reset: () => void, lost: () => void, back: () => void}} on
  */
 export function listen(on) {
   let broken = false;
@@ -57,6 +62,7 @@ export function listen(on) {
       const data = JSON.parse(event.data);
       on.preview({ ...data, id: String(data.id) });
     });
+    source.addEventListener('project', (event) => on.project(JSON.parse(event.data)));
     source.addEventListener('reset', () => on.reset());
     source.onopen = () => {
       if (broken) on.back();

@@ -1,6 +1,6 @@
 // The edit: what, where, how, and what it will take.
 import { h, fill, icon, segments } from '../core/dom.js';
-import { api } from '../core/api.js';
+import { api, asNumber } from '../core/api.js';
 import { text } from '../text.js';
 import { Vocabulary, sentenceField } from './sentence.js';
 import { settingsForm } from './settings_form.js';
@@ -104,7 +104,7 @@ export function editBody(state) {
   return {
     from: state.from.trim(), to: state.to.trim(), settings: state.settings,
     region: state.region.include, exclude: state.region.exclude, feather: state.region.feather,
-    parent: parent && parent.state === 'done' && parent.kind !== 'relight' ? parent.id : null,
+    parent: asNumber(parent && parent.state === 'done' && parent.kind !== 'relight' ? parent.id : null),
   };
 }
 

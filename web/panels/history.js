@@ -3,6 +3,7 @@
 import { h, fill, icon, iconButton } from '../core/dom.js';
 import { when, duration } from '../core/format.js';
 import { text } from '../text.js';
+import { thumbnail } from './thumbnail.js';
 
 /** @typedef {import('../core/types.js').Result} Result */
 
@@ -61,7 +62,7 @@ export function historyPanel(store, { select, compare, favourite }) {
     entry.row.dataset.state = result.state;
     const said = result.state === 'done' ? `${when(result.created)} · ${duration(result.seconds)}` : text.states[result.state];
     fill(entry.row,
-      h('span.thumb', {}, result.thumbnail ? h('img', { src: result.thumbnail, alt: '', loading: 'lazy', decoding: 'async', width: 40, height: 40 }) : icon(result.kind === 'relight' ? 'sun' : result.kind === 'reconstruct' ? 'camera' : 'brush')),
+      thumbnail(result),
       h('span.words', {}, h('b', {}, result.name || result.to || text.kinds[result.kind]), h('small', {}, h('i.dot'), said)),
       result.state === 'done' && iconButton('side', text.history.compare, () => compare(result.id), { className: 'icon compare', tabIndex: -1, onclick: stop(() => compare(result.id)) }),
       iconButton('star', text.history.favourite, () => {}, { className: `icon favourite${result.favourite ? ' on' : ''}`, tabIndex: -1, 'aria-pressed': String(result.favourite), onclick: stop(() => favourite(result)) }));

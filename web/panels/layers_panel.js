@@ -1,6 +1,7 @@
 // Layers: what edits changed, at any strength, in any channels. The viewer blends at once.
 import { h, fill, slider } from '../core/dom.js';
 import { text } from '../text.js';
+import { thumbnail } from './thumbnail.js';
 import { CHANNELS } from '../viewer/channels.js';
 
 /** @typedef {import('../core/types.js').Layer} Layer */
@@ -36,7 +37,7 @@ export function layersPanel(store, { remember, save, blends }) {
       change(id, { on: true, channels: now.includes(name) ? now.filter((other) => other !== name) : [...now, name] });
     } }, text.layers.channels[/** @type {keyof typeof text.layers.channels} */ (name)]));
     const element = h('article.layer', { 'data-id': id },
-      h('header', {}, h('label.check', {}, check, result.thumbnail ? h('img', { src: result.thumbnail, alt: '', width: 28, height: 28, loading: 'lazy' }) : null, h('b', {}, result.name || result.to))),
+      h('header', {}, h('label.check', {}, check, thumbnail(result), h('b', {}, result.name || result.to))),
       strength, h('div.channels', { role: 'group' }, ...channels), !blends(id) && h('p.hint', {}, text.layers.other));
     element.show = (/** @type {Layer} */ layer) => {
       check.checked = layer.on;

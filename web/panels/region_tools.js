@@ -3,7 +3,7 @@ import * as THREE from '../three.js';
 import { Brush } from '../viewer/brush.js';
 import { BoxTool } from '../viewer/box_tool.js';
 import { boundsOf, pointsOf } from '../viewer/camera.js';
-import { api } from '../core/api.js';
+import { api, asNumber } from '../core/api.js';
 import { h, fill, icon } from '../core/dom.js';
 import { text } from '../text.js';
 
@@ -54,7 +54,7 @@ export class RegionTools {
     this.stage.host.dataset.tool = tool;
     this.menu.hidden = true;
     this.stage.controls.mouseButtons.LEFT = tool === 'brush' ? /** @type {any} */ (null) : THREE.MOUSE.ROTATE;
-    if (tool === 'box') {
+    if (tool === 'box' && this.stage.shown[0]) {
       const box = boundsOf(pointsOf(this.stage.shown[0].look.root));
       const size = box.getSize(new THREE.Vector3());
       box.max.y -= size.y / 2;
@@ -205,7 +205,7 @@ export class RegionTools {
       try {
         const answer = await api(`projects/${project.id}/region`, { json: {
           region: region.include, exclude: region.exclude, feather: region.feather, from: state.from, to: state.to,
-          parent: parent?.state === 'done' ? parent.id : null } });
+          parent: asNumber(parent?.state === 'done' ? parent.id : null) } });
         const loader = new THREE.TextureLoader();
         const masks = await Promise.all(answer.masks.map(async (/** @type {{material: number, url: string}} */ { material, url }) => {
           const texture = await loader.loadAsync(url);

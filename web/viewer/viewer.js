@@ -74,6 +74,12 @@ export class Viewer {
   async follow() {
     const { state } = this.store;
     if (!state.project) return;
+    if (!state.project.model) { // of photographs that are not reconstructed yet
+      this.project = '';
+      this.shownKey = '';
+      this.gallery.open('');
+      return;
+    }
     const turn = ++this.turn;
     const fresh = state.project.id !== this.project;
     if (fresh) {
