@@ -1,0 +1,190 @@
+#include "item3d/studio/tool_routes.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/io/load_light.h"
+#include "item3d/io/save.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/studio/estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr auto longest_tool = std::chrono::seconds(120);
+constexpr const char* region_folder = "region";
+
+/// A preset or an uploaded light as a Radiance file of that width, made once.
+fs::path light_file(Studio& studio, const std::string& name, int width) {
+    const fs::path folder = studio.folders().root() / "lights";
+    const auto& presets = light_preset_names();
+    const bool is_preset = std::find(presets.begin(), presets.end(), name) != presets.end();
+    if (!is_preset) {
+        if (fs::exists(folder / (name + ".hdr"))) return folder / (name + ".hdr");
+        const fs::path file = folder / (name + ".exr");
+        if (!fs::exists(file)) throw InputError("light", "there is none of this name");
+        const fs::path converted = folder / "converted" / (name + ".hdr");
+        if (!fs::exists(converted)) {
+            fs::create_directories(converted.parent_path());
+            save_image(converted, load_light(file.string()), 32);
+        }
+        return converted;
+    }
+    const fs::path file = folder / "presets" / fmt::format("{}_{}.hdr", name, width);
+    if (!fs::exists(file)) {
+        fs::create_directories(file.parent_path());
+        save_image(file, make_light_preset(name, width / 2), 32);
+    }
+    return file;
+}
+
+/// The result that a request begins with; nothing: the project's model.
+std::optional<StudioResult> parent_of_request(Studio& studio, const StudioProject& project,
+                                              const Json& body) {
+    const auto parent = body.find("parent");
+    if (parent == body.end() || parent->is_null()) return std::nullopt;
+    StudioResult result = studio.result(parent->get<std::int64_t>());
+    if (result.project != project.id) throw InputError("parent", "is no result of this project");
+    return result;
+}
+
+/// Index of the material of that name; of several the first.
+Json material_index(const StudioProject& project, const std::string& name) {
+    for (const Json& material : project.model.value("materials", Json::array()))
+        if (material.at("name") == name) return material.at("index");
+    return nullptr;
+}
+
+/// Draws what the selectors take. What an earlier call left is replaced.
+Json draw_region(Studio& studio, const StudioProject& project, const Json& body, int revision) {
+    const auto parent = parent_of_request(studio, project, body);
+    const fs::path folder = studio.folders().project(project.id);
+    StudioCommand command =
+        studio.commands().region(project, body, parent ? &*parent : nullptr, region_folder);
+    const Json request = {{"command", shown_command(command)}};
+    command.arguments.insert(command.arguments.end(), {"--size", "256", "--texture-size", "512"});
+    std::error_code ignored;
+    fs::remove_all(folder / region_folder, ignored);
+    studio.run_now(command, folder, folder / "region.log", longest_tool);
+    const Json record = Json::parse(read_text(folder / region_folder / "region.json"));
+    const auto url = [&](const std::string& name) {
+        return fmt::format("api/projects/{}/region/{}?revision={}", project.id, name, revision);
+    };
+    Json reply = {{"share", record.value("share", 1.0)},
+                  {"masks", Json::array()},
+                  {"command", request["command"]}};
+    if (fs::exists(folder / region_folder / "region.png")) reply["picture"] = url("region.png");
+    for (const Json& material : record.value("materials", Json::array()))
+        if (material.contains("mask"))
+            reply["masks"].push_back({{"material", material_index(project, material.at("name"))},
+                                      {"name", material.at("name")},
+                                      {"url", url(material.at("mask").get<std::string>())}});
+    return reply;
+}
+
+/// "results/3:0.5:roughness,metallic"
+std::string layer_argument(Studio& studio, const StudioProject& project, const Json& layer) {
+    const StudioResult result = studio.result(layer.at("result").get<std::int64_t>());
+    if (result.project != project.id) throw InputError("layers", "are of another project");
+    std::string text =
+        fmt::format("{}:{}", result_folder_name(result.id), layer.value("strength", 1.0));
+    const auto channels = layer.value("channels", std::vector<std::string>());
+    for (const std::string& channel : channels)
+        if (channel.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") != std::string::npos)
+            throw InputError("channels", "'" + channel + "' is none");
+    if (!channels.empty()) text += fmt::format(":{}", fmt::join(channels, ","));
+    return text;
+}
+
+Json apply_layers(Studio& studio, const StudioProject& project, const Json& body, int revision) {
+    StudioCommand command{"edit", {"layers", "source/" + project.file}};
+    const Json layers = body.value("layers", Json::array());
+    if (!layers.is_array() || layers.empty()) throw InputError("layers", "none are given");
+    for (const Json& layer : layers)
+        command.arguments.push_back(layer_argument(studio, project, layer));
+    command.arguments.insert(command.arguments.end(), {"-o", "mixed.glb"});
+    const fs::path folder = studio.folders().project(project.id);
+    studio.run_now(command, folder, folder / "layers.log", longest_tool);
+    return {{"url", fmt::format("api/projects/{}/mixed.glb?revision={}", project.id, revision)},
+            {"command", shown_command(command)}};
+}
+
+/// Of the last edits that are done.
+std::vector<EditCost> former_costs(Studio& studio) {
+    constexpr std::size_t most = 10;
+    std::vector<EditCost> costs;
+    std::vector<StudioResult> done = studio.store().results_in(ResultState::done);
+    for (auto result = done.rbegin(); result != done.rend() && costs.size() < most; ++result) {
+        const fs::path file = studio.folders().result(result->project, result->id) / "edit.json";
+        if (result->kind != "edit" || !fs::exists(file)) continue;
+        if (const auto cost = edit_cost(Json::parse(read_text(file), nullptr, false)))
+            costs.push_back(*cost);
+    }
+    return costs;
+}
+
+void add_preview_routes(StudioRoutes& routes) {
+    Studio& studio = routes.studio;
+    const auto revision = std::make_shared<std::atomic<int>>(0);
+    routes.post(
+        R"(/api/projects/(\d+)/region)",
+        [&studio, revision](const HttpRequest& request, HttpResponse& response, const Json& body) {
+            reply_json(response, draw_region(studio, studio.project(number_of(request, 1)), body,
+                                             ++*revision));
+        });
+    routes.get(R"(/api/projects/(\d+)/region/([A-Za-z0-9_-]+\.png))",
+               [&studio](const HttpRequest& request, HttpResponse& response) {
+                   const StudioProject project = studio.project(number_of(request, 1));
+                   reply_file(request, response,
+                              studio.folders().project(project.id) / region_folder /
+                                  request.matches[2].str());
+               });
+    routes.post(
+        R"(/api/projects/(\d+)/layers)",
+        [&studio, revision](const HttpRequest& request, HttpResponse& response, const Json& body) {
+            reply_json(response, apply_layers(studio, studio.project(number_of(request, 1)), body,
+                                              ++*revision));
+        });
+    routes.get(R"(/api/projects/(\d+)/mixed\.glb)", [&studio](const HttpRequest& request,
+                                                              HttpResponse& response) {
+        const StudioProject project = studio.project(number_of(request, 1));
+        reply_file(request, response, studio.folders().project(project.id) / "mixed.glb");
+    });
+}
+
+}  // namespace
+
+void add_tool_routes(StudioRoutes& routes) {
+    Studio& studio = routes.studio;
+    add_preview_routes(routes);
+    routes.post(R"(/api/projects/(\d+)/estimate)",
+                [&studio](const HttpRequest& request, HttpResponse& response, const Json& body) {
+                    studio.project(number_of(request, 1));
+                    const Json prior = Json::parse(read_text(find_prior("") / "prior.json"));
+                    const auto threads = static_cast<int>(std::thread::hardware_concurrency());
+                    reply_json(response,
+                               estimate_edit(body, prior.value("defaults", Json::object()),
+                                             former_costs(studio), threads));
+                });
+    routes.get(R"(/api/lights/([A-Za-z0-9_-]+)\.hdr)", [&studio](const HttpRequest& request,
+                                                                 HttpResponse& response) {
+        constexpr int narrowest = 64, widest = 2048, usual = 512;
+        int width = usual;
+        if (request.has_param("width"))
+            width =
+                std::clamp(std::atoi(request.get_param_value("width").c_str()), narrowest, widest);
+        reply_file(request, response, light_file(studio, request.matches[1].str(), width & ~1));
+    });
+}
+
+}  // namespace item3d
