@@ -3,10 +3,12 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/hub/find_prior.h"
-#include "item3d/io/load_light.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
+#include "item3d/lighting/presets/sky_hour.h"
 #include "item3d/studio/estimate.h"
+#include "item3d/studio/light_query.h"
+#include "item3d/studio/light_request.h"
 
 #include <fmt/format.h>
 
@@ -24,28 +26,33 @@ using Json = nlohmann::json;
 constexpr auto longest_tool = std::chrono::seconds(120);
 constexpr const char* region_folder = "region";
 
-/// A preset or an uploaded light as a Radiance file of that width, made once.
-fs::path light_file(Studio& studio, const std::string& name, int width) {
+/// Answers with a Radiance file. Presets as they are are kept, since all pages begin with one.
+void answer_light(Studio& studio, const HttpRequest& request, HttpResponse& response) {
+    constexpr int narrowest = 64, widest = 2048, usual = 512;
+    const std::string name = request.matches[1].str();
+    int width = usual;
+    if (request.has_param("width"))
+        width = std::clamp(std::atoi(request.get_param_value("width").c_str()), narrowest, widest);
+    width &= ~1;
     const fs::path folder = studio.folders().root() / "lights";
+    const bool is_changed = request.params.size() > (request.has_param("width") ? 1u : 0u);
     const auto& presets = light_preset_names();
     const bool is_preset = std::find(presets.begin(), presets.end(), name) != presets.end();
-    if (!is_preset) {
-        if (fs::exists(folder / (name + ".hdr"))) return folder / (name + ".hdr");
-        const fs::path file = folder / (name + ".exr");
-        if (!fs::exists(file)) throw InputError("light", "there is none of this name");
-        const fs::path converted = folder / "converted" / (name + ".hdr");
-        if (!fs::exists(converted)) {
-            fs::create_directories(converted.parent_path());
-            save_image(converted, load_light(file.string()), 32);
-        }
-        return converted;
+    const fs::path kept = folder / "presets" / fmt::format("{}_{}.hdr", name, width);
+    const bool is_kept = is_preset && !is_changed;
+    if (is_kept && fs::exists(kept)) {
+        reply_file(request, response, kept);
+        return;
     }
-    const fs::path file = folder / "presets" / fmt::format("{}_{}.hdr", name, width);
-    if (!fs::exists(file)) {
-        fs::create_directories(file.parent_path());
-        save_image(file, make_light_preset(name, width / 2), 32);
-    }
-    return file;
+    const Image light = requested_light(
+        name, width, [&](const std::string& key) { return request.get_param_value(key); }, folder);
+    const fs::path file = is_kept ? kept : studio.folders().incoming(".hdr");
+    fs::create_directories(file.parent_path());
+    save_image(file, light, 32);
+    const Bytes bytes = read_bytes(file);
+    if (!is_kept) fs::remove(file);
+    response.set_header("Cache-Control", "no-cache");
+    reply_bytes(response, std::string(bytes.begin(), bytes.end()), "image/vnd.radiance");
 }
 
 /// The result that a request begins with; nothing: the project's model.
@@ -176,15 +183,10 @@ void add_tool_routes(StudioRoutes& routes) {
                                estimate_edit(body, prior.value("defaults", Json::object()),
                                              former_costs(studio), threads));
                 });
-    routes.get(R"(/api/lights/([A-Za-z0-9_-]+)\.hdr)", [&studio](const HttpRequest& request,
-                                                                 HttpResponse& response) {
-        constexpr int narrowest = 64, widest = 2048, usual = 512;
-        int width = usual;
-        if (request.has_param("width"))
-            width =
-                std::clamp(std::atoi(request.get_param_value("width").c_str()), narrowest, widest);
-        reply_file(request, response, light_file(studio, request.matches[1].str(), width & ~1));
-    });
+    routes.get(R"(/api/lights/([A-Za-z0-9_-]+)\.hdr)",
+               [&studio](const HttpRequest& request, HttpResponse& response) {
+                   answer_light(studio, request, response);
+               });
 }
 
 }  // namespace item3d
