@@ -1,8 +1,8 @@
 // What a person can do: each action talks to the server and sets the state that follows from it.
-import { api, asNumber, asResult } from './core/api.js';
+import { api, asNumber, asResult, fileUrl } from './core/api.js';
 import { h } from './core/dom.js';
 import { editBody } from './panels/edit_form.js';
-import { lightBody } from './panels/light_panel.js';
+import { DEFAULT_LIGHT, lightBody } from './panels/light_panel.js';
 import { failed, toast } from './panels/dialogs.js';
 import { text } from './text.js';
 
@@ -143,6 +143,7 @@ export class Actions {
   select(id) {
     const { layout, results } = this.store.state;
     const result = results.find((other) => other.id === id);
+    if (result?.kind === 'relight' && result.files.includes('light.hdr')) this.store.set({ light: { ...DEFAULT_LIGHT, name: fileUrl(id, 'light.hdr'), backdrop: this.store.state.light.backdrop } });
     this.store.set({ selected: id, ...(layout === 'side' || !result ? { layout: 'single', side: [] } : {}) });
     this.remember();
   }
@@ -231,7 +232,7 @@ export class Actions {
   /** @param {File} file of a light */
   async ownLight(file) {
     const { name } = await api(`lights?name=${encodeURIComponent(file.name)}`, { body: file });
-    this.store.set({ light: { ...this.store.state.light, name, hour: null, sun: null, lit: '' } });
+    this.store.set({ light: { ...this.store.state.light, name: name.replace(/\.(hdr|exr)$/, ''), hour: null, sun: null, lit: '' } });
   }
 
   /** Pictures under the light that the viewer has. */
@@ -245,7 +246,7 @@ export class Actions {
   /** Optimises a light for two sentences. @param {string} to */
   async findLight(to) {
     const { project, light, from } = this.store.state;
-    const result = asResult(await api(`projects/${project?.id}/relight`, { json: { light: light.name, from: from || 'an object', to, parent: this.parent() } }));
+    const result = asResult(await api(`projects/${project?.id}/relight`, { json: { from_light: light.name, from: from || 'an object', to, parent: this.parent() } }));
     this.arrived(result);
     this.select(result.id);
   }

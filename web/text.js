@@ -15,6 +15,8 @@ export const text = {
     lede: 'Open a 3D model and say in two sentences what it is and what it should be. Everything stays on this computer.',
     kinds: '.glb · .gltf · .obj · a .zip of a model folder',
   },
+  unreachable: 'The server cannot be reached.',
+  unreachableHint: 'Is item3d studio still running, and the tunnel to it? What was asked for was not done; try again.',
   forbidden: 'The server does not know this browser any more.',
   forbiddenHint: 'Open the address that item3d studio printed when it was started.',
   tooLarge: (/** @type {number} */ bytes) => `The file has ${size(bytes)}; a model may have 512 MB at most.`,

@@ -23,6 +23,8 @@ export async function api(path, { method, json, body, signal } = {}) {
     body: json !== undefined ? JSON.stringify(json) : body,
     headers: json !== undefined ? { 'Content-Type': 'application/json' } : body instanceof FormData || body === undefined ? {} : { 'Content-Type': 'application/octet-stream' },
     signal,
+  }).catch((error) => {
+    throw error.name === 'AbortError' ? error : new ApiError(text.unreachable, text.unreachableHint, 0);
   });
   const answer = await response.json().catch(() => null);
   if (response.status === 403 && answer === null) throw new ApiError(text.forbidden, text.forbiddenHint, 403);

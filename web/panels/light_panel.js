@@ -9,22 +9,28 @@ import { text } from '../text.js';
 /** @type {Light} */
 export const DEFAULT_LIGHT = { name: 'studio', rotation: 0, exposure: 0, backdrop: false, sun: null, hour: null, lit: '', tint: '' };
 
-/** The light's address; turn and exposure are the viewer's own. @param {Light} light @param {number} width */
+/** A sun stands where it was put, so with one the server turns the rest; else the viewer does. @param {Light} light */
+export function viewerTurn(light) {
+  return light.sun || light.lit ? 0 : light.rotation;
+}
+
+/** The light's address; exposure is the viewer's own. @param {Light} light @param {number} width */
 export function lightUrl(light, width) {
+  if (light.name.includes('/')) return light.name; // a result's own light
   const query = new URLSearchParams({ width: String(width) });
+  if (viewerTurn(light) !== light.rotation) query.set('rotate', String(light.rotation));
   if (light.hour !== null) query.set('hour', light.hour.toFixed(2));
   if (light.sun && !light.lit) query.set('sun', light.sun.map((v) => v.toFixed(1)).join(','));
   if (light.lit) query.set('lit', light.lit);
   if (light.tint) query.set('tint', light.tint);
   const name = light.hour !== null ? 'sky' : light.name;
-  if (name.includes('/')) return name; // a result's own light
   return `api/lights/${encodeURIComponent(name)}.hdr?${query}`;
 }
 
 /** What relight's request says of a light. @param {Light} light */
 export function lightBody(light) {
-  const body = { light: light.hour !== null ? 'sky' : light.name, rotate: light.rotation, exposure: light.exposure };
-  return { ...body, ...(light.hour !== null && { hour: light.hour }), ...(light.lit ? { lit: light.lit } : light.sun && { sun: light.sun }), ...(light.tint && { tint: light.tint }) };
+  const body = { rotate: light.rotation, exposure: light.exposure };
+  return { ...body, ...(light.hour !== null ? { hour: light.hour } : { light: light.name }), ...(light.lit ? { words: light.lit } : light.sun && { sun: light.sun }), ...(light.tint && { tint: light.tint }) };
 }
 
 /**
@@ -70,7 +76,8 @@ export function lightPanel(store, { own, render, find }) {
     lit.value = light.lit;
     tint.value = light.tint || '#ffffff';
     dome.show(light.sun);
-    download.href = `${lightUrl(light, 1024)}&rotate=${light.rotation}&exposure=${light.exposure}`;
+    const address = lightUrl({ ...light, rotation: 0 }, 1024);
+    download.href = address + (address.includes('?') ? `&rotate=${light.rotation}&exposure=${light.exposure}` : '');
   });
 
   return h('div.panel', {},

@@ -134,8 +134,8 @@ export class RegionTools {
     const { project } = this.store.state;
     try {
       for (const { name, blob } of await this.brush?.pictures() ?? []) {
-        const { selector } = await api(`projects/${project?.id}/masks?material=${encodeURIComponent(name)}&name=painted`, { body: blob });
-        this.add(selector);
+        const stored = await api(`projects/${project?.id}/masks?name=painted_${Date.now().toString(36)}.png`, { body: blob });
+        this.add(`mask=${stored.name}@${name}`);
       }
       this.clearBrush();
       this.store.set({ tool: 'orbit' });

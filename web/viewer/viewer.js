@@ -2,7 +2,7 @@
 import { Stage } from './stage.js';
 import { Gallery } from './gallery.js';
 import { LayerMix } from './layer_mix.js';
-import { lightUrl } from '../panels/light_panel.js';
+import { lightUrl, viewerTurn } from '../panels/light_panel.js';
 import { text } from '../text.js';
 
 /** @typedef {import('../core/types.js').State} State */
@@ -36,7 +36,7 @@ export class Viewer {
     store.on(['wires'], ({ wires }) => this.stage.setWires(wires));
     store.on(['turning'], ({ turning }) => this.stage.setTurning(turning));
     store.on(['light'], ({ light }) => {
-      this.stage.light.setRotation(light.rotation);
+      this.stage.light.setRotation(viewerTurn(light));
       this.stage.light.setExposure(light.exposure);
       this.stage.light.backdrop.visible = light.backdrop;
       this.stage.invalidate(true);
