@@ -43,8 +43,8 @@ def main():
             page.run("studio.store.set({ selected: '' })")
             results.append(run(page, to))
             if to == EDITS[1]:
-                page.until(f"(studio.store.state.results.find(({{ id }}) => id === '{results[-1]}').progress?.done ?? 0) > 80",
-                           "the edit did not run", 3600)
+                page.until(f"""(({{ state, progress }}) => state === 'done' || progress?.stage === 'edit' && progress.done > 80)(
+                    studio.store.state.results.find(({{ id }}) => id === '{results[-1]}'))""", "the edit did not run", 3600)
                 picture("running")
             page.until(f"studio.store.state.results.find(({{ id }}) => id === '{results[-1]}').state === 'done'", "an edit did not end", 3600)
         golden, zebra, wooden = results

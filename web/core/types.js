@@ -38,6 +38,9 @@
  * @property {string} flag
  * @property {string} type
  * @property {any} default
+ * @property {string[]} [choices]  of a choice
+ * @property {number} [minimum]
+ * @property {number} [maximum]
  * @property {string} values  as the settings page says: "integer: 1 or more", "choice: a, b or c"
  * @property {boolean} [path]  names a file of the server's machine: not for a page
  * @property {string} help

@@ -12,7 +12,7 @@ export function settingsForm(store, remember) {
   const count = h('small.count');
   const none = h('p.hint', { hidden: true }, text.edit.none);
   const details = h('details.advanced', {}, h('summary', {}, text.edit.advanced, count), search, list, none);
-  /** @type {{row: HTMLElement, words: string, show: (value: any) => void, name: string, fallback: any}[]} */
+  /** @type {{row: HTMLElement, group: string, words: string, show: (value: any) => void, name: string, fallback: any}[]} */
   let rows = [];
 
   const filter = () => {
@@ -23,6 +23,7 @@ export function settingsForm(store, remember) {
       if (!row.hidden) ++shown;
     }
     none.hidden = shown > 0;
+    for (const heading of list.querySelectorAll('h3')) heading.hidden = !rows.some(({ row, group }) => group === heading.dataset.group && !row.hidden);
   };
   const change = (/** @type {string} */ name, /** @type {any} */ value, /** @type {any} */ fallback) => {
     remember();
@@ -49,9 +50,12 @@ export function settingsForm(store, remember) {
         input,
         iconButton('undo', text.edit.reset, () => change(setting.name, undefined, setting.default), { className: 'icon reset' }),
         h('p', {}, setting.help));
-      return { row, name: setting.name, show, fallback: setting.default, words: `${setting.name} ${setting.flag} ${setting.help}`.toLowerCase() };
+      return { row, group: setting.group ?? '', name: setting.name, show, fallback: setting.default, words: `${setting.name} ${setting.flag} ${setting.help}`.toLowerCase() };
     });
-    fill(list, ...rows.map(({ row }) => row));
+    /** @type {(HTMLElement|null)[]} */
+    const shown = [];
+    rows.forEach(({ row, group }, i) => shown.push(group && group !== rows[i - 1]?.group ? h('h3', { 'data-group': group }, group) : null, row));
+    fill(list, ...shown);
     showAll();
   });
   store.on(['settings'], showAll);
@@ -64,14 +68,12 @@ export function settingsForm(store, remember) {
  */
 function control(setting, change) {
   const id = `setting-${setting.name}`;
-  if (setting.type === 'choice') {
-    const choices = setting.values.replace(/^choice: /, '').split(/, | or /);
-    const input = h('select', { id, onchange: () => change(input.value) }, ...choices.map((value) => h('option', { value }, value)));
+  if (setting.choices) {
+    const input = h('select', { id, onchange: () => change(input.value) }, ...setting.choices.map((value) => h('option', { value }, value)));
     return { input, show: (value) => { input.value = String(value ?? ''); } };
   }
   if (setting.type === 'integer' || setting.type === 'number') {
-    const { least, most } = rangeOf(setting.values);
-    const input = h('input', { id, type: 'number', min: least, max: most, title: setting.values, step: setting.type === 'integer' ? 1 : 'any',
+    const input = h('input', { id, type: 'number', min: setting.minimum, max: setting.maximum, title: setting.values, step: setting.type === 'integer' ? 1 : 'any',
       onchange: () => change(input.value === '' || !input.validity.valid ? undefined : Number(input.value)) });
     return { input, show: (value) => { input.value = String(value ?? ''); } };
   }
@@ -87,11 +89,4 @@ function control(setting, change) {
   };
   const input = h('input', { id, type: 'text', spellcheck: false, title: setting.values, onchange: () => change(parse(input.value)) });
   return { input, show: (value) => { input.value = Array.isArray(value) ? value.join(', ') : String(value ?? ''); } };
-}
-
-/** Bounds that "between 1 and 64 ..." and "0 or more" name. @param {string} values */
-function rangeOf(values) {
-  const between = values.match(/between (-?[\d.]+)[^\d]* and (-?[\d.e]+)/), least = values.match(/: (\d+) or more/);
-  const orZero = / or 0 /.test(values);
-  return { least: orZero ? 0 : between ? Number(between[1]) : least ? Number(least[1]) : undefined, most: between ? Number(between[2]) : undefined };
 }
