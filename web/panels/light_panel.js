@@ -30,7 +30,7 @@ export function lightUrl(light, width) {
 /** What relight's request says of a light. @param {Light} light */
 export function lightBody(light) {
   const body = { rotate: light.rotation, exposure: light.exposure };
-  return { ...body, ...(light.hour !== null ? { hour: light.hour } : { light: light.name }), ...(light.lit ? { words: light.lit } : light.sun && { sun: light.sun }), ...(light.tint && { tint: light.tint }) };
+  return { ...body, ...(light.hour !== null ? { hour: light.hour } : { light: light.name }), ...(light.lit ? { lit: light.lit } : light.sun && { sun: light.sun }), ...(light.tint && { tint: light.tint }) };
 }
 
 /**
@@ -40,7 +40,7 @@ export function lightBody(light) {
 export function lightPanel(store, { own, render, find }) {
   const change = (/** @type {Partial<Light>} */ patch) => store.set({ light: { ...store.state.light, ...patch } });
   const presets = h('div.chips.lights', { role: 'group', 'aria-label': text.light.presets });
-  const file = h('input', { type: 'file', accept: '.hdr,.exr,.png,.jpg', hidden: true, onchange: () => file.files[0] && own(file.files[0]) });
+  const file = h('input', { type: 'file', accept: '.hdr,.exr,.png,.jpg,.jpeg', hidden: true, onchange: () => file.files[0] && own(file.files[0]) });
   const rotation = slider({ label: text.light.rotation, minimum: -180, maximum: 180, step: 1, value: 0, shown: (v) => `${v}°`, change: (v) => change({ rotation: v }) });
   const exposure = slider({ label: text.light.exposure, minimum: -4, maximum: 4, step: 0.05, value: 0, shown: (v) => `${signed(v, 2)} EV`, change: (v) => change({ exposure: v }) });
   const backdrop = h('input', { type: 'checkbox', onchange: () => change({ backdrop: backdrop.checked }) });

@@ -134,8 +134,8 @@ export class RegionTools {
     const { project } = this.store.state;
     try {
       for (const { name, blob } of await this.brush?.pictures() ?? []) {
-        const stored = await api(`projects/${project?.id}/masks?name=painted_${Date.now().toString(36)}.png`, { body: blob });
-        this.add(`mask=${stored.name}@${name}`);
+        const { selector } = await api(`projects/${project?.id}/masks?name=painted_${Date.now().toString(36)}.png&material=${encodeURIComponent(name)}`, { body: blob });
+        this.add(selector);
       }
       this.clearBrush();
       this.store.set({ tool: 'orbit' });
