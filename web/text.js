@@ -61,7 +61,7 @@ export const text = {
     unknownHint: 'It reads an unknown thing as “object”; unknown colours and materials have no effect.',
     nearest: (/** @type {string} */ word) => `Use “${word}”`,
     same: 'Both sentences say the same.', missing: 'Say what the model is and what it should be.',
-    estimate: (/** @type {number} */ seconds, /** @type {number} */ bytes) => `About ${duration(seconds)} · ${size(bytes)} of memory`,
+    estimate: (/** @type {number} */ seconds, /** @type {number} */ bytes) => `About ${duration(seconds)} · ${size(bytes)}`,
     quality: 'Quality', advanced: 'All settings', changed: (/** @type {number} */ n) => `${n} changed`, search: 'Find a setting', reset: 'Back to the default', none: 'No setting matches.',
     presets: { draft: 'Draft', standard: 'Standard', fine: 'Fine' },
     presetHints: { draft: 'A third of the iterations, no detail stage', standard: "The prior's own settings", fine: 'One and a half times the iterations, detail always' },

@@ -159,7 +159,7 @@ def export(page, server, result):
 
 def pause_resume_cancel(page):
     """An edit is paused and goes on, another is cancelled and goes on after that."""
-    result = page.edit("a silver mug", iterations=120)
+    result = page.edit("a silver mug", iterations=400)
     page.wait_for(result, "running")
     page.until(f"(studio.store.state.results.find(({{ id }}) => id === '{result}').progress?.done ?? 0) > 0", "no progress")
     page.picture("running")
@@ -174,7 +174,7 @@ def pause_resume_cancel(page):
 
 def reload_in_the_middle(page, browser, server):
     """A reload and a second tab show the same edit running; both hear of its end."""
-    result = page.edit("a blue mug", iterations=60)
+    result = page.edit("a blue mug", iterations=100)
     page.wait_for(result, "running")
     page.tab.reload()
     page.until("document.querySelector('.stage')?.dataset.shown !== undefined", "nothing is shown after a reload")

@@ -49,6 +49,7 @@ export class LayerMix {
   /** @param {THREE.WebGLRenderer} renderer @param {Look} source @param {import('./shading.js').SharedUniforms} shared */
   constructor(renderer, source, shared) {
     this.renderer = renderer;
+    this.anisotropy = shared.anisotropy;
     this.source = source;
     this.look = source.copy(shared);
     /** @type {Map<string, THREE.WebGLRenderTarget>} */
@@ -143,7 +144,7 @@ export class LayerMix {
     if (target && target.width === width && target.height === height) return target;
     target?.dispose();
     target = new THREE.WebGLRenderTarget(width, height, {
-      depthBuffer: false, generateMipmaps: true, minFilter: THREE.LinearMipmapLinearFilter, anisotropy: 8,
+      depthBuffer: false, generateMipmaps: true, minFilter: THREE.LinearMipmapLinearFilter, anisotropy: this.anisotropy,
       wrapS: THREE.RepeatWrapping, wrapT: THREE.RepeatWrapping,
       colorSpace: slot === 'base_color' ? THREE.SRGBColorSpace : THREE.NoColorSpace,
     });

@@ -1,7 +1,7 @@
 // One look of a model: its meshes with materials that shade as `item3d render` does. Looks of the same
 // geometry share it; each owns its materials and the textures that it made or loaded.
 import * as THREE from '../three.js';
-import { studioMaterial } from './shading.js';
+import { shareTextures, studioMaterial } from './shading.js';
 
 /** Slots of a material that an edit writes, and the maps that show each. */
 export const SLOTS = { base_color: ['map'], orm: ['roughnessMap', 'metalnessMap', 'aoMap'], normal: ['normalMap'] };
@@ -43,7 +43,7 @@ export class Look {
         const index = associations.get(original)?.materials ?? 0;
         entry = { index, name: json.materials?.[index]?.name ?? original.name, material: studioMaterial(original, shared), meshes: [] };
         for (const map of texturesOf(entry.material)) {
-          map.anisotropy = 8;
+          map.anisotropy = shared.anisotropy;
           textures.add(map);
         }
         found.set(original, entry);
@@ -132,7 +132,7 @@ export class Look {
     }
     if (slot === 'base_color') material.color.set(0xffffff);
     if (slot === 'orm') material.roughness = material.metalness = 1;
-    material.needsUpdate = true;
+    shareTextures(material);
   }
 
   /** @param {Map<number, THREE.Texture>} masks by material; white is veiled */

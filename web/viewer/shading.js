@@ -7,12 +7,12 @@ import { ROUGHNESS } from './prefilter.js';
 
 /**
  * Uniforms that all materials of a stage share.
- * @typedef {{view: {value: number}, maskColor: {value: THREE.Color}, light: import('./light.js').LightUniforms}} SharedUniforms
+ * @typedef {{view: {value: number}, maskColor: {value: THREE.Color}, light: import('./light.js').LightUniforms, anisotropy: number}} SharedUniforms
  */
 
-/** @param {import('./light.js').LightUniforms} light @returns {SharedUniforms} */
-export function sharedUniforms(light) {
-  return { view: { value: 0 }, maskColor: { value: new THREE.Color(0xff5a1f) }, light };
+/** @param {import('./light.js').LightUniforms} light @param {number} anisotropy of textures @returns {SharedUniforms} */
+export function sharedUniforms(light, anisotropy) {
+  return { view: { value: 0 }, maskColor: { value: new THREE.Color(0xff5a1f) }, light, anisotropy };
 }
 
 const LIGHT = /* glsl */ `
@@ -76,9 +76,25 @@ radiance += studioRadiance(geometryViewDir, geometryNormal, material.roughness);
 
 const OCCLUSION = /* glsl */ `
 #ifdef USE_AOMAP
-  studioOcclusion = (texture2D(aoMap, vAoMapUv).r - 1.0) * aoMapIntensity + 1.0;
+  #ifdef STUDIO_OCCLUSION_TOO
+    studioOcclusion = (texelRoughness.r - 1.0) * aoMapIntensity + 1.0;
+  #else
+    studioOcclusion = (texture2D(aoMap, vAoMapUv).r - 1.0) * aoMapIntensity + 1.0;
+  #endif
   reflectedLight.indirectDiffuse *= studioOcclusion;
   reflectedLight.indirectSpecular *= studioOcclusion;
+#endif
+`;
+
+// Occlusion, roughness and metallic are one texture as a rule, which is then read once.
+const METALLIC = /* glsl */ `
+float metalnessFactor = metalness;
+#ifdef USE_METALNESSMAP
+  #ifdef STUDIO_ONE_TEXTURE
+    metalnessFactor *= texelRoughness.b;
+  #else
+    metalnessFactor *= texture2D(metalnessMap, vMetalnessMapUv).b;
+  #endif
 #endif
 `;
 
@@ -133,13 +149,28 @@ export function studioMaterial(source, shared) {
     fragment = insertAfter(fragment, '#include <lights_physical_pars_fragment>', SPECULAR);
     fragment = insertAfter(fragment, '#include <lights_physical_fragment>',
       'material.roughness = clamp(roughnessFactor, 0.03, 1.0);');
+    fragment = replaceOnce(fragment, '#include <metalnessmap_fragment>', METALLIC);
     fragment = replaceOnce(fragment, '#include <lights_fragment_maps>', MAPS);
     fragment = replaceOnce(fragment, '#include <aomap_fragment>', OCCLUSION);
     fragment = insertAfter(fragment, '#include <opaque_fragment>', VIEWS_FRAGMENT);
     shader.fragmentShader = fragment;
   };
   material.customProgramCacheKey = () => 'studio';
+  shareTextures(material);
   return material;
+}
+
+/** Says which maps are one texture, after maps have changed. @param {THREE.MeshStandardMaterial} material */
+export function shareTextures(material) {
+  const { roughnessMap, metalnessMap, aoMap } = material;
+  const one = (/** @type {THREE.Texture|null} */ map) => roughnessMap !== null && map !== null && map.source === roughnessMap.source &&
+    map.channel === roughnessMap.channel && map.matrix.equals(roughnessMap.matrix);
+  material.defines = { ...material.defines };
+  delete material.defines.STUDIO_ONE_TEXTURE;
+  delete material.defines.STUDIO_OCCLUSION_TOO;
+  if (one(metalnessMap)) material.defines.STUDIO_ONE_TEXTURE = '';
+  if (one(aoMap)) material.defines.STUDIO_OCCLUSION_TOO = '';
+  material.needsUpdate = true;
 }
 
 /** @type {THREE.DataTexture|null} */

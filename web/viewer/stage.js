@@ -25,6 +25,7 @@ export class Stage extends EventTarget {
     this.renderer.outputColorSpace = THREE.SRGBColorSpace;
     this.renderer.autoClear = false;
     this.renderer.setClearColor(0, 0);
+    this.software = isSoftware(this.renderer.getContext());
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     host.prepend(this.canvas);
@@ -38,7 +39,7 @@ export class Stage extends EventTarget {
     this.controls.addEventListener('change', () => this.invalidate(true));
     this.light = new StageLight();
     this.scene.add(this.light.backdrop);
-    this.shared = sharedUniforms(this.light.uniforms);
+    this.shared = sharedUniforms(this.light.uniforms, this.software ? 1 : 8);
 
     /** @type {Shown[]} */
     this.shown = [];
@@ -49,7 +50,7 @@ export class Stage extends EventTarget {
     this.turning = false;
     this.wires = false;
     this.scale = 1;
-    this.frames = { count: 0, milliseconds: 16 };
+    this.frames = { count: 0, milliseconds: this.software ? 2 * SLOW_FRAME : 16, last: -Infinity };
     this.pending = false;
     this.moving = false;
     this.settle = 0;
@@ -172,11 +173,13 @@ export class Stage extends EventTarget {
 
   tick() {
     if (this.turning) this.controls.update();
-    const moving = this.moving;
+    const moving = this.moving, now = performance.now(), { frames } = this;
     this.moving = false;
+    // From one moving picture to the next is what a picture takes, whoever draws it.
+    if (moving && now - frames.last < 1000) frames.milliseconds += 0.3 * (now - frames.last - frames.milliseconds);
+    frames.last = moving ? now : -Infinity;
     if (moving) {
-      const coarse = this.frames.milliseconds > SLOW_FRAME ? 0.5 : this.frames.milliseconds < SLOW_FRAME / 3 ? 1 : this.scale;
-      this.setScale(Math.min(coarse, 1));
+      this.setScale(frames.milliseconds > 2 * SLOW_FRAME ? 0.35 : frames.milliseconds > SLOW_FRAME ? 0.5 : frames.milliseconds < SLOW_FRAME / 2 ? 1 : this.scale);
       clearTimeout(this.settle);
       this.settle = window.setTimeout(() => this.setScale(1) && this.invalidate(), 180);
     }
@@ -193,7 +196,6 @@ export class Stage extends EventTarget {
   }
 
   draw() {
-    const begin = performance.now();
     this.renderer.setScissorTest(false);
     this.renderer.clear();
     this.renderer.setScissorTest(true);
@@ -208,7 +210,6 @@ export class Stage extends EventTarget {
     }
     for (const { look } of this.shown) look.root.visible = true;
     ++this.frames.count;
-    this.frames.milliseconds += 0.2 * (performance.now() - begin - this.frames.milliseconds);
     this.dispatchEvent(new Event('drawn'));
   }
 
@@ -246,6 +247,12 @@ export class Stage extends EventTarget {
     this.renderer.dispose();
     this.canvas.remove();
   }
+}
+
+/** Whether the processor draws, for which filtering along footprints is dear. @param {WebGLRenderingContext|WebGL2RenderingContext} gl */
+function isSoftware(gl) {
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  return info !== null && /swiftshader|llvmpipe|softpipe|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
 }
 
 /** Whether the browser has WebGL 2. */
