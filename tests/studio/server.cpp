@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <atomic>
+#include <set>
 
 namespace item3d::testing {
 namespace {
@@ -170,6 +171,37 @@ TEST_F(StudioHttp, RunsAnEditAndGivesItsFiles) {
     EXPECT_EQ(page.Post(result + "/resume", "", "")->status, 400);
 }
 
+TEST_F(StudioHttp, ShowsRegionsAndMixesLayers) {
+    const std::string path = "/api/projects/" + std::to_string(open_mug());
+    auto page = client();
+    const Json region = Json::parse(
+        page.Post(path + "/region", R"({"region": ["material=glaze"], "feather": 2})", "")->body);
+    EXPECT_EQ(region["share"], 0.25);
+    EXPECT_EQ(region["masks"][0]["material"], 0);
+    EXPECT_EQ(page.Get("/" + region["masks"][0]["url"].get<std::string>())->body, "pixels\n");
+    EXPECT_EQ(region["command"],
+              "item3d region source/mug.glb --region=material=glaze --feather=2 "
+              "-o region");
+    const Json edited = Json::parse(
+        page.Post(path + "/edits", R"({"from": "a red mug", "to": "a golden mug"})", "")->body);
+    const Json mixed = Json::parse(
+        page.Post(path + "/layers",
+                  R"({"layers": [{"result": 1, "strength": 0.5, "channels": ["roughness"]}]})", "")
+            ->body);
+    EXPECT_EQ(page.Get("/" + mixed["url"].get<std::string>())->body,
+              "layers source/mug.glb results/1:0.5:roughness -o mixed.glb\n");
+    const Json variants =
+        Json::parse(page.Post(path + "/variants", R"({"results": [1]})", "")->body);
+    EXPECT_EQ(page.Get("/" + variants["url"].get<std::string>())->body,
+              "variants source/mug.glb results/1 -o variants.glb\n");
+    for (const char* body : {"{}", R"({"layers": []})", R"({"layers": [{"result": 77}]})",
+                             R"({"layers": [{"result": 1, "channels": ["a:b"]}]})"})
+        EXPECT_EQ(page.Post(path + "/layers", body, "")->status, 400) << body;
+    const Json estimate =
+        Json::parse(page.Post(path + "/estimate", "{\"to\": \"a rusty mug\"}", "")->body);
+    EXPECT_GT(estimate["seconds"], 1);
+}
+
 TEST_F(StudioHttp, AnswersWhatCannotBeUnderstood) {
     open_mug();
     auto page = client();
@@ -201,6 +233,28 @@ TEST_F(StudioHttp, StaysUpUnderAThousandRequests) {
     for (std::thread& one : crowd)
         one.join();
     EXPECT_EQ(answered, threads * each);
+}
+
+TEST_F(StudioHttp, GivesLightsAsTheyAreChanged) {
+    auto page = client();
+    const std::string studio = page.Get("/api/lights/studio.hdr?width=64")->body;
+    EXPECT_EQ(studio.substr(0, 2), "#?");
+    EXPECT_EQ(page.Get("/api/lights/studio.hdr?width=64")->body, studio) << "kept";
+    std::set<std::string> seen = {studio};
+    for (const char* change : {"sun=120,35", "lit=from%20the%20left", "rotate=90", "tint=%23ff0000",
+                               "exposure=1", "tilt=20"}) {
+        const auto light = page.Get(std::string("/api/lights/studio.hdr?width=64&") + change);
+        EXPECT_EQ(light->status, 200) << change;
+        EXPECT_TRUE(seen.insert(light->body).second) << change;
+    }
+    EXPECT_EQ(page.Get("/api/lights/sky.hdr?width=64&hour=17.5")->status, 200);
+    for (const char* wrong : {"studio.hdr?sun=1", "studio.hdr?sun=1,200", "studio.hdr?rotate=nan",
+                              "studio.hdr?tint=red", "studio.hdr?lit=nonsense", "sky.hdr?hour=25",
+                              "nothing.hdr", "studio.hdr?exposure=1,"})
+        EXPECT_EQ(page.Get(std::string("/api/lights/") + wrong)->status, 400) << wrong;
+    const auto own = page.Post("/api/lights?name=noon.hdr", studio, "");
+    EXPECT_EQ(Json::parse(own->body)["name"], "own_noon");
+    EXPECT_EQ(page.Get("/api/lights/own_noon.hdr")->status, 200);
 }
 
 TEST_F(StudioHttp, StreamsEventsAndRepeatsThem) {

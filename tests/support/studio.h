@@ -30,6 +30,12 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
+case "$line" in
+    layers*|variants*) echo "$line" > "$out"; exit ;;
+    region*) mkdir -p "$out"; echo pixels > "$out/mask_glaze.png"
+        echo '{"share": 0.25, "materials": [{"name": "glaze", "mask": "mask_glaze.png"}]}' > "$out/region.json"
+        exit ;;
+esac
 live=${live:-$out}
 progress=${progress:-$out/progress.json}
 echo "$line" >> "$out/lines.txt"

@@ -22,6 +22,10 @@ using Json = nlohmann::json;
 Json words_of(const Json& prior) {
     Json words = Json::object();
     words["all"] = prior.value("words", Json::array());
+    words["parts"] = Json::array();  // that the segmenter knows
+    if (const Json::json_pointer names("/segmenter/parts/names"); prior.contains(names))
+        for (const auto& [part, iou] : prior.at(names).items())
+            words["parts"].push_back(part);
     const Json vocabulary = prior.value("vocabulary", Json::object());
     for (const auto& [kind, entries] : vocabulary.items()) {
         words[kind] = Json::array();
@@ -64,6 +68,7 @@ Json about_studio(const Studio& studio) {
         {"words", words_of(prior)},
         {"settings", settings_of(studio.commands().settings(), prior)},
         {"lights", light_preset_names()},
+        {"demo", fs::exists(demo_model())},
         {"threads", std::thread::hardware_concurrency()},
         {"memory_bytes", memory_bytes()}};
 }

@@ -1,7 +1,6 @@
 #include "item3d/studio/commands.h"
 
 #include "item3d/core/error.h"
-#include "item3d/io/load_light.h"
 #include "item3d/lighting/environment.h"
 
 #include <fmt/format.h>
@@ -62,6 +61,10 @@ bool is_prior_name(const std::string& name) {
 StudioCommands::StudioCommands(const StudioFolders& folders, Json settings)
     : folders_(folders), settings_(std::move(settings)) {}
 
+std::string light_file_name(const std::string& name) {
+    return fs::path(stored_name(name + ".hdr")).stem().string() + ".hdr";
+}
+
 std::string model_path(const StudioFolders& folders, const StudioProject& project,
                        const StudioResult* parent) {
     if (!parent) return "source/" + project.file;
@@ -83,10 +86,10 @@ std::string shown_command(const StudioCommand& command) {
 std::string StudioCommands::light(const std::string& name) const {
     const auto& presets = light_preset_names();
     if (std::find(presets.begin(), presets.end(), name) != presets.end()) return name;
-    const fs::path file = folders_.root() / "lights" / stored_name(name);
-    if (!fs::exists(file))
+    const std::string file = light_file_name(name);
+    if (!fs::exists(folders_.root() / "lights" / file))
         throw InputError("light", "'" + name + "' is neither a preset nor an uploaded light");
-    return "../../lights/" + stored_name(name);
+    return "../../lights/" + file;
 }
 
 void StudioCommands::add_settings(const StudioProject& project, const Json& given,
@@ -163,13 +166,13 @@ StudioCommands::Arguments StudioCommands::relight(const StudioProject&, const Js
     const std::string from = text_of(request, "from"), to = text_of(request, "to");
     if (!to.empty()) arguments = {option("--from", from), option("--to", to)};
     for (const char* key : {"light", "from_light"})
-        if (const std::string name = text_of(request, key); !name.empty())
+        if (const std::string name = text_of(request, key); !name.empty() && name != "sky")
             arguments.push_back(
                 option(std::string(key) == "light" ? "--light" : "--from-light", light(name)));
     const std::pair<const char*, const char*> options[] = {
-        {"hour", "--sky"},          {"sun", "--sun"},          {"words", "--lit"},
-        {"rotate", "--rotate"},     {"tilt", "--tilt"},        {"tint", "--tint"},
-        {"exposure", "--exposure"}, {"strength", "--strength"}};
+        {"hour", "--sky"},          {"sun", "--sun"},           {"lit", "--lit"},
+        {"rotate", "--rotate"},     {"tilt", "--tilt"},         {"tint", "--tint"},
+        {"exposure", "--exposure"}, {"strength", "--strength"}, {"light_model", "--light-model"}};
     for (const auto& [key, flag] : options) {
         const auto value = request.find(key);
         if (value == request.end() || value->is_null() || *value == "") continue;

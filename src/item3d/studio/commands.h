@@ -54,6 +54,9 @@ class StudioCommands {
 /// "item3d edit 'my mug.glb' ...": as a shell takes it.
 std::string shown_command(const StudioCommand& command);
 
+/// The file of an uploaded light in the folder lights/.
+std::string light_file_name(const std::string& name);
+
 /// "source/mug.glb", or the parent's model, seen from the project's folder.
 std::string model_path(const StudioFolders& folders, const StudioProject& project,
                        const StudioResult* parent);

@@ -89,8 +89,12 @@ void StudioJobs::loop() {
     for (;;) {
         {
             std::unique_lock lock(mutex_);
+            if (running_)
+                changed_.wait_for(lock, poll_interval);
+            else
+                changed_.wait(lock, [this] { return stopping_ || may_begin_; });
             if (stopping_ && !running_) return;
-            changed_.wait_for(lock, running_ ? Clock::duration(poll_interval) : longest_pause);
+            may_begin_ = false;
         }
         try {
             if (running_) {
@@ -104,12 +108,17 @@ void StudioJobs::loop() {
             // A full disk, most likely: what runs goes on, and is looked at again.
             warn(std::string("queue: ") + error.what());
             std::this_thread::sleep_for(progress_interval);
+            const std::lock_guard guard(mutex_);
+            may_begin_ = true;
         }
     }
 }
 
-/// With the lock held.
+/// With the lock held. Afterwards another may wait, where this one does not run.
 void StudioJobs::begin(StudioResult result) {
+    may_begin_ = true;
+    const auto stored = store_.result(result.id);
+    if (!stored || stored->state != ResultState::waiting) return;  // it was cancelled just now
     try {
         const auto project = store_.project(result.project);
         const auto parent = result.parent ? store_.result(*result.parent) : std::nullopt;
@@ -182,6 +191,7 @@ void StudioJobs::end(int status) {
     {
         const std::lock_guard guard(mutex_);
         ended = std::move(running_);
+        may_begin_ = true;
     }
     auto stored = store_.result(ended->result.id);
     if (!stored) return;
@@ -258,6 +268,7 @@ StudioResult StudioJobs::add(StudioResult result) {
     store_.update_result(added);
     events_.send("result", result_json(added), event_key(added.id));
     const std::lock_guard guard(mutex_);
+    may_begin_ = true;
     changed_.notify_all();
     return added;
 }
@@ -297,6 +308,7 @@ void StudioJobs::resume(std::int64_t id) {
         result->state = ResultState::waiting;
         result->message.clear();
         store_.update_result(*result);
+        may_begin_ = true;
         changed_.notify_all();
     }
     tell(id);

@@ -69,6 +69,7 @@ class StudioJobs {
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     bool stopping_ = false;
+    bool may_begin_ = true;             ///< something may wait for its turn
     std::unique_ptr<Running> running_;  ///< made and ended by the queue's thread alone
     std::thread thread_;
 };

@@ -2,6 +2,9 @@
 
 #include "item3d/core/error.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -69,6 +72,10 @@ Json result_json(const StudioResult& result) {
                  {"favourite", result.favourite},
                  {"note", result.note},
                  {"files", result.files}};
+    const bool has_picture =
+        std::find(result.files.begin(), result.files.end(), thumbnail_name) != result.files.end();
+    json["thumbnail"] =
+        has_picture ? fmt::format("api/results/{}/files/{}", result.id, thumbnail_name) : "";
     return json;
 }
 

@@ -55,6 +55,9 @@ struct StudioResult {
 nlohmann::json project_json(const StudioProject& project);
 nlohmann::json result_json(const StudioResult& result);
 
+/// A small picture among a result's files.
+inline constexpr const char* thumbnail_name = "thumbnail.jpg";
+
 /// The object's text under that key; empty where there is none.
 std::string text_of(const nlohmann::json& object, const char* key);
 

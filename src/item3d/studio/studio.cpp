@@ -2,8 +2,11 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
 #include "item3d/io/text.h"
 #include "item3d/studio/archive.h"
+#include "item3d/studio/halved.h"
 
 #include <algorithm>
 #include <array>
@@ -16,6 +19,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::array folders_of_files = {"textures", "views", "live"};
+constexpr int thumbnail_edge = 128;  ///< pixels
 /// What an edit leaves for itself.
 constexpr std::array private_files = {"checkpoint.safetensors", "plan_state.json"};
 
@@ -47,6 +51,10 @@ void check_kind(const std::string& name) {
 }
 
 }  // namespace
+
+std::filesystem::path demo_model() {
+    return assets_folder() / "demo" / "mug.glb";
+}
 
 Studio::Studio(StudioOptions options)
     : options_(std::move(options)),
@@ -135,6 +143,9 @@ void Studio::take_result(StudioResult& result) {
         read_model(result.project, source / "model.glb");
         events_.send("project", project_json(project(result.project)));
     }
+    if (fs::exists(folder / "preview.png"))
+        save_image(folder / thumbnail_name,
+                   first_view(load_image(folder / "preview.png"), thumbnail_edge));
     result.files = files_of(result);
 }
 

@@ -78,4 +78,7 @@ class Studio {
     StudioJobs jobs_;
 };
 
+/// The model that the program ships.
+std::filesystem::path demo_model();
+
 }  // namespace item3d

@@ -126,6 +126,24 @@ Json apply_layers(Studio& studio, const StudioProject& project, const Json& body
             {"command", shown_command(command)}};
 }
 
+/// One .glb with a look for each of the results.
+Json make_variants(Studio& studio, const StudioProject& project, const Json& body, int revision) {
+    StudioCommand command{"edit", {"variants", "source/" + project.file}};
+    for (const Json& id : body.value("results", Json::array())) {
+        const StudioResult result = studio.result(id.get<std::int64_t>());
+        if (result.project != project.id) throw InputError("results", "are of another project");
+        if (result.parent)
+            throw InputError("results", "have an edit of an edit among them",
+                             "choose edits of the model itself");
+        command.arguments.push_back(result_folder_name(result.id));
+    }
+    command.arguments.insert(command.arguments.end(), {"-o", "variants.glb"});
+    const fs::path folder = studio.folders().project(project.id);
+    studio.run_now(command, folder, folder / "variants.log", longest_tool);
+    return {{"url", fmt::format("api/projects/{}/variants.glb?revision={}", project.id, revision)},
+            {"command", shown_command(command)}};
+}
+
 /// Of the last edits that are done.
 std::vector<EditCost> former_costs(Studio& studio) {
     constexpr std::size_t most = 10;
@@ -162,10 +180,17 @@ void add_preview_routes(StudioRoutes& routes) {
             reply_json(response, apply_layers(studio, studio.project(number_of(request, 1)), body,
                                               ++*revision));
         });
-    routes.get(R"(/api/projects/(\d+)/mixed\.glb)", [&studio](const HttpRequest& request,
-                                                              HttpResponse& response) {
+    routes.post(
+        R"(/api/projects/(\d+)/variants)",
+        [&studio, revision](const HttpRequest& request, HttpResponse& response, const Json& body) {
+            const StudioProject project = studio.project(number_of(request, 1));
+            reply_json(response, make_variants(studio, project, body, ++*revision));
+        });
+    routes.get(R"(/api/projects/(\d+)/(mixed|variants)\.glb)", [&studio](const HttpRequest& request,
+                                                                         HttpResponse& response) {
         const StudioProject project = studio.project(number_of(request, 1));
-        reply_file(request, response, studio.folders().project(project.id) / "mixed.glb");
+        reply_file(request, response,
+                   studio.folders().project(project.id) / (request.matches[2].str() + ".glb"));
     });
 }
 

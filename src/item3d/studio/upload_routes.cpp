@@ -4,7 +4,9 @@
 #include "item3d/core/files.h"
 #include "item3d/io/load.h"
 #include "item3d/io/load_light.h"
-#include "item3d/io/text.h"
+#include "item3d/io/save.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/serve/secret.h"
 
 #include <fmt/format.h>
 
@@ -93,7 +95,7 @@ std::string name_of(const HttpRequest& request) {
 void answer_model(Studio& studio, const HttpRequest& request, HttpResponse& response,
                   const httplib::ContentReader& reader) {
     if (request.has_param("demo")) {
-        reply_json(response, project_json(studio.open_again(assets_folder() / "demo" / "mug.glb")));
+        reply_json(response, project_json(studio.open_again(demo_model())));
         return;
     }
     const std::string name = name_of(request);
@@ -102,32 +104,42 @@ void answer_model(Studio& studio, const HttpRequest& request, HttpResponse& resp
     reply_json(response, project_json(studio.open_model(incoming.path(), name)));
 }
 
-/// A picture that was painted on the model, by its name; one of the same name is replaced.
+/// A picture that was painted on the model, under a new name: edits that wait name older ones.
 void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& response,
                  const httplib::ContentReader& reader) {
+    constexpr int name_bytes = 4;
     const StudioProject project = studio.project(number_of(request, 1));
-    const std::string name = fs::path(stored_name(name_of(request))).replace_extension(".png");
+    const std::string name = fs::path(stored_name(name_of(request))).stem().string() + "_" +
+                             random_secret(name_bytes) + ".png";
     const Incoming incoming(studio.folders().incoming(".png"));
     save_upload(reader, incoming.path(), longest_picture);
     load_image(incoming.path());  // throws for what is none
     const fs::path folder = studio.folders().project(project.id) / "masks";
     fs::create_directories(folder);
     fs::rename(incoming.path(), folder / name);
-    reply_json(response, {{"name", name}});
+    const std::string material = request.get_param_value("material");
+    reply_json(response, {{"name", name},
+                          {"selector", "mask=" + name + (material.empty() ? "" : "@" + material)},
+                          {"url", fmt::format("api/projects/{}/masks/{}", project.id, name)}});
 }
 
-void answer_light(Studio& studio, const HttpRequest& request, HttpResponse& response,
-                  const httplib::ContentReader& reader) {
-    const std::string name = stored_name(name_of(request));
-    const std::string extension = fs::path(name).extension();
-    if (extension != ".hdr" && extension != ".exr")
-        throw InputError(name, "is no light", "choose an .hdr or .exr file");
-    const Incoming incoming(studio.folders().incoming(extension));
+/// Kept as Radiance, whatever it came as.
+void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& response,
+                      const httplib::ContentReader& reader) {
+    const fs::path given = stored_name(name_of(request));
+    constexpr std::array kinds = {".hdr", ".exr", ".png", ".jpg", ".jpeg"};
+    if (std::find(kinds.begin(), kinds.end(), given.extension()) == kinds.end())
+        throw InputError(given.string(), "is no light", "choose an .hdr, .exr, .png or .jpg file");
+    const auto& presets = light_preset_names();
+    std::string name = given.stem().string();
+    if (name == "sky" || std::find(presets.begin(), presets.end(), name) != presets.end())
+        name = "own_" + name;
+    const Incoming incoming(studio.folders().incoming(given.extension().string()));
     save_upload(reader, incoming.path(), longest_picture);
-    load_light(incoming.path().string());
+    const Image light = load_light(incoming.path().string());
     const fs::path folder = studio.folders().root() / "lights";
     fs::create_directories(folder);
-    fs::rename(incoming.path(), folder / name);
+    save_image(folder / light_file_name(name), light, 32);
     reply_json(response, {{"name", name}});
 }
 
@@ -213,7 +225,14 @@ void add_upload_routes(StudioRoutes& routes) {
     };
     routes.post_stream("/api/projects", longest_model, with_studio(answer_model));
     routes.post_stream(R"(/api/projects/(\d+)/masks)", longest_picture, with_studio(answer_mask));
-    routes.post_stream("/api/lights", longest_picture, with_studio(answer_light));
+    routes.get(R"(/api/projects/(\d+)/masks/([A-Za-z0-9_-]+\.png))",
+               [&studio](const HttpRequest& request, HttpResponse& response) {
+                   const StudioProject project = studio.project(number_of(request, 1));
+                   reply_file(
+                       request, response,
+                       studio.folders().project(project.id) / "masks" / request.matches[2].str());
+               });
+    routes.post_stream("/api/lights", longest_picture, with_studio(answer_own_light));
     routes.post_stream("/api/photographs", longest_photographs, with_studio(answer_photographs));
 }
 
