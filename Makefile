@@ -1,7 +1,9 @@
 # make            set the machine up and build all programs
 # make demo       edit the demo model and say where its report is
+# make studio     build item3d studio and open it on the demo model
 # make test       check format and layers, test the loaders under sanitizers, build and test everything
 # make check      the tests that run no whole edits, on a built tree
+# make test-browser   the whole of item3d studio in Chromium (make test has a short run of it)
 # make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
 # make format     format all sources
@@ -16,7 +18,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo check-format check-layers test-loaders test-build test check cuda \
+.PHONY: setup configure build demo studio test-browser check-format check-layers test-loaders test-build test check cuda \
     bench bench-build format lint install clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
@@ -29,12 +31,16 @@ configure: setup
 	@cmake --preset release --log-level=WARNING
 
 build: configure
-	@$(BUILD) --target item3d item3d-edit item3d-reconstruct item3d-train item3d-bench item3d-compare item3d-study item3d_ktx2
+	@$(BUILD) --target item3d item3d-edit item3d-reconstruct item3d-train item3d-bench item3d-compare item3d-study item3d-studio item3d_ktx2
 
 demo: configure
 	@$(BUILD) --target item3d item3d-edit
 	@build/item3d edit assets/demo/mug.glb --from "a red mug" --to "a golden mug" -o build/demo
 	@echo "Open $(CURDIR)/build/demo/report.html"
+
+studio: configure
+	@$(BUILD) --target item3d item3d-edit item3d-studio
+	@build/item3d studio assets/demo/mug.glb
 
 check-format: setup
 	@scripts/format.sh --check
@@ -48,7 +54,7 @@ test-loaders: setup
 	@ctest --preset asan
 
 test-build:
-	@scripts/setup.sh $(CUDA)
+	@scripts/setup.sh $(CUDA) browser
 	@cmake --preset release --log-level=WARNING $(if $(CUDA),-DITEM3D_CUDA=ON)
 	@$(BUILD)
 
@@ -58,6 +64,12 @@ test: check-format check-layers test-loaders test-build
 check: configure
 	@$(BUILD)
 	@ctest --preset release --label-exclude whole
+
+test-browser:
+	@scripts/setup.sh browser
+	@cmake --preset release --log-level=WARNING
+	@$(BUILD) --target item3d item3d-edit item3d-studio
+	@tests/browser/studio.py build/item3d --all
 
 cuda:
 	@scripts/setup.sh cuda

@@ -20,6 +20,7 @@ find_package(ICU REQUIRED COMPONENTS uc)
 find_package(draco CONFIG REQUIRED)
 find_package(meshoptimizer CONFIG REQUIRED)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
+pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
 find_package(SQLite3 REQUIRED)
 
 # LibTorch brings headers of another fmt, which the compiler would find first: ours goes before them.

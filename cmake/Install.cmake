@@ -5,11 +5,15 @@
 #   lib/item3d/              what item3d becomes (item3d-edit, ...), LibTorch's libraries, found through
 #                            $ORIGIN, and libitem3d_cuda.so (cmake/Cuda.cmake) and libitem3d_ktx2.so (cmake/Ktx2.cmake),
 #                            opened from there
-#   share/item3d/            assets: the embedded prior and the demo model
+#   share/item3d/            assets: the embedded prior and the demo model; web/: the studio's page,
+#                            with three.js in web/three/
 # development: the rooms as libraries for find_package(item3d), with LibTorch's headers where
 # ITEM3D_TORCH_ROOT has them
 #   include/item3d/, lib/libitem3d_*.a, lib/cmake/item3d/
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets/ DESTINATION share/item3d COMPONENT programs)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/web/ DESTINATION share/item3d/web COMPONENT programs)
+install(DIRECTORY ${ITEM3D_DEPS}/three/ DESTINATION share/item3d/web/three COMPONENT programs
+    PATTERN .pins EXCLUDE)
 if(ITEM3D_TORCH_ROOT STREQUAL "${ITEM3D_DEPS}/site/torch")
     # Their own run path has $ORIGIN in it, so that they find each other in one folder.
     file(GLOB LIBRARIES

@@ -3,13 +3,20 @@
 # downloads of scripts/wheels.txt, unpacked into .deps/. Does nothing when all is there; goes on
 # where an interrupted run stopped. Works as root and as a user who may use sudo.
 #
-# usage: scripts/setup.sh [cuda]    cuda: the CUDA compiler too, for `make cuda` and `make test`
+# usage: scripts/setup.sh [cuda] [browser]
+#   cuda     the CUDA compiler too, for `make cuda` and `make test`
+#   browser  Chromium and Playwright too, for `make test` (50 MB, and 100 MB of Debian packages)
 #
 #   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
+#   ITEM3D_NO_BROWSER=1       leave the browser out: its tests do not run
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
 deps=$root/.deps
+
+wants() { [[ " $arguments " == *" $1 "* ]]; }
+arguments=$*
+if [[ -n ${ITEM3D_NO_BROWSER:-} ]]; then arguments=${arguments//browser/}; fi
 
 say() { echo "setup: $*" >&2; }
 fail() {
@@ -23,7 +30,7 @@ missing_packages() {
     while read -r package; do
         [[ $(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) == installed ]] ||
             echo "$package"
-    done < <(grep -vE '^[[:space:]]*(#|$)' scripts/packages.txt)
+    done < <(grep -vE '^[[:space:]]*(#|$)' scripts/packages.txt; ! wants browser || echo chromium)
 }
 
 install_packages() {
@@ -82,18 +89,16 @@ download() {
         fail "pip left no $stem in .deps/wheels"
 }
 
-# download_crate NAME: the same for a line that is a crate of crates.io.
-download_crate() {
-    local name=$1 pin python version
-    pin=$(grep "^$name==" scripts/wheels.txt) || fail "scripts/wheels.txt does not name $name"
+# download_file NAME ADDRESS FILE: fetches ADDRESS into .deps/wheels/FILE, checks the hash that
+# wheels.txt has for NAME, and says where it is in $archive.
+download_file() {
+    local name=$1 address=$2 file=$3 pin python
+    pin=$(pin_of "$name")
     say "downloading ${pin%% *}"
     mkdir -p "$deps/wheels"
-    version=${pin%% *}
-    version=${version##*==}
-    archive=$deps/wheels/$name-$version.crate
+    archive=$deps/wheels/$file
     python=$(find_pip)
-    "$python" - "https://static.crates.io/crates/$name/$name-$version.crate" "$archive" \
-        "${pin##*sha256:}" >"$deps/crate.log" 2>&1 <<'PYTHON' ||
+    "$python" - "$address" "$archive" "${pin##*sha256:}" >"$deps/download.log" 2>&1 <<'PYTHON' ||
 import hashlib, os, sys, time, urllib.request
 address, path, wanted = sys.argv[1:]
 request = urllib.request.Request(address, headers={"User-Agent": "item3d-setup"})
@@ -113,7 +118,30 @@ with open(path + ".part", "wb") as file:
     file.write(content)
 os.rename(path + ".part", path)
 PYTHON
-        fail "downloading ${pin%% *} failed: $(tail -n 1 "$deps/crate.log") (all of it: .deps/crate.log)"
+        fail "downloading ${pin%% *} failed: $(tail -n 1 "$deps/download.log") (all of it: .deps/download.log)"
+}
+
+# pin_of NAME: its line of wheels.txt; version_of NAME: the version there.
+pin_of() {
+    grep "^$1==" scripts/wheels.txt || fail "scripts/wheels.txt does not name $1"
+}
+version_of() {
+    local pin
+    pin=$(pin_of "$1")
+    pin=${pin%% *}
+    echo "${pin##*==}"
+}
+
+# download_crate NAME, download_npm NAME: a line that is a crate of crates.io, a package of npm.
+download_crate() {
+    local file
+    file=$1-$(version_of "$1").crate
+    download_file "$1" "https://static.crates.io/crates/$1/$file" "$file"
+}
+download_npm() {
+    local file
+    file=$1-$(version_of "$1").tgz
+    download_file "$1" "https://registry.npmjs.org/$1/-/$file" "$file"
 }
 
 # The same files on every machine, whatever Python it has.
@@ -125,7 +153,7 @@ wheel_options=(--only-binary=:all: --implementation cp --python-version 3.11 --a
 # unless .deps/NAME came from the same pins by the same UNPACK.
 component() {
     local name=$1 pins=$2 unpack=$3 wanted temporary
-    wanted=$({ grep -E "^($pins)==" scripts/wheels.txt; declare -f "$unpack"; } | sha256sum | cut -d ' ' -f 1)
+    wanted=$({ grep -hE "^($pins)==" scripts/wheels.txt scripts/browser.txt; declare -f "$unpack"; } | sha256sum | cut -d ' ' -f 1)
     [[ -f $deps/$name/.pins && $(<"$deps/$name/.pins") == "$wanted" ]] && return
     temporary=$deps/$name.unpacking
     rm -rf "$temporary"
@@ -197,6 +225,33 @@ unpack_basis_universal() {
     echo '#include <zstd.h>' >"$into/zstd/zstd.h"
 }
 
+# Modules import one another by relative addresses, so that a page needs no import map.
+unpack_three() {
+    local into=$1 archive
+    download_npm three
+    say "unpacking $(basename "$archive")"
+    tar -xzf "$archive" -C "$into" --strip-components=1 --no-same-owner package/LICENSE \
+        package/build/three.core.min.js package/build/three.module.min.js \
+        package/examples/jsm/loaders/{GLTFLoader,HDRLoader}.js \
+        package/examples/jsm/controls/OrbitControls.js \
+        package/examples/jsm/utils/{BufferGeometryUtils,SkeletonUtils}.js ||
+        fail "unpacking $archive failed; is the disk full?"
+    mv "$into"/build/* "$into"
+    mv "$into/examples/jsm" "$into/addons"
+    rmdir "$into/build" "$into/examples"
+    sed -i "s|from 'three'|from '../../three.module.min.js'|" "$into"/addons/*/*.js
+}
+
+# For the Python that runs the tests.
+unpack_browser() {
+    local into=$1
+    say "downloading $(grep -o '^playwright==[^ ]*' scripts/browser.txt)"
+    "$(find_pip)" -m pip install --require-hashes --only-binary=:all: --no-cache-dir --no-compile \
+        --retries 5 --timeout 60 --progress-bar off -q --disable-pip-version-check \
+        --root-user-action=ignore --target "$into" -r scripts/browser.txt >"$deps/pip.log" 2>&1 ||
+        fail "downloading Playwright failed: $(grep -i error "$deps/pip.log" | tail -n 1) (all of it: .deps/pip.log; ITEM3D_NO_BROWSER=1 leaves it out)"
+}
+
 mkdir -p "$deps" || fail "cannot write to $root"
 exec 9>"$deps/lock"
 flock 9 # a second `make` waits here and then finds all done
@@ -211,7 +266,11 @@ else
 fi
 component xatlas xatlas unpack_xatlas
 component basis_universal basis-universal-sys unpack_basis_universal
-if [[ ${1:-} == cuda ]]; then
+component three three unpack_three
+if wants browser && [[ $(uname -m) == x86_64 ]]; then
+    component browser 'playwright|greenlet' unpack_browser
+fi
+if wants cuda; then
     component cuda 'nvidia-cuda-nvcc|nvidia-cuda-crt|nvidia-nvvm|nvidia-cuda-runtime|nvidia-nvtx' \
         unpack_cuda
 fi

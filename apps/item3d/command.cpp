@@ -3,6 +3,7 @@
 #include "apps/item3d/commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
+#include "item3d/core/progress_file.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/render/cuda/module.h"
 
@@ -54,6 +55,11 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_option("--threads", options.threads, "CPU threads; without it, one for each core")
         ->check(CLI::Range(1, 1024))
         ->group(group);
+    command
+        .add_option("--progress-file", options.progress_file,
+                    "A file in which stage, steps done and seconds left are renewed as JSON while "
+                    "the command works")
+        ->group(group);
     command.add_option("--device", options.device, "What to compute on: cpu, cuda, or auto")
         ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
         ->capture_default_str()
@@ -82,6 +88,7 @@ at::Device start_command(const CommonOptions& options) {
     omp_set_num_threads(threads);
     at::set_num_threads(threads);
     install_interrupt_handler();
+    show_progress_in(options.progress_file);
 
     return choose_device(options.device);
 }

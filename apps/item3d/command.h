@@ -32,6 +32,7 @@ struct CommonOptions {
     bool quiet = false;           ///< nothing but warnings and errors on stderr
     bool json = false;            ///< the result as one JSON object on stdout
     int threads = 0;              ///< 0: one for each core
+    std::string progress_file;    ///< see show_progress_in(); empty: none
     std::string device = "auto";  ///< cpu, cuda, or auto: cuda where this build and machine have it
 };
 

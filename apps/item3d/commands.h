@@ -30,6 +30,7 @@ inline constexpr std::array commands = {
     CommandEntry{"compare", "compare", "Run methods on a list of edits; tables and a page of them"},
     CommandEntry{"study", "study",
                  "Ask people what they think of edits, and analyze what they say"},
+    CommandEntry{"studio", "studio", "Edit models on a page in the browser"},
     CommandEntry{"prior", "train", "Train, fetch and inspect priors"},
     CommandEntry{"bench", "bench", "Measure how fast this machine is"},
 };

@@ -1,14 +1,9 @@
 // The main() of each family of commands.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
-#include <initializer_list>
+#include "apps/item3d/program.h"
 
 namespace item3d {
-
-/// Adds a command, or several, to the program's.
-using AddCommand = void (*)(CLI::App&);
 
 /// Reads the command line, runs one command, turns what it throws into a line on stderr, and ends
 /// the process with the exit code. Destructors of static objects are not run.

@@ -4,6 +4,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/edit/settings_catalogue.h"
 #include "item3d/edit/settings_table.h"
 
 #include <gtest/gtest.h>
@@ -88,6 +89,16 @@ TEST(EditSettings, are_as_the_settings_page_has_them) {
     EXPECT_TRUE(read_text(page) == settings_markdown())
         << "docs/reference/settings.md is not as settings_table.cpp says; write it anew with\n"
            "ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='*settings_page*'";
+}
+
+TEST(EditSettings, are_as_the_studio_has_them) {
+    const auto file = std::filesystem::path(ITEM3D_TEST_DATA) / "../../web/settings.json";
+    const std::string text = settings_catalogue().dump(1) + "\n";
+    if (std::getenv("ITEM3D_WRITE_DOCS") != nullptr) write_atomically(file, text);
+    ASSERT_TRUE(std::filesystem::exists(file)) << file;
+    EXPECT_TRUE(read_text(file) == text)
+        << "web/settings.json is not as settings_table.cpp says; write it anew with\n"
+           "ITEM3D_WRITE_DOCS=1 build/test_edit --gtest_filter='EditSettings.are_as*'";
 }
 
 }  // namespace

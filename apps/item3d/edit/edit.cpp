@@ -9,6 +9,7 @@
 #include "apps/item3d/edit/setting_options.h"
 #include "item3d/baselines/methods.h"
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/edit.h"
@@ -196,6 +197,7 @@ nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session) {
     EditRequest& request = options.request;
     request.sign_key = options.sign_key.load();
     request.device = start_command(options);
+    if (!request.live.empty()) make_output_folder(request.live);
     request.prior = find_prior(options.prior);
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
     if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
@@ -235,6 +237,9 @@ void add_edit_options(CLI::App& command, EditCommandOptions& options) {
                        "CLIPSeg in the transformers layout, for --region words=...; without it, "
                        "the one that the prior brings along, else the prior's cross-attention");
     command.add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
+    command.add_option("--live", request.live,
+                       "A folder in which small textures of the edit so far are renewed about "
+                       "every second, for programs that show them");
     add_texture_folders(command, request.texture_folders);
     add_sign_key(command, options.sign_key);
     command.add_flag("--allow-missing-textures", request.allow_missing_textures,

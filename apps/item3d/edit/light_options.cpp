@@ -159,10 +159,9 @@ std::optional<SunSetting> chosen_sun(const LightOptions& options) {
 }
 
 Image apply(const LightOptions& options, const std::optional<SunSetting>& sun, const Image& light) {
-    Image result = tilt_light(adjust_light(light, options.rotation, 0), options.tilt);
-    if (sun) result = place_sun(result, *sun);
-    if (!options.tint.empty()) result = tint_light(result, linear_tint(options.tint));
-    return adjust_light(result, 0, options.exposure);
+    LightChange change{options.rotation, options.tilt, options.exposure, sun, std::nullopt};
+    if (!options.tint.empty()) change.tint = linear_tint(options.tint);
+    return change_light(light, change);
 }
 
 nlohmann::json settings_json(const LightOptions& options, const std::optional<SunSetting>& sun) {

@@ -36,9 +36,7 @@ void add_light_options(CLI::App& command, LightOptions& options);
 /// for a sentence that names no direction; warns of words of --lit that are not used.
 std::optional<SunSetting> chosen_sun(const LightOptions& options);
 
-/// sun: of chosen_sun. The light turned, tilted, given its sun, tinted and exposed, in this order:
-/// where a sun is asked for is where it stands in the end, and tint and exposure are those of the
-/// whole.
+/// sun: of chosen_sun. The light as change_light() changes it.
 Image apply(const LightOptions& options, const std::optional<SunSetting>& sun, const Image& light);
 
 /// All settings, and the sun's direction.

@@ -5,6 +5,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/serve/http_listener.h"
 #include "item3d/study/analysis_tables.h"
 #include "item3d/study/make_study.h"
 #include "item3d/study/server.h"

@@ -7,13 +7,10 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <chrono>
 #include <list>
 #include <memory>
-#include <sstream>
 #include <thread>
 
 namespace item3d {
@@ -34,19 +31,6 @@ struct RunningEdit {
     std::unique_ptr<ChildProgram> program;
     Clock::time_point begin = Clock::now();
 };
-
-/// "error: ..." of the log's last line that says what went wrong.
-std::string reason_of(const fs::path& log, int status) {
-    std::istringstream lines(read_text(log));
-    std::string reason;
-    constexpr std::string_view mark = "item3d: error: ";
-    for (std::string line; std::getline(lines, line);)
-        if (line.starts_with(mark)) reason = line.substr(mark.size());
-    if (!reason.empty()) return reason;
-    if (WIFSIGNALED(status))
-        return fmt::format("ended by signal {}, see {}", WTERMSIG(status), log.string());
-    return fmt::format("ended with code {}, see {}", WEXITSTATUS(status), log.string());
-}
 
 RunningEdit start(const CompareRun& run, const CompareOptions& options) {
     make_output_folder(run.folder);
@@ -124,7 +108,7 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
             const bool well = *status == 0 && fs::exists(run.folder / "edit.json");
             if (!well && !interrupted())
                 write_atomically(run.folder / "failed.txt",
-                                 reason_of(run.folder / "log.txt", *status));
+                                 reason_of_end(run.folder / "log.txt", *status));
             if (well) fs::remove(run.folder / checkpoint_name);  // as large as all the rest
             largest = std::max(ended == before ? 0.0 : largest, std::max(peak_of(run), 1.0));
             note(fmt::format("{} of {}: {}: {}", ++ended, runs.size(),

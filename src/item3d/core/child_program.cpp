@@ -1,8 +1,10 @@
 #include "item3d/core/child_program.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/files.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,6 +14,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
+#include <string_view>
 
 namespace item3d {
 
@@ -21,14 +24,17 @@ namespace fs = std::filesystem;
 
 /// The new process becomes the program. Only calls that are safe in a signal handler may stand
 /// between fork() and exec(): other threads may have held any lock.
-[[noreturn]] void become(char* const* arguments, const char* output, pid_t parent) {
+[[noreturn]] void become(const char* program, char* const* arguments, const char* output,
+                         const char* folder, pid_t parent) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const int in = ::open("/dev/null", O_RDONLY);
     const int out = ::open(output, O_WRONLY | O_CREAT | O_APPEND, 0644);
-    if (::getppid() == parent && in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
-        ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(out, STDERR_FILENO) >= 0)
-        ::execv(arguments[0], arguments);
+    const bool is_there = *folder == '\0' || ::chdir(folder) == 0;
+    if (is_there && ::getppid() == parent && in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
+        ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(out, STDERR_FILENO) >= 0 &&
+        ::close_range(STDERR_FILENO + 1, ~0U, 0) == 0)  // sockets of a server among them
+        ::execv(program, arguments);
     ::_exit(127);
 }
 
@@ -47,8 +53,22 @@ fs::path program_in_path(const std::string& name) {
     return {};
 }
 
-ChildProgram::ChildProgram(const std::vector<std::string>& arguments, const fs::path& output) {
+std::string reason_of_end(const fs::path& log, int status) {
+    std::istringstream lines(read_text(log));
+    std::string reason;
+    constexpr std::string_view mark = "item3d: error: ";
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with(mark)) reason = line.substr(mark.size());
+    if (!reason.empty()) return reason;
+    if (WIFSIGNALED(status))
+        return fmt::format("ended by signal {}, see {}", WTERMSIG(status), log.string());
+    return fmt::format("ended with code {}, see {}", WEXITSTATUS(status), log.string());
+}
+
+ChildProgram::ChildProgram(const std::vector<std::string>& arguments, const fs::path& output,
+                           const ChildSurroundings& surroundings) {
     std::vector<std::string> copies = arguments;
+    if (!surroundings.name.empty()) copies[0] = surroundings.name;
     std::vector<char*> pointers;
     for (std::string& copy : copies)
         pointers.push_back(copy.data());
@@ -56,7 +76,9 @@ ChildProgram::ChildProgram(const std::vector<std::string>& arguments, const fs::
     const pid_t parent = ::getpid();
     id_ = ::fork();
     if (id_ < 0) throw ResourceError(arguments[0] + ": cannot be started: " + std::strerror(errno));
-    if (id_ == 0) become(pointers.data(), output.c_str(), parent);
+    if (id_ == 0)
+        become(arguments[0].c_str(), pointers.data(), output.c_str(), surroundings.folder.c_str(),
+               parent);
     ::setpgid(id_, id_);  // both do it: the group must be there before either goes on
 }
 
@@ -69,6 +91,10 @@ ChildProgram::~ChildProgram() {
 
 void ChildProgram::ask_to_end() {
     if (!status_) ::kill(-id_, SIGTERM);
+}
+
+void ChildProgram::kill() {
+    if (!status_) ::kill(-id_, SIGKILL);
 }
 
 std::optional<int> ChildProgram::status() {

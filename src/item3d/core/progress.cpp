@@ -1,5 +1,7 @@
 #include "item3d/core/progress.h"
 
+#include "item3d/core/progress_file.h"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -54,6 +56,8 @@ void Progress::update(std::int64_t done, const std::string& detail) {
     done_ = done;
     detail_ = detail;
     const auto now = Clock::now();
+    show_steps(label_, done - first_, done, total_,
+               std::chrono::duration<double>(now - start_).count());
     const auto interval = terminal_ ? std::chrono::milliseconds(200) : std::chrono::seconds(10);
     if (now - shown_ < interval) return;
     shown_ = now;

@@ -1,6 +1,7 @@
 #include "item3d/edit/edit.h"
 
 #include "item3d/core/files.h"
+#include "item3d/core/progress_file.h"
 #include "item3d/core/stage_times.h"
 #include "item3d/edit/detail/detail_stage.h"
 #include "item3d/edit/optimize/begin.h"
@@ -22,6 +23,7 @@ nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
     StageTimes times;
     const OutputFolder folder(request.output);
 
+    show_stage("load");
     EditScene scene = load_scene(request, session);
     // Needed at the end, but a folder without one is told at once.
     const std::shared_ptr<const Clip> clip = session.clip(request.clip);
@@ -49,9 +51,11 @@ nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
         times.end_stage("detail");
     }
 
+    show_stage("bake");
     EditedModel edited = bake_and_save(request, scene, state);
     times.end_stage("bake");
 
+    show_stage("report");
     const Pictures pictures = render_pictures(request, scene, edited, clip.get(), session);
     times.end_stage("report");
 

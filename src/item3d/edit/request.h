@@ -35,6 +35,7 @@ struct EditRequest {
     std::string memory = "auto";     ///< auto, low (less memory, more time), high
     int picture_pixels = 384;        ///< side of the report's views; its turntable has 3/4 of it
     bool draws_turntable = true;
+    std::filesystem::path live;                  ///< folder of LiveTextures; empty: none
     std::shared_ptr<const SigningKey> sign_key;  ///< signs what is written; null: nothing does
     std::string command;                         ///< as typed, for edit.json and the resume hint
 };

@@ -18,6 +18,18 @@ Setting restricted(Setting setting, const std::string& values,
     return setting;
 }
 
+Setting limited(Setting setting, const Limits& limits,
+                std::function<double(const EditSettings&)> value) {
+    Setting row =
+        restricted(std::move(setting), limits.words,
+                   [limits, value = std::move(value)](const EditSettings& settings) {
+                       return value(settings) >= limits.low && value(settings) <= limits.high;
+                   });
+    row.low = limits.low;
+    if (limits.high < std::numeric_limits<double>::infinity()) row.high = limits.high;
+    return row;
+}
+
 Limits between(double low, double high) {
     return between(low, high, fmt::format("between {:g} and {:g}", low, high));
 }

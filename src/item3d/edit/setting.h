@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -37,6 +38,10 @@ struct Setting {
     std::function<void(EditSettings&, const nlohmann::json&)> set;
     /// Throws InputError where the value is out of range.
     std::function<void(const EditSettings&)> check;
+
+    std::string group = {};                     ///< of the settings that belong together
+    std::vector<std::string> choices = {};      ///< of a choice
+    std::optional<double> low = {}, high = {};  ///< ends of a number's range, themselves in it
 };
 
 namespace rows {
@@ -80,14 +85,16 @@ Limits between(double low, double high, const std::string& words);
 Limits at_least(double low);
 Limits above_zero();
 
+/// The row with the range.
+Setting limited(Setting setting, const Limits& limits,
+                std::function<double(const EditSettings&)> value);
+
 template <typename T>
 Setting setting(const char* name, T EditSettings::*member, const Limits& limits, const char* flag,
                 const std::string& help) {
-    return restricted(setting(name, member, flag, help), limits.words,
-                      [member, low = limits.low, high = limits.high](const EditSettings& settings) {
-                          const auto value = static_cast<double>(settings.*member);
-                          return value >= low && value <= high;
-                      });
+    return limited(
+        setting(name, member, flag, help), limits,
+        [member](const EditSettings& settings) { return static_cast<double>(settings.*member); });
 }
 
 /// "a, b or c".
@@ -113,7 +120,9 @@ Setting choice(const char* name, Enum EditSettings::*member, const std::vector<s
             [member, parse](EditSettings& settings, const nlohmann::json& value) {
                 settings.*member = parse(value.get<std::string>());
             },
-            [](const EditSettings&) {}};
+            [](const EditSettings&) {},
+            "",
+            names};
 }
 
 template <typename Enum>

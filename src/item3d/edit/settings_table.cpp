@@ -46,6 +46,15 @@ Setting edit_method() {
     row.check = [](const S& settings) {
         rows::find_choice("--method", edit_method_names(), settings.method);
     };
+    row.choices = edit_method_names();
+    return row;
+}
+
+Setting guidance_method() {
+    Setting row = setting("guidance", &S::guidance, "--guidance",
+                          fmt::format("The method: {}; help tells what each is for and costs",
+                                      fmt::join(guidance_methods(), ", ")));
+    row.choices = guidance_methods();
     return row;
 }
 
@@ -55,9 +64,7 @@ std::vector<Setting> guidance_rows() {
         setting("from", &S::from, "--from", "What the model looks like now"),
         setting("to", &S::to, "--to", "What it shall look like"),
         edit_method(),
-        setting("guidance", &S::guidance, "--guidance",
-                fmt::format("The method: {}; help tells what each is for and costs",
-                            fmt::join(guidance_methods(), ", "))),
+        guidance_method(),
         choice<Adjustment>(
             "adjust", &S::adjust, adjustment_names(), parse_adjustment, "--adjust",
             "How rdl's source follows the render: learned (by its denoising loss, the default), "
@@ -237,9 +244,19 @@ std::vector<Setting> extras_rows() {
 const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = [] {
         std::vector<Setting> all;
-        for (auto& rows : {guidance_rows(), optimization_rows(), method_rows(), light_rows(),
-                           texture_rows(), region_rows(), extras_rows()})
-            all.insert(all.end(), rows.begin(), rows.end());
+        const auto add = [&all](const char* group, std::vector<Setting> rows) {
+            for (Setting& row : rows) {
+                row.group = group;
+                all.push_back(std::move(row));
+            }
+        };
+        add("Guidance", guidance_rows());
+        add("Optimisation", optimization_rows());
+        add("Methods", method_rows());
+        add("Light", light_rows());
+        add("Textures", texture_rows());
+        add("Region", region_rows());
+        add("Prior", extras_rows());
         return all;
     }();
     return table;

@@ -97,4 +97,11 @@ Image place_sun(const Image& light, const SunSetting& setting) {
     return result;
 }
 
+Image change_light(const Image& light, const LightChange& change) {
+    Image result = tilt_light(adjust_light(light, change.rotation, 0), change.tilt);
+    if (change.sun) result = place_sun(result, *change.sun);
+    if (change.tint) result = tint_light(result, *change.tint);
+    return adjust_light(result, 0, change.exposure);
+}
+
 }  // namespace item3d

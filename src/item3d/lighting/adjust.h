@@ -34,4 +34,17 @@ struct SunSetting {
 /// before.
 Image place_sun(const Image& light, const SunSetting& setting);
 
+/// What can be changed of a light.
+struct LightChange {
+    float rotation = 0;  ///< degrees
+    float tilt = 0;      ///< degrees
+    float exposure = 0;  ///< stops
+    std::optional<SunSetting> sun;
+    std::optional<Vec3> tint;  ///< linear RGB
+};
+
+/// The light turned, tilted, given its sun, tinted and exposed, in this order: where a sun is asked
+/// for is where it stands in the end, and tint and exposure are those of the whole.
+Image change_light(const Image& light, const LightChange& change);
+
 }  // namespace item3d

@@ -1,16 +1,7 @@
 #include "item3d/study/answers.h"
 
 #include "item3d/core/error.h"
-
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/random.h>
-#include <unistd.h>
-
-#include <array>
-#include <cerrno>
-#include <cstring>
+#include "item3d/serve/secret.h"
 
 namespace item3d {
 namespace {
@@ -33,20 +24,10 @@ CREATE TABLE answers(
 )";
 static_assert(study_questions.size() == 2 && min_rating == 1 && max_rating == 5);
 
+constexpr int token_bytes = 10;
+
 fs::path database_of(const fs::path& folder) {
     return folder / "answers.sqlite";
-}
-
-int lock_folder(const fs::path& folder) {
-    const fs::path path = folder / "lock";
-    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (file < 0)
-        throw InputError(path.string(),
-                         std::string("cannot be written (") + std::strerror(errno) + ")");
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
-    ::close(file);
-    throw InputError(folder.string(), "is served already, by another `item3d study serve`",
-                     "end that one first, or use its links");
 }
 
 /// The database of `study`, whole.
@@ -77,36 +58,14 @@ std::unique_ptr<Sqlite> open_database(const fs::path& folder, const Study& study
     return database;
 }
 
-std::string new_token() {
-    std::array<unsigned char, 10> bytes{};
-    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-        throw ResourceError(std::string("the system gives no random numbers: ") +
-                            std::strerror(errno));
-    std::string token;
-    for (const unsigned char byte : bytes)
-        token += fmt::format("{:02x}", byte);
-    return token;
-}
-
 Participant read_participant(const SqliteRows& rows) {
     return {rows.number(0), rows.text(1), !rows.text(2).empty()};
 }
 
 }  // namespace
 
-AnswerStore::AnswerStore(const fs::path& folder, const Study& study) : lock_(lock_folder(folder)) {
-    try {
-        database_ = open_database(folder, study, true);
-    } catch (...) {
-        ::close(lock_);
-        throw;
-    }
-}
-
-AnswerStore::~AnswerStore() {
-    database_.reset();
-    ::close(lock_);
-}
+AnswerStore::AnswerStore(const fs::path& folder, const Study& study)
+    : lock_(folder, "`item3d study serve`"), database_(open_database(folder, study, true)) {}
 
 void AnswerStore::add_participants(int count) {
     auto there = static_cast<int>(participants().size());
@@ -115,7 +74,7 @@ void AnswerStore::add_participants(int count) {
     while (there < count) {
         SqliteRows rows(*database_, "INSERT INTO participants(number, token) VALUES (?, ?)");
         rows.bind(++there);
-        rows.bind(new_token());
+        rows.bind(random_secret(token_bytes));
         rows.next();
     }
     transaction.commit();

@@ -1,7 +1,8 @@
 // The participants of a study and what they answered: answers.sqlite in its folder.
 #pragma once
 
-#include "item3d/study/sqlite.h"
+#include "item3d/serve/folder_lock.h"
+#include "item3d/serve/sqlite.h"
 #include "item3d/study/study.h"
 
 #include <cstdint>
@@ -31,9 +32,6 @@ class AnswerStore {
     /// Opens the database of the study in `folder`, or makes it. Throws InputError where another
     /// AnswerStore has the folder, where the database is damaged, cut off or of another study.
     AnswerStore(const std::filesystem::path& folder, const Study& study);
-    ~AnswerStore();
-    AnswerStore(const AnswerStore&) = delete;
-    AnswerStore& operator=(const AnswerStore&) = delete;
 
     /// Adds participants until there are `count`; removes none.
     void add_participants(int count);
@@ -46,7 +44,7 @@ class AnswerStore {
 
   private:
     std::mutex mutex_;
-    int lock_ = -1;
+    FolderLock lock_;
     std::unique_ptr<Sqlite> database_;
 };
 

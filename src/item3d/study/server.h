@@ -25,9 +25,4 @@ class StudyServer {
     std::unique_ptr<Sockets> sockets_;
 };
 
-/// "http://HOST:PORT", with this machine's name where the host stands for all of its addresses.
-std::string server_address(const std::string& host, int port);
-/// Whether other machines cannot reach this host.
-bool is_loopback(const std::string& host);
-
 }  // namespace item3d

@@ -225,7 +225,7 @@ void add_detail(const EditRequest& request, const EditScene& scene, EditState& s
     if (state.iteration >= total) return;
     if (!state.detail.has_begun()) state.detail.begin(state.field);
     Progress progress("detail", plan.detail_views, state.iteration - plan.iterations);
-    CheckpointWriter checkpoints(request, scene);
+    CheckpointWriter checkpoints(request, scene, state.fitted);
     Painter painter(scene, plan, state);
     while (state.iteration < total) {
         painter.paint(state.detail.targets.size());

@@ -51,10 +51,12 @@ void Preview::save(const std::vector<at::Tensor>& pictures) {
     }
 }
 
-CheckpointWriter::CheckpointWriter(const EditRequest& request, const EditScene& scene)
+CheckpointWriter::CheckpointWriter(const EditRequest& request, const EditScene& scene,
+                                   NeuralTexture& fitted)
     : request_(request),
       scene_(scene),
       preview_(request.output / "preview.png", scene),
+      live_(request.live, scene, fitted),
       checkpointed_(seconds_now()),
       previewed_(checkpointed_) {}
 
@@ -77,6 +79,7 @@ void CheckpointWriter::after_step(EditState& state, Progress& progress) {
         save_state(request_, state);
         checkpointed_ = seconds_now();
     }
+    live_.update(state, state.iteration == total);
     if (seconds_now() - previewed_ > seconds_between_previews) {
         update_preview(state);
         previewed_ = seconds_now();

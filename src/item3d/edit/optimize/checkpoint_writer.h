@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/core/progress.h"
+#include "item3d/edit/optimize/live_textures.h"
 #include "item3d/edit/request.h"
 #include "item3d/edit/scene.h"
 #include "item3d/edit/state.h"
@@ -36,7 +37,8 @@ class Preview {
 /// Writes the checkpoint, and refreshes the preview, every few seconds.
 class CheckpointWriter {
   public:
-    CheckpointWriter(const EditRequest& request, const EditScene& scene);
+    /// fitted: the field before the edit, for LiveTextures; none with a painter.
+    CheckpointWriter(const EditRequest& request, const EditScene& scene, NeuralTexture& fitted);
     /// Call after each step. Throws Interrupted, with the checkpoint written, after Ctrl-C or at
     /// the request's stop_after unless the edit is done by then.
     void after_step(EditState& state, Progress& progress);
@@ -47,6 +49,7 @@ class CheckpointWriter {
     const EditRequest& request_;
     const EditScene& scene_;
     Preview preview_;
+    LiveTextures live_;
     double checkpointed_;
     double previewed_;
 };

@@ -156,7 +156,7 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
     };
     if (state.iteration < plan.iterations) {
         Progress progress("edit", plan.iterations, state.iteration);
-        CheckpointWriter checkpoints(request, scene);
+        CheckpointWriter checkpoints(request, scene, state.fitted);
         while (state.iteration < plan.iterations) {
             adjust([&] { adjustment.before_iteration(state); });
             run_iteration(scene, plan, color_regularizer, state, times);

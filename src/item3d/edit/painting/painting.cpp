@@ -92,7 +92,7 @@ void paint_views(const EditRequest& request, const EditScene& scene, EditState& 
     make_output_folder(request.output / "views");
     std::size_t saved = 0;
     Progress progress(request.plan.method, total, state.iteration);
-    CheckpointWriter checkpoints(request, scene);
+    CheckpointWriter checkpoints(request, scene, state.fitted);
     while (state.iteration < total) {
         try {
             state.painter->step(state.iteration);

@@ -55,10 +55,12 @@ class SqliteRows {
 
     /// The next parameter's value.
     void bind(std::int64_t value);
+    void bind(double value);
     void bind(const std::string& value);
     /// Runs the statement, or goes to its next row; false after the last.
     bool next();
     std::int64_t number(int column) const;
+    double real(int column) const;
     /// Empty for NULL.
     std::string text(int column) const;
 

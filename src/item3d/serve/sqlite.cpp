@@ -1,4 +1,4 @@
-#include "item3d/study/sqlite.h"
+#include "item3d/serve/sqlite.h"
 
 #include "item3d/core/error.h"
 
@@ -15,7 +15,7 @@ Sqlite::Sqlite(std::filesystem::path path, bool may_create) : path_(std::move(pa
         throw InputError(path_.string(),
                          std::string("cannot be opened (") + sqlite3_errmsg(opened) + ")");
     sqlite3_busy_timeout(opened, 5000);
-    // Each answer is on the disk before the participant sees the next page.
+    // A change is on the disk before it is answered.
     run("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
 }
 
@@ -77,6 +77,10 @@ void SqliteRows::bind(std::int64_t value) {
     database_.expect(sqlite3_bind_int64(statement_, ++bound_, value));
 }
 
+void SqliteRows::bind(double value) {
+    database_.expect(sqlite3_bind_double(statement_, ++bound_, value));
+}
+
 void SqliteRows::bind(const std::string& value) {
     database_.expect(sqlite3_bind_text(statement_, ++bound_, value.c_str(),
                                        static_cast<int>(value.size()), SQLITE_TRANSIENT));
@@ -90,6 +94,10 @@ bool SqliteRows::next() {
 
 std::int64_t SqliteRows::number(int column) const {
     return sqlite3_column_int64(statement_, column);
+}
+
+double SqliteRows::real(int column) const {
+    return sqlite3_column_double(statement_, column);
 }
 
 std::string SqliteRows::text(int column) const {

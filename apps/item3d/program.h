@@ -1,0 +1,31 @@
+// Command line to exit code, for programs with and without LibTorch.
+#pragma once
+
+#include "item3d/core/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <initializer_list>
+#include <string>
+
+namespace item3d {
+
+using AddCommand = void (*)(CLI::App&);
+
+/// Parses the command line and runs the command; says what was wrong with its usage.
+int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_commands);
+
+/// The exit code of `run`, whose errors become a line on stderr.
+int guarded(const std::function<int()>& run);
+
+/// Says one line on stderr.
+int fail(ExitCode code, std::string message);
+int fail_as_bug(const std::string& message);
+/// lacking: "... bytes were wanted", or nothing.
+int fail_out_of_memory(const std::string& lacking);
+
+/// Flushes what was printed and ends the process without destructors of static objects.
+[[noreturn]] void end_program(int code);
+
+}  // namespace item3d

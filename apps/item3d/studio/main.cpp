@@ -1,0 +1,15 @@
+// item3d-studio: edits on a page in the browser.
+#include "apps/item3d/program.h"
+#include "apps/item3d/studio/commands.h"
+
+#include <csignal>
+
+int main(int argc, char** argv) {
+    // A file that may not grow any more, and a browser that went away, are errors of write().
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+    item3d::end_program(item3d::guarded([&] {
+        return item3d::parse_and_run(argc, argv,
+                                     {item3d::add_studio_command, item3d::add_read_model_command});
+    }));
+}

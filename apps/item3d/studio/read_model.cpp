@@ -1,0 +1,37 @@
+// item3d-studio read-model: a model for the page, in a process that a broken file may end.
+#include "apps/item3d/studio/commands.h"
+#include "item3d/studio/model_facts.h"
+
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace item3d {
+namespace {
+
+/// A file that unpacks into more than that is refused, and the studio goes on.
+void limit_memory() {
+    constexpr rlim_t most = rlim_t{8} << 30;
+    const rlimit limit{most, most};
+    ::setrlimit(RLIMIT_AS, &limit);
+}
+
+}  // namespace
+
+void add_read_model_command(CLI::App& app) {
+    struct Options {
+        std::filesystem::path model, folder;
+    };
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("read-model", "Read a model for the studio's page");
+    command->group("");  // not for people
+    command->add_option("MODEL", options->model)->required();
+    command->add_option("FOLDER", options->folder)->required();
+    command->callback([options] {
+        limit_memory();
+        write_model_facts(options->model, options->folder);
+    });
+}
+
+}  // namespace item3d

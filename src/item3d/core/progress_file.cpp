@@ -1,0 +1,67 @@
+#include "item3d/core/progress_file.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/replace_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <mutex>
+
+namespace item3d {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Process-wide by nature, as what is said on stderr: one file for one process.
+struct ProgressFile {
+    std::mutex mutex;
+    std::string path;
+    std::string stage;
+    Clock::time_point written;
+};
+
+ProgressFile& progress_file() {
+    static ProgressFile file;
+    return file;
+}
+
+void write(ProgressFile& file, const nlohmann::json& progress) {
+    try {
+        replace_file(file.path, progress.dump());
+    } catch (const Error& error) {
+        warn(std::string("progress is not shown: ") + error.what());
+        file.path.clear();
+    }
+}
+
+}  // namespace
+
+void show_progress_in(const std::string& path) {
+    progress_file().path = path;
+}
+
+void show_stage(const std::string& stage) {
+    show_steps(stage, 0, 0, 0, 0);
+}
+
+void show_steps(const std::string& stage, std::int64_t own, std::int64_t done, std::int64_t total,
+                double seconds) {
+    constexpr auto interval = std::chrono::milliseconds(330);
+    ProgressFile& file = progress_file();
+    const std::lock_guard guard(file.mutex);
+    if (file.path.empty()) return;
+    const auto now = Clock::now();
+    if (stage == file.stage && done < total && now - file.written < interval) return;
+    file.stage = stage;
+    file.written = now;
+    nlohmann::json progress = {{"stage", stage}, {"done", done}, {"total", total}};
+    progress["seconds_left"] = nullptr;
+    if (own > 0)
+        progress["seconds_left"] =
+            seconds * static_cast<double>(total - done) / static_cast<double>(own);
+    write(file, progress);
+}
+
+}  // namespace item3d

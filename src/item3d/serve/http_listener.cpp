@@ -1,0 +1,71 @@
+#include "item3d/serve/http_listener.h"
+
+#include "item3d/core/error.h"
+
+#include <fmt/format.h>
+#include <httplib.h>
+#include <netinet/tcp.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+
+namespace item3d {
+namespace {
+
+/// Two programs that both ask for SO_REUSEPORT, which httplib does by itself, would share the port.
+void set_listener_options(socket_t socket) {
+    const int yes = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+}
+
+}  // namespace
+
+HttpListener::HttpListener(httplib::Server& server, const std::string& host, int port, int threads)
+    : server_(server) {
+    server.new_task_queue = [threads] {
+        return new httplib::ThreadPool(static_cast<std::size_t>(threads));
+    };
+    server.set_socket_options(set_listener_options);
+    server.set_tcp_nodelay(true);
+    errno = 0;
+    if (port == 0)
+        port_ = server.bind_to_any_port(host);
+    else
+        port_ = server.bind_to_port(host, port) ? port : -1;
+    if (port_ < 0) {
+        if (errno == EADDRINUSE)
+            throw ResourceError(fmt::format(
+                "port {} of {} is taken by another program; name another with --port", port, host));
+        throw InputError("--host " + host,
+                         fmt::format("port {} cannot be opened there ({})", port,
+                                     errno != 0 ? std::strerror(errno) : "no such host"),
+                         "name an address of this machine");
+    }
+    thread_ = std::thread([&server] { server.listen_after_bind(); });
+    while (!server.is_running())
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+HttpListener::~HttpListener() {
+    server_.stop();
+    thread_.join();
+}
+
+bool is_loopback(const std::string& host) {
+    return host == "localhost" || host == "::1" || host.starts_with("127.");
+}
+
+std::string server_address(const std::string& host, int port) {
+    std::string name = host;
+    if (host == "0.0.0.0" || host == "::") {
+        std::array<char, 256> machine{};
+        if (::gethostname(machine.data(), machine.size() - 1) == 0) name = machine.data();
+    }
+    if (name.find(':') != std::string::npos) name = "[" + name + "]";
+    return fmt::format("http://{}:{}", name, port);
+}
+
+}  // namespace item3d

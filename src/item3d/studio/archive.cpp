@@ -1,0 +1,132 @@
+#include "item3d/studio/archive.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/io/text.h"
+
+#include <fmt/format.h>
+#include <zip.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array model_extensions = {".glb", ".gltf", ".vrm", ".obj"};
+constexpr std::array other_extensions = {".bin",  ".mtl", ".png", ".jpg",  ".jpeg", ".webp",
+                                         ".ktx2", ".bmp", ".tga", ".tiff", ".tif",  ".gif"};
+
+struct CloseArchive {
+    void operator()(zip_t* archive) const { zip_discard(archive); }
+};
+struct CloseEntry {
+    void operator()(zip_file_t* entry) const { zip_fclose(entry); }
+};
+using Archive = std::unique_ptr<zip_t, CloseArchive>;
+using Entry = std::unique_ptr<zip_file_t, CloseEntry>;
+
+template <std::size_t N>
+bool is_one_of(const fs::path& name, const std::array<const char*, N>& extensions) {
+    return std::find(extensions.begin(), extensions.end(), to_lower(name.extension().string())) !=
+           extensions.end();
+}
+
+[[noreturn]] void refuse(const fs::path& archive, const std::string& problem,
+                         const std::string& hint = "") {
+    throw InputError(archive.filename().string(), problem, hint);
+}
+
+/// A path within a folder: none of its parts leads up or elsewhere, none has control characters.
+fs::path safe_path(const fs::path& archive, std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    const bool is_plain = std::none_of(name.begin(), name.end(), [](unsigned char letter) {
+        return letter < 32 || letter == 127;
+    });
+    const fs::path path(name);
+    bool is_inside = !name.empty() && !path.is_absolute() && name.find(':') == std::string::npos;
+    for (const fs::path& part : path)
+        is_inside = is_inside && part != "..";
+    if (!is_plain || !is_inside)
+        refuse(archive, "a name in it leads out of its folder, or is none",
+               "pack the model's folder anew");
+    return path.lexically_normal();
+}
+
+bool is_link(zip_t* archive, zip_uint64_t index) {
+    constexpr zip_uint32_t type_mask = 0170000, link = 0120000;
+    zip_uint8_t system = 0;
+    zip_uint32_t attributes = 0;
+    zip_file_get_external_attributes(archive, index, 0, &system, &attributes);
+    return system == ZIP_OPSYS_UNIX && ((attributes >> 16) & type_mask) == link;
+}
+
+/// Bytes that were written. The sizes that the archive states are not relied on.
+std::int64_t unpack_entry(zip_t* archive, zip_uint64_t index, const fs::path& source,
+                          const fs::path& target, std::int64_t longest, std::int64_t limit) {
+    const Entry entry(zip_fopen_index(archive, index, 0));
+    if (!entry) refuse(source, std::string("cannot be unpacked (") + zip_strerror(archive) + ")");
+    fs::create_directories(target.parent_path());
+    std::int64_t written = 0;
+    write_atomically(target, [&](const fs::path& path) {
+        std::ofstream file(path, std::ios::binary);
+        std::array<char, 65536> piece{};
+        for (;;) {
+            const zip_int64_t got = zip_fread(entry.get(), piece.data(), piece.size());
+            if (got < 0) refuse(source, "is damaged: a file in it cannot be unpacked");
+            if (got == 0) break;
+            written += got;
+            if (written > longest)
+                refuse(source, fmt::format("unpacks to more than {} MB", limit >> 20),
+                       "make its textures smaller");
+            file.write(piece.data(), got);
+        }
+        file.close();
+        if (!file) throw ResourceError(source.filename().string() + ": the disk is full");
+    });
+    return written;
+}
+
+}  // namespace
+
+fs::path unpack_model(const fs::path& source, const fs::path& folder, const ArchiveLimits& limits) {
+    int error = 0;
+    const Archive archive(zip_open(source.c_str(), ZIP_RDONLY | ZIP_CHECKCONS, &error));
+    if (!archive) refuse(source, "is no whole .zip archive", "pack the model's folder anew");
+    const zip_int64_t count = zip_get_num_entries(archive.get(), 0);
+    if (count > limits.entries)
+        refuse(source, fmt::format("has {} files, at most {} are taken", count, limits.entries));
+    std::int64_t left = limits.bytes;
+    /// Depth, size (negative) and path of each model: the smallest is the one.
+    std::vector<std::tuple<std::ptrdiff_t, std::int64_t, fs::path>> models;
+    for (zip_uint64_t i = 0; i < static_cast<zip_uint64_t>(count); ++i) {
+        zip_stat_t entry;
+        zip_stat_init(&entry);
+        if (zip_stat_index(archive.get(), i, 0, &entry) != 0 || !(entry.valid & ZIP_STAT_NAME))
+            refuse(source, "is damaged: a name in it cannot be read");
+        const std::string name = entry.name;
+        const fs::path path = safe_path(source, name);
+        if (name.ends_with('/') || is_link(archive.get(), i)) continue;
+        const bool is_model = is_one_of(path, model_extensions);
+        if (!is_model && !is_one_of(path, other_extensions)) continue;
+        if ((entry.valid & ZIP_STAT_ENCRYPTION_METHOD) && entry.encryption_method != ZIP_EM_NONE)
+            refuse(source, "is encrypted", "pack it without a password");
+        const std::int64_t size =
+            unpack_entry(archive.get(), i, source, folder / path, left, limits.bytes);
+        left -= size;
+        if (is_model)
+            models.emplace_back(std::distance(path.begin(), path.end()), -size, folder / path);
+    }
+    if (models.empty())
+        refuse(source, "has no model in it", "one of .glb, .gltf, .vrm or .obj is expected");
+    return std::get<fs::path>(*std::min_element(models.begin(), models.end()));
+}
+
+}  // namespace item3d

@@ -1,0 +1,119 @@
+#include "item3d/studio/estimate.h"
+
+#include "item3d/core/words.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace item3d {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The demo edit of docs/benchmarks.md, on two cores.
+constexpr EditCost demo_cost{250, 64 * 64, 29.0, 16.6, 9.6, 0.86e9};
+constexpr int demo_threads = 2;
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+template <typename Value>
+double median_of(const std::vector<EditCost>& costs, Value value) {
+    std::vector<double> values;
+    for (const EditCost& cost : costs)
+        values.push_back(value(cost));
+    return median(std::move(values));
+}
+
+double number(const Json& settings, const Json& defaults, const char* name, double otherwise) {
+    for (const Json* from : {&settings, &defaults})
+        if (const auto found = from->find(name); found != from->end() && found->is_number())
+            return found->get<double>();
+    return otherwise;
+}
+
+std::string text(const Json& object, const char* key, const std::string& otherwise) {
+    const auto found = object.find(key);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : otherwise;
+}
+
+/// As EditPlan::paints_detail: where the target has a word of the prior's that the source has not.
+bool paints_detail(const Json& request, const Json& settings, const Json& defaults) {
+    const std::string detail = text(settings, "detail", text(defaults, "detail", "auto"));
+    if (detail != "auto") return detail == "always";
+    const auto has = [](const std::vector<std::string>& words, const std::string& word) {
+        return std::find(words.begin(), words.end(), word) != words.end();
+    };
+    const auto from = prompt_words(text(request, "from", "")),
+               to = prompt_words(text(request, "to", ""));
+    const Json words = defaults.value("detail_words", Json::array());
+    return std::any_of(words.begin(), words.end(), [&](const Json& word) {
+        return has(to, word.get<std::string>()) && !has(from, word.get<std::string>());
+    });
+}
+
+}  // namespace
+
+std::optional<EditCost> edit_cost(const Json& summary) {
+    try {
+        const Json& seconds = summary.at("seconds");
+        const Json& settings = summary.at("settings");
+        EditCost cost;
+        cost.iterations = summary.at("iterations_done").get<double>();
+        const double resolution = settings.at("resolution").get<double>();
+        cost.pixels = settings.at("batch").get<double>() * resolution * resolution;
+        cost.optimize = seconds.at("optimize").get<double>();
+        cost.detail = seconds.value("detail", 0.0);
+        cost.rest = seconds.at("total").get<double>() - cost.optimize - cost.detail;
+        cost.memory = summary.at("peak_memory_bytes").get<double>();
+        const bool is_whole = text(summary, "command", "").find(" --resume") == std::string::npos;
+        if (!is_whole || cost.iterations <= 0 || cost.optimize <= 0) return std::nullopt;
+        return cost;
+    } catch (const Json::exception&) {
+        return std::nullopt;
+    }
+}
+
+Json estimate_edit(const Json& request, const Json& defaults, const std::vector<EditCost>& former,
+                   int threads) {
+    const Json settings = request.value("settings", Json::object());
+    const bool detail = paints_detail(request, settings, defaults);
+    const double usual = number(Json::object(), defaults, "iterations", demo_cost.iterations);
+    const double before_detail = number(settings, defaults, "iterations_before_detail", 0);
+    const double iterations = settings.contains("iterations")
+                                  ? number(settings, defaults, "iterations", usual)
+                                  : (detail && before_detail > 0 ? before_detail : usual);
+    const double resolution = number(settings, defaults, "resolution", 64);
+    const double pixels = number(settings, defaults, "batch", 1) * resolution * resolution;
+
+    std::vector<EditCost> costs = former;
+    double faster = 1;
+    if (costs.empty()) {
+        costs = {demo_cost};
+        faster = static_cast<double>(std::max(1, threads)) / demo_threads;
+    }
+    const double per_pixel = median_of(costs, [](const EditCost& cost) {
+        return cost.optimize / (cost.iterations * cost.pixels);
+    });
+    double seconds = per_pixel * iterations * pixels +
+                     median_of(costs, [](const EditCost& cost) { return cost.rest; });
+    if (detail) {
+        std::vector<EditCost> detailed;
+        std::copy_if(costs.begin(), costs.end(), std::back_inserter(detailed),
+                     [](const EditCost& cost) { return cost.detail > 0; });
+        seconds += detailed.empty()
+                       ? demo_cost.detail
+                       : median_of(detailed, [](const EditCost& cost) { return cost.detail; });
+    }
+    return {{"seconds", std::round(10 * seconds / faster) / 10},
+            {"memory_bytes", median_of(costs, [](const EditCost& cost) { return cost.memory; })},
+            {"iterations", iterations},
+            {"detail", detail},
+            {"basis", former.empty() ? "the demo edit elsewhere" : "edits on this machine"}};
+}
+
+}  // namespace item3d

@@ -1,0 +1,350 @@
+#include "item3d/studio/jobs.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/progress.h"
+#include "item3d/studio/live_folder.h"
+
+#include <chrono>
+#include <utility>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto poll_interval = std::chrono::milliseconds(50);
+constexpr auto progress_interval = std::chrono::milliseconds(500);
+constexpr auto longest_cancel = std::chrono::seconds(3);
+constexpr auto longest_pause = std::chrono::seconds(60);
+constexpr const char* checkpoint_name = "checkpoint.safetensors";
+constexpr const char* summary_name = "edit.json";  ///< an edit writes it last
+
+/// Of events of which the last alone counts.
+std::string event_key(std::int64_t result) {
+    return "result " + std::to_string(result);
+}
+
+/// A command with what only the server wants of it.
+std::vector<std::string> arguments_of(const StudioFolders& folders, const StudioCommand& command,
+                                      const StudioResult& result) {
+    std::vector<std::string> arguments = {folders.program(command.family).string()};
+    arguments.insert(arguments.end(), command.arguments.begin(), command.arguments.end());
+    const std::string live = result_folder_name(result.id) + "/" + live_folder_name;
+    arguments.insert(arguments.end(), {"--progress-file", live + "/" + progress_file_name});
+    if (result.kind == "edit") {
+        arguments.insert(arguments.end(), {"--live", live});
+        if (fs::exists(folders.result(result.project, result.id) / checkpoint_name))
+            arguments.emplace_back("--resume");
+    }
+    return arguments;
+}
+
+}  // namespace
+
+struct StudioJobs::Running {
+    StudioResult result;
+    std::unique_ptr<ChildProgram> program;
+    LiveFolder live;
+    Clock::time_point begin = Clock::now();
+    Clock::time_point told = {};
+    Wish wish = Wish::none;
+    Clock::time_point asked = {};
+
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+};
+
+StudioJobs::StudioJobs(StudioStore& store, StudioEvents& events, const StudioFolders& folders,
+                       const StudioCommands& commands, std::function<void(StudioResult&)> ended)
+    : store_(store),
+      events_(events),
+      folders_(folders),
+      commands_(commands),
+      ended_(std::move(ended)) {
+    for (StudioResult& result : store_.results_in(ResultState::running)) {
+        result.state = ResultState::paused;
+        store_.update_result(result);
+    }
+    for (StudioResult& result : store_.results_in(ResultState::paused))
+        if (fs::exists(folders_.result(result.project, result.id) / summary_name)) finish(result);
+    thread_ = std::thread([this] { loop(); });
+}
+
+StudioJobs::~StudioJobs() {
+    {
+        const std::lock_guard guard(mutex_);
+        stopping_ = true;
+        if (running_ && running_->wish == Wish::none) {
+            running_->wish = Wish::pause;
+            running_->asked = Clock::now();
+            running_->program->ask_to_end();
+        }
+        changed_.notify_all();
+    }
+    thread_.join();
+}
+
+void StudioJobs::loop() {
+    for (;;) {
+        {
+            std::unique_lock lock(mutex_);
+            if (running_)
+                changed_.wait_for(lock, poll_interval);
+            else
+                changed_.wait(lock, [this] { return stopping_ || may_begin_; });
+            if (stopping_ && !running_) return;
+            may_begin_ = false;
+        }
+        try {
+            if (running_) {
+                watch();
+                continue;
+            }
+            const std::vector<StudioResult> waiting = store_.results_in(ResultState::waiting);
+            const std::lock_guard guard(mutex_);
+            if (!waiting.empty() && !stopping_) begin(waiting.front());
+        } catch (const std::exception& error) {
+            // A full disk, most likely: what runs goes on, and is looked at again.
+            warn(std::string("queue: ") + error.what());
+            std::this_thread::sleep_for(progress_interval);
+            const std::lock_guard guard(mutex_);
+            may_begin_ = true;
+        }
+    }
+}
+
+/// With the lock held. Afterwards another may wait, where this one does not run.
+void StudioJobs::begin(StudioResult result) {
+    may_begin_ = true;
+    const auto stored = store_.result(result.id);
+    if (!stored || stored->state != ResultState::waiting) return;  // it was cancelled just now
+    try {
+        const auto project = store_.project(result.project);
+        const auto parent = result.parent ? store_.result(*result.parent) : std::nullopt;
+        const StudioCommand command = commands_.make(*project, result, parent ? &*parent : nullptr);
+        const fs::path folder = folders_.result(result.project, result.id);
+        make_output_folder(folder / live_folder_name);
+        auto running = std::make_unique<Running>();
+        running->live = LiveFolder(folder / live_folder_name);
+        running->live.clear();
+        running->program = std::make_unique<ChildProgram>(
+            arguments_of(folders_, command, result), folder / "log.txt",
+            ChildSurroundings{folders_.project(result.project), "item3d"});
+        result.state = ResultState::running;
+        result.message.clear();
+        running->result = result;
+        store_.update_result(result);
+        running_ = std::move(running);
+        events_.send("result", result_json(result), event_key(result.id));
+    } catch (const std::exception& error) {
+        fail(std::move(result), error.what());
+    }
+}
+
+void StudioJobs::fail(StudioResult result, const std::string& message) {
+    result.state = ResultState::failed;
+    result.message = folders_.without_paths(message);
+    store_.update_result(result);
+    events_.send("result", result_json(result), event_key(result.id));
+}
+
+void StudioJobs::watch() {
+    const auto status = running_->program->status();
+    if (status) {
+        end(*status);
+        return;
+    }
+    const auto now = Clock::now();
+    {
+        const std::lock_guard guard(mutex_);
+        const auto longest =
+            running_->wish == Wish::pause ? Clock::duration(longest_pause) : longest_cancel;
+        if (running_->wish != Wish::none && now - running_->asked > longest) {
+            running_->program->kill();
+            return;
+        }
+    }
+    const std::int64_t id = running_->result.id;
+    if (auto preview = running_->live.new_preview()) {
+        for (auto& texture : preview->at("textures"))
+            texture["url"] = live_texture_url(id, texture.at("file"), preview->at("revision"));
+        (*preview)["id"] = id;
+        events_.send("preview", *preview, "preview " + std::to_string(id));
+    }
+    if (now - running_->told < progress_interval) return;
+    running_->told = now;
+    const auto progress = running_->live.new_progress();
+    if (!progress) return;
+    const std::lock_guard guard(mutex_);
+    running_->result.progress = *progress;
+    running_->result.progress["seconds"] = running_->result.seconds + running_->seconds();
+    const StudioResult told = running_->result;
+    if (auto result = store_.result(id)) {  // with what people wrote meanwhile
+        result->progress = told.progress;
+        events_.send("result", result_json(*result), event_key(id));
+    }
+}
+
+void StudioJobs::end(int status) {
+    std::unique_ptr<Running> ended;
+    {
+        const std::lock_guard guard(mutex_);
+        ended = std::move(running_);
+        may_begin_ = true;
+    }
+    auto stored = store_.result(ended->result.id);
+    if (!stored) return;
+    StudioResult result = *stored;
+    result.seconds += ended->seconds();
+    const fs::path folder = folders_.result(result.project, result.id);
+    if (ended->wish == Wish::remove) {
+        remove_stored(result);
+        return;
+    }
+    if (status == 0) {
+        result.state = ResultState::done;
+    } else if (ended->wish == Wish::cancel) {
+        result.state = ResultState::cancelled;
+    } else if (ended->wish == Wish::pause) {
+        result.state = ResultState::paused;
+    } else {
+        result.state = ResultState::failed;
+        result.message = folders_.without_paths(reason_of_end(folder / "log.txt", status));
+    }
+    if (result.state == ResultState::done)
+        finish(std::move(result));
+    else
+        store_surely(result);
+}
+
+/// What a command made is there, by the queue's doing or on the command line.
+void StudioJobs::finish(StudioResult result) {
+    const fs::path folder = folders_.result(result.project, result.id);
+    std::error_code ignored;
+    fs::remove(folder / checkpoint_name, ignored);  // as large as all the rest
+    fs::remove_all(folder / live_folder_name, ignored);
+    result.state = ResultState::done;
+    try {
+        ended_(result);
+    } catch (const std::exception& error) {
+        result.state = ResultState::failed;
+        result.message = folders_.without_paths(error.what());
+    }
+    store_surely(result);
+}
+
+/// How a command ended must not be lost where the disk is full for a while.
+void StudioJobs::store_surely(const StudioResult& result) {
+    constexpr auto pause = std::chrono::seconds(1);
+    bool has_warned = false;
+    for (;;) {
+        try {
+            store_.update_result(result);
+            events_.send("result", result_json(result), event_key(result.id));
+            return;
+        } catch (const Error& error) {
+            if (!std::exchange(has_warned, true)) warn(error.what());
+            const std::lock_guard guard(mutex_);
+            if (stopping_) return;
+        }
+        std::this_thread::sleep_for(pause);
+    }
+}
+
+StudioResult StudioJobs::add(StudioResult result) {
+    const auto project = store_.project(result.project);
+    if (!project) throw InputError("project", "is not there");
+    std::optional<StudioResult> parent;
+    if (result.parent) {
+        parent = store_.result(*result.parent);
+        if (!parent || parent->project != result.project)
+            throw InputError("parent", "is no result of this project");
+    }
+    const StudioResult* begun_with = parent ? &*parent : nullptr;
+    commands_.make(*project, result, begun_with);  // throws before anything is stored
+    StudioResult added = store_.add_result(result);
+    added.command = shown_command(commands_.make(*project, added, begun_with));
+    store_.update_result(added);
+    events_.send("result", result_json(added), event_key(added.id));
+    const std::lock_guard guard(mutex_);
+    may_begin_ = true;
+    changed_.notify_all();
+    return added;
+}
+
+void StudioJobs::ask(std::int64_t id, Wish wish) {
+    {
+        const std::lock_guard guard(mutex_);
+        if (running_ && running_->result.id == id) {
+            running_->wish = wish;
+            running_->asked = Clock::now();
+            running_->program->ask_to_end();
+            return;
+        }
+        auto result = store_.result(id);
+        if (!result || (result->state != ResultState::waiting &&
+                        !(wish == Wish::cancel && result->state == ResultState::paused)))
+            return;
+        result->state = wish == Wish::pause ? ResultState::paused : ResultState::cancelled;
+        store_.update_result(*result);
+    }
+    tell(id);
+}
+
+void StudioJobs::pause(std::int64_t id) {
+    ask(id, Wish::pause);
+}
+
+void StudioJobs::cancel(std::int64_t id) {
+    ask(id, Wish::cancel);
+}
+
+void StudioJobs::resume(std::int64_t id) {
+    {
+        const std::lock_guard guard(mutex_);
+        auto result = store_.result(id);
+        if (!result || !has_ended(result->state) || result->state == ResultState::done) return;
+        result->state = ResultState::waiting;
+        result->message.clear();
+        store_.update_result(*result);
+        may_begin_ = true;
+        changed_.notify_all();
+    }
+    tell(id);
+}
+
+void StudioJobs::remove(std::int64_t id) {
+    const auto result = store_.result(id);
+    if (!result) return;
+    {
+        const std::lock_guard guard(mutex_);
+        if (running_ && running_->result.id == id) {
+            running_->wish = Wish::remove;
+            running_->asked = Clock::now();
+            running_->program->ask_to_end();
+            return;
+        }
+    }
+    remove_stored(*result);
+}
+
+void StudioJobs::remove_stored(const StudioResult& result) {
+    store_.remove_result(result.id);
+    std::error_code ignored;
+    fs::remove_all(folders_.result(result.project, result.id), ignored);
+    events_.send("removed", {{"id", result.id}, {"project", result.project}});
+}
+
+StudioResult StudioJobs::with_progress(StudioResult result) const {
+    const std::lock_guard guard(mutex_);
+    if (running_ && running_->result.id == result.id) result.progress = running_->result.progress;
+    return result;
+}
+
+void StudioJobs::tell(std::int64_t id) {
+    if (const auto result = store_.result(id))
+        events_.send("result", result_json(with_progress(*result)), event_key(id));
+}
+
+}  // namespace item3d

@@ -1,0 +1,125 @@
+#include "item3d/studio/light_request.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/math.h"
+#include "item3d/io/load_light.h"
+#include "item3d/lighting/adjust.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/lighting/presets/sky_hour.h"
+#include "item3d/lighting/words.h"
+#include "item3d/scene/model_view.h"
+#include "item3d/studio/commands.h"
+#include "item3d/studio/halved.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// So many numbers, parted by commas.
+std::vector<float> light_numbers(const std::string& name, const std::string& text,
+                                 std::size_t fewest, std::size_t most) {
+    std::vector<float> numbers;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (bool goes_on = true; goes_on;) {
+        float value = 0;
+        const auto parsed = std::from_chars(at, end, value);
+        const bool ends = parsed.ptr == end;
+        if (parsed.ec != std::errc() || !std::isfinite(value) || (!ends && *parsed.ptr != ','))
+            throw InputError(name, "numbers were expected, found '" + text + "'");
+        numbers.push_back(value);
+        at = parsed.ptr + 1;
+        goes_on = !ends;
+    }
+    if (numbers.size() < fewest || numbers.size() > most)
+        throw InputError(name, fmt::format("has {} numbers", numbers.size()));
+    return numbers;
+}
+
+float light_number(const LightParameter& parameter, const char* name, float most) {
+    const std::string text = parameter(name);
+    if (text.empty()) return 0;
+    const float value = light_numbers(name, text, 1, 1).front();
+    if (std::abs(value) > most) throw InputError(name, fmt::format("must be within {:g}", most));
+    return value;
+}
+
+std::optional<SunSetting> requested_sun(const LightParameter& parameter) {
+    constexpr float highest = 90;
+    SunSetting sun;
+    if (const std::string text = parameter("sun"); !text.empty()) {
+        const std::vector<float> numbers = light_numbers("sun", text, 2, 3);
+        if (std::abs(numbers[1]) > highest)
+            throw InputError("sun", "its elevation must be from -90 to 90");
+        sun.from = {numbers[0], numbers[1]};
+        if (numbers.size() == 3 && numbers[2] <= 0)
+            throw InputError("sun", "its strength must be above 0");
+        if (numbers.size() == 3) sun.strength = numbers[2];
+        return sun;
+    }
+    const std::string words = parameter("lit");
+    if (words.empty()) return std::nullopt;
+    // Cameras count azimuth from +Z towards +X, the compass from -Z.
+    const LightWords read = parse_light_words(words, 180 - default_azimuth * 180 / pi);
+    if (!read.from)
+        throw InputError("'" + words + "'", "names no direction of light",
+                         "say \"from the left\" or \"low in the east\"");
+    sun.from = *read.from;
+    return sun;
+}
+
+/// "#rrggbb" as linear RGB.
+std::optional<Vec3> requested_tint(const std::string& text) {
+    constexpr std::size_t length = 7;
+    constexpr int hexadecimal = 16;
+    if (text.empty()) return std::nullopt;
+    Vec3 color(0.0f);
+    bool is_color = text.size() == length && text[0] == '#';
+    for (int i = 0; is_color && i < 3; ++i) {
+        unsigned char value = 0;
+        const char* digits = text.data() + 1 + 2 * i;
+        is_color = std::from_chars(digits, digits + 2, value, hexadecimal).ptr == digits + 2;
+        color[i] = srgb_to_linear(static_cast<float>(value) / 255);
+    }
+    if (!is_color) throw InputError("tint", "#rrggbb was expected, found '" + text + "'");
+    return color;
+}
+
+Image unchanged_light(const std::string& name, int width, const LightParameter& parameter,
+                      const fs::path& folder) {
+    constexpr float day = 24;
+    if (name == "sky") {
+        const float hour = light_number(parameter, "hour", day);
+        return make_sky_at(hour, width / 2);
+    }
+    const auto& presets = light_preset_names();
+    if (std::find(presets.begin(), presets.end(), name) != presets.end())
+        return make_light_preset(name, width / 2);
+    const fs::path file = folder / light_file_name(name);
+    if (!fs::exists(file)) throw InputError("light", "there is none of this name");
+    return halved(load_light(file.string()), width);
+}
+
+}  // namespace
+
+Image requested_light(const std::string& name, int width, const LightParameter& parameter,
+                      const fs::path& folder) {
+    constexpr float turns = 36000, stops = 30;
+    LightChange change;
+    change.rotation = light_number(parameter, "rotate", turns);
+    change.tilt = light_number(parameter, "tilt", turns);
+    change.exposure = light_number(parameter, "exposure", stops);
+    change.sun = requested_sun(parameter);
+    change.tint = requested_tint(parameter("tint"));
+    return change_light(unchanged_light(name, width, parameter, folder), change);
+}
+
+}  // namespace item3d

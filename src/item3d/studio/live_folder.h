@@ -1,0 +1,40 @@
+// What a command says of itself while it runs: the folder live/ of its result.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace item3d {
+
+inline constexpr const char* live_folder_name = "live";
+inline constexpr const char* progress_file_name = "progress.json";
+inline constexpr const char* textures_file_name = "textures.json";
+
+/// Reads progress.json and textures.json, each once after it was renewed.
+class LiveFolder {
+  public:
+    LiveFolder() = default;
+    explicit LiveFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    /// Removes what an earlier run left.
+    void clear() const;
+    /// "stage", "done", "total", "seconds_left".
+    std::optional<nlohmann::json> new_progress();
+    /// "revision", "textures" ([{"material", "slot", "file"}]), "direction".
+    std::optional<nlohmann::json> new_preview();
+
+  private:
+    std::optional<nlohmann::json> read_if_new(const char* name,
+                                              std::filesystem::file_time_type& last) const;
+
+    std::filesystem::path folder_;
+    std::filesystem::file_time_type progress_time_, preview_time_;
+};
+
+/// Of a texture of the live folder, relative to the page. file and revision: of new_preview().
+std::string live_texture_url(std::int64_t result, const std::string& file, std::int64_t revision);
+
+}  // namespace item3d

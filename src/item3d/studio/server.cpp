@@ -1,0 +1,71 @@
+#include "item3d/studio/server.h"
+
+#include "item3d/serve/http_listener.h"
+#include "item3d/studio/page_routes.h"
+#include "item3d/studio/project_routes.h"
+#include "item3d/studio/result_routes.h"
+#include "item3d/studio/tool_routes.h"
+#include "item3d/studio/upload_routes.h"
+
+#include <optional>
+
+namespace item3d {
+namespace {
+
+/// Event streams and uploads hold a thread each; browsers keep six connections a page.
+constexpr int server_threads = 64;
+constexpr std::size_t longest_body = std::size_t{1536} << 20;  ///< of the largest upload
+
+}  // namespace
+
+struct StudioServer::Sockets {
+    httplib::Server server;
+    Studio& studio;
+    StudioRoutes routes{server, studio};
+    std::optional<HttpListener> listener;
+
+    explicit Sockets(Studio& of) : studio(of) {}
+};
+
+StudioServer::StudioServer(Studio& studio, const std::string& host, int port)
+    : sockets_(std::make_unique<Sockets>(studio)) {
+    httplib::Server& server = sockets_->server;
+    server.set_keep_alive_timeout(2);
+    server.set_keep_alive_max_count(1000);
+    server.set_read_timeout(20);
+    server.set_write_timeout(20);
+    server.set_payload_max_length(longest_body);
+    server.set_default_headers({{"X-Content-Type-Options", "nosniff"},
+                                {"Referrer-Policy", "no-referrer"},
+                                {"X-Frame-Options", "SAMEORIGIN"},
+                                {"Cross-Origin-Resource-Policy", "same-origin"}});
+    StudioRoutes& routes = sockets_->routes;
+    add_page_routes(routes);
+    add_project_routes(routes);
+    add_result_routes(routes);
+    add_upload_routes(routes);
+    add_tool_routes(routes);
+    const auto unknown = [](const HttpRequest&, HttpResponse& response,
+                            const httplib::ContentReader&) {
+        refuse_and_close(response, http_status::not_found, "there is nothing here");
+    };
+    server.Post(".*", unknown);
+    server.Put(".*", unknown);
+    server.Patch(".*", unknown);
+    server.Delete(".*", unknown);
+    server.set_exception_handler(
+        [&studio](const HttpRequest&, HttpResponse& response, std::exception_ptr exception) {
+            reply_exception(studio, response, exception);
+        });
+    sockets_->listener.emplace(server, host, port, server_threads);
+}
+
+StudioServer::~StudioServer() {
+    sockets_->studio.events().close();
+}
+
+int StudioServer::port() const {
+    return sockets_->listener->port();
+}
+
+}  // namespace item3d

@@ -1,0 +1,27 @@
+// The studio on a socket.
+#pragma once
+
+#include "item3d/studio/studio.h"
+
+#include <memory>
+#include <string>
+
+namespace item3d {
+
+/// Answers requests in threads of its own, from the constructor to the destructor.
+class StudioServer {
+  public:
+    /// studio outlives it. port 0: a free one. Throws as HttpListener.
+    StudioServer(Studio& studio, const std::string& host, int port);
+    ~StudioServer();
+    StudioServer(const StudioServer&) = delete;
+    StudioServer& operator=(const StudioServer&) = delete;
+
+    int port() const;
+
+  private:
+    struct Sockets;
+    std::unique_ptr<Sockets> sockets_;
+};
+
+}  // namespace item3d

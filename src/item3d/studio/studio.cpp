@@ -1,0 +1,214 @@
+#include "item3d/studio/studio.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/io/load.h"
+#include "item3d/io/save.h"
+#include "item3d/io/text.h"
+#include "item3d/studio/archive.h"
+#include "item3d/studio/halved.h"
+
+#include <algorithm>
+#include <array>
+#include <thread>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::array folders_of_files = {"textures", "views", "live"};
+constexpr int thumbnail_edge = 128;  ///< pixels
+/// What an edit leaves for itself.
+constexpr std::array private_files = {"checkpoint.safetensors", "plan_state.json"};
+
+Json read_catalogue(const fs::path& page) {
+    const fs::path file = page / "settings.json";
+    Json settings = Json::parse(read_text(file), nullptr, false);
+    if (!settings.is_array())
+        throw InputError(file.string(), "is no list of settings", "install item3d again");
+    return settings;
+}
+
+Json read_object(const fs::path& file) {
+    Json json = Json::parse(read_text(file), nullptr, false);
+    return json.is_object() ? json : Json::object();
+}
+
+bool has_same_bytes(const fs::path& a, const fs::path& b) {
+    std::error_code code;
+    if (fs::file_size(a, code) != fs::file_size(b, code) || code) return false;
+    return read_bytes(a) == read_bytes(b);
+}
+
+void check_kind(const std::string& name) {
+    constexpr std::array kinds = {".glb", ".gltf", ".vrm", ".obj", ".zip"};
+    const std::string extension = to_lower(fs::path(name).extension().string());
+    if (std::find(kinds.begin(), kinds.end(), extension) == kinds.end())
+        throw InputError(shown_name(name, "the file"), "is of no kind that is read",
+                         "choose a .glb, .gltf, .vrm or .obj, or a .zip of a model's folder");
+}
+
+}  // namespace
+
+std::filesystem::path demo_model() {
+    return assets_folder() / "demo" / "mug.glb";
+}
+
+Studio::Studio(StudioOptions options)
+    : options_(std::move(options)),
+      folders_(options_.folder, options_.programs),
+      lock_(options_.folder, "`item3d studio`"),
+      store_(options_.folder),
+      access_(options_.access),
+      commands_(folders_, read_catalogue(options_.page)),
+      jobs_(store_, events_, folders_, commands_,
+            [this](StudioResult& result) { take_result(result); }) {
+    folders_.clear_incoming();
+}
+
+/// In a process of its own, which a broken file may end.
+void Studio::read_model(std::int64_t project, const fs::path& model) {
+    const fs::path folder = folders_.project(project);
+    const StudioCommand command{"studio", {"read-model", model.string(), folder.string()}};
+    constexpr auto longest = std::chrono::seconds(120);
+    run_now(command, folder, folder / "read.log", longest);
+    const fs::path source = folder / "source";
+    store_.set_model(project, fs::relative(model, source).string(),
+                     read_object(folder / "model.json"));
+}
+
+StudioProject Studio::open_model(const fs::path& file, const std::string& name) {
+    check_kind(name);
+    const std::string shown = shown_name(name, "model");
+    const std::int64_t id = store_.add_project(shown);
+    try {
+        const fs::path source = folders_.project(id) / "source";
+        fs::create_directories(source);
+        fs::path model = source / stored_name(name);
+        if (to_lower(fs::path(name).extension().string()) == ".zip") {
+            const fs::path archive = folders_.project(id) / stored_name(name);
+            fs::copy_file(file, archive);
+            model = unpack_model(archive, source);
+            fs::remove(archive);
+        } else {
+            fs::copy_file(file, model);
+        }
+        read_model(id, model);
+    } catch (...) {
+        std::error_code ignored;
+        store_.remove_project(id);
+        fs::remove_all(folders_.project(id), ignored);
+        throw;
+    }
+    const StudioProject opened = project(id);
+    events_.send("project", project_json(opened));
+    return opened;
+}
+
+StudioProject Studio::open_again(const fs::path& file) {
+    if (!fs::is_regular_file(file))
+        throw InputError(file.string(), "there is no such file", "check the path");
+    constexpr std::int64_t looked_at = 200;
+    for (const StudioProject& known : store_.projects(looked_at, 0))
+        if (!known.file.empty() &&
+            has_same_bytes(folders_.project(known.id) / "source" / known.file, file))
+            return known;
+    return open_model(file, file.filename().string());
+}
+
+StudioResult Studio::reconstruct(const fs::path& photographs, const std::string& name) {
+    const std::int64_t id = store_.add_project(shown_name(name, "Photographs"));
+    fs::create_directories(folders_.project(id));
+    fs::rename(photographs, folders_.project(id) / "photographs");
+    events_.send("project", project_json(project(id)));
+    StudioResult result;
+    result.project = id;
+    result.kind = "reconstruct";
+    return jobs_.add(result);
+}
+
+void Studio::take_result(StudioResult& result) {
+    const fs::path folder = folders_.result(result.project, result.id);
+    if (fs::exists(folder / "edit.json")) {
+        const Json summary = read_object(folder / "edit.json");
+        result.scores = summary.value("scores", Json::object());
+    }
+    if (result.kind == "reconstruct") {
+        const fs::path source = folders_.project(result.project) / "source";
+        fs::create_directories(source);
+        fs::copy_file(folder / "model.glb", source / "model.glb",
+                      fs::copy_options::overwrite_existing);
+        read_model(result.project, source / "model.glb");
+        events_.send("project", project_json(project(result.project)));
+    }
+    if (fs::exists(folder / "preview.png"))
+        save_image(folder / thumbnail_name,
+                   first_view(load_image(folder / "preview.png"), thumbnail_edge));
+    result.files = files_of(result);
+}
+
+void Studio::remove_project(std::int64_t id) {
+    for (const StudioResult& result : store_.results(project(id).id))
+        if (result.state == ResultState::running)
+            throw InputError("project", "one of its results is being made", "cancel that first");
+    store_.remove_project(id);
+    std::error_code ignored;
+    fs::remove_all(folders_.project(id), ignored);
+    events_.send("project", {{"id", id}, {"removed", true}});
+}
+
+StudioProject Studio::project(std::int64_t id) {
+    const auto found = store_.project(id);
+    if (!found) throw InputError("project", "is not there", "it may have been removed");
+    return *found;
+}
+
+StudioResult Studio::result(std::int64_t id) {
+    const auto found = store_.result(id);
+    if (!found) throw InputError("result", "is not there", "it may have been removed");
+    return *found;
+}
+
+std::vector<std::string> Studio::files_of(const StudioResult& result) const {
+    const fs::path folder = folders_.result(result.project, result.id);
+    std::vector<std::string> names;
+    const auto add = [&](const fs::path& inside, const std::string& before) {
+        std::error_code code;
+        for (const auto& entry : fs::directory_iterator(inside, code)) {
+            const std::string name = entry.path().filename().string();
+            if (!entry.is_regular_file() || name.find(".tmp") != std::string::npos) continue;
+            if (std::find(private_files.begin(), private_files.end(), name) == private_files.end())
+                names.push_back(before + name);
+        }
+    };
+    add(folder, "");
+    for (const char* inner : folders_of_files)
+        add(folder / inner, std::string(inner) + "/");
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+void Studio::run_now(const StudioCommand& command, const fs::path& folder, const fs::path& log,
+                     std::chrono::seconds longest) {
+    // Models are read beside what takes longer.
+    const std::lock_guard guard(command.family == "studio" ? reading_ : running_now_);
+    std::error_code ignored;
+    fs::remove(log, ignored);
+    std::vector<std::string> arguments = {folders_.program(command.family).string()};
+    arguments.insert(arguments.end(), command.arguments.begin(), command.arguments.end());
+    ChildProgram program(arguments, log, {folder, "item3d"});
+    const auto last = std::chrono::steady_clock::now() + longest;
+    std::optional<int> status;
+    while (!(status = program.status())) {
+        if (std::chrono::steady_clock::now() > last)
+            throw InputError(command.arguments.front(), "took too long, and was ended");
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    // The program's own line names what was wrong and what to try.
+    if (*status != 0)
+        throw Error(ExitCode::bad_input, folders_.without_paths(reason_of_end(log, *status)));
+}
+
+}  // namespace item3d

@@ -1,0 +1,217 @@
+#include "item3d/studio/tool_routes.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/hub/find_prior.h"
+#include "item3d/io/save.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/lighting/presets/sky_hour.h"
+#include "item3d/studio/estimate.h"
+#include "item3d/studio/light_query.h"
+#include "item3d/studio/light_request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr auto longest_tool = std::chrono::seconds(120);
+constexpr const char* region_folder = "region";
+
+/// Answers with a Radiance file. Presets as they are are kept, since all pages begin with one.
+void answer_light(Studio& studio, const HttpRequest& request, HttpResponse& response) {
+    constexpr int narrowest = 64, widest = 2048, usual = 512;
+    const std::string name = request.matches[1].str();
+    int width = usual;
+    if (request.has_param("width"))
+        width = std::clamp(std::atoi(request.get_param_value("width").c_str()), narrowest, widest);
+    width &= ~1;
+    const fs::path folder = studio.folders().root() / "lights";
+    const bool is_changed = request.params.size() > (request.has_param("width") ? 1u : 0u);
+    const auto& presets = light_preset_names();
+    const bool is_preset = std::find(presets.begin(), presets.end(), name) != presets.end();
+    const fs::path kept = folder / "presets" / fmt::format("{}_{}.hdr", name, width);
+    const bool is_kept = is_preset && !is_changed;
+    if (is_kept && fs::exists(kept)) {
+        reply_file(request, response, kept);
+        return;
+    }
+    const Image light = requested_light(
+        name, width, [&](const std::string& key) { return request.get_param_value(key); }, folder);
+    const fs::path file = is_kept ? kept : studio.folders().incoming(".hdr");
+    fs::create_directories(file.parent_path());
+    save_image(file, light, 32);
+    const Bytes bytes = read_bytes(file);
+    if (!is_kept) fs::remove(file);
+    response.set_header("Cache-Control", "no-cache");
+    reply_bytes(response, std::string(bytes.begin(), bytes.end()), "image/vnd.radiance");
+}
+
+/// The result that a request begins with; nothing: the project's model.
+std::optional<StudioResult> parent_of_request(Studio& studio, const StudioProject& project,
+                                              const Json& body) {
+    const auto parent = body.find("parent");
+    if (parent == body.end() || parent->is_null()) return std::nullopt;
+    StudioResult result = studio.result(parent->get<std::int64_t>());
+    if (result.project != project.id) throw InputError("parent", "is no result of this project");
+    return result;
+}
+
+/// Index of the material of that name; of several the first.
+Json material_index(const StudioProject& project, const std::string& name) {
+    for (const Json& material : project.model.value("materials", Json::array()))
+        if (material.at("name") == name) return material.at("index");
+    return nullptr;
+}
+
+/// Draws what the selectors take. What an earlier call left is replaced.
+Json draw_region(Studio& studio, const StudioProject& project, const Json& body, int revision) {
+    const auto parent = parent_of_request(studio, project, body);
+    const fs::path folder = studio.folders().project(project.id);
+    StudioCommand command =
+        studio.commands().region(project, body, parent ? &*parent : nullptr, region_folder);
+    const Json request = {{"command", shown_command(command)}};
+    command.arguments.insert(command.arguments.end(), {"--size", "256", "--texture-size", "512"});
+    std::error_code ignored;
+    fs::remove_all(folder / region_folder, ignored);
+    studio.run_now(command, folder, folder / "region.log", longest_tool);
+    const Json record = Json::parse(read_text(folder / region_folder / "region.json"));
+    const auto url = [&](const std::string& name) {
+        return fmt::format("api/projects/{}/region/{}?revision={}", project.id, name, revision);
+    };
+    Json reply = {{"share", record.value("share", 1.0)},
+                  {"masks", Json::array()},
+                  {"command", request["command"]}};
+    if (fs::exists(folder / region_folder / "region.png")) reply["picture"] = url("region.png");
+    for (const Json& material : record.value("materials", Json::array()))
+        if (material.contains("mask"))
+            reply["masks"].push_back({{"material", material_index(project, material.at("name"))},
+                                      {"name", material.at("name")},
+                                      {"url", url(material.at("mask").get<std::string>())}});
+    return reply;
+}
+
+/// "results/3:0.5:roughness,metallic"
+std::string layer_argument(Studio& studio, const StudioProject& project, const Json& layer) {
+    const StudioResult result = studio.result(layer.at("result").get<std::int64_t>());
+    if (result.project != project.id) throw InputError("layers", "are of another project");
+    std::string text =
+        fmt::format("{}:{}", result_folder_name(result.id), layer.value("strength", 1.0));
+    const auto channels = layer.value("channels", std::vector<std::string>());
+    for (const std::string& channel : channels)
+        if (channel.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") != std::string::npos)
+            throw InputError("channels", "'" + channel + "' is none");
+    if (!channels.empty()) text += fmt::format(":{}", fmt::join(channels, ","));
+    return text;
+}
+
+Json apply_layers(Studio& studio, const StudioProject& project, const Json& body, int revision) {
+    StudioCommand command{"edit", {"layers", "source/" + project.file}};
+    const Json layers = body.value("layers", Json::array());
+    if (!layers.is_array() || layers.empty()) throw InputError("layers", "none are given");
+    for (const Json& layer : layers)
+        command.arguments.push_back(layer_argument(studio, project, layer));
+    command.arguments.insert(command.arguments.end(), {"-o", "mixed.glb"});
+    const fs::path folder = studio.folders().project(project.id);
+    studio.run_now(command, folder, folder / "layers.log", longest_tool);
+    return {{"url", fmt::format("api/projects/{}/mixed.glb?revision={}", project.id, revision)},
+            {"command", shown_command(command)}};
+}
+
+/// One .glb with a look for each of the results.
+Json make_variants(Studio& studio, const StudioProject& project, const Json& body, int revision) {
+    StudioCommand command{"edit", {"variants", "source/" + project.file}};
+    for (const Json& id : body.value("results", Json::array())) {
+        const StudioResult result = studio.result(id.get<std::int64_t>());
+        if (result.project != project.id) throw InputError("results", "are of another project");
+        if (result.parent)
+            throw InputError("results", "have an edit of an edit among them",
+                             "choose edits of the model itself");
+        command.arguments.push_back(result_folder_name(result.id));
+    }
+    command.arguments.insert(command.arguments.end(), {"-o", "variants.glb"});
+    const fs::path folder = studio.folders().project(project.id);
+    studio.run_now(command, folder, folder / "variants.log", longest_tool);
+    return {{"url", fmt::format("api/projects/{}/variants.glb?revision={}", project.id, revision)},
+            {"command", shown_command(command)}};
+}
+
+/// Of the last edits that are done.
+std::vector<EditCost> former_costs(Studio& studio) {
+    constexpr std::size_t most = 10;
+    std::vector<EditCost> costs;
+    std::vector<StudioResult> done = studio.store().results_in(ResultState::done);
+    for (auto result = done.rbegin(); result != done.rend() && costs.size() < most; ++result) {
+        const fs::path file = studio.folders().result(result->project, result->id) / "edit.json";
+        if (result->kind != "edit" || !fs::exists(file)) continue;
+        if (const auto cost = edit_cost(Json::parse(read_text(file), nullptr, false)))
+            costs.push_back(*cost);
+    }
+    return costs;
+}
+
+void add_preview_routes(StudioRoutes& routes) {
+    Studio& studio = routes.studio;
+    const auto revision = std::make_shared<std::atomic<int>>(0);
+    routes.post(
+        R"(/api/projects/(\d+)/region)",
+        [&studio, revision](const HttpRequest& request, HttpResponse& response, const Json& body) {
+            reply_json(response, draw_region(studio, studio.project(number_of(request, 1)), body,
+                                             ++*revision));
+        });
+    routes.get(R"(/api/projects/(\d+)/region/([A-Za-z0-9_-]+\.png))",
+               [&studio](const HttpRequest& request, HttpResponse& response) {
+                   const StudioProject project = studio.project(number_of(request, 1));
+                   reply_file(request, response,
+                              studio.folders().project(project.id) / region_folder /
+                                  request.matches[2].str());
+               });
+    routes.post(
+        R"(/api/projects/(\d+)/layers)",
+        [&studio, revision](const HttpRequest& request, HttpResponse& response, const Json& body) {
+            reply_json(response, apply_layers(studio, studio.project(number_of(request, 1)), body,
+                                              ++*revision));
+        });
+    routes.post(
+        R"(/api/projects/(\d+)/variants)",
+        [&studio, revision](const HttpRequest& request, HttpResponse& response, const Json& body) {
+            const StudioProject project = studio.project(number_of(request, 1));
+            reply_json(response, make_variants(studio, project, body, ++*revision));
+        });
+    routes.get(R"(/api/projects/(\d+)/(mixed|variants)\.glb)", [&studio](const HttpRequest& request,
+                                                                         HttpResponse& response) {
+        const StudioProject project = studio.project(number_of(request, 1));
+        reply_file(request, response,
+                   studio.folders().project(project.id) / (request.matches[2].str() + ".glb"));
+    });
+}
+
+}  // namespace
+
+void add_tool_routes(StudioRoutes& routes) {
+    Studio& studio = routes.studio;
+    add_preview_routes(routes);
+    routes.post(R"(/api/projects/(\d+)/estimate)",
+                [&studio](const HttpRequest& request, HttpResponse& response, const Json& body) {
+                    studio.project(number_of(request, 1));
+                    const Json prior = Json::parse(read_text(find_prior("") / "prior.json"));
+                    const auto threads = static_cast<int>(std::thread::hardware_concurrency());
+                    reply_json(response,
+                               estimate_edit(body, prior.value("defaults", Json::object()),
+                                             former_costs(studio), threads));
+                });
+    routes.get(R"(/api/lights/([A-Za-z0-9_-]+)\.hdr)",
+               [&studio](const HttpRequest& request, HttpResponse& response) {
+                   answer_light(studio, request, response);
+               });
+}
+
+}  // namespace item3d

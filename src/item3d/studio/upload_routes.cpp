@@ -1,0 +1,239 @@
+#include "item3d/studio/upload_routes.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/io/load.h"
+#include "item3d/io/load_light.h"
+#include "item3d/io/save.h"
+#include "item3d/lighting/environment.h"
+#include "item3d/serve/secret.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::size_t megabyte = 1 << 20;
+constexpr std::size_t longest_model = 512 * megabyte;
+constexpr std::size_t longest_picture = 64 * megabyte;
+constexpr std::size_t longest_photographs = 1536 * megabyte;
+constexpr std::size_t most_photographs = 1000;
+
+/// A file or folder of incoming/ that goes with this object.
+class Incoming {
+  public:
+    explicit Incoming(fs::path path) : path_(std::move(path)) {}
+    ~Incoming() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    Incoming(const Incoming&) = delete;
+    Incoming& operator=(const Incoming&) = delete;
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
+/// Writes pieces to a file; throws where the disk is full or more than `longest` bytes come.
+class BoundedFile {
+  public:
+    BoundedFile(const fs::path& path, std::size_t longest)
+        : file_(path, std::ios::binary), left_(longest) {}
+    void add(const char* data, std::size_t size) {
+        if (size > left_) throw InputError("upload", "is larger than what is taken");
+        left_ -= size;
+        file_.write(data, static_cast<std::streamsize>(size));
+        if (!file_) throw ResourceError("upload: the disk is full; free some space");
+    }
+    void close() {
+        file_.close();
+        if (!file_) throw ResourceError("upload: the disk is full; free some space");
+    }
+
+  private:
+    std::ofstream file_;
+    std::size_t left_;
+};
+
+/// What a reader's callback throws comes out behind the reader, which is not made for exceptions.
+template <typename Write>
+void read_upload(const httplib::ContentReader& reader, Write write) {
+    std::exception_ptr problem;
+    const bool whole = reader([&](const char* data, std::size_t size) {
+        try {
+            write(data, size);
+            return true;
+        } catch (...) {
+            problem = std::current_exception();
+            return false;
+        }
+    });
+    if (problem) std::rethrow_exception(problem);
+    if (!whole) throw InputError("upload", "was cut off", "send it again");
+}
+
+void save_upload(const httplib::ContentReader& reader, const fs::path& path, std::size_t longest) {
+    BoundedFile file(path, longest);
+    read_upload(reader, [&](const char* data, std::size_t size) { file.add(data, size); });
+    file.close();
+}
+
+std::string name_of(const HttpRequest& request) {
+    const std::string name = request.get_param_value("name");
+    if (name.empty()) throw InputError("name", "the file's name is missing");
+    return name;
+}
+
+void answer_model(Studio& studio, const HttpRequest& request, HttpResponse& response,
+                  const httplib::ContentReader& reader) {
+    if (request.has_param("demo")) {
+        reply_json(response, project_json(studio.open_again(demo_model())));
+        return;
+    }
+    const std::string name = name_of(request);
+    const Incoming incoming(studio.folders().incoming(".upload"));
+    save_upload(reader, incoming.path(), longest_model);
+    reply_json(response, project_json(studio.open_model(incoming.path(), name)));
+}
+
+/// A picture that was painted on the model, under a new name: edits that wait name older ones.
+void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& response,
+                 const httplib::ContentReader& reader) {
+    constexpr int name_bytes = 4;
+    const StudioProject project = studio.project(number_of(request, 1));
+    const std::string name = fs::path(stored_name(name_of(request))).stem().string() + "_" +
+                             random_secret(name_bytes) + ".png";
+    const Incoming incoming(studio.folders().incoming(".png"));
+    save_upload(reader, incoming.path(), longest_picture);
+    load_image(incoming.path());  // throws for what is none
+    const fs::path folder = studio.folders().project(project.id) / "masks";
+    fs::create_directories(folder);
+    fs::rename(incoming.path(), folder / name);
+    const std::string material = request.get_param_value("material");
+    reply_json(response, {{"name", name},
+                          {"selector", "mask=" + name + (material.empty() ? "" : "@" + material)},
+                          {"url", fmt::format("api/projects/{}/masks/{}", project.id, name)}});
+}
+
+/// Kept as Radiance, whatever it came as.
+void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& response,
+                      const httplib::ContentReader& reader) {
+    const fs::path given = stored_name(name_of(request));
+    constexpr std::array kinds = {".hdr", ".exr", ".png", ".jpg", ".jpeg"};
+    if (std::find(kinds.begin(), kinds.end(), given.extension()) == kinds.end())
+        throw InputError(given.string(), "is no light", "choose an .hdr, .exr, .png or .jpg file");
+    const auto& presets = light_preset_names();
+    std::string name = given.stem().string();
+    if (name == "sky" || std::find(presets.begin(), presets.end(), name) != presets.end())
+        name = "own_" + name;
+    const Incoming incoming(studio.folders().incoming(given.extension().string()));
+    save_upload(reader, incoming.path(), longest_picture);
+    const Image light = load_light(incoming.path().string());
+    const fs::path folder = studio.folders().root() / "lights";
+    fs::create_directories(folder);
+    save_image(folder / light_file_name(name), light, 32);
+    reply_json(response, {{"name", name}});
+}
+
+/// Parts named "masks" go into masks/, all others beside each other.
+class PhotographUpload {
+  public:
+    explicit PhotographUpload(fs::path folder) : folder_(std::move(folder)) {
+        fs::create_directories(folder_);
+    }
+    void begin(const httplib::MultipartFormData& part) {
+        close();
+        if (part.filename.empty()) return;
+        if (++count_ > most_photographs)
+            throw InputError("photographs", fmt::format("are more than {}", most_photographs));
+        const std::string name = stored_name(part.filename);
+        constexpr std::array kinds = {".png", ".jpg",  ".jpeg", ".webp",
+                                      ".tif", ".tiff", ".json", ".npy"};
+        const std::string extension = fs::path(name).extension();
+        if (std::find(kinds.begin(), kinds.end(), extension) == kinds.end())
+            throw InputError(shown_name(part.filename, "file"), "is no photograph",
+                             "choose JPEG, PNG, WebP or TIFF pictures");
+        const fs::path inside = part.name == "masks" ? folder_ / "masks" : folder_;
+        fs::create_directories(inside);
+        file_ = std::make_unique<BoundedFile>(inside / name, longest_photographs);
+    }
+    void add(const char* data, std::size_t size) {
+        if (file_) file_->add(data, size);
+    }
+    void close() {
+        if (file_) file_->close();
+        file_.reset();
+    }
+    std::size_t count() const { return count_; }
+
+  private:
+    fs::path folder_;
+    std::unique_ptr<BoundedFile> file_;
+    std::size_t count_ = 0;
+};
+
+void answer_photographs(Studio& studio, const HttpRequest& request, HttpResponse& response,
+                        const httplib::ContentReader& reader) {
+    if (!request.is_multipart_form_data())
+        throw InputError("photographs", "a form with files was expected");
+    const Incoming incoming(studio.folders().incoming(""));
+    PhotographUpload upload(incoming.path());
+    std::exception_ptr problem;
+    const auto guarded = [&](const auto& step) {
+        try {
+            step();
+            return true;
+        } catch (...) {
+            problem = std::current_exception();
+            return false;
+        }
+    };
+    const bool whole = reader(
+        [&](const httplib::MultipartFormData& part) {
+            return guarded([&] { upload.begin(part); });
+        },
+        [&](const char* data, std::size_t size) {
+            return guarded([&] { upload.add(data, size); });
+        });
+    if (problem) std::rethrow_exception(problem);
+    if (!whole) throw InputError("photographs", "were cut off", "send them again");
+    upload.close();
+    constexpr std::size_t fewest = 3;
+    if (upload.count() < fewest)
+        throw InputError("photographs", "are too few", "choose 20 or more");
+    reply_json(response,
+               result_json(studio.reconstruct(incoming.path(), request.get_param_value("name"))));
+}
+
+}  // namespace
+
+void add_upload_routes(StudioRoutes& routes) {
+    Studio& studio = routes.studio;
+    const auto with_studio = [&studio](auto answer) {
+        return [&studio, answer](const HttpRequest& request, HttpResponse& response,
+                                 const httplib::ContentReader& reader) {
+            answer(studio, request, response, reader);
+        };
+    };
+    routes.post_stream("/api/projects", longest_model, with_studio(answer_model));
+    routes.post_stream(R"(/api/projects/(\d+)/masks)", longest_picture, with_studio(answer_mask));
+    routes.get(R"(/api/projects/(\d+)/masks/([A-Za-z0-9_-]+\.png))",
+               [&studio](const HttpRequest& request, HttpResponse& response) {
+                   const StudioProject project = studio.project(number_of(request, 1));
+                   reply_file(
+                       request, response,
+                       studio.folders().project(project.id) / "masks" / request.matches[2].str());
+               });
+    routes.post_stream("/api/lights", longest_picture, with_studio(answer_own_light));
+    routes.post_stream("/api/photographs", longest_photographs, with_studio(answer_photographs));
+}
+
+}  // namespace item3d

@@ -1,0 +1,355 @@
+#!/usr/bin/env python3
+"""The studio in Chromium, headless, on software GL.
+
+usage: tests/browser/studio.py ITEM3D [--all] [--measure]
+
+Without --all: the demo is opened, looks like `item3d render`, a region is clicked, a short edit runs to
+its end and changes the picture. --all goes through the rest of the page. --measure prints times. Pictures
+of the pages go to the folder that STUDIO_PICTURES names.
+
+Needs what `scripts/setup.sh browser` fetches (CHROMIUM names another browser).
+"""
+import argparse
+import base64
+import json
+import re
+import struct
+import subprocess
+import tempfile
+import time
+
+from studio_page import MUG, Page, Server, check, difference, launch, sync_playwright
+
+# Mean absolute difference of the model's pixels, of 255: the viewer's light is prefiltered at half the
+# size, its edges are multisampled.
+LIKE_RENDER = 2.5
+
+COMPARE = """async ([render, url]) => {
+  const { stage } = studio.viewer;
+  const read = async (blob) => {
+    const bitmap = await createImageBitmap(blob);
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height), context = canvas.getContext('2d');
+    context.fillStyle = '#fff';
+    context.fillRect(0, 0, bitmap.width, bitmap.height);
+    context.drawImage(bitmap, 0, 0);
+    return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+  };
+  await stage.light.show(url);
+  stage.frame();
+  const mine = await read(await stage.picture());
+  const bytes = Uint8Array.from(atob(render), (c) => c.charCodeAt(0));
+  const theirs = await read(new Blob([bytes], { type: 'image/png' }));
+  let sum = 0, count = 0;
+  for (let i = 0; i < theirs.length; i += 4) {
+    if (Math.min(theirs[i], theirs[i + 1], theirs[i + 2]) > 250) continue;
+    for (let c = 0; c < 3; ++c) sum += Math.abs(mine[i + c] - theirs[i + c]);
+    count += 3;
+  }
+  return [sum / count, count / 3, mine.length === theirs.length];
+}"""
+
+
+def looks_like_render(page, item3d, folder, light="studio"):
+    """The viewer and `item3d render` from the same camera in the same light."""
+    width, height = page.run("[studio.viewer.stage.host.clientWidth, studio.viewer.stage.host.clientHeight]")
+    subprocess.run([item3d, "render", MUG, "-o", f"{folder}/{light}.png", "--light", light, "--size",
+                    f"{width}x{height}", "--background", "white", "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    with open(f"{folder}/{light}.png", "rb") as file:
+        render = base64.b64encode(file.read()).decode()
+    mean, pixels, same_size = page.run(COMPARE, [render, f"api/lights/{light}.hdr?width=512"])
+    check(same_size and pixels > 1000, f"the pictures cannot be compared ({pixels} pixels)")
+    check(mean < LIKE_RENDER, f"{light}: the viewer differs from item3d render by {mean:.2f} of 255 (at most {LIKE_RENDER})")
+    return mean
+
+
+def click_region(page):
+    """A click on the model offers its material, and the region is written out."""
+    page.tab.click(".tools [data-value=part]")
+    box = page.tab.locator(".stage canvas").bounding_box()
+    page.tab.mouse.click(box["x"] + box["width"] * 0.45, box["y"] + box["height"] * 0.5)
+    page.tab.get_by_role("menuitem", name="Add to the region: material=glaze").click()
+    page.until("document.querySelector('.where .command code').textContent === '--region material=glaze'",
+               "the region is not written out")
+    page.picture("region")
+    page.tab.keyboard.press("Escape")
+    page.tab.locator(".stage canvas").focus()
+    page.tab.keyboard.press("Control+z")
+    page.until("studio.store.state.region.include.length === 0", "the region cannot be undone")
+    page.tab.keyboard.press("2")
+    page.until("studio.viewer.stage.shared.view.value === 1", "the key of the base colour does nothing")
+    page.tab.keyboard.press("1")
+
+
+def weigh(page):
+    files = page.run("""() => {
+      const files = new Map();
+      for (const { name, decodedBodySize, encodedBodySize } of [...performance.getEntriesByType('navigation'), ...performance.getEntriesByType('resource')])
+        if (!name.includes('/api/')) files.set(name, [decodedBodySize, encodedBodySize]);
+      return [...files.values()];
+    }""")
+    whole, sent = (sum(sizes) for sizes in zip(*files))
+    check(len(files) > 20 and whole < 1.5e6, f"the page weighs {whole} bytes in {len(files)} files")
+    return f"{whole} bytes, {sent} as they are sent"
+
+
+def edit_to_its_end(page, to="a golden mug"):
+    before = page.pixels()
+    begin = time.monotonic()
+    result = page.edit(to)
+    page.wait_for(result, "done")
+    page.until(f"studio.viewer.stage.host.dataset.shown.startsWith('{result} single') && studio.viewer.stage.host.dataset.shown.endsWith('done')",
+               "the result was not shown")
+    changed = difference(before, page.pixels())
+    check(changed > 0.5, f"the picture did not change ({changed:.2f} of 255)")
+    page.picture("done")
+    return result, time.monotonic() - begin
+
+
+def wipe_and_layers(page, result):
+    """Before and after at the bar; a layer of strength 1 is the result, of 0 the source."""
+    after = page.pixels()
+    page.tab.click(".viewer-bar [data-value=wipe]")
+    page.until("studio.viewer.stage.layout === 'wipe' && !document.querySelector('.wipe').hidden", "there is no wipe")
+    page.run("studio.viewer.stage.setWipe(0)")
+    check(difference(after, page.pixels()) < 0.5, "at the left end the wipe does not show the result")
+    page.run("studio.viewer.stage.setWipe(1)")
+    before = page.pixels()
+    check(difference(after, before) > 0.5, "the wipe shows no difference")
+    page.run("studio.viewer.stage.setWipe(0.5)")
+    page.picture("wipe")
+    page.tab.click(".viewer-bar [data-value=single]")
+    page.tab.click("#tab-layers")
+    page.tab.click(f".layer[data-id='{result}'] input[type=checkbox]")
+    page.until("studio.viewer.mix !== null && studio.viewer.stage.shown[0].look === studio.viewer.mix.look", "no layers are shown")
+    check(difference(after, page.pixels()) < 0.7, "a layer of strength 1 is not the result")
+    slider = page.tab.locator(f".layer[data-id='{result}'] input[type=range]")
+    slider.evaluate("(input) => { input.value = 0; input.dispatchEvent(new Event('input')); }")
+    time.sleep(0.5)
+    check(difference(before, page.pixels()) < 0.7, "a layer of strength 0 is not the source")
+    page.picture("layers")
+    page.tab.click("#tab-edit")
+
+
+def swaps_leave_nothing(page, result):
+    """Showing one look after another keeps the number of textures on the GPU."""
+    counts = []
+    for _ in range(6):
+        for one in ("", result):
+            page.run(f"studio.store.set({{ selected: '{one}' }})")
+            page.until(f"studio.viewer.stage.host.dataset.shown.startsWith('{one} ')", "a look is not shown")
+            page.run("studio.viewer.stage.draw()")
+        counts.append(page.run("studio.viewer.stage.renderer.info.memory.textures"))
+    check(counts[-1] == counts[1], f"textures on the GPU: {counts}")
+
+
+def export(page, server, result):
+    """The model that is offered is glTF, and its length is what its header says."""
+    page.tab.click("#tab-result")
+    address = page.tab.locator(".exports a[download='model.glb']").get_attribute("href")
+    content = server.get(address)
+    magic, version, length = struct.unpack("<4sII", content[:12])
+    check(magic == b"glTF" and version == 2 and length == len(content), "model.glb is not whole")
+    count = struct.unpack("<I", content[12:16])[0]
+    check(json.loads(content[20:20 + count])["materials"][0]["name"] == "glaze", "model.glb has other materials")
+    command = page.tab.locator("pre.command").inner_text()
+    check(re.match(r"item3d edit .*--from[ =].*--to[ =]", command), f"the command is {command}")
+    check(b"<html" in server.get(f"api/results/{result}/files/report.html").lower(), "no report")
+    page.tab.click("#tab-edit")
+
+
+def pause_resume_cancel(page):
+    """An edit is paused and goes on, another is cancelled and goes on after that."""
+    result = page.edit("a silver mug", iterations=400)
+    page.wait_for(result, "running")
+    page.until(f"(studio.store.state.results.find(({{ id }}) => id === '{result}').progress?.done ?? 0) > 0", "no progress")
+    page.picture("running")
+    page.tab.locator(".job button", has_text="Pause").click()
+    page.wait_for(result, "paused")
+    page.tab.locator(".job button", has_text="Resume").click()
+    page.wait_for(result, "running")
+    page.tab.locator(".job button", has_text="Cancel").click()
+    page.wait_for(result, "cancelled")
+    return result
+
+
+def reload_in_the_middle(page, browser, server):
+    """A reload and a second tab show the same edit running; both hear of its end."""
+    result = page.edit("a blue mug", iterations=100)
+    page.wait_for(result, "running")
+    page.tab.reload()
+    page.until("document.querySelector('.stage')?.dataset.shown !== undefined", "nothing is shown after a reload")
+    check(page.run("studio.store.state.selected") == result, "the edit is not chosen after a reload")
+    other = Page(browser, server.address)
+    check(other.state_of(result) in ("running", "done"), "a second tab does not know the edit")
+    page.wait_for(result, "done")
+    other.wait_for(result, "done")
+    other.close()
+
+
+def network_cut(page):
+    """What is asked while the network is gone fails in a sentence; after that it works."""
+    count = len(page.results())
+    page.run("studio.store.set({ selected: '', layout: 'single' })")
+    page.tab.fill("#to", "a green mug")
+    page.context.set_offline(True)
+    page.tab.click("#start")
+    page.until("document.querySelector('.edit .problem').textContent !== ''", "the page does not say that a request failed")
+    page.context.set_offline(False)
+    check(len(page.results()) == count, "an edit was begun without a network")
+    result = page.edit("a green mug")
+    page.wait_for(result, "done")
+
+
+def server_killed(page, server, result):
+    """The server is killed and started again: the page goes on by itself, nothing is lost."""
+    known = {one["id"] for one in page.results()}
+    server.kill()
+    page.until("document.querySelector('.toast.bad') !== null", "the page does not say that the server is gone")
+    page.picture("lost")
+    server.begin(server.port)
+    page.open(server.address)
+    check(known <= {one["id"] for one in page.results()}, "results are lost")
+    check(page.state_of(result) == "done", "a result that was done is not")
+
+
+def refused(server, browser):
+    """Without the token there is nothing to see; a wrong kind of file is refused in a sentence."""
+    context = browser.new_context()
+    answer = context.request.get(server.base + "api/about")
+    check(answer.status == 403, f"without a token: {answer.status}")
+    context.close()
+    page = Page(browser, server.address)
+    page.tab.locator("input[type=file][accept*='.glb']").set_input_files(
+        {"name": "cat.png", "mimeType": "image/png", "buffer": b"no model"})
+    page.until("document.querySelector('.toast.bad')?.textContent.includes('cat.png')", "a picture was taken for a model")
+    page.tab.locator("input[type=file][accept*='.glb']").set_input_files(
+        {"name": "broken.glb", "mimeType": "model/gltf-binary", "buffer": b"glTF\2\0\0\0"})
+    page.until("[...document.querySelectorAll('.toast.bad')].length > 1", "a broken model was taken")
+    page.close()
+
+
+def long_history(browser, server):
+    """A thousand results: the page starts, and the list scrolls."""
+    project = json.loads(server.get("api/projects?limit=1"))[0]["id"]
+    answer = json.loads(server.get(f"api/projects/{project}"))
+    pattern = next(one for one in answer["results"] if one["state"] == "done")
+    answer["results"] = [{**pattern, "id": 10000 + i, "parent": 10000 + i // 2 if i % 3 == 0 and i > 3 else None,
+                          "thumbnail": ""} for i in range(1000)]
+    context = browser.new_context(viewport={"width": 1280, "height": 720})
+    context.route(f"**/api/projects/{project}", lambda route: route.fulfill(json=answer))
+    tab = context.new_page()
+    begin = time.monotonic()
+    tab.goto(server.address, timeout=120000)
+    while tab.evaluate("document.querySelectorAll('.node').length") < 1001 and time.monotonic() - begin < 60:
+        time.sleep(0.05)
+    seconds = time.monotonic() - begin
+    check(tab.evaluate("document.querySelectorAll('.node').length") == 1001, "not all results are listed")
+    longest = tab.evaluate("""async () => {
+      const list = document.querySelector('.tree');
+      let last = performance.now(), longest = 0;
+      for (let i = 0; i < 40; ++i) {
+        list.scrollTop = i / 39 * list.scrollHeight;
+        await new Promise(requestAnimationFrame);
+        const now = performance.now();
+        longest = Math.max(longest, now - last);
+        last = now;
+      }
+      return longest;
+    }""")
+    context.close()
+    return seconds, longest
+
+
+def other_screens(browser, server, playwright):
+    """Nothing is wider than a phone or a page at 200 %; without WebGL there are pictures."""
+    for name, options in {"phone": dict(viewport={"width": 390, "height": 844}, device_scale_factor=2, is_mobile=True, has_touch=True),
+                          "zoom": dict(viewport={"width": 640, "height": 360}, device_scale_factor=2)}.items():
+        page = Page(browser, server.address, **options)
+        width = page.run("document.documentElement.scrollWidth")
+        check(width <= options["viewport"]["width"], f"{name}: the page is {width} pixels wide")
+        page.picture(name)
+        page.close()
+    plain = playwright.chromium.launch(executable_path=browser_path(), args=["--no-sandbox", "--disable-gpu", "--disable-3d-apis"])
+    tab = plain.new_page()
+    tab.goto(server.address)
+    tab.locator(".no-webgl").wait_for(timeout=120000)
+    tab.locator(".node[data-state=done]").first.click()
+    tab.locator(".pictures img").first.wait_for(timeout=120000)
+    plain.close()
+
+
+def browser_path():
+    import studio_page
+    return studio_page.CHROMIUM
+
+
+def frames(page):
+    """Milliseconds a picture at 1280 x 720, and where GL runs."""
+    return page.run("""() => {
+      const { stage } = studio.viewer, gl = stage.renderer.getContext(), pixel = new Uint8Array(4);
+      stage.renderer.setPixelRatio(1);
+      stage.host.style.cssText = 'position:fixed;inset:0;width:1280px;height:720px;z-index:99';
+      stage.resize();
+      stage.frame();
+      const begin = performance.now();
+      for (let i = 0; i < 20; ++i) {
+        stage.draw();
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      }
+      const milliseconds = (performance.now() - begin) / 20;
+      stage.host.style.cssText = '';
+      const info = gl.getExtension('WEBGL_debug_renderer_info');
+      return [milliseconds, info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : ''];
+    }""")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("item3d")
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("--measure", action="store_true")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        began = time.monotonic()
+        server = Server(options.item3d, f"{folder}/studio", str(MUG))
+        served = time.monotonic() - began
+        browser = launch(playwright)
+        page = Page(browser, server.address)
+        page.picture("open")
+        said = [f"server {served:.2f} s, shown {page.seconds:.2f} s after the address, {weigh(page)}"]
+        said.append(f"the viewer differs from item3d render by {looks_like_render(page, options.item3d, folder):.2f} of 255")
+        click_region(page)
+        result, seconds = edit_to_its_end(page)
+        said.append(f"a short edit took {seconds:.1f} s")
+        if options.all:
+            said.append(f"under noon by {looks_like_render(page_of_source(page), options.item3d, folder, 'noon'):.2f}")
+            page.run(f"studio.store.set({{ selected: '{result}' }})")
+            page.until("studio.viewer.stage.host.dataset.shown.endsWith('done')", "the result is not shown again")
+            wipe_and_layers(page, result)
+            swaps_leave_nothing(page, result)
+            export(page, server, result)
+            pause_resume_cancel(page)
+            reload_in_the_middle(page, browser, server)
+            network_cut(page)
+            refused(server, browser)
+            other_screens(browser, server, playwright)
+            started, longest = long_history(browser, server)
+            said.append(f"1,000 results listed {started:.2f} s after the address, longest frame of scrolling {longest:.0f} ms")
+            server_killed(page, server, result)
+        if options.measure:
+            milliseconds, where = frames(page)
+            said.append(f"{milliseconds:.1f} ms a picture at 1280 x 720 on {where}")
+        page.close()
+        browser.close()
+        server.end()
+        print("studio.py: " + "; ".join(said))
+
+
+def page_of_source(page):
+    page.run("studio.store.set({ selected: '', layout: 'single' })")
+    page.until("studio.viewer.stage.host.dataset.shown.startsWith(' single')", "the source is not shown")
+    return page
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,152 @@
+// The edit: what, where, how, and what it will take.
+import { h, fill, icon, segments } from '../core/dom.js';
+import { api, asNumber } from '../core/api.js';
+import { text } from '../text.js';
+import { Vocabulary, sentenceField } from './sentence.js';
+import { settingsForm } from './settings_form.js';
+import { regionForm } from './region_form.js';
+
+/** @typedef {import('../core/store.js').Store} Store */
+/** @typedef {import('../core/types.js').State} State */
+
+/**
+ * @param {Store} store
+ * @param {{start: () => Promise<void>, remember: () => void, tools: import('./region_tools.js').RegionTools|null}} actions
+ */
+export function editForm(store, { start, remember, tools }) {
+  /** @type {Vocabulary|null} */
+  let vocabulary = null;
+  const set = (/** @type {'from'|'to'} */ key) => (/** @type {string} */ value) => {
+    remember();
+    store.set({ [key]: value });
+  };
+  const options = { vocabulary: () => vocabulary, submit: () => begin() };
+  const from = sentenceField({ label: text.edit.from, placeholder: text.edit.fromHint, change: set('from'), ...options });
+  const to = sentenceField({ label: text.edit.to, placeholder: text.edit.toHint, change: set('to'), ...options });
+  from.input.id = 'from';
+  from.querySelector('label').htmlFor = 'from';
+  to.input.id = 'to';
+  to.querySelector('label').htmlFor = 'to';
+  const looks = h('div.chips.looks', { role: 'group', 'aria-label': text.edit.looks });
+  const basis = h('p.basis');
+
+  const quality = segments(text.edit.quality, Object.entries(text.edit.presets).map(([value, label]) => ({ value, label })), 'standard', (value) => {
+    remember();
+    store.set({ settings: { ...withoutPreset(store.state.settings), ...presetSettings(value, store.state) } });
+  });
+  for (const button of quality.children) button.title = text.edit.presetHints[/** @type {keyof typeof text.edit.presetHints} */ (button.dataset.value)];
+  const settings = settingsForm(store, remember);
+  const estimate = h('span.estimate', { 'aria-live': 'polite' });
+  const button = h('button.primary', { type: 'button', id: 'start', onclick: () => begin() }, icon('play'), text.edit.start);
+  const problem = h('p.problem', { role: 'alert' });
+
+  const begin = async () => {
+    const wrong = problemOf(store.state);
+    fill(problem, wrong);
+    if (wrong) return;
+    button.disabled = true;
+    try {
+      await start();
+    } catch (error) {
+      const { message, hint } = /** @type {any} */ (error);
+      fill(problem, message, hint && h('small', {}, hint));
+    } finally {
+      button.disabled = false;
+    }
+  };
+
+  store.on(['about'], ({ about }) => {
+    if (!about) return;
+    vocabulary = new Vocabulary(about.words);
+    fill(looks, ...[...about.words.materials, ...about.words.patterns].map((word) => h('button', { type: 'button', title: withLook(word, store.state.from || text.edit.fromHint, about.words), onclick: () => {
+      remember();
+      store.set({ to: withLook(word, store.state.from || store.state.to, about.words) });
+    } }, word.base_color && h('i.swatch', { style: `--c:color(srgb-linear ${word.base_color.join(' ')})` }), nameOf(word))));
+    from.set(store.state.from);
+    to.set(store.state.to);
+  });
+  store.on(['from', 'to'], (state) => {
+    from.set(state.from);
+    to.set(state.to);
+    fill(problem);
+  });
+  store.on(['selected', 'results', 'project'], (state) => {
+    const parent = state.results.find(({ id }) => id === state.selected);
+    const usable = parent?.state === 'done' && parent.kind !== 'relight';
+    fill(basis, usable ? text.edit.startFrom(parent.name || parent.to) : text.edit.startSource);
+  });
+  store.on(['settings'], (state) => quality.set(presetOf(state)));
+
+  let timer = 0;
+  store.on(['from', 'to', 'settings', 'region', 'selected', 'project'], (state) => {
+    clearTimeout(timer);
+    if (!state.project || problemOf(state)) return fill(estimate);
+    timer = window.setTimeout(async () => {
+      try {
+        const { seconds, memory_bytes } = await api(`projects/${state.project?.id}/estimate`, { json: editBody(store.state) });
+        fill(estimate, text.edit.estimate(seconds, memory_bytes));
+      } catch {
+        fill(estimate);
+      }
+    }, 350);
+  });
+
+  return h('div.panel.edit', {},
+    h('section', {}, h('h2', {}, text.edit.what), from, to, looks),
+    regionForm(store, tools, remember),
+    h('section', {}, h('div.heading', {}, h('h2', {}, text.edit.how), quality), settings),
+    h('footer.sticky', {}, problem, h('div.row', {}, h('div.facts', {}, basis, estimate), button)));
+}
+
+/** What an edit's request says. @param {State} state */
+export function editBody(state) {
+  const parent = state.results.find(({ id }) => id === state.selected);
+  return {
+    from: state.from.trim(), to: state.to.trim(), settings: state.settings,
+    region: state.region.include, exclude: state.region.exclude, feather: state.region.feather,
+    parent: asNumber(parent && parent.state === 'done' && parent.kind !== 'relight' ? parent.id : null),
+  };
+}
+
+/** @param {State} state */
+function problemOf(state) {
+  if (!state.from.trim() || !state.to.trim()) return text.edit.missing;
+  return state.from.trim() === state.to.trim() ? text.edit.same : '';
+}
+
+const PRESET_KEYS = ['iterations', 'detail'];
+
+/** @param {string} preset @param {State} state @returns {Record<string, any>} */
+function presetSettings(preset, state) {
+  const usual = Number(state.about?.settings.find(({ name }) => name === 'iterations')?.default ?? 600);
+  if (preset === 'draft') return { iterations: Math.max(1, Math.round(usual / 3)), detail: 'off' };
+  if (preset === 'fine') return { iterations: Math.round(usual * 1.5), detail: 'always' };
+  return {};
+}
+
+/** @param {Record<string, any>} settings */
+function withoutPreset(settings) {
+  return Object.fromEntries(Object.entries(settings).filter(([name]) => !PRESET_KEYS.includes(name)));
+}
+
+/** @param {State} state */
+function presetOf(state) {
+  const now = JSON.stringify(PRESET_KEYS.map((key) => state.settings[key]));
+  return ['draft', 'standard', 'fine'].find((name) => JSON.stringify(PRESET_KEYS.map((key) => presetSettings(name, state)[key])) === now) ?? '';
+}
+
+/** A look as captions say it: "golden", "leopard print", "covered in sprinkles". @param {import('../core/types.js').Word} word */
+function nameOf({ caption, word }) {
+  return caption.replace('{o}', '').replace('{c}', '').replace(/^an?\s+/, '').replace(/\s+/g, ' ').trim() || word;
+}
+
+/**
+ * What a thing is called with another look.
+ * @param {import('../core/types.js').Word} word @param {string} from what it is now @param {import('../core/types.js').About['words']} words
+ */
+export function withLook({ caption }, from, words) {
+  const said = from.toLowerCase().match(/[\p{L}\p{N}'-]+/gu) ?? [];
+  const known = words.objects.flatMap(({ spellings }) => spellings);
+  const thing = said.findLast((one) => known.includes(one)) ?? said.at(-1) ?? 'object';
+  return caption.replace('{o}', thing).replace('{c} ', '').replace(/^an?\s+(?=(\w))/, (_, letter) => /[aeiou]/.test(letter) ? 'an ' : 'a ');
+}

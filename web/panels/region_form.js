@@ -1,0 +1,103 @@
+// Where: the selectors of a region, made by clicking, painting, boxes, words and colours; written out as
+// `item3d edit --region` takes them.
+import { h, fill, icon, iconButton, slider, copyText } from '../core/dom.js';
+import { text } from '../text.js';
+
+const NAMED = { black: '#1c1c1c', white: '#f7f7f5', grey: '#8b8b8b', red: '#c4201c', green: '#2f8a35', yellow: '#e9c522', blue: '#2458b8', brown: '#6d4424', orange: '#e8761b', pink: '#ec8fb0', purple: '#7a3a93' };
+
+/** @param {import('../core/types.js').Region} region what the command line says */
+export function regionCommand({ include, exclude, feather }) {
+  const quoted = (/** @type {string} */ value) => /^[\w=.,@~#+:/-]+$/.test(value) ? value : `'${value.replaceAll("'", "'\\''")}'`;
+  return [...include.map((one) => `--region ${quoted(one)}`), ...exclude.map((one) => `--exclude ${quoted(one)}`),
+    ...(feather > 0 ? [`--feather ${feather}`] : [])].join(' ');
+}
+
+/**
+ * @param {import('../core/store.js').Store} store
+ * @param {import('./region_tools.js').RegionTools|null} tools null: no WebGL
+ * @param {() => void} remember
+ */
+export function regionForm(store, tools, remember) {
+  const change = (/** @type {Partial<import('../core/types.js').Region>} */ patch) => {
+    remember();
+    store.set({ region: { ...store.state.region, ...patch } });
+  };
+  const add = (/** @type {string} */ selector, out = false) => {
+    const { include, exclude } = store.state.region;
+    const without = (/** @type {string[]} */ list) => list.filter((one) => one !== selector);
+    change(out ? { include: without(include), exclude: [...without(exclude), selector] } : { include: [...without(include), selector], exclude: without(exclude) });
+  };
+  if (tools) tools.add = add;
+
+  const share = h('span.share', { 'aria-live': 'polite' });
+  const chips = h('div.chips.selectors');
+  const command = h('code');
+  const copy = h('div.command', {}, command, iconButton('copy', text.region.copy, () => copyText(command.textContent ?? '')));
+  const feather = slider({ label: text.region.feather, minimum: 0, maximum: 10, step: 0.1, value: 0, shown: (v) => `${v.toFixed(1)} %`, change: () => {}, settled: (v) => change({ feather: v }) });
+
+  const words = h('input', { type: 'text', placeholder: text.region.phrase, 'aria-label': text.region.words, list: 'parts',
+    onkeydown: (/** @type {KeyboardEvent} */ event) => { if (event.key === 'Enter') { event.preventDefault(); addWords(); } } });
+  const parts = h('datalist', { id: 'parts' });
+  const addWords = () => {
+    const phrase = words.value.trim();
+    if (!phrase) return;
+    add(phrase === text.region.auto || phrase === 'auto' ? 'auto' : `words=${phrase}`);
+    words.value = '';
+  };
+  const wordsRow = h('div.row.extra', { hidden: true }, words, h('button', { type: 'button', onclick: addWords }, text.region.use));
+  const colors = h('div.swatches.extra', { hidden: true, role: 'group', 'aria-label': text.region.named },
+    ...Object.entries(NAMED).map(([name, value]) => h('button', { type: 'button', title: name, 'aria-label': name, style: `--c:${value}`, onclick: () => add(`named=${name}`) })));
+  const hint = h('p.hint');
+  const brushRow = tools ? h('div.extra', { hidden: true },
+    slider({ label: text.region.radius, minimum: 1, maximum: 30, step: 0.5, value: 6, shown: (v) => `${v} %`, change: (v) => { tools.radius = v / 100; } }),
+    h('div.row', {}, h('label.check', {}, h('input', { type: 'checkbox', onchange: (/** @type {any} */ event) => { tools.erases = event.target.checked; } }), text.region.erase),
+      h('span.spring'), h('button', { type: 'button', onclick: () => tools.clearBrush() }, text.region.clear),
+      h('button', { type: 'button', id: 'use-brush', onclick: () => tools.useBrush() }, text.region.use))) : null;
+  const boxRow = tools ? h('div.row.extra', { hidden: true }, h('span.spring'), h('button', { type: 'button', id: 'use-box', onclick: () => tools.useBox() }, text.region.use)) : null;
+
+  /** @type {Record<string, HTMLElement|null>} */
+  const rows = { words: wordsRow, color: colors, brush: brushRow, box: boxRow };
+  let open = '';
+  const choose = (/** @type {string} */ name) => {
+    open = open === name ? '' : name;
+    store.set({ tool: /** @type {any} */ (['part', 'brush', 'box'].includes(open) ? open : 'orbit') });
+    if (open === 'words') requestAnimationFrame(() => words.focus());
+    show();
+  };
+  const show = () => {
+    for (const [name, row] of Object.entries(rows)) if (row) row.hidden = name !== open;
+    const said = { part: text.region.partHint, brush: text.region.brushHint, box: text.region.boxHint };
+    fill(hint, said[/** @type {keyof typeof said} */ (open)]);
+    hint.hidden = !hint.textContent;
+    for (const button of bar.children) button.setAttribute('aria-pressed', String(button.dataset.value === open));
+  };
+  const bar = h('div.segments.tools', { role: 'group', 'aria-label': text.edit.where },
+    ...(/** @type {const} */ (['part', 'brush', 'box', 'words', 'color'])).filter((name) => tools || name === 'words' || name === 'color').map((name) =>
+      h('button', { type: 'button', 'data-value': name, title: text.region[name], 'aria-label': text.region[name], onclick: () => choose(name) }, icon(name))));
+  show();
+
+  store.on(['tool'], ({ tool }) => {
+    if (tool === 'orbit' && ['part', 'brush', 'box'].includes(open)) {
+      open = '';
+      show();
+    }
+  });
+  store.on(['about'], ({ about }) => fill(parts, h('option', { value: text.region.auto }), ...(about?.words.parts ?? []).map((part) => h('option', { value: `the ${part}` }))));
+  store.on(['region'], ({ region }) => {
+    const chip = (/** @type {string} */ selector, /** @type {boolean} */ out) => h('span.selector', { className: out ? 'selector out' : 'selector' },
+      h('button', { type: 'button', title: text.region.invert, 'aria-label': `${text.region.invert}: ${selector}`, onclick: () => add(selector, !out) }, icon(out ? 'minus' : 'plus')),
+      h('span', { title: selector }, selector),
+      h('button', { type: 'button', title: text.region.remove, 'aria-label': `${text.region.remove}: ${selector}`, onclick: () => change({ include: region.include.filter((one) => one !== selector), exclude: region.exclude.filter((one) => one !== selector) }) }, icon('close')));
+    const any = region.include.length + region.exclude.length > 0;
+    fill(chips, ...(any ? [...region.include.map((one) => chip(one, false)), ...region.exclude.map((one) => chip(one, true))] : [h('span.everything', {}, text.region.everything)]));
+    command.textContent = regionCommand(region);
+    copy.hidden = !any;
+    feather.hidden = !any;
+    feather.set(region.feather);
+    if (!any) fill(share);
+  });
+
+  const element = h('section.where', {}, h('div.heading', {}, h('h2', {}, text.edit.where), bar), hint, wordsRow, colors, brushRow, boxRow, parts, chips, share, feather, copy);
+  if (tools) tools.tell = (said) => fill(share, said);
+  return element;
+}

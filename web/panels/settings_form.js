@@ -1,0 +1,92 @@
+// All settings of an edit, by the names and with the help of the command line.
+import { h, fill, iconButton } from '../core/dom.js';
+import { text } from '../text.js';
+
+/** Settings that have a place of their own on the page. */
+const ELSEWHERE = new Set(['from', 'to', 'region', 'exclude', 'feather']);
+
+/** @param {import('../core/store.js').Store} store @param {() => void} remember */
+export function settingsForm(store, remember) {
+  const search = h('input', { type: 'search', placeholder: text.edit.search, 'aria-label': text.edit.search, oninput: () => filter() });
+  const list = h('div.settings');
+  const count = h('small.count');
+  const none = h('p.hint', { hidden: true }, text.edit.none);
+  const details = h('details.advanced', {}, h('summary', {}, text.edit.advanced, count), search, list, none);
+  /** @type {{row: HTMLElement, group: string, words: string, show: (value: any) => void, name: string, fallback: any}[]} */
+  let rows = [];
+
+  const filter = () => {
+    const wanted = search.value.toLowerCase();
+    let shown = 0;
+    for (const { row, words } of rows) {
+      row.hidden = !words.includes(wanted);
+      if (!row.hidden) ++shown;
+    }
+    none.hidden = shown > 0;
+    for (const heading of list.querySelectorAll('h3')) heading.hidden = !rows.some(({ row, group }) => group === heading.dataset.group && !row.hidden);
+  };
+  const change = (/** @type {string} */ name, /** @type {any} */ value, /** @type {any} */ fallback) => {
+    remember();
+    const settings = { ...store.state.settings };
+    if (value === undefined || JSON.stringify(value) === JSON.stringify(fallback)) delete settings[name];
+    else settings[name] = value;
+    store.set({ settings });
+  };
+
+  const showAll = () => {
+    const { settings } = store.state;
+    for (const { row, name, show, fallback } of rows) {
+      show(settings[name] ?? fallback);
+      row.classList.toggle('changed', name in settings);
+    }
+    const n = Object.keys(settings).filter((name) => !ELSEWHERE.has(name)).length;
+    count.textContent = n ? text.edit.changed(n) : '';
+  };
+  store.on(['about'], ({ about }) => {
+    rows = (about?.settings ?? []).filter(({ name, path }) => !ELSEWHERE.has(name) && !path).map((setting) => {
+      const { input, show } = control(setting, (value) => change(setting.name, value, setting.default));
+      const row = h('div.setting', {},
+        h('label', { htmlFor: input.id }, h('code', {}, setting.flag || setting.name)),
+        input,
+        iconButton('undo', text.edit.reset, () => change(setting.name, undefined, setting.default), { className: 'icon reset' }),
+        h('p', {}, setting.help));
+      return { row, group: setting.group ?? '', name: setting.name, show, fallback: setting.default, words: `${setting.name} ${setting.flag} ${setting.help}`.toLowerCase() };
+    });
+    /** @type {(HTMLElement|null)[]} */
+    const shown = [];
+    rows.forEach(({ row, group }, i) => shown.push(group && group !== rows[i - 1]?.group ? h('h3', { 'data-group': group }, group) : null, row));
+    fill(list, ...shown);
+    showAll();
+  });
+  store.on(['settings'], showAll);
+  return details;
+}
+
+/**
+ * @param {import('../core/types.js').Setting} setting @param {(value: any) => void} change
+ * @returns {{input: HTMLElement, show: (value: any) => void}}
+ */
+function control(setting, change) {
+  const id = `setting-${setting.name}`;
+  if (setting.choices) {
+    const input = h('select', { id, onchange: () => change(input.value) }, ...setting.choices.map((value) => h('option', { value }, value)));
+    return { input, show: (value) => { input.value = String(value ?? ''); } };
+  }
+  if (setting.type === 'integer' || setting.type === 'number') {
+    const input = h('input', { id, type: 'number', min: setting.minimum, max: setting.maximum, title: setting.values, step: setting.type === 'integer' ? 1 : 'any',
+      onchange: () => change(input.value === '' || !input.validity.valid ? undefined : Number(input.value)) });
+    return { input, show: (value) => { input.value = String(value ?? ''); } };
+  }
+  if (setting.type === 'repeated_texts') {
+    const input = h('textarea', { id, rows: 2, spellcheck: false, title: setting.values, onchange: () => change(input.value.split('\n').map((/** @type {string} */ line) => line.trim()).filter(Boolean)) });
+    return { input, show: (value) => { input.value = (value ?? []).join('\n'); } };
+  }
+  const several = setting.type === 'texts' || setting.type === 'numbers';
+  const parse = (/** @type {string} */ value) => {
+    if (!several) return value;
+    const items = value.split(',').map((item) => item.trim()).filter(Boolean);
+    return setting.type === 'numbers' ? items.map(Number) : items;
+  };
+  const input = h('input', { id, type: 'text', spellcheck: false, title: setting.values, onchange: () => change(parse(input.value)) });
+  return { input, show: (value) => { input.value = Array.isArray(value) ? value.join(', ') : String(value ?? ''); } };
+}

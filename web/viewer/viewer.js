@@ -1,0 +1,181 @@
+// The stage follows the page's state: which looks are shown and how, layers, light, views.
+import { Stage } from './stage.js';
+import { Gallery } from './gallery.js';
+import { LayerMix } from './layer_mix.js';
+import { lightUrl, viewerTurn } from '../panels/light_panel.js';
+import { text } from '../text.js';
+
+/** @typedef {import('../core/types.js').State} State */
+/** @typedef {import('../core/types.js').Result} Result */
+
+export class Viewer {
+  /**
+   * @param {HTMLElement} host @param {import('../core/store.js').Store} store
+   * @param {(error: any) => void} failed
+   */
+  constructor(host, store, failed) {
+    this.store = store;
+    this.failed = failed;
+    this.stage = new Stage(host);
+    this.stage.canvas.setAttribute('aria-label', text.viewer.label);
+    this.gallery = new Gallery(this.stage);
+    /** @type {LayerMix|null} */
+    this.mix = null;
+    /** @type {string} the project that is shown */
+    this.project = '';
+    this.turn = 0;
+    this.light = '';
+    this.lighting = false;
+    this.sharpen = 0;
+    this.shownKey = '';
+    /** @type {Set<string>} results that have a UV map of their own */
+    this.apart = new Set();
+
+    store.on(['project', 'results', 'selected', 'layout', 'side', 'layers', 'tab'], () => this.follow());
+    store.on(['view'], ({ view }) => this.stage.setView(view));
+    store.on(['wires'], ({ wires }) => this.stage.setWires(wires));
+    store.on(['turning'], ({ turning }) => this.stage.setTurning(turning));
+    store.on(['light'], ({ light }) => {
+      this.stage.light.setRotation(viewerTurn(light));
+      this.stage.light.setExposure(light.exposure);
+      this.stage.light.backdrop.visible = light.backdrop;
+      this.stage.invalidate(true);
+      this.showLight();
+    });
+  }
+
+  /** Fetches the light where it is another one; while one is on its way the last wish waits. */
+  async showLight() {
+    const wanted = lightUrl(this.store.state.light, 256);
+    if (this.lighting || wanted === this.light) return;
+    this.lighting = true;
+    try {
+      this.light = wanted;
+      await this.stage.light.show(wanted);
+      this.stage.invalidate(true);
+      clearTimeout(this.sharpen);
+      this.sharpen = window.setTimeout(() => this.sharpenLight(wanted), 700);
+    } catch (error) {
+      this.failed(error);
+    } finally {
+      this.lighting = false;
+      if (lightUrl(this.store.state.light, 256) !== this.light) this.showLight();
+    }
+  }
+
+  /** A light that stays is fetched again at twice the size. @param {string} shown */
+  async sharpenLight(shown) {
+    if (shown !== this.light) return;
+    await this.stage.light.show(lightUrl(this.store.state.light, 512)).catch(() => {});
+    this.stage.invalidate();
+  }
+
+  /** Shows what the state says. A later call wins over an earlier one that still loads. */
+  async follow() {
+    const { state } = this.store;
+    if (!state.project) return;
+    if (!state.project.model) { // of photographs that are not reconstructed yet
+      this.project = '';
+      this.shownKey = '';
+      this.gallery.open('');
+      return;
+    }
+    const turn = ++this.turn;
+    const fresh = state.project.id !== this.project;
+    if (fresh) {
+      this.project = state.project.id;
+      this.mix?.dispose();
+      this.mix = null;
+      this.apart.clear();
+      this.gallery.open(state.project.model.url);
+    }
+    const key = `${state.selected} ${state.layout} ${state.side} ${state.tab === 'layers' ? JSON.stringify(state.layers) : ''} ${stateOf(state, state.selected)}`;
+    if (!fresh && key === this.shownKey) return;
+    this.shownKey = key;
+    try {
+      const { shown, layout } = await this.choose(state);
+      if (turn !== this.turn) return;
+      const first = !this.stage.points.length || fresh;
+      this.stage.show(shown, layout);
+      if (first) this.stage.frame();
+      this.dropEnded();
+      this.stage.host.dataset.shown = this.shownKey;
+    } catch (error) {
+      if (turn === this.turn) this.failed(new Error(`${text.viewer.failed}: ${/** @type {any} */ (error).message}`));
+    }
+  }
+
+  /** @param {State} state */
+  async choose(state) {
+    const result = state.results.find(({ id }) => id === state.selected);
+    if (state.tab === 'layers' && state.layers.some(({ on }) => on)) {
+      const look = await this.mixed(state);
+      const shown = [{ look, label: text.viewer.after }];
+      if (state.layout === 'wipe') shown.unshift({ look: await this.gallery.get(''), label: text.viewer.before });
+      return { shown, layout: state.layout };
+    }
+    if (state.layout === 'side' && state.side.length > 1) {
+      const looks = await Promise.all(state.side.map((id) => this.lookOf(state, id)));
+      return { shown: looks.map((look, i) => ({ look, label: nameOf(state, state.side[i]) })), layout: state.layout };
+    }
+    const after = { look: await this.lookOf(state, state.selected), label: text.viewer.after };
+    if (state.layout === 'wipe' && result) {
+      const before = { look: await this.gallery.get(result.parent ?? ''), label: text.viewer.before };
+      return { shown: [before, after], layout: state.layout };
+    }
+    return { shown: [after], layout: /** @type {'single'} */ ('single') };
+  }
+
+  /** @param {State} state @param {string} id @returns {Promise<import('./look.js').Look>} */
+  async lookOf(state, id) {
+    const result = state.results.find((other) => other.id === id);
+    if (!result) return this.gallery.get('');
+    if (result.state === 'done') return result.files.includes('model.glb') ? this.gallery.get(id) : this.gallery.get(result.parent ?? '');
+    return this.gallery.running(result);
+  }
+
+  /** @param {State} state */
+  async mixed(state) {
+    const source = await this.gallery.get('');
+    this.mix ??= new LayerMix(this.stage.renderer, source, this.stage.shared);
+    const layers = [];
+    this.gallery.pinned = new Set(state.layers.filter(({ on }) => on).flatMap(({ id }) => [id, state.results.find((other) => other.id === id)?.parent ?? '']));
+    for (const { id, on, strength, channels } of state.layers) {
+      const result = state.results.find((other) => other.id === id);
+      if (!on || !result) continue;
+      const [before, after] = await Promise.all([this.gallery.get(result.parent ?? ''), this.gallery.get(id)]);
+      if (source.sharesSurface(after)) layers.push({ before, after, strength, channels: new Set(channels) });
+      else this.apart.add(id);
+    }
+    this.mix.set(layers);
+    return this.mix.look;
+  }
+
+  /** Looks of edits that have ended are disposed of once something else is shown. */
+  dropEnded() {
+    for (const id of [...this.gallery.live.keys()]) {
+      const ended = stateOf(this.store.state, id) === 'done';
+      const live = this.gallery.live.get(id);
+      if (!ended || !live || this.stage.shown.some(({ look }) => look === live.look)) continue;
+      this.gallery.ended(id)?.dispose();
+    }
+  }
+
+  /** @param {any} preview of an edit that runs */
+  preview(preview) {
+    const result = this.store.state.results.find(({ id }) => id === preview.id);
+    if (result && result.state !== 'done') this.gallery.preview(result, preview).catch(this.failed);
+  }
+}
+
+/** @param {State} state @param {string} id */
+function stateOf(state, id) {
+  const result = state.results.find((other) => other.id === id);
+  return result?.state === 'done' ? 'done' : result ? 'open' : '';
+}
+
+/** @param {State} state @param {string} id */
+function nameOf(state, id) {
+  const result = state.results.find((other) => other.id === id);
+  return result ? result.name || result.to : text.history.source;
+}
