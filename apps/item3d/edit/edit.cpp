@@ -181,12 +181,18 @@ void run_edit(EditCommandOptions& options) {
         (options.overrides.contains("from") || options.overrides.contains("to")))
         throw UsageError("--plan has the sentences of its edits: without --from and --to");
     request.device = start_command(options);
+    request.processes = ProcessGroup::from_environment();
+    if (request.processes.several() && !options.plan_file.empty())
+        throw UsageError("--plan: its edits are made by one process; without RANK and WORLD_SIZE");
+    // What all would say, the first one says.
+    if (!request.processes.first()) set_verbosity(Verbosity::quiet);
     request.prior = find_prior(options.prior);
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
     if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
     if (request.segmenter.empty()) request.segmenter = find_in_prior(request.prior, "segmenter");
     const nlohmann::json summary =
         options.plan_file.empty() ? edit_once(options) : edit_by_plan(options);
+    if (!request.processes.first()) return;
     if (options.json) {
         print_json(summary);
     } else {
@@ -250,6 +256,9 @@ void add_edit_command(CLI::App& app) {
     add_with_help(*command, options->overrides, "method", print_methods);
     add_with_help(*command, options->overrides, "guidance", print_guidance_kinds);
     add_settings(*command, options->overrides);
+    command->footer(
+        "Several processes, machines or devices make one edit where RANK, WORLD_SIZE, MASTER_ADDR "
+        "and MASTER_PORT are set, as torchrun does (docs/clusters.md).");
     command->callback([options] {
         options->request.command = command_line();
         run_edit(*options);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/edit/plan.h"
+#include "item3d/processes/process_group.h"
 #include "item3d/tensors/tensor.h"
 
 #include <filesystem>
@@ -33,6 +34,9 @@ struct EditRequest {
     std::string memory = "auto";     ///< auto, low (less memory, more time), high
     int picture_pixels = 384;        ///< side of the report's views; its turntable has 3/4 of it
     bool draws_turntable = true;
+    /// Those that make this edit together, each with the same request. Process 0 alone writes into
+    /// the output folder, and reads the checkpoint.
+    ProcessGroup processes = {};
     std::string command;  ///< as typed, for edit.json and the resume hint
 };
 
