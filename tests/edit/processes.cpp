@@ -10,8 +10,9 @@
 namespace item3d::testing {
 namespace {
 
-/// Texels' mean absolute difference between numbers of processes; nearly all are equal.
-constexpr double tolerance = 0.1 / 255;
+/// Texels' mean absolute difference between numbers of processes, in fp32. Sums in another order
+/// differ in their last bits, and sampling in the detail stage makes more of them.
+constexpr double tolerance = 0.5 / 255;
 
 class EditProcesses : public EditTest {
   protected:
@@ -62,7 +63,7 @@ TEST_F(EditProcesses, two_and_three_make_what_one_makes) {
     const EditRequest alone = shared_request("out");
     const nlohmann::json summary = edit_model(alone);
     const Image before = base_color_of(alone.model);
-    EXPECT_GT(mean_difference(before, base_color_of(alone.output / "model.glb")), 10 * tolerance);
+    EXPECT_GT(mean_difference(before, base_color_of(alone.output / "model.glb")), 4 * tolerance);
     for (const int count : {2, 3}) {
         const fs::path folder = run(count);
         expect_alike(alone.output / "model.glb", folder / "out" / "model.glb");
