@@ -76,6 +76,7 @@ void fit_field(const EditRequest& request, const EditScene& scene, EditState& st
 EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     const EditPlan& plan = request.plan;
     EditState state;
+    require_one_request(request, state);
     state.field = NeuralTexture(suggest_field_options(
         scene.geometry, *scene.space, finest_texture(scene, plan.texture_size), plan.seed));
     state.field->to(scene.device);

@@ -120,13 +120,16 @@ void require_one_request(const EditRequest& request, const EditState& state) {
     if (!processes.several()) return;
     const nlohmann::json own = identity_of(request, state);
     const auto first = nlohmann::json::parse(processes.broadcast(own.dump()));
+    std::string difference;
     for (const auto& [key, value] : own.items())
-        if (!first.contains(key) || first.at(key) != value)
-            throw InputError(
-                fmt::format("process {} of {}", processes.rank(), processes.size()),
-                fmt::format("has another '{}' than process 0: {} instead of {}", key, value.dump(),
-                            first.contains(key) ? first.at(key).dump() : "none"),
-                "give all of them the same files and options");
+        if (difference.empty() && (!first.contains(key) || first.at(key) != value))
+            difference = fmt::format("has another '{}' than process 0: {} instead of {}", key,
+                                     value.dump(),
+                                     first.contains(key) ? first.at(key).dump() : "none");
+    if (!processes.any(!difference.empty())) return;
+    throw InputError(fmt::format("process {} of {}", processes.rank(), processes.size()),
+                     difference.empty() ? "another process has other files or options" : difference,
+                     "give all of them the same");
 }
 
 bool load_state(const EditRequest& request, EditState& state) {
