@@ -24,6 +24,8 @@ inline constexpr std::array commands = {
     CommandEntry{"score", "edit", "Measure by CLIP how well an edit follows its sentences"},
     CommandEntry{"region", "edit", "Show what part of a model selectors take, before an edit"},
     CommandEntry{"layers", "edit", "Apply what edits changed to a model, at any strength"},
+    CommandEntry{"variants", "edit", "Put several edits of a model into one file, as looks of it"},
+    CommandEntry{"provenance", "edit", "Say how a model or an image was edited, and who signed it"},
     CommandEntry{"compare", "compare", "Run methods on a list of edits; tables and a page of them"},
     CommandEntry{"study", "study",
                  "Ask people what they think of edits, and analyze what they say"},

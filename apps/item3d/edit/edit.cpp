@@ -8,6 +8,7 @@
 #include "apps/item3d/edit/plan_file.h"
 #include "apps/item3d/edit/relight_words.h"
 #include "apps/item3d/edit/setting_options.h"
+#include "apps/item3d/edit/sign_key_option.h"
 #include "item3d/baselines/methods.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
@@ -34,6 +35,7 @@ struct EditCommandOptions : CommonOptions {
     std::filesystem::path plan_file;  ///< of several edits; empty: one, by the settings
     /// Settings given on the command line; what is absent comes from the prior.
     nlohmann::json overrides = nlohmann::json::object();
+    SignKeyOption sign_key;
 };
 
 void print_guidance_kinds() {
@@ -180,6 +182,9 @@ void run_edit(EditCommandOptions& options) {
     if (!options.plan_file.empty() &&
         (options.overrides.contains("from") || options.overrides.contains("to")))
         throw UsageError("--plan has the sentences of its edits: without --from and --to");
+    if (!options.sign_key.path.empty() && options.overrides.value("provenance", "on") == "off")
+        throw UsageError("--provenance off writes nothing that --sign-key could sign");
+    request.sign_key = options.sign_key.load();
     request.device = start_command(options);
     request.processes = ProcessGroup::from_environment();
     if (request.processes.several() && !options.plan_file.empty())
@@ -190,6 +195,7 @@ void run_edit(EditCommandOptions& options) {
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
     if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
     if (request.segmenter.empty()) request.segmenter = find_in_prior(request.prior, "segmenter");
+    if (request.instruct.empty()) request.instruct = find_in_prior(request.prior, "instruct");
     const nlohmann::json summary =
         options.plan_file.empty() ? edit_once(options) : edit_by_plan(options);
     if (!request.processes.first()) return;
@@ -228,7 +234,7 @@ void add_edit_command(CLI::App& app) {
                         "it, latents are blended");
     command->add_option("--instruct", request.instruct,
                         "InstructPix2Pix in the diffusers layout, for --method in2n; without it, "
-                        "the prior must be one");
+                        "the one that the prior brings along, else the prior must be one");
     command->add_option("--teacher", request.teacher,
                         "CLIP model that --method clip follows; without it, the one of --clip");
     command->add_option("--segmenter", request.segmenter,
@@ -236,6 +242,7 @@ void add_edit_command(CLI::App& app) {
                         "the one that the prior brings along, else the prior's cross-attention");
     command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
     add_texture_folders(*command, request.texture_folders);
+    add_sign_key(*command, options->sign_key);
     command->add_flag(
         "--allow-missing-textures", request.allow_missing_textures,
         "Edit materials whose base colour texture cannot be read as if they had none");

@@ -5,6 +5,7 @@
 #include "apps/item3d/edit/model_options.h"
 #include "apps/item3d/edit/picture_options.h"
 #include "apps/item3d/edit/relight_words.h"
+#include "apps/item3d/edit/sign_key_option.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -33,6 +34,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace item3d {
@@ -52,6 +54,7 @@ struct RelightCommand : CommonOptions {
     std::string from_light = "studio";
     LightOptions change;
     RelightWords words;
+    SignKeyOption sign_key;
     bool punctual = false;
     bool image_based = false;
     bool shadows = true;
@@ -211,7 +214,15 @@ ModelLights lights_for_model(const RelightCommand& options, const Image& light,
     return lights;
 }
 
+/// Only what the prior found is of a generative program.
+Provenance provenance_of_light(const nlohmann::json& by_words,
+                               std::shared_ptr<const SigningKey> key) {
+    if (!by_words.is_object() || !by_words.contains("claim")) return {};
+    return {{by_words["claim"].get<EditClaim>()}, std::move(key)};
+}
+
 void run_relight(const RelightCommand& options, at::Device device) {
+    const std::shared_ptr<const SigningKey> key = options.sign_key.load();
     const std::optional<SunSetting> placed_sun = chosen_sun(options.change);
     const Model model = load_model(options.model, {.texture_folders = options.texture_folders});
     const Image old_light = load_light(options.from_light);
@@ -256,7 +267,7 @@ void run_relight(const RelightCommand& options, at::Device device) {
         record["punctual"] = {{"direction", {from.x, from.y, from.z}},
                               {"irradiance", {irradiance.x, irradiance.y, irradiance.z}}};
     }
-    save_lit_model(folder / "model.glb", model, lights);
+    save_lit_model(folder / "model.glb", model, lights, provenance_of_light(by_words, key));
     write_atomically(folder / "relight.json", std::string_view(record.dump(2) + "\n"));
     if (options.json) {
         print_json(record);
@@ -291,6 +302,7 @@ void add_relight_command(CLI::App& app) {
         ->capture_default_str();
     add_light_options(*command, options->change);
     add_words_options(*command, options->words);
+    add_sign_key(*command, options->sign_key);
     command->add_flag("--punctual", options->punctual,
                       "Add the light's brightest lobe to model.glb as a directional light "
                       "(KHR_lights_punctual)");

@@ -1,10 +1,10 @@
 #include "item3d/compare/runs.h"
 
+#include "item3d/core/digest.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/version.h"
-#include "item3d/hub/digest.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/tensors/checkpoint.h"
 
@@ -22,12 +22,6 @@ using Json = nlohmann::json;
 /// Options that `item3d edit` takes with one method alone.
 const std::map<std::string, std::string> owners = {
     {"guidance", "item3d"}, {"clip-loss", "clip"}, {"instruction", "in2n"}, {"image-cfg", "in2n"}};
-
-std::string sha256(const std::string& text) {
-    Digest digest(DigestKind::sha256, text.size());
-    digest.update({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    return digest.finish();
-}
 
 std::string settings_of(const fs::path& prior) {
     const fs::path file = prior / "prior.json";
@@ -86,7 +80,7 @@ std::vector<std::string> methods_of_prior(const fs::path& prior,
                                                     Json(2 * unet.value("out_channels", 4));
     std::vector<std::string> able;
     for (const std::string& method : methods) {
-        if (method == "in2n" && !instructed) continue;
+        if (method == "in2n" && !instructed && find_in_prior(prior, "instruct").empty()) continue;
         if (method == "clip" && find_in_prior(prior, "clip").empty()) continue;
         able.push_back(method);
     }

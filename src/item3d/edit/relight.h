@@ -11,7 +11,8 @@ namespace item3d {
 struct FoundLight {
     Image first;  ///< what the optimisation began with, 256 x 512 x 3, equirectangular
     Image light;  ///< what it ended with
-    /// "settings", "seconds" and, for a physical light, its "values".
+    /// "settings", "seconds", the EditClaim "claim" unless the plan is silent, and, for a physical
+    /// light, its "values".
     nlohmann::json record;
 };
 

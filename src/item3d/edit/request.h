@@ -3,9 +3,11 @@
 
 #include "item3d/edit/plan.h"
 #include "item3d/processes/process_group.h"
+#include "item3d/provenance/signing.h"
 #include "item3d/tensors/tensor.h"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,7 +39,8 @@ struct EditRequest {
     /// Those that make this edit together, each with the same request. Process 0 alone writes into
     /// the output folder, and reads the checkpoint.
     ProcessGroup processes = {};
-    std::string command;  ///< as typed, for edit.json and the resume hint
+    std::shared_ptr<const SigningKey> sign_key;  ///< signs what is written; null: nothing does
+    std::string command;                         ///< as typed, for edit.json and the resume hint
 };
 
 }  // namespace item3d

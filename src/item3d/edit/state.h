@@ -73,6 +73,7 @@ struct EditState {
     DetailState detail;
     AdjustmentState adjustment;
     std::string prior_weights;  ///< hash_of_weights() of what guides it
+    std::string begun;          ///< when the edit began: utc_date()
     /// Iterations done, views of the detail stage included; iterations that a settled edit was
     /// spared count as done.
     std::int64_t iteration = 0;

@@ -29,7 +29,8 @@ constexpr std::chrono::minutes message_timeout{30};
 /// How long process 0 waits for others to see what they asked for; one that has died never does.
 constexpr std::chrono::seconds farewell{30};
 
-/// c10d's messages go on with a stack trace and advice, and Gloo's begin with "[its/source.cc:123] ".
+/// c10d's messages go on with a stack trace and advice, and Gloo's begin with "[its/source.cc:123]
+/// ".
 std::string first_line(const std::string& text) {
     const std::string whole = text.substr(0, text.find('\n'));
     const std::string line = whole.substr(0, whole.find(". This is typically"));

@@ -1,5 +1,6 @@
 #include "item3d/edit/optimize/begin.h"
 
+#include "item3d/core/date.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/optimize/checkpoint_state.h"
@@ -77,6 +78,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     const EditPlan& plan = request.plan;
     EditState state;
     require_one_request(request, state);
+    state.begun = utc_date();
     state.field = NeuralTexture(suggest_field_options(
         scene.geometry, *scene.space, finest_texture(scene, plan.texture_size), plan.seed));
     state.field->to(scene.device);

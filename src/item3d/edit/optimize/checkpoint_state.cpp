@@ -20,7 +20,8 @@ nlohmann::json identity_of(const EditRequest& request, const EditState& state) {
     if (request.plan.method == "clip")
         identity["teacher"] = (request.teacher.empty() ? request.clip : request.teacher).string();
     if (!request.inpainting.empty()) identity["inpainting"] = request.inpainting.string();
-    if (!request.instruct.empty()) identity["instruct"] = request.instruct.string();
+    if (request.plan.method == "in2n" && !request.instruct.empty())
+        identity["instruct"] = request.instruct.string();
     if (request.plan.asks_captioner) identity["captioner"] = request.captioner.string();
     return identity;
 }
@@ -104,6 +105,7 @@ void save_state(const EditRequest& request, const EditState& state) {
     if (!request.processes.first()) return;
     Checkpoint checkpoint;
     checkpoint.identity = identity_of(request, state);
+    checkpoint.identity["begun"] = state.begun;
     checkpoint.iteration = state.iteration;
     if (state.painter) {
         for (const auto& [name, tensor] : state.painter->state())
@@ -123,9 +125,9 @@ void require_one_request(const EditRequest& request, const EditState& state) {
     std::string difference;
     for (const auto& [key, value] : own.items())
         if (difference.empty() && (!first.contains(key) || first.at(key) != value))
-            difference = fmt::format("has another '{}' than process 0: {} instead of {}", key,
-                                     value.dump(),
-                                     first.contains(key) ? first.at(key).dump() : "none");
+            difference =
+                fmt::format("has another '{}' than process 0: {} instead of {}", key, value.dump(),
+                            first.contains(key) ? first.at(key).dump() : "none");
     if (!processes.any(!difference.empty())) return;
     throw InputError(fmt::format("process {} of {}", processes.rank(), processes.size()),
                      difference.empty() ? "another process has other files or options" : difference,
@@ -142,6 +144,7 @@ bool load_state(const EditRequest& request, EditState& state) {
 
     const CheckpointReader reader(checkpoint_path(request).string(), checkpoint->tensors);
     state.iteration = checkpoint->iteration;
+    state.begun = checkpoint->identity.value("begun", state.begun);
     if (reader.has("unet_rows"))
         state.earlier_unet_rows = reader.get("unet_rows").item<std::int64_t>();
     if (state.painter) {

@@ -14,8 +14,8 @@ void save_state(const EditRequest& request, const EditState& state);
 /// when it belongs to another model or other settings.
 bool load_state(const EditRequest& request, EditState& state);
 
-/// Throws InputError, on all processes, where one of several has another input or other settings than
-/// the first.
+/// Throws InputError, on all processes, where one of several has another input or other settings
+/// than the first.
 void require_one_request(const EditRequest& request, const EditState& state);
 
 }  // namespace item3d

@@ -3,6 +3,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/outputs/bake_options.h"
+#include "item3d/edit/outputs/edit_claim.h"
 #include "item3d/edit/outputs/layer_file.h"
 #include "item3d/field/bake/bake.h"
 #include "item3d/io/file_names.h"
@@ -97,7 +98,7 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
 
     EditedModel edited;
     const auto path = request.output / model_file_name(request.model);
-    save_model(path, scene.model, edit);
+    save_model(path, scene.model, edit, provenance_of(request, state));
     if (!state.painter) write_layer_file(request, scene, state, edit, unedited);
     unedited.clear();
     make_output_folder(request.output / "textures");

@@ -4,6 +4,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/version.h"
+#include "item3d/edit/outputs/edit_claim.h"
 #include "item3d/edit/painting/painting.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/srgb.h"
@@ -95,6 +96,7 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
         {"unet_rows", state.unet_rows()},
         {"adjustment", adjustment_json(request, state.adjustment)},
         {"settings", plan},
+        {"claim", claim_of(request, state)},
         {"new_uv_maps", remade},
         {"scores",
          {{"detail_kept", pictures.detail_kept},
