@@ -5,6 +5,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/progress_file.h"
 #include "item3d/hub/find_prior.h"
+#include "item3d/processes/local_device.h"
 #include "item3d/render/cuda/module.h"
 
 #include <ATen/Parallel.h>
@@ -24,6 +25,7 @@ namespace {
 at::Device choose_device(const std::string& name) {
     const at::Device cpu(at::kCPU), first_cuda(at::kCUDA, 0);
     if (name == "cpu") return cpu;
+    take_own_device();
     if (!cuda::cuda_available()) {
         if (name == "auto") return cpu;
         throw ResourceError(

@@ -165,6 +165,7 @@ nlohmann::json edit_once(EditCommandOptions& options, EditSession& session) {
 void run_edit(EditCommandOptions& options) {
     EditSession session;
     const nlohmann::json summary = perform_edit(options, session);
+    if (!options.request.processes.first()) return;
     if (options.json) {
         print_json(summary);
     } else {
@@ -198,6 +199,11 @@ nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session) {
     request.sign_key = options.sign_key.load();
     request.device = start_command(options);
     if (!request.live.empty()) make_output_folder(request.live);
+    request.processes = ProcessGroup::from_environment();
+    if (request.processes.several() && !options.plan_file.empty())
+        throw UsageError("--plan: its edits are made by one process; without RANK and WORLD_SIZE");
+    // What all would say, the first one says.
+    if (!request.processes.first()) set_verbosity(Verbosity::quiet);
     request.prior = find_prior(options.prior);
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
     if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
@@ -267,6 +273,9 @@ void add_edit_command(CLI::App& app) {
     auto options = std::make_shared<EditCommandOptions>();
     CLI::App* command = add_command(app, "edit", *options);
     add_edit_options(*command, *options);
+    command->footer(
+        "Several processes, machines or devices make one edit where RANK, WORLD_SIZE, MASTER_ADDR "
+        "and MASTER_PORT are set, as torchrun does (docs/clusters.md).");
     command->callback([options] {
         options->request.command = command_line();
         run_edit(*options);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/edit/plan.h"
+#include "item3d/processes/process_group.h"
 #include "item3d/provenance/signing.h"
 #include "item3d/tensors/tensor.h"
 
@@ -35,7 +36,10 @@ struct EditRequest {
     std::string memory = "auto";     ///< auto, low (less memory, more time), high
     int picture_pixels = 384;        ///< side of the report's views; its turntable has 3/4 of it
     bool draws_turntable = true;
-    std::filesystem::path live;                  ///< folder of LiveTextures; empty: none
+    std::filesystem::path live;  ///< folder of LiveTextures; empty: none
+    /// Those that make this edit together, each with the same request. Process 0 alone writes into
+    /// the output folder, and reads the checkpoint.
+    ProcessGroup processes = {};
     std::shared_ptr<const SigningKey> sign_key;  ///< signs what is written; null: nothing does
     std::string command;                         ///< as typed, for edit.json and the resume hint
 };

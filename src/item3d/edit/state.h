@@ -66,7 +66,9 @@ struct EditState {
     /// asked.
     std::vector<std::shared_ptr<const DiffusionModel>> networks;
     std::int64_t earlier_unet_rows = 0;
-    /// Of all runs of the edit together.
+    std::int64_t unet_rows_elsewhere = 0;  ///< of this run's other processes
+    std::int64_t own_unet_rows() const;    ///< of this process
+    /// Of all runs and processes of the edit together.
     std::int64_t unet_rows() const;
     DetailState detail;
     AdjustmentState adjustment;

@@ -128,6 +128,10 @@ std::string model_file_name(const std::filesystem::path& source) {
     return to_lower(source.extension().string()) == ".vrm" ? "model.vrm" : "model.glb";
 }
 
+Image new_light(const LightModel& light) {
+    return light.image(light_height);
+}
+
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state) {
     const at::NoGradGuard no_grad;
     EditedModel edited;
@@ -138,7 +142,7 @@ EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, Ed
         edited.model = scene.model;
     }
     if (state.light) {
-        edited.light = state.light->image(light_height);
+        edited.light = new_light(*state.light);
         for (const char* name : {"light.hdr", "light.exr"})
             save_image(request.output / name, *edited.light, 32);
     }
