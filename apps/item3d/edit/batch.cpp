@@ -128,6 +128,7 @@ BatchFolder add_jobs(const fs::path& output, const std::vector<JobRow>& rows) {
         "{} jobs were added{}{}", added.size(),
         known > 0 ? fmt::format(", {} are there already", known) : "",
         replaced > 0 ? fmt::format(", {} take the place of earlier ones", replaced) : ""));
+    return folder;
 }
 
 void write_pages(const BatchFolder& folder, const BatchView& view) {

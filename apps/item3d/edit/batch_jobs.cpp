@@ -81,6 +81,19 @@ std::string command_of(const ClaimedJob& job) {
     return quoted_command(words);
 }
 
+/// Small pictures of the first view for the gallery.
+void write_thumbnails(const fs::path& folder, int views) {
+    constexpr int side = 128, max_columns = 3;
+    constexpr float quality = 80;
+    for (const char* name : {before_thumbnail, after_thumbnail}) {
+        const fs::path sheet = folder / fs::path(name).replace_extension(".png");
+        if (!fs::exists(sheet)) continue;
+        const Image picture = first_picture(load_image(sheet), std::min(views, max_columns));
+        if (!picture.empty())
+            write_atomically(folder / name, encode_webp(thumbnail(picture, side), quality));
+    }
+}
+
 nlohmann::json run_edit_job(const ClaimedJob& job, EditSession& session, bool quiet) {
     ParsedEdit edit;
     parse(edit.app, job.model.string(), job.folder.string(), job.job.arguments);
@@ -105,19 +118,6 @@ nlohmann::json run_relight_job(const ClaimedJob& job, EditSession& session, bool
     perform_relight(relight.options, session);
     write_thumbnails(job.folder, relight.options.views);
     return nlohmann::json::object();
-}
-
-/// Small pictures of the first view for the gallery.
-void write_thumbnails(const fs::path& folder, int views) {
-    constexpr int side = 128, max_columns = 3;
-    constexpr float quality = 80;
-    for (const char* name : {before_thumbnail, after_thumbnail}) {
-        const fs::path sheet = folder / fs::path(name).replace_extension(".png");
-        if (!fs::exists(sheet)) continue;
-        const Image picture = first_picture(load_image(sheet), std::min(views, max_columns));
-        if (!picture.empty())
-            write_atomically(folder / name, encode_webp(thumbnail(picture, side), quality));
-    }
 }
 
 /// What is written must be of the model that the job's identity names.
