@@ -2,6 +2,7 @@
 #include "item3d/study/site.h"
 
 #include "item3d/core/error.h"
+#include "item3d/serve/http_listener.h"
 #include "item3d/study/page_order.h"
 #include "item3d/study/server.h"
 #include "tests/support/study.h"

@@ -26,6 +26,7 @@
 #include "item3d/report/animation.h"
 #include "item3d/report/contact_sheet.h"
 #include "item3d/report/model_pictures.h"
+#include "item3d/report/picture.h"
 
 #include <algorithm>
 #include <array>

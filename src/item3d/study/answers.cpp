@@ -73,7 +73,7 @@ void AnswerStore::add_participants(int count) {
     SqliteTransaction transaction(*database_);
     while (there < count) {
         SqliteRows rows(*database_, "INSERT INTO participants(number, token) VALUES (?, ?)");
-        rows.bind(++there);
+        rows.bind(std::int64_t{++there});
         rows.bind(random_secret(token_bytes));
         rows.next();
     }
@@ -117,7 +117,7 @@ void AnswerStore::store(std::int64_t participant, const std::string& item,
     rows.bind(participant);
     rows.bind(item);
     for (const int value : answer)
-        rows.bind(value);
+        rows.bind(std::int64_t{value});
     rows.next();
 }
 
