@@ -113,7 +113,8 @@ json run_case(const std::string& noun, const std::filesystem::path& mesh, const 
     overrides.update({{"from", article + noun}, {"to", article + noun + " " + wish.words}});
     overrides["optimize"] = "light";
     request.plan = resolve_plan(options.prior, overrides);
-    const FoundLight found = find_light(request);
+    EditSession session;
+    const FoundLight found = find_light(request, session);
 
     const Image first = load_light(request.plan.light);
     const Model model = load_model(mesh);

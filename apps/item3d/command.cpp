@@ -5,6 +5,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/progress_file.h"
 #include "item3d/hub/find_prior.h"
+#include "item3d/processes/local_device.h"
 #include "item3d/render/cuda/module.h"
 
 #include <ATen/Parallel.h>
@@ -24,6 +25,7 @@ namespace {
 at::Device choose_device(const std::string& name) {
     const at::Device cpu(at::kCPU), first_cuda(at::kCUDA, 0);
     if (name == "cpu") return cpu;
+    take_own_device();
     if (!cuda::cuda_available()) {
         if (name == "auto") return cpu;
         throw ResourceError(
@@ -47,25 +49,29 @@ std::string described(const std::string& name) {
 
 }  // namespace
 
+void add_common_options(CLI::App& command, CommonOptions& options) {
+    const std::string group = "Common options";
+    command.add_flag("--quiet", options.quiet, "Say nothing but warnings and errors")->group(group);
+    command.add_flag("--json", options.json, "Print the result as one JSON object on stdout")
+        ->group(group);
+    command.add_option("--threads", options.threads, "CPU threads; without it, one for each core")
+        ->check(CLI::Range(1, 1024))
+        ->group(group);
+    command
+        .add_option("--progress-file", options.progress_file,
+                    "A file in which stage, steps done and seconds left are renewed as JSON while "
+                    "the command works")
+        ->group(group);
+    command.add_option("--device", options.device, "What to compute on: cpu, cuda, or auto")
+        ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+        ->capture_default_str()
+        ->group(group);
+}
+
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description,
                       CommonOptions& options) {
     CLI::App* command = app.add_subcommand(name, description);
-    command->add_flag("--quiet", options.quiet, "Say nothing but warnings and errors")
-        ->group("Common options");
-    command->add_flag("--json", options.json, "Print the result as one JSON object on stdout")
-        ->group("Common options");
-    command->add_option("--threads", options.threads, "CPU threads; without it, one for each core")
-        ->check(CLI::Range(1, 1024))
-        ->group("Common options");
-    command
-        ->add_option("--progress-file", options.progress_file,
-                     "A file in which stage, steps done and seconds left are renewed as JSON while "
-                     "the command works")
-        ->group("Common options");
-    command->add_option("--device", options.device, "What to compute on: cpu, cuda, or auto")
-        ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
-        ->capture_default_str()
-        ->group("Common options");
+    add_common_options(*command, options);
     return command;
 }
 
@@ -91,8 +97,15 @@ at::Device start_command(const CommonOptions& options) {
 
 std::string command_line() {
     std::ifstream file("/proc/self/cmdline", std::ios::binary);
+    std::vector<std::string> arguments;
+    for (std::string argument; std::getline(file, argument, '\0');)
+        arguments.push_back(argument);
+    return quoted_command(arguments);
+}
+
+std::string quoted_command(const std::vector<std::string>& arguments) {
     std::string line;
-    for (std::string argument; std::getline(file, argument, '\0');) {
+    for (const std::string& argument : arguments) {
         const bool plain =
             !argument.empty() &&
             argument.find_first_of(" \t\n'\"\\$`&|;<>()*?[]#~!{}") == std::string::npos;

@@ -23,6 +23,7 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -44,12 +45,17 @@ CLI::App* add_command_group(CLI::App& app, const std::string& name);
 CLI::App* add_command(CLI::App& group, const std::string& name, const std::string& description,
                       CommonOptions& options);
 
+/// Adds the common options to an app that is no command of a program.
+void add_common_options(CLI::App& command, CommonOptions& options);
+
 /// Applies the common options to the process (verbosity, threads), installs the interrupt handler,
 /// and returns the device to compute on. Throws ResourceError when that device is not there.
 at::Device start_command(const CommonOptions& options);
 
 /// The command line as typed, quoted for a shell.
 std::string command_line();
+/// Arguments as one would type them.
+std::string quoted_command(const std::vector<std::string>& arguments);
 
 /// `folder`, or where it is empty that of the embedded prior's own network ("clip", "captioner").
 /// Throws InputError that names `option` when there is none.

@@ -37,7 +37,8 @@ TEST_F(Program, MethodHelpListsThem) {
     EXPECT_EQ(run(edit + "texture --guidance sds").code, 2);
     EXPECT_EQ(run(edit + "texture --optimize light").code, 2);
     EXPECT_EQ(run(edit + "texture --clip-loss absolute").code, 2);
-    EXPECT_EQ(run(edit + "in2n").code, 3);  // the embedded prior follows no instructions
+    // A prior that follows no instructions and brings none along that does.
+    EXPECT_EQ(run(edit + "in2n --prior '" ITEM3D_TEST_DATA "/models/pipeline_sd'").code, 3);
 }
 
 TEST_F(Program, WrongUsageIsTwo) {

@@ -4,6 +4,7 @@
 #include "item3d/core/csv.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/seeds.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

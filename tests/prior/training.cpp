@@ -12,7 +12,7 @@
 #include "item3d/prior/training/train_autoencoder.h"
 #include "item3d/prior/training/train_diffusion.h"
 #include "item3d/tensors/safetensors.h"
-#include "tests/support/prior.h"
+#include "tests/support/processes.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

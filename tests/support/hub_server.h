@@ -1,7 +1,7 @@
 // A small Hugging Face hub on the loopback: its API, and large files on a server of another port.
 #pragma once
 
-#include "item3d/hub/digest.h"
+#include "item3d/core/digest.h"
 #include "item3d/hub/pull.h"
 
 #include <fmt/format.h>

@@ -33,6 +33,8 @@ class Program : public ::testing::Test {
     void SetUp() override {
         folder_ = fs::temp_directory_path() / ("item3d_cli_" + std::to_string(::getpid()));
         fs::create_directories(folder_);
+        // Edits that are compared byte by byte begin at one time.
+        setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
         cube_ = folder_ / "cube.obj";
         std::ofstream light(folder_ / "small.hdr", std::ios::binary);
         light << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";

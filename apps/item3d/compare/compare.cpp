@@ -8,6 +8,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/seeds.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/suite/models.h"
 

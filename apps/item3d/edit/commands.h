@@ -14,5 +14,8 @@ void add_caption_command(CLI::App& app);
 void add_score_command(CLI::App& app);
 void add_region_command(CLI::App& app);
 void add_layers_command(CLI::App& app);
+void add_variants_command(CLI::App& app);
+void add_provenance_command(CLI::App& app);
+void add_batch_command(CLI::App& app);
 
 }  // namespace item3d

@@ -1,7 +1,6 @@
 // item3d edit: a model and two sentences in, an edited model out.
-#include "item3d/edit/edit.h"
+#include "apps/item3d/edit/edit.h"
 
-#include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"
 #include "apps/item3d/edit/picture_options.h"
@@ -13,6 +12,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
+#include "item3d/edit/edit.h"
 #include "item3d/edit/reconstructed_light.h"
 #include "item3d/edit/sequence/region_check.h"
 #include "item3d/edit/sequence/sequence.h"
@@ -28,14 +28,6 @@
 
 namespace item3d {
 namespace {
-
-struct EditCommandOptions : CommonOptions {
-    EditRequest request;
-    std::string prior;                ///< folder or name, see find_prior()
-    std::filesystem::path plan_file;  ///< of several edits; empty: one, by the settings
-    /// Settings given on the command line; what is absent comes from the prior.
-    nlohmann::json overrides = nlohmann::json::object();
-};
 
 void print_guidance_kinds() {
     fmt::print("{:6}{:76}{}\n", "method", "", "U-Net rows a picture");
@@ -124,22 +116,22 @@ void warn_of_options(const EditPlan& plan, const nlohmann::json& overrides) {
         warn("--adjust has no effect: only rdl has a source to adjust");
 }
 
-EditPlan plan_of(const EditCommandOptions& options) {
+/// The settings as given, where "nothing" is no channel to keep.
+nlohmann::json given_settings(const EditCommandOptions& options) {
     nlohmann::json overrides = options.overrides;
     if (overrides.get<EditSettings>().keep == std::vector<std::string>{"nothing"})
         overrides["keep"] = nlohmann::json::array();
-    return resolve_plan(options.request.prior, overrides);
+    return overrides;
 }
 
-/// Decides the request's plan; throws for what makes no sense, warns of what has no effect.
+/// Decides the request's plan; warns of what has no effect.
 void plan_request(EditCommandOptions& options) {
-    refuse_contradictions(options.overrides);
     EditRequest& request = options.request;
     nlohmann::json& overrides = options.overrides;
     const auto said = overrides.get<EditSettings>();
     if (said.optimize == Optimize::light) require_light_words(request.prior, said.to);
     take_found_light(options);
-    request.plan = plan_of(options);
+    request.plan = resolve_plan(request.prior, given_settings(options));
     warn_of_words(request);
     warn_of_options(request.plan, overrides);
 }
@@ -155,6 +147,7 @@ nlohmann::json edit_by_plan(const EditCommandOptions& options) {
         EditCommandOptions one = options;
         one.overrides.update(settings);
         try {
+            refuse_contradictions(one.overrides);
             plan_request(one);
         } catch (const Error& error) {
             throw InputError(edit_name(sequence.plan, sequence.edits.size()), error.what());
@@ -164,13 +157,26 @@ nlohmann::json edit_by_plan(const EditCommandOptions& options) {
     return edit_in_sequence(sequence);
 }
 
-nlohmann::json edit_once(EditCommandOptions& options) {
+nlohmann::json edit_once(EditCommandOptions& options, EditSession& session) {
     plan_request(options);
-    return edit_model(options.request);
+    return edit_model(options.request, session);
 }
 
 void run_edit(EditCommandOptions& options) {
-    EditRequest& request = options.request;
+    EditSession session;
+    const nlohmann::json summary = perform_edit(options, session);
+    if (!options.request.processes.first()) return;
+    if (options.json) {
+        print_json(summary);
+    } else {
+        fmt::print("{}\n", (options.request.output / "report.html").string());
+    }
+}
+
+}  // namespace
+
+void check_edit_options(const EditCommandOptions& options) {
+    const EditRequest& request = options.request;
     if (is_file_name(lower_extension(request.output)))
         throw UsageError("-o " + request.output.string() +
                          ": is the name of a file, expected one of a folder, in which model.glb "
@@ -181,80 +187,95 @@ void run_edit(EditCommandOptions& options) {
     if (!options.plan_file.empty() &&
         (options.overrides.contains("from") || options.overrides.contains("to")))
         throw UsageError("--plan has the sentences of its edits: without --from and --to");
+    if (!options.sign_key.path.empty() && options.overrides.value("provenance", "on") == "off")
+        throw UsageError("--provenance off writes nothing that --sign-key could sign");
+    if (options.plan_file.empty()) refuse_contradictions(options.overrides);
+    check_settings(given_settings(options).get<EditSettings>());
+}
+
+nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session) {
+    check_edit_options(options);
+    EditRequest& request = options.request;
+    request.sign_key = options.sign_key.load();
     request.device = start_command(options);
     if (!request.live.empty()) make_output_folder(request.live);
+    request.processes = ProcessGroup::from_environment();
+    if (request.processes.several() && !options.plan_file.empty())
+        throw UsageError("--plan: its edits are made by one process; without RANK and WORLD_SIZE");
+    // What all would say, the first one says.
+    if (!request.processes.first()) set_verbosity(Verbosity::quiet);
     request.prior = find_prior(options.prior);
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");
     if (request.captioner.empty()) request.captioner = find_in_prior(request.prior, "captioner");
     if (request.segmenter.empty()) request.segmenter = find_in_prior(request.prior, "segmenter");
-    const nlohmann::json summary =
-        options.plan_file.empty() ? edit_once(options) : edit_by_plan(options);
-    if (options.json) {
-        print_json(summary);
-    } else {
-        fmt::print("{}\n", (request.output / "report.html").string());
-    }
+    if (request.instruct.empty()) request.instruct = find_in_prior(request.prior, "instruct");
+    return options.plan_file.empty() ? edit_once(options, session) : edit_by_plan(options);
 }
 
-}  // namespace
+void add_edit_options(CLI::App& command, EditCommandOptions& options) {
+    EditRequest& request = options.request;
+    command.add_option("MODEL", request.model, "A .glb, .gltf or .obj file")->required();
+    add_setting(command, options.overrides, "from");
+    add_setting(command, options.overrides, "to");
+    command.add_option("--plan", options.plan_file,
+                       "A JSON file of several edits, made one after the other; instead of --from "
+                       "and --to");
+    command.add_option("-o,--output", request.output, "Folder for everything that is made")
+        ->required();
+    command.add_option("--prior", options.prior,
+                       "Diffusion model: a folder in the diffusers layout, or a name (item3d "
+                       "prior pull); without it, the embedded one");
+    command.add_option("--clip", request.clip,
+                       "CLIP model in the transformers layout: scores of the result, as of score; "
+                       "without it, the one that the prior brings along, if any");
+    command.add_option("--captioner", request.captioner,
+                       "BLIP or BLIP-2 in the transformers layout, for --adjust caption; without "
+                       "it, the one that the prior brings along");
+    command.add_option("--inpainting", request.inpainting,
+                       "Prior with 9 input channels that inpaints, for --method texture; without "
+                       "it, latents are blended");
+    command.add_option("--instruct", request.instruct,
+                       "InstructPix2Pix in the diffusers layout, for --method in2n; without it, "
+                       "the one that the prior brings along, else the prior must be one");
+    command.add_option("--teacher", request.teacher,
+                       "CLIP model that --method clip follows; without it, the one of --clip");
+    command.add_option("--segmenter", request.segmenter,
+                       "CLIPSeg in the transformers layout, for --region words=...; without it, "
+                       "the one that the prior brings along, else the prior's cross-attention");
+    command.add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
+    command.add_option("--live", request.live,
+                       "A folder in which small textures of the edit so far are renewed about "
+                       "every second, for programs that show them");
+    add_texture_folders(command, request.texture_folders);
+    add_sign_key(command, options.sign_key);
+    command.add_flag("--allow-missing-textures", request.allow_missing_textures,
+                     "Edit materials whose base colour texture cannot be read as if they had none");
+    command.add_option("--precision", request.precision, "Of the networks")
+        ->check(CLI::IsMember(precision_names()))
+        ->capture_default_str();
+    command
+        .add_option("--memory", request.memory,
+                    "low takes less memory and more time; auto takes low where the usual does not "
+                    "fit")
+        ->check(CLI::IsMember({"auto", "low", "high"}))
+        ->capture_default_str();
+    command
+        .add_option("--picture-size", request.picture_pixels,
+                    "Edge in pixels of the pictures in the report; its turntable has 3/4 of it")
+        ->check(CLI::Range(16, 2048))
+        ->capture_default_str();
+    add_with_help(command, options.overrides, "method", print_methods);
+    add_with_help(command, options.overrides, "guidance", print_guidance_kinds);
+    add_settings(command, options.overrides);
+}
 
 void add_edit_command(CLI::App& app) {
     auto options = std::make_shared<EditCommandOptions>();
     CLI::App* command = add_command(app, "edit", *options);
-    EditRequest& request = options->request;
-    command->add_option("MODEL", request.model, "A .glb, .gltf or .obj file")->required();
-    add_setting(*command, options->overrides, "from");
-    add_setting(*command, options->overrides, "to");
-    command->add_option("--plan", options->plan_file,
-                        "A JSON file of several edits, made one after the other; instead of --from "
-                        "and --to");
-    command->add_option("-o,--output", request.output, "Folder for everything that is made")
-        ->required();
-    command->add_option("--prior", options->prior,
-                        "Diffusion model: a folder in the diffusers layout, or a name (item3d "
-                        "prior pull); without it, the embedded one");
-    command->add_option("--clip", request.clip,
-                        "CLIP model in the transformers layout: scores of the result, as of score; "
-                        "without it, the one that the prior brings along, if any");
-    command->add_option("--captioner", request.captioner,
-                        "BLIP or BLIP-2 in the transformers layout, for --adjust caption; without "
-                        "it, the one that the prior brings along");
-    command->add_option("--inpainting", request.inpainting,
-                        "Prior with 9 input channels that inpaints, for --method texture; without "
-                        "it, latents are blended");
-    command->add_option("--instruct", request.instruct,
-                        "InstructPix2Pix in the diffusers layout, for --method in2n; without it, "
-                        "the prior must be one");
-    command->add_option("--teacher", request.teacher,
-                        "CLIP model that --method clip follows; without it, the one of --clip");
-    command->add_option("--segmenter", request.segmenter,
-                        "CLIPSeg in the transformers layout, for --region words=...; without it, "
-                        "the one that the prior brings along, else the prior's cross-attention");
-    command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
-    command->add_option("--live", request.live,
-                        "A folder in which small textures of the edit so far are renewed about "
-                        "every second, for programs that show them");
-    add_texture_folders(*command, request.texture_folders);
-    command->add_flag(
-        "--allow-missing-textures", request.allow_missing_textures,
-        "Edit materials whose base colour texture cannot be read as if they had none");
-    command->add_option("--precision", request.precision, "Of the networks")
-        ->check(CLI::IsMember(precision_names()))
-        ->capture_default_str();
-    command
-        ->add_option("--memory", request.memory,
-                     "low takes less memory and more time; auto takes low where the usual does not "
-                     "fit")
-        ->check(CLI::IsMember({"auto", "low", "high"}))
-        ->capture_default_str();
-    command
-        ->add_option("--picture-size", request.picture_pixels,
-                     "Edge in pixels of the pictures in the report; its turntable has 3/4 of it")
-        ->check(CLI::Range(16, 2048))
-        ->capture_default_str();
-    add_with_help(*command, options->overrides, "method", print_methods);
-    add_with_help(*command, options->overrides, "guidance", print_guidance_kinds);
-    add_settings(*command, options->overrides);
+    add_edit_options(*command, *options);
+    command->footer(
+        "Several processes, machines or devices make one edit where RANK, WORLD_SIZE, MASTER_ADDR "
+        "and MASTER_PORT are set, as torchrun does (docs/clusters.md).");
     command->callback([options] {
         options->request.command = command_line();
         run_edit(*options);

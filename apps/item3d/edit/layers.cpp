@@ -2,6 +2,7 @@
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"
+#include "apps/item3d/edit/sign_key_option.h"
 #include "item3d/core/format.h"
 #include "item3d/edit/outputs/rebake_layer.h"
 #include "item3d/layers/layered_model.h"
@@ -17,6 +18,7 @@ struct LayersCommand : CommonOptions {
     LayeredModelRequest request;
     std::vector<std::string> layers;
     std::string texture_format;
+    SignKeyOption sign_key;
 };
 
 const std::vector<std::pair<std::string, TextureFormat>> layer_formats = {
@@ -32,6 +34,7 @@ void run_layers(LayersCommand& options) {
         request.layers.push_back(parse_layer_use(text));
     for (const auto& [name, format] : layer_formats)
         if (name == options.texture_format) request.texture_format = format;
+    request.sign_key = options.sign_key.load();
     start_command(options);
     const nlohmann::json record = write_layered_model(request);
     if (options.json)
@@ -58,6 +61,7 @@ void add_layers_command(CLI::App& app) {
     command->add_option("-o,--output", request.output, "The .glb, .vrm, .gltf or .obj to write")
         ->required();
     add_texture_folders(*command, request.texture_folders);
+    add_sign_key(*command, options->sign_key);
     command
         ->add_option("--texture-format", options->texture_format,
                      "Of the textures that are written; without it, as the edits wrote them")

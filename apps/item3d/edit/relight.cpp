@@ -1,10 +1,9 @@
 // item3d relight: the same model under another light, chosen and changed by hand, or by words.
-#include "apps/item3d/command.h"
+#include "apps/item3d/edit/relight.h"
+
 #include "apps/item3d/edit/commands.h"
-#include "apps/item3d/edit/light_options.h"
 #include "apps/item3d/edit/model_options.h"
 #include "apps/item3d/edit/picture_options.h"
-#include "apps/item3d/edit/relight_words.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -33,6 +32,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace item3d {
@@ -42,23 +42,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
-
-struct RelightCommand : CommonOptions {
-    std::string model;
-    std::vector<std::filesystem::path> texture_folders;
-    std::string output;
-    std::string light = "studio";
-    std::optional<float> sky;  ///< hour; instead of light
-    std::string from_light = "studio";
-    LightOptions change;
-    RelightWords words;
-    bool punctual = false;
-    bool image_based = false;
-    bool shadows = true;
-    int views = 6;
-    int frames = 30;
-    int size = 384;
-};
 
 /// Cameras around the model, of which the first sees it as `item3d render` does, from where left
 /// and right are told.
@@ -147,27 +130,6 @@ std::string light_title(const RelightCommand& options) {
                        : fs::path(options.light).stem().string();
 }
 
-/// What guidance finds may be tinted and exposed; what else changes a light says where it comes
-/// from, and so do the words.
-void refuse_contradictions(const RelightCommand& options, bool light_is_given) {
-    if (!options.words.given()) {
-        if (options.words.resume || !options.words.overrides.empty() ||
-            !options.words.prior.empty())
-            throw UsageError("--prior and the options below it are those of --from and --to");
-        return;
-    }
-    const LightOptions& change = options.change;
-    if (light_is_given || options.sky)
-        throw UsageError(
-            "--to finds the light that --light and --sky give: leave out one of them "
-            "(--from-light says where to begin)");
-    if (!change.sun.empty() || !change.lit.empty() || change.strength || change.rotation != 0 ||
-        change.tilt != 0)
-        throw UsageError(
-            "--to says itself where the light comes from: without --sun, --lit, "
-            "--strength, --rotate and --tilt");
-}
-
 Image chosen_light(const RelightCommand& options, const std::optional<SunSetting>& sun) {
     const Image base = options.sky
                            ? make_sky_at(*options.sky)
@@ -211,7 +173,40 @@ ModelLights lights_for_model(const RelightCommand& options, const Image& light,
     return lights;
 }
 
-void run_relight(const RelightCommand& options, at::Device device) {
+/// Only what the prior found is of a generative program.
+Provenance provenance_of_light(const nlohmann::json& by_words,
+                               std::shared_ptr<const SigningKey> key) {
+    if (!by_words.is_object() || !by_words.contains("claim")) return {};
+    return {{by_words["claim"].get<EditClaim>()}, std::move(key)};
+}
+
+}  // namespace
+
+/// What guidance finds may be tinted and exposed; what else changes a light says where it comes
+/// from, and so do the words.
+void check_relight_options(const RelightCommand& options) {
+    if (!options.words.given()) {
+        if (options.words.resume || !options.words.overrides.empty() ||
+            !options.words.prior.empty())
+            throw UsageError("--prior and the options below it are those of --from and --to");
+        return;
+    }
+    const LightOptions& change = options.change;
+    if (options.light_is_given || options.sky)
+        throw UsageError(
+            "--to finds the light that --light and --sky give: leave out one of them "
+            "(--from-light says where to begin)");
+    if (!change.sun.empty() || !change.lit.empty() || change.strength || change.rotation != 0 ||
+        change.tilt != 0)
+        throw UsageError(
+            "--to says itself where the light comes from: without --sun, --lit, "
+            "--strength, --rotate and --tilt");
+}
+
+nlohmann::json perform_relight(const RelightCommand& options, EditSession& session) {
+    check_relight_options(options);
+    const std::shared_ptr<const SigningKey> key = options.sign_key.load();
+    const at::Device device = start_command(options);
     const std::optional<SunSetting> placed_sun = chosen_sun(options.change);
     const Model model = load_model(options.model, {.texture_folders = options.texture_folders});
     const Image old_light = load_light(options.from_light);
@@ -220,8 +215,8 @@ void run_relight(const RelightCommand& options, at::Device device) {
     Image new_light;
     if (options.words.given()) {
         make_output_folder(folder);
-        WordsLight found =
-            light_by_words(options.words, options.model, options.from_light, folder, device);
+        WordsLight found = light_by_words(options.words, options.model, options.from_light, folder,
+                                          device, options.command, session);
         new_light = apply(options.change, placed_sun, found.light);
         by_words = std::move(found.record);
     } else {
@@ -237,7 +232,7 @@ void run_relight(const RelightCommand& options, at::Device device) {
     write_pictures(options, model, old_light, new_light, device);
 
     nlohmann::json record = {{"version", version()},
-                             {"command", command_line()},
+                             {"command", options.command},
                              {"model", options.model},
                              {"from_light", options.from_light},
                              {"light", options.light},
@@ -256,62 +251,66 @@ void run_relight(const RelightCommand& options, at::Device device) {
         record["punctual"] = {{"direction", {from.x, from.y, from.z}},
                               {"irradiance", {irradiance.x, irradiance.y, irradiance.z}}};
     }
-    save_lit_model(folder / "model.glb", model, lights);
+    save_lit_model(folder / "model.glb", model, lights, provenance_of_light(by_words, key));
     write_atomically(folder / "relight.json", std::string_view(record.dump(2) + "\n"));
-    if (options.json) {
-        print_json(record);
-    } else {
-        fmt::print("{}\n", (folder / "sheet.png").string());
-    }
+    return record;
 }
 
-}  // namespace
-
-void add_relight_command(CLI::App& app) {
-    auto options = std::make_shared<RelightCommand>();
-    CLI::App* command = add_command(app, "relight", *options);
-    command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
-    command->add_option("-o,--output", options->output, "A folder")->required();
-    add_texture_folders(*command, options->texture_folders);
+void add_relight_options(CLI::App& command, RelightCommand& options) {
+    command.add_option("MODEL", options.model, "A .glb, .gltf or .obj file")->required();
+    command.add_option("-o,--output", options.output, "A folder")->required();
+    add_texture_folders(command, options.texture_folders);
     CLI::Option* light =
         command
-            ->add_option(
-                "--light", options->light,
+            .add_option(
+                "--light", options.light,
                 "The new light: studio, noon, sunset, overcast, night, or a .hdr, .exr or .glb "
                 "file")
+            ->each([&options](const std::string&) { options.light_is_given = true; })
             ->capture_default_str();
     command
-        ->add_option(
-            "--sky", options->sky,
+        .add_option(
+            "--sky", options.sky,
             "A clear sky at this hour (0 to 24) instead: the sun rises in the east at 6 and "
             "is in the south at 12")
         ->check(number_between(0, 24))
         ->excludes(light);
-    command->add_option("--from-light", options->from_light, "The old light, to compare with")
+    command.add_option("--from-light", options.from_light, "The old light, to compare with")
         ->capture_default_str();
-    add_light_options(*command, options->change);
-    add_words_options(*command, options->words);
-    command->add_flag("--punctual", options->punctual,
-                      "Add the light's brightest lobe to model.glb as a directional light "
-                      "(KHR_lights_punctual)");
-    command->add_flag("--image-based", options->image_based,
-                      "Add the light to model.glb as an image-based light "
-                      "(EXT_lights_image_based); with --punctual, all of it but that lobe");
-    command->add_flag("!--no-shadows", options->shadows,
-                      "Draw without the shadows that the model throws upon itself");
-    command->add_option("--views", options->views, "Of before.png and after.png")
+    add_light_options(command, options.change);
+    add_words_options(command, options.words);
+    add_sign_key(command, options.sign_key);
+    command.add_flag("--punctual", options.punctual,
+                     "Add the light's brightest lobe to model.glb as a directional light "
+                     "(KHR_lights_punctual)");
+    command.add_flag("--image-based", options.image_based,
+                     "Add the light to model.glb as an image-based light "
+                     "(EXT_lights_image_based); with --punctual, all of it but that lobe");
+    command.add_flag("!--no-shadows", options.shadows,
+                     "Draw without the shadows that the model throws upon itself");
+    command.add_option("--views", options.views, "Of before.png and after.png")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
-    command->add_option("--frames", options->frames, "Of turntable.webp")
+    command.add_option("--frames", options.frames, "Of turntable.webp")
         ->check(CLI::Range(1, 360))
         ->capture_default_str();
-    command->add_option("--size", options->size, "Pixels of a view's side")
+    command.add_option("--size", options.size, "Pixels of a view's side")
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();
-    command->callback([options, light] {
-        const at::Device device = start_command(*options);
-        refuse_contradictions(*options, light->count() > 0);
-        run_relight(*options, device);
+}
+
+void add_relight_command(CLI::App& app) {
+    auto options = std::make_shared<RelightCommand>();
+    CLI::App* command = add_command(app, "relight", *options);
+    add_relight_options(*command, *options);
+    command->callback([options] {
+        options->command = command_line();
+        EditSession session;
+        const nlohmann::json record = perform_relight(*options, session);
+        if (options->json)
+            print_json(record);
+        else
+            fmt::print("{}\n", (fs::path(options->output) / "sheet.png").string());
     });
 }
 

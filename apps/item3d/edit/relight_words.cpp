@@ -1,6 +1,5 @@
 #include "apps/item3d/edit/relight_words.h"
 
-#include "apps/item3d/command.h"
 #include "apps/item3d/edit/picture_options.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
@@ -128,7 +127,7 @@ void require_light_words(const std::filesystem::path& prior, const std::string& 
 
 WordsLight light_by_words(const RelightWords& words, const std::filesystem::path& model,
                           const std::string& from_light, const std::filesystem::path& output,
-                          at::Device device) {
+                          at::Device device, const std::string& command, EditSession& session) {
     if (words.from.empty() || words.to.empty())
         throw UsageError("--from and --to go together: what the model looks like now, and then");
     const LightWords said = parse_light_words(words.to, viewer_azimuth());
@@ -164,8 +163,8 @@ WordsLight light_by_words(const RelightWords& words, const std::filesystem::path
     request.device = device;
     request.precision = words.precision;
     request.resume = words.resume;
-    request.command = command_line();
-    FoundLight found = find_light(request);
+    request.command = command;
+    FoundLight found = find_light(request, session);
     record["prompts"] = {from, to};
     record["prior"] = request.prior.string();
     record.update(found.record);

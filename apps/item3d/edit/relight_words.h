@@ -2,6 +2,7 @@
 // refused.
 #pragma once
 
+#include "item3d/edit/session.h"
 #include "item3d/lighting/description.h"
 #include "item3d/scene/image.h"
 #include "item3d/tensors/tensor.h"
@@ -40,10 +41,10 @@ struct WordsLight {
 
 /// The light that the sentences ask for, beginning at `from_light` (preset or file). Directions are
 /// read by the grammar of light_words.h; what else `to` says goes to the prior, and where that is
-/// nothing about light, no prior is loaded. `output` is a folder that is there. Throws UsageError
-/// for sentences that name no light that the prior knows, and as find_light().
+/// nothing about light, no prior is loaded. `output` is a folder that is there, command: as typed.
+/// Throws UsageError for sentences that name no light that the prior knows, and as find_light().
 WordsLight light_by_words(const RelightWords& words, const std::filesystem::path& model,
                           const std::string& from_light, const std::filesystem::path& output,
-                          at::Device device);
+                          at::Device device, const std::string& command, EditSession& session);
 
 }  // namespace item3d

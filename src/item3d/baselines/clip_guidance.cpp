@@ -30,18 +30,23 @@ ClipGuidance::ClipGuidance(std::shared_ptr<const Clip> clip, const std::string& 
 GuidanceOutput ClipGuidance::step(const GuidanceInput& input, std::int64_t) {
     const double began = seconds_now();
     const at::Tensor images = input.images.detach().clone().requires_grad_();
-    at::Tensor before;
-    if (needs_reference()) {
-        const at::NoGradGuard no_grad;
-        before = clip_->embed_images(input.reference);
+    at::Tensor total = at::zeros({1});
+    if (images.size(0) > 0) {
+        at::Tensor before;
+        if (needs_reference()) {
+            const at::NoGradGuard no_grad;
+            before = clip_->embed_images(input.reference);
+        }
+        const at::Tensor loss =
+            clip_losses(loss_, clip_->embed_images(images), before, target_, source_).sum();
+        loss.backward();
+        total[0] = loss.item<float>();
     }
-    const at::Tensor loss =
-        clip_losses(loss_, clip_->embed_images(images), before, target_, source_).sum();
-    loss.backward();
+    input.processes.sum(total);
     GuidanceOutput output;
     output.latents = input.images;
     output.latents_gradient = images.grad();
-    output.direction_length = loss.item<float>() / static_cast<float>(input.images.size(0));
+    output.direction_length = total.item<float>() / static_cast<float>(input.views());
     output.seconds_encode = seconds_now() - began;
     return output;
 }

@@ -61,6 +61,7 @@ const std::vector<Method>& all_methods() {
           {"settle", 0},
           {"detail", "off"},
           {"cfg", 7.5},
+          {"iterations", 1000},  // each of 24 views is edited four times
           {"timesteps", {0.02, 0.98}},
           {"light_augment", "off"},
           {"background", "white"}}},

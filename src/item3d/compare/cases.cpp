@@ -4,10 +4,10 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/names.h"
 #include "item3d/edit/settings_table.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace item3d {
 namespace {
@@ -46,22 +46,6 @@ std::vector<std::string> known_columns() {
     return names;
 }
 
-/// Insertions, deletions and replacements between two words (Levenshtein).
-std::size_t distance(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t corner = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t replaced = corner + (a[i - 1] == b[j - 1] ? 0 : 1);
-            corner = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-        }
-    }
-    return row.back();
-}
-
 /// The column's name as the program has it. Throws InputError.
 std::string column_named(std::string name, const std::string& subject) {
     std::replace(name.begin(), name.end(), '_', '-');
@@ -70,12 +54,8 @@ std::string column_named(std::string name, const std::string& subject) {
     if (has(own_options, name))
         throw InputError(subject, "'" + name + "' is the comparison's own",
                          "give --" + name + "s to item3d compare");
-    const auto nearest = std::min_element(known.begin(), known.end(),
-                                          [&](const std::string& a, const std::string& b) {
-                                              return distance(name, a) < distance(name, b);
-                                          });
     throw InputError(subject, "there is no column '" + name + "'",
-                     "did you mean '" + *nearest +
+                     "did you mean '" + nearest_name(name, known) +
                          "'? Columns are model, from, to, instruction and what item3d edit --help "
                          "lists");
 }
@@ -131,22 +111,6 @@ CompareCase case_of(const Json& entry, const fs::path& file, const std::string& 
     return result;
 }
 
-Json entries_of_csv(const CsvRows& rows, const std::string& subject) {
-    Json entries = Json::array();
-    for (std::size_t i = 1; i < rows.size(); ++i) {
-        if (rows[i].size() > rows[0].size())
-            throw InputError(
-                fmt::format("{}: case {}", subject, i),
-                fmt::format("has {} fields, the header {}", rows[i].size(), rows[0].size()),
-                "quote what has a comma");
-        Json entry = Json::object();
-        for (std::size_t column = 0; column < rows[i].size(); ++column)
-            entry[rows[0][column]] = rows[i][column];
-        entries.push_back(entry);
-    }
-    return entries;
-}
-
 std::string plain(const Json& value) {
     return value.is_string() ? value.get<std::string>() : value.dump();
 }
@@ -166,7 +130,7 @@ std::vector<CompareCase> read_compare_cases(const fs::path& file) {
     const std::string subject = file.string();
     Json entries;
     if (file.extension() == ".csv") {
-        entries = entries_of_csv(parse_csv(text, subject), subject);
+        entries = csv_objects(parse_csv(text, subject), subject + ": case");
     } else {
         entries = Json::parse(text, nullptr, /*allow_exceptions=*/false);
         if (entries.is_discarded())

@@ -1,6 +1,7 @@
 #include "item3d/compare/run_pictures.h"
 
 #include "item3d/core/files.h"
+#include "item3d/core/names.h"
 #include "item3d/io/load.h"
 #include "item3d/io/load_light.h"
 #include "item3d/render/pictures.h"

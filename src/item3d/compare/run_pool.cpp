@@ -1,5 +1,6 @@
 #include "item3d/compare/run_pool.h"
 
+#include "item3d/core/available_memory.h"
 #include "item3d/core/child_program.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <list>
 #include <memory>
 #include <thread>
@@ -31,15 +31,6 @@ struct RunningEdit {
     std::unique_ptr<ChildProgram> program;
     Clock::time_point begin = Clock::now();
 };
-
-/// Bytes that new programs can have (MemAvailable); without the file, endless.
-double available_bytes() {
-    std::ifstream file("/proc/meminfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with("MemAvailable:"))
-            return 1024 * std::strtod(line.c_str() + line.find(':') + 1, nullptr);
-    return 1e18;
-}
 
 RunningEdit start(const CompareRun& run, const CompareOptions& options) {
     make_output_folder(run.folder);
@@ -94,7 +85,7 @@ void perform_runs(const std::vector<CompareRun>& runs, const CompareOptions& opt
         const auto young = std::count_if(running.begin(), running.end(), [](const auto& edit) {
             return Clock::now() - edit.begin < growing_time;
         });
-        return running.empty() || available_bytes() > largest * static_cast<double>(1 + young);
+        return running.empty() || available_memory() > largest * static_cast<double>(1 + young);
     };
     while (!waiting.empty() || !running.empty()) {
         if (interrupted()) {

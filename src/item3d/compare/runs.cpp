@@ -1,15 +1,15 @@
 #include "item3d/compare/runs.h"
 
+#include "item3d/core/digest.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/names.h"
 #include "item3d/core/version.h"
-#include "item3d/hub/digest.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/tensors/checkpoint.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 
@@ -23,24 +23,9 @@ using Json = nlohmann::json;
 const std::map<std::string, std::string> owners = {
     {"guidance", "item3d"}, {"clip-loss", "clip"}, {"instruction", "in2n"}, {"image-cfg", "in2n"}};
 
-std::string sha256(const std::string& text) {
-    Digest digest(DigestKind::sha256, text.size());
-    digest.update({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    return digest.finish();
-}
-
 std::string settings_of(const fs::path& prior) {
     const fs::path file = prior / "prior.json";
     return fs::exists(file) ? read_text(file) : "";
-}
-
-std::uint64_t number_of(const std::string& text, const std::string& whole) {
-    std::uint64_t value = 0;
-    const char* end = text.data() + text.size();
-    const auto parsed = std::from_chars(text.data(), end, value);
-    if (parsed.ec != std::errc() || parsed.ptr != end)
-        throw UsageError("--seeds " + whole + ": expected 0..2, or numbers with commas");
-    return value;
 }
 
 /// Options of the case that this method takes, under those of the method.
@@ -62,21 +47,6 @@ CompareMethod plain_method(const std::string& name) {
     return {name, {{"method", name}}};
 }
 
-std::string slug(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (std::isalnum(byte))
-            result += static_cast<char>(std::tolower(byte));
-        else if (!result.empty() && result.back() != '-')
-            result += '-';
-    }
-    result = result.substr(0, 40);
-    while (!result.empty() && result.back() == '-')
-        result.pop_back();
-    return result.empty() ? "case" : result;
-}
-
 std::vector<std::string> methods_of_prior(const fs::path& prior,
                                           const std::vector<std::string>& methods) {
     const fs::path config = prior / "unet" / "config.json";
@@ -86,33 +56,11 @@ std::vector<std::string> methods_of_prior(const fs::path& prior,
                                                     Json(2 * unet.value("out_channels", 4));
     std::vector<std::string> able;
     for (const std::string& method : methods) {
-        if (method == "in2n" && !instructed) continue;
+        if (method == "in2n" && !instructed && find_in_prior(prior, "instruct").empty()) continue;
         if (method == "clip" && find_in_prior(prior, "clip").empty()) continue;
         able.push_back(method);
     }
     return able;
-}
-
-std::vector<std::uint64_t> parse_seeds(const std::string& text) {
-    constexpr std::uint64_t most = 1000;
-    std::vector<std::uint64_t> seeds;
-    if (const std::size_t dots = text.find(".."); dots != std::string::npos) {
-        const std::uint64_t first = number_of(text.substr(0, dots), text);
-        const std::uint64_t last = number_of(text.substr(dots + 2), text);
-        if (last < first || last - first >= most)
-            throw UsageError(fmt::format(
-                "--seeds {}: the last is before the first, or more than {} seeds", text, most));
-        for (std::uint64_t seed = first; seed <= last; ++seed)
-            seeds.push_back(seed);
-        return seeds;
-    }
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t comma = std::min(text.find(',', begin), text.size());
-        const std::uint64_t seed = number_of(text.substr(begin, comma - begin), text);
-        if (std::find(seeds.begin(), seeds.end(), seed) == seeds.end()) seeds.push_back(seed);
-        begin = comma + 1;
-    }
-    return seeds;
 }
 
 std::vector<CompareRun> plan_runs(const CompareOptions& options) {

@@ -61,16 +61,10 @@ struct CompareRun {
     std::vector<std::string> arguments;  ///< of item3d-edit, but for threads and --resume
 };
 
-/// Lower-case letters and digits, at most 40, words joined by dashes.
-std::string slug(const std::string& text);
-
 /// Those of `methods` (of edit_method_names()) that a prior can run by itself: in2n needs an
 /// InstructPix2Pix, clip a CLIP.
 std::vector<std::string> methods_of_prior(const std::filesystem::path& prior,
                                           const std::vector<std::string>& methods);
-
-/// "0..2", "3" or "0,4,7". Throws UsageError.
-std::vector<std::uint64_t> parse_seeds(const std::string& text);
 
 /// All runs: prior by prior, seed by seed, case by case, method by method. A folder's name has a
 /// hash of all that decides the result: the model file's bytes, the prior's weights and settings,

@@ -2,6 +2,7 @@
 
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/names.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/io/load.h"
 #include "item3d/io/save.h"

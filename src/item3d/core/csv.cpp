@@ -1,6 +1,7 @@
 #include "item3d/core/csv.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 
 namespace item3d {
 
@@ -36,6 +37,22 @@ CsvRows parse_csv(const std::string& text, const std::string& subject) {
                          "a quote within a field is written twice");
     end_row();
     return rows;
+}
+
+nlohmann::json csv_objects(const CsvRows& rows, const std::string& subject) {
+    nlohmann::json objects = nlohmann::json::array();
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        if (rows[i].size() > rows[0].size())
+            throw InputError(
+                fmt::format("{} {}", subject, i),
+                fmt::format("has {} fields, the header {}", rows[i].size(), rows[0].size()),
+                "quote what has a comma");
+        nlohmann::json object = nlohmann::json::object();
+        for (std::size_t column = 0; column < rows[i].size(); ++column)
+            object[rows[0][column]] = rows[i][column];
+        objects.push_back(std::move(object));
+    }
+    return objects;
 }
 
 std::string csv_line(const std::vector<std::string>& fields) {

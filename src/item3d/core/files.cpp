@@ -1,6 +1,6 @@
 #include "item3d/core/files.h"
 
-#include "item3d/core/error.h"
+#include "item3d/core/disk_full.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -24,8 +24,8 @@ fs::path temporary_beside(const fs::path& path) {
 [[noreturn]] void throw_write_error(const fs::path& path, int error) {
     const std::string reason = std::strerror(error);
     if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
-        throw ResourceError(path.string() + ": cannot be written: " + reason +
-                            "; free some space or choose another folder");
+        throw DiskFull(path.string() + ": cannot be written: " + reason +
+                       "; free some space or choose another folder");
     }
     throw InputError(path.string(), "cannot be written: " + reason,
                      "choose a folder that you may write to");

@@ -7,23 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 
 namespace item3d {
 namespace {
 
-// Process-wide by nature: one stderr, one signal handler.
+// Process-wide by nature: there is one stderr.
 Verbosity current_verbosity = Verbosity::normal;
-volatile std::sig_atomic_t interrupt_count = 0;
-
-void on_interrupt(int signal) {
-    interrupt_count = interrupt_count + 1;
-    if (interrupt_count > 1) {
-        std::signal(signal, SIG_DFL);
-        std::raise(signal);
-    }
-}
 
 }  // namespace
 
@@ -102,15 +92,6 @@ void Progress::print(std::int64_t done, const std::string& detail, bool last) {
     } else {
         fmt::print(stderr, "{}: {}/{}  {:.1f}/s  {}{}\n", label_, done, total_, rate, time, tail);
     }
-}
-
-void install_interrupt_handler() {
-    std::signal(SIGINT, on_interrupt);
-    std::signal(SIGTERM, on_interrupt);
-}
-
-bool interrupted() {
-    return interrupt_count > 0;
 }
 
 }  // namespace item3d

@@ -1,18 +1,33 @@
 #include "item3d/edit/edit.h"
 
+#include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/progress_file.h"
 #include "item3d/core/stage_times.h"
 #include "item3d/edit/detail/detail_stage.h"
 #include "item3d/edit/optimize/begin.h"
 #include "item3d/edit/optimize/optimize.h"
+#include "item3d/edit/outputs/baked_by_first.h"
 #include "item3d/edit/outputs/baked_files.h"
 #include "item3d/edit/outputs/pictures.h"
 #include "item3d/edit/outputs/summary.h"
 #include "item3d/edit/painting/painting.h"
 #include "item3d/edit/scene.h"
 
+#include <optional>
+
 namespace item3d {
+namespace {
+
+/// Throws InputError for what is made one picture after another.
+void check_processes(const EditRequest& request) {
+    const std::string& method = request.plan.method;
+    if (request.processes.several() && (request.plan.paints_views || method == "in2n"))
+        throw InputError("--method " + method, "cannot be shared out among processes",
+                         "start one process, without RANK and WORLD_SIZE");
+}
+
+}  // namespace
 
 nlohmann::json edit_model(const EditRequest& request) {
     EditSession session;
@@ -21,12 +36,16 @@ nlohmann::json edit_model(const EditRequest& request) {
 
 nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
     StageTimes times;
-    const OutputFolder folder(request.output);
+    check_processes(request);
+    const ProcessGroup& processes = request.processes;
+    std::optional<OutputFolder> folder;
+    if (processes.first()) folder.emplace(request.output);
 
     show_stage("load");
     EditScene scene = load_scene(request, session);
     // Needed at the end, but a folder without one is told at once.
-    const std::shared_ptr<const Clip> clip = session.clip(request.clip);
+    std::shared_ptr<const Clip> clip;
+    if (processes.first()) clip = session.clip(request.clip);
     times.end_stage("load");
 
     std::future<Atlas> atlas = unwrap_meanwhile(request, scene);
@@ -52,18 +71,23 @@ nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
     }
 
     show_stage("bake");
-    EditedModel edited = bake_and_save(request, scene, state);
+    EditedModel edited = bake_by_first(request, scene, state);
     times.end_stage("bake");
 
     show_stage("report");
     const Pictures pictures = render_pictures(request, scene, edited, clip.get(), session);
     times.end_stage("report");
+    if (!processes.first()) {
+        processes.wait_for_first();
+        return nullptr;
+    }
 
     nlohmann::json summary =
         write_summary(request, scene, state, times, iteration_times, edited, pictures);
     if (edited.is_as_read)
         session.keep_model(request.output / model_file_name(request.model), request.plan.variant,
                            std::move(edited.model));
+    processes.wait_for_first();
     return summary;
 }
 

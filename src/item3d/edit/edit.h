@@ -10,8 +10,8 @@
 namespace item3d {
 
 /// Runs an edit and writes everything that docs/formats.md lists into the output folder. Returns
-/// the content of edit.json. Throws InputError, ResourceError, and Interrupted (with the checkpoint
-/// written) as core/error.h says.
+/// the content of edit.json; null on processes other than the request's first. Throws InputError,
+/// ResourceError, and Interrupted (with the checkpoint written) as core/error.h says.
 nlohmann::json edit_model(const EditRequest& request);
 /// One of the edits that share a session: what it left is taken, and the edited model is left for
 /// the next.

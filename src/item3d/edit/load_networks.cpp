@@ -2,6 +2,7 @@
 
 #include "item3d/baselines/masked_sampling.h"
 #include "item3d/baselines/view_painter.h"
+#include "item3d/core/available_memory.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
@@ -12,23 +13,12 @@
 #include "item3d/tensors/precision.h"
 
 #include <algorithm>
-#include <fstream>
 #include <utility>
 
 namespace item3d {
 namespace {
 
 constexpr double gigabyte = 1e9;
-
-/// Bytes that processes may still take; no limit where the system does not say.
-double free_memory() {
-    std::ifstream file("/proc/meminfo");
-    std::string key, unit;
-    double kilobytes = 0;
-    while (file >> key >> kilobytes && std::getline(file, unit))
-        if (key == "MemAvailable:") return 1024 * kilobytes;
-    return 1e18;
-}
 
 struct Need {
     double weights = 0, high = 0, low = 0;  ///< bytes
@@ -132,7 +122,7 @@ bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::
     // A device's own memory is not looked at: LibTorch's message names what it lacked.
     if (!device.is_cpu()) return request.memory == "low";
     const Need need = estimate(request, precision);
-    const double free = free_memory() + (is_loaded ? need.weights : 0);
+    const double free = available_memory() + (is_loaded ? need.weights : 0);
     if (need.weights > free)
         throw ResourceError(fmt::format(
             "{}: its weights take {:.1f} GB in {}, and {:.1f} GB of memory are free; close other "

@@ -4,6 +4,7 @@
 #include "item3d/core/stage_times.h"
 #include "item3d/edit/optimize/begin.h"
 #include "item3d/edit/optimize/optimize.h"
+#include "item3d/edit/outputs/edit_claim.h"
 #include "item3d/edit/scene.h"
 #include "item3d/lighting/optimized/physical_light.h"
 
@@ -24,10 +25,10 @@ nlohmann::json values_json(const PhysicalValues& values) {
 
 }  // namespace
 
-FoundLight find_light(const EditRequest& request) {
+FoundLight find_light(const EditRequest& request, EditSession& session) {
     ITEM3D_CHECK(!request.plan.edits_texture, "find_light changes no texture");
     StageTimes times;
-    const EditScene scene = load_scene(request);
+    const EditScene scene = load_scene(request, session);
     EditState state = begin_or_resume(request, scene);
     FoundLight found;
     found.first = state.light->image(found_light_height);
@@ -40,6 +41,8 @@ FoundLight find_light(const EditRequest& request) {
     for (const auto& [stage, value] : times.stages())
         seconds[stage] = value;
     found.record = {{"settings", request.plan}, {"seconds", seconds}};
+    if (request.plan.provenance == SaysProvenance::on)
+        found.record["claim"] = claim_of(request, state);
     if (const auto* physical = dynamic_cast<const PhysicalLight*>(state.light.get()))
         found.record["values"] = values_json(physical->values());
     return found;

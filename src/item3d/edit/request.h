@@ -2,9 +2,12 @@
 #pragma once
 
 #include "item3d/edit/plan.h"
+#include "item3d/processes/process_group.h"
+#include "item3d/provenance/signing.h"
 #include "item3d/tensors/tensor.h"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,7 +37,11 @@ struct EditRequest {
     int picture_pixels = 384;        ///< side of the report's views; its turntable has 3/4 of it
     bool draws_turntable = true;
     std::filesystem::path live;  ///< folder of LiveTextures; empty: none
-    std::string command;         ///< as typed, for edit.json and the resume hint
+    /// Those that make this edit together, each with the same request. Process 0 alone writes into
+    /// the output folder, and reads the checkpoint.
+    ProcessGroup processes = {};
+    std::shared_ptr<const SigningKey> sign_key;  ///< signs what is written; null: nothing does
+    std::string command;                         ///< as typed, for edit.json and the resume hint
 };
 
 }  // namespace item3d

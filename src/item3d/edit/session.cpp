@@ -1,6 +1,7 @@
 #include "item3d/edit/session.h"
 
 #include "item3d/io/load.h"
+#include "item3d/networks/diffusion/running_pipeline.h"
 #include "item3d/networks/vocabulary.h"
 #include "item3d/tensors/checkpoint.h"
 #include "item3d/tensors/precision.h"
@@ -19,6 +20,28 @@ nlohmann::json key_of(const EditRequest& request, const PriorUse& use) {
             {"precision", precision_name(use.precision)},
             {"any_sentence", request.plan.asks_captioner},
             {"extras", extras}};
+}
+
+/// What the edits that are known by now ask of the request's prior.
+PriorNeeds needs_of(const EditRequest& request, const std::vector<EditPlan>& plans,
+                    const PriorUse& use) {
+    PriorNeeds needs{use.device, use.precision, request.plan.asks_captioner, {}, false};
+    const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
+    add_needs(needs, request, request.plan, vocabulary);
+    for (const EditPlan& plan : plans)
+        add_needs(needs, request, plan, vocabulary);
+    return needs;
+}
+
+/// Whether a loaded prior can be asked for these, after it learned new sentences.
+bool can_serve(const std::shared_future<std::shared_ptr<DiffusionModel>>& prior,
+               const PriorNeeds& needs) {
+    try {
+        const auto* running = dynamic_cast<const RunningPipeline*>(prior.get().get());
+        return !running || running->can_learn_prompts() || running->knows_prompts(needs.sentences);
+    } catch (const std::exception&) {
+        return false;  // it could not be loaded, of which the edit before was told
+    }
 }
 
 }  // namespace
@@ -65,23 +88,29 @@ void EditSession::keep_model(const std::filesystem::path& path, const std::strin
 }
 
 bool EditSession::has_prior(const EditRequest& request, const PriorUse& use) const {
-    return prior_.valid() && prior_key_ == key_of(request, use);
+    if (!prior_.valid()) return false;
+    const PriorNeeds needs = needs_of(request, plans_, use);
+    nlohmann::json key = key_of(request, use);
+    // One with a decoder serves those as well that need none.
+    key["decoder"] = needs.decoder || prior_key_.value("decoder", false);
+    return prior_key_ == key && can_serve(prior_, needs);
 }
 
 std::shared_future<std::shared_ptr<const DiffusionModel>> EditSession::prior(
     const EditRequest& request, const PriorUse& use) {
+    const PriorNeeds needs = needs_of(request, plans_, use);
     if (!has_prior(request, use)) {
         prior_key_ = key_of(request, use);
-        PriorNeeds needs{use.device, use.precision, request.plan.asks_captioner, {}, false};
-        const PriorVocabulary vocabulary = PriorVocabulary::load(request.prior);
-        add_needs(needs, request, request.plan, vocabulary);
-        for (const EditPlan& plan : plans_)
-            add_needs(needs, request, plan, vocabulary);
+        prior_key_["decoder"] = needs.decoder;
         prior_ = {};  // the one before is released first
         prior_ = std::async(std::launch::async, load_networks, request, needs).share();
     }
-    const auto make_ready = [loading = prior_, request, low = use.low_memory] {
-        const std::shared_ptr<DiffusionModel>& prior = loading.get();
+    const auto make_ready = [loading = prior_, request, needs, low = use.low_memory] {
+        std::shared_ptr<DiffusionModel> prior = loading.get();
+        if (auto* running = dynamic_cast<RunningPipeline*>(prior.get())) {
+            running->learn_prompts(needs.sentences);
+            prior = std::make_shared<RunningPipeline>(running->renewed());
+        }
         make_prior_ready(*prior, request.plan, low);
         return std::shared_ptr<const DiffusionModel>(prior);
     };
@@ -111,6 +140,8 @@ std::shared_ptr<const Clip> EditSession::clip(const std::filesystem::path& folde
 std::shared_ptr<LightRig> EditSession::lights(const EditPlan& plan, at::Device device) {
     const nlohmann::json key{plan.light, static_cast<int>(plan.light_variation),
                              plan.light_cube_size, device.str()};
+    constexpr std::size_t max_lights = 8;
+    if (lights_.size() >= max_lights && !lights_.contains(key.dump())) lights_.clear();
     std::shared_ptr<LightRig>& rig = lights_[key.dump()];
     if (!rig)
         rig = std::make_shared<LightRig>(plan.light, plan.light_variation, plan.light_cube_size,

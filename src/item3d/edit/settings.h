@@ -31,6 +31,9 @@ enum class LightChoice { automatic, physical, texels };
 /// How the light varies while a texture is edited, so that no shading is painted (LightRig).
 enum class LightAugment { off, rotate, all };
 
+/// Whether what is written says that it was edited (docs/provenance.md).
+enum class SaysProvenance { on, off };
+
 /// Every setting that changes the result. settings_table.cpp says what each means and may be; JSON
 /// has them under their names here. Defaults are for Stable Diffusion at 512 pixels. What is added
 /// to the prior is among them.
@@ -84,6 +87,7 @@ struct EditSettings : PipelineExtras {
     int detail_views = 20;
     std::vector<std::string> material;
     std::string variant;
+    SaysProvenance provenance = SaysProvenance::on;
     std::uint64_t seed = 0;
 };
 

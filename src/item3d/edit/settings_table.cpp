@@ -199,6 +199,9 @@ std::vector<Setting> texture_rows() {
         setting("variant", &S::variant, "--variant",
                 "Edit and show the look of this name, of a glTF that offers several "
                 "(KHR_materials_variants)"),
+        choice("provenance", &S::provenance, {"on", "off"}, "--provenance",
+               "on (the default): model and textures say, as XMP, that a generative program edited "
+               "them, with sentences, prior, input and date; off: nothing"),
         setting("seed", &S::seed, "--seed", "Another seed, another result"),
     };
 }

@@ -20,11 +20,15 @@ void from_json(const nlohmann::json& json, AdjustmentRecord& record) {
     if (json.contains("source_loss")) record.source_loss = json.at("source_loss").get<double>();
 }
 
-std::int64_t EditState::unet_rows() const {
-    std::int64_t rows = earlier_unet_rows;
+std::int64_t EditState::own_unet_rows() const {
+    std::int64_t rows = 0;
     for (const auto& network : networks)
         rows += network->predicted_rows();
     return rows;
+}
+
+std::int64_t EditState::unet_rows() const {
+    return earlier_unet_rows + unet_rows_elsewhere + own_unet_rows();
 }
 
 void DetailState::begin(const NeuralTexture& field) {

@@ -66,11 +66,14 @@ struct EditState {
     /// asked.
     std::vector<std::shared_ptr<const DiffusionModel>> networks;
     std::int64_t earlier_unet_rows = 0;
-    /// Of all runs of the edit together.
+    std::int64_t unet_rows_elsewhere = 0;  ///< of this run's other processes
+    std::int64_t own_unet_rows() const;    ///< of this process
+    /// Of all runs and processes of the edit together.
     std::int64_t unet_rows() const;
     DetailState detail;
     AdjustmentState adjustment;
     std::string prior_weights;  ///< hash_of_weights() of what guides it
+    std::string begun;          ///< when the edit began: utc_date()
     /// Iterations done, views of the detail stage included; iterations that a settled edit was
     /// spared count as done.
     std::int64_t iteration = 0;

@@ -70,6 +70,14 @@ AdamOptions& Adam::options(const std::string& group) {
     ITEM3D_CHECK(false, "no group of parameters is named " + group);
 }
 
+std::vector<at::Tensor> Adam::parameters() const {
+    std::vector<at::Tensor> all;
+    for (const Group& group : groups_)
+        for (const Slot& slot : group.slots)
+            all.push_back(slot.parameter);
+    return all;
+}
+
 void Adam::step() {
     const at::NoGradGuard no_grad;
     ++max_updates_;

@@ -34,6 +34,8 @@ class Adam {
     /// Options of a group; throws std::logic_error where none has this name.
     AdamOptions& options(const std::string& group);
 
+    std::vector<at::Tensor> parameters() const;  ///< of all groups
+
     /// Parameters without a gradient are left alone.
     void step();
     /// Gradients become undefined (the next backward makes new ones).

@@ -4,6 +4,7 @@
 #include "item3d/guidance/text_direction.h"
 #include "item3d/networks/diffusion/diffusion_model.h"
 #include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/processes/process_group.h"
 #include "item3d/tensors/safetensors.h"
 #include "item3d/tensors/tensor.h"
 
@@ -44,22 +45,30 @@ struct GuidanceOptions {
     std::uint64_t seed = 0;
 };
 
-/// Renders of one iteration.
+/// Renders of one iteration. Where several processes share it out, those of this one alone: n of N,
+/// which may be none; latents and the U-Net's rows are then exchanged, so all take each step
+/// together.
 struct GuidanceInput {
-    at::Tensor images;  ///< [N, 3, H, W] sRGB in [0, 1]; what the gradient is with respect to
+    at::Tensor images;  ///< [n, 3, H, W] sRGB in [0, 1]; what the gradient is with respect to
     SeenShape shape;    ///< read where the prior takes it
-    /// [N, 3, H, W] the unedited model from the same cameras in the same light; undefined unless
+    /// [n, 3, H, W] the unedited model from the same cameras in the same light; undefined unless
     /// Guidance::needs_reference().
     at::Tensor reference = {};
+    ProcessGroup processes = {};
+    std::int64_t first = 0;  ///< place of the first image among the N
+    std::int64_t total = 0;  ///< N; 0: n
+
+    std::int64_t views() const { return total > 0 ? total : images.size(0); }
 };
 
 struct GuidanceOutput {
-    /// [N, C, h, w] with its graph back to the images.
+    /// [n, C, h, w] with its graph back to the images, where there are any.
     at::Tensor latents;
-    /// [N, C, h, w] g of docs/method.md, a constant: call latents.backward(latents_gradient).
+    /// [n, C, h, w] g of docs/method.md, a constant: call latents.backward(latents_gradient).
     at::Tensor latents_gradient;
-    float direction_length = 0;  ///< RMS of the direction before weighting; the report's curve
-    float source_loss = 0;       ///< rdl: denoising loss of the source, as the model was trained
+    /// RMS of the direction before weighting, of all N; the report's curve.
+    float direction_length = 0;
+    float source_loss = 0;  ///< rdl: denoising loss of the source, as the model was trained
     double seconds_encode = 0;
     double seconds_unet = 0;
 };

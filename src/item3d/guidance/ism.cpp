@@ -40,7 +40,7 @@ GuidanceOutput IntervalScore::step(const GuidanceInput& input, std::int64_t iter
 
     const at::Tensor offsets = iteration_draws(options_, iteration)
                                    .normal_like(start.latents.slice(2, 0, 1).slice(3, 0, 1));
-    at::Tensor latents = add_noise(start.latents.detach(), start.noise + channel_offset * offsets,
+    at::Tensor latents = add_noise(start.latents, start.noise + channel_offset * offsets,
                                    alpha_at(*pipeline_, first));
     const auto predict_base = [&](std::int64_t timestep) {
         return predict_each(*pipeline_, noisy_input(start, latents, timestep), {base_text_})[0];

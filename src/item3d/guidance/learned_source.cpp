@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/guidance/prediction.h"
+#include "item3d/processes/gradients.h"
 
 #include <cmath>
 
@@ -31,19 +32,32 @@ LearnedSource::LearnedSource(const TextEmbedding& source, const GuidanceOptions&
     if (source.pooled.defined()) add("source.pooled_", source.pooled);
 }
 
-at::Tensor LearnedSource::predict_and_follow(const DiffusionModel& pipeline,
-                                             const NoisedLatents& own, std::int64_t iteration) {
+NoisedLatents LearnedSource::rows(const DiffusionModel& pipeline, const NoisedLatents& latents,
+                                  std::int64_t iteration) const {
     const int more = options_.adjust_samples - 1;
-    const NoisedLatents latents =
-        more > 0 ? join_rows(own, renoise_latents(pipeline, own, options_, iteration, more)) : own;
+    return more > 0
+               ? join_rows(latents, renoise_latents(pipeline, latents, options_, iteration, more))
+               : latents;
+}
+
+at::Tensor LearnedSource::predict_and_follow(const DiffusionModel& pipeline,
+                                             const NoisedLatents& rows, const Share& share) {
     std::vector<at::Tensor> embeddings;
     for (const Part& part : parts_)
         embeddings.push_back(part.embedding.detach().requires_grad_(true));
-    const TextEmbedding text{embeddings[0], parts_.size() > 1 ? embeddings[1] : at::Tensor()};
-    const at::Tensor prediction =
-        pipeline.predict_noise(latents.noisy, latents.timesteps, text, latents.condition);
-    const at::Tensor loss = denoising_loss(pipeline, prediction, latents);
-    loss.backward({}, std::nullopt, /*create_graph=*/false, embeddings);
+    at::Tensor prediction = at::empty({0}, rows.noisy.options());
+    at::Tensor loss = at::zeros({1}, rows.noisy.options());
+    if (share.count > 0) {
+        const NoisedLatents own = narrow_rows(rows, share);
+        const TextEmbedding text{embeddings[0], parts_.size() > 1 ? embeddings[1] : at::Tensor()};
+        prediction = pipeline.predict_noise(own.noisy, own.timesteps, text, own.condition);
+        loss = denoising_loss(pipeline, prediction, own) *
+               (static_cast<double>(share.count) / static_cast<double>(rows.noisy.size(0)));
+        loss.backward({}, std::nullopt, /*create_graph=*/false, embeddings);
+    }
+    sum_gradients(rows.processes, embeddings);
+    loss = loss.detach().reshape({1}).clone();
+    rows.processes.sum(loss);
     loss_ = loss.item<float>();
 
     const at::NoGradGuard no_grad;
@@ -59,7 +73,7 @@ at::Tensor LearnedSource::predict_and_follow(const DiffusionModel& pipeline,
                                               part.first_moment /
                                               ((part.second_moment / correction2).sqrt() + epsilon);
     }
-    return prediction.detach().narrow(0, 0, own.noisy.size(0));
+    return prediction.detach();
 }
 
 TextEmbedding LearnedSource::embedding() const {

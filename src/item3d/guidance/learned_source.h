@@ -20,10 +20,14 @@ class LearnedSource {
     /// source: one row, copied. Its pooled part, where there is one, follows too.
     LearnedSource(const TextEmbedding& source, const GuidanceOptions& options);
 
-    /// eps(source) for these latents (constant), then one step of the embedding. The step looks at
-    /// options.adjust_samples noises for each of the latents, this iteration's own among them.
-    at::Tensor predict_and_follow(const DiffusionModel& pipeline, const NoisedLatents& latents,
-                                  std::int64_t iteration);
+    /// What a step of the embedding looks at: these latents first, then options.adjust_samples - 1
+    /// further noises for each of them.
+    NoisedLatents rows(const DiffusionModel& pipeline, const NoisedLatents& latents,
+                       std::int64_t iteration) const;
+    /// eps(source) of this process's share of rows(), which may be none, a constant; then one step
+    /// of the embedding, of all processes' rows.
+    at::Tensor predict_and_follow(const DiffusionModel& pipeline, const NoisedLatents& rows,
+                                  const Share& share);
     /// Denoising loss of the last call, in the U-Net's own target (eps or v).
     float loss() const { return loss_; }
     /// One row: what stands for the source now.

@@ -4,6 +4,7 @@
 #include "item3d/core/random.h"
 #include "item3d/guidance/timestep_schedule.h"
 #include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/processes/shared_rows.h"
 
 #include <ATen/CPUGeneratorImpl.h>
 
@@ -17,6 +18,14 @@ namespace {
 Random iteration_random(const GuidanceOptions& options, RandomStream stream,
                         std::int64_t iteration) {
     return Random(options.seed, stream, static_cast<std::uint64_t>(iteration) * 2);
+}
+
+/// Scaled latents of pictures in [0, 1], which may be none.
+at::Tensor encode(const DiffusionModel& pipeline, const at::Tensor& images) {
+    if (images.size(0) > 0) return pipeline.encode_image(images * 2 - 1);
+    const int cell = pipeline.downscale();
+    return at::empty({0, pipeline.latent_channels(), images.size(2) / cell, images.size(3) / cell},
+                     images.options().requires_grad(false));
 }
 
 }  // namespace
@@ -57,8 +66,8 @@ IterationDraws iteration_draws(const GuidanceOptions& options, std::int64_t iter
 GuidanceOutput finish_step(const NoisedLatents& start, const at::Tensor& direction,
                            const at::Tensor& gradient, double unet_began) {
     GuidanceOutput output;
-    output.latents = start.latents;
-    output.latents_gradient = gradient;
+    output.latents = start.own;
+    output.latents_gradient = gradient.narrow(0, start.first, start.own.size(0));
     output.direction_length = root_mean_square(direction);
     output.seconds_encode = start.seconds_encode;
     output.seconds_unet = seconds_now() - unet_began;
@@ -71,12 +80,18 @@ NoisedLatents noise_latents(const DiffusionModel& pipeline, const GuidanceInput&
                  "images must be [N, 3, H, W]");
     NoisedLatents result;
     const double start = seconds_now();
-    result.latents = pipeline.encode_image(input.images * 2 - 1);
+    result.processes = input.processes;
+    result.first = input.first;
+    const auto of_all = [&](const at::Tensor& own) {
+        return gather_rows(input.processes, own, input.first, input.views());
+    };
+    result.own = encode(pipeline, input.images);
+    result.latents = of_all(result.own.detach());
     if (input.reference.defined()) {
         ITEM3D_CHECK(input.reference.sizes() == input.images.sizes(),
                      "the reference must be as many and as large as the images");
         const at::NoGradGuard no_grad;
-        result.reference = pipeline.encode_image(input.reference * 2 - 1);
+        result.reference = of_all(encode(pipeline, input.reference));
     }
     result.seconds_encode = seconds_now() - start;
 
@@ -93,9 +108,10 @@ NoisedLatents noise_latents(const DiffusionModel& pipeline, const GuidanceInput&
     result.noise = at::randn(result.latents.sizes(), generator, at::kFloat).to(device);
     result.alphas_cumprod = schedule[timestep].to(device).to(at::kFloat).expand({rows, 1, 1, 1});
     result.weight = timestep_weight(options.weighting, result.alphas_cumprod);
-    result.noisy = result.alphas_cumprod.sqrt() * result.latents.detach() +
+    result.noisy = result.alphas_cumprod.sqrt() * result.latents +
                    (1 - result.alphas_cumprod).sqrt() * result.noise;
-    result.condition = condition_of_shape(pipeline, input.shape, result.latents);
+    result.condition = condition_of_shape(pipeline, input.shape, result.own);
+    if (result.condition.defined()) result.condition = of_all(result.condition);
     return result;
 }
 
@@ -111,7 +127,7 @@ NoisedLatents renoise_latents(const DiffusionModel& pipeline, const NoisedLatent
     const std::int64_t rows = start.latents.size(0);
     const at::Device device = start.latents.device();
     NoisedLatents result;
-    result.latents = start.latents.detach().repeat_interleave(count, 0);
+    result.latents = start.latents.repeat_interleave(count, 0);
     result.timesteps = at::empty({rows * count}, at::kLong);
     for (std::int64_t i = 0; i < rows * count; ++i) {
         const double place = (static_cast<double>(i % count) + offset) / count;
@@ -129,13 +145,29 @@ NoisedLatents renoise_latents(const DiffusionModel& pipeline, const NoisedLatent
 
 NoisedLatents join_rows(const NoisedLatents& first, const NoisedLatents& second) {
     NoisedLatents joined;
-    joined.latents = at::cat({first.latents.detach(), second.latents.detach()});
+    joined.latents = at::cat({first.latents, second.latents});
     joined.noise = at::cat({first.noise, second.noise});
     joined.noisy = at::cat({first.noisy, second.noisy});
     joined.timesteps = at::cat({first.timesteps, second.timesteps});
     joined.alphas_cumprod = at::cat({first.alphas_cumprod, second.alphas_cumprod});
     if (first.condition.defined()) joined.condition = at::cat({first.condition, second.condition});
+    joined.processes = first.processes;
     return joined;
+}
+
+NoisedLatents narrow_rows(const NoisedLatents& all, const Share& share) {
+    const auto rows = [&](const at::Tensor& tensor) {
+        return tensor.defined() ? tensor.narrow(0, share.first, share.count) : tensor;
+    };
+    NoisedLatents part;
+    part.latents = rows(all.latents);
+    part.noise = rows(all.noise);
+    part.noisy = rows(all.noisy);
+    part.timesteps = rows(all.timesteps);
+    part.alphas_cumprod = rows(all.alphas_cumprod);
+    part.condition = rows(all.condition);
+    part.processes = all.processes;
+    return part;
 }
 
 }  // namespace item3d

@@ -8,7 +8,8 @@
 namespace item3d {
 
 struct NoisedLatents {
-    at::Tensor latents;         ///< [N, C, h, w] with graph to the images
+    at::Tensor own;             ///< [n, C, h, w] with graph to the images
+    at::Tensor latents;         ///< [N, C, h, w] of all processes' images, no graph
     at::Tensor noise;           ///< [N, C, h, w] eps
     at::Tensor noisy;           ///< [N, C, h, w] z_t, no graph
     at::Tensor timesteps;       ///< [N] int64
@@ -16,6 +17,8 @@ struct NoisedLatents {
     at::Tensor weight;          ///< [N, 1, 1, 1] omega(t)
     at::Tensor condition;       ///< of DiffusionModel::predict_noise; undefined: none
     at::Tensor reference;       ///< [N, C, h, w] of GuidanceInput::reference, no graph
+    ProcessGroup processes;     ///< that predict of these together
+    std::int64_t first = 0;     ///< place of `own` among the N
     double seconds_encode = 0;
 };
 
@@ -29,8 +32,10 @@ NoisedLatents noise_latents(const DiffusionModel& pipeline, const GuidanceInput&
 NoisedLatents renoise_latents(const DiffusionModel& pipeline, const NoisedLatents& start,
                               const GuidanceOptions& options, std::int64_t iteration, int count);
 
-/// Rows of both, one after the other; neither has a graph then.
+/// Rows of both, one after the other; `own` is of neither.
 NoisedLatents join_rows(const NoisedLatents& first, const NoisedLatents& second);
+/// Rows [share.first, share.end()), without `own`.
+NoisedLatents narrow_rows(const NoisedLatents& all, const Share& share);
 
 /// Random numbers of an iteration beyond those of noise_latents().
 struct IterationDraws {
@@ -43,7 +48,8 @@ IterationDraws iteration_draws(const GuidanceOptions& options, std::int64_t iter
 
 at::Tensor timestep_weight(Weighting weighting, const at::Tensor& alphas_cumprod);
 
-/// What a step returns: the gradient, and the direction before weighting for its length.
+/// What a step returns: the gradient of what is this process's own, and the direction before
+/// weighting for its length.
 /// `unet_began`: seconds_now() before the first prediction.
 GuidanceOutput finish_step(const NoisedLatents& start, const at::Tensor& direction,
                            const at::Tensor& gradient, double unet_began);

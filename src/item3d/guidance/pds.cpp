@@ -65,9 +65,8 @@ GuidanceOutput PosteriorDistillation::step(const GuidanceInput& input, std::int6
     step.noise = start.noise;
     step.previous_noise = iteration_draws(options_, iteration).normal_like(start.latents);
 
-    const at::Tensor direction =
-        stochastic_latents(start, step, start.latents.detach(), target_text_) -
-        stochastic_latents(start, step, start.reference, source_text_);
+    const at::Tensor direction = stochastic_latents(start, step, start.latents, target_text_) -
+                                 stochastic_latents(start, step, start.reference, source_text_);
     return finish_step(start, direction, direction, before);
 }
 

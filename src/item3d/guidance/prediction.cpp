@@ -1,16 +1,26 @@
 #include "item3d/guidance/prediction.h"
 
+#include "item3d/processes/shared_rows.h"
+
 #include <cmath>
 
 namespace item3d {
+namespace {
+
+/// Rows [first, first + count).
+at::Tensor narrow(const at::Tensor& all, std::int64_t first, std::int64_t count) {
+    return all.defined() ? all.narrow(0, first, count) : all;
+}
+
+}  // namespace
 
 NoisyInput noisy_input(const NoisedLatents& start) {
-    return {start.noisy, start.timesteps, start.condition};
+    return {start.noisy, start.timesteps, start.condition, start.processes};
 }
 
 NoisyInput noisy_input(const NoisedLatents& start, const at::Tensor& latents,
                        std::int64_t timestep) {
-    return {latents, at::full_like(start.timesteps, timestep), start.condition};
+    return {latents, at::full_like(start.timesteps, timestep), start.condition, start.processes};
 }
 
 TextEmbedding encode_base(const DiffusionModel& pipeline, const GuidanceOptions& options) {
@@ -36,9 +46,16 @@ std::vector<at::Tensor> predict_each(const DiffusionModel& pipeline, const Noisy
         std::vector<at::Tensor> copies(texts.size(), tensor);
         return at::cat(copies);
     };
-    return pipeline
-        .predict_noise(repeated(input.latents), repeated(input.timesteps), text,
-                       repeated(input.condition))
+    const at::Tensor latents = repeated(input.latents), timesteps = repeated(input.timesteps),
+                     condition = repeated(input.condition);
+    const auto predict = [&](std::int64_t first, std::int64_t part) {
+        return pipeline.predict_noise(
+            narrow(latents, first, part), narrow(timesteps, first, part),
+            {narrow(text.states, first, part), narrow(text.pooled, first, part)},
+            narrow(condition, first, part));
+    };
+    return compute_rows(input.processes, rows * count, latents.sizes().slice(1), latents.options(),
+                        predict)
         .chunk(count);
 }
 

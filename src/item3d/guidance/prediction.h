@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/guidance/noised_latents.h"
+#include "item3d/processes/process_group.h"
 
 namespace item3d {
 
@@ -10,6 +11,7 @@ struct NoisyInput {
     at::Tensor latents;    ///< [N, C, h, w] z_t
     at::Tensor timesteps;  ///< [N] int64
     at::Tensor condition;  ///< of DiffusionModel::predict_noise; undefined: none
+    ProcessGroup processes = {};
 };
 NoisyInput noisy_input(const NoisedLatents& start);
 /// The same pictures at another level of noise.
@@ -22,7 +24,8 @@ TextEmbedding encode_base(const DiffusionModel& pipeline, const GuidanceOptions&
 /// What nfsd and csd push away from: the options' negative prompt, or default_negative_prompt().
 TextEmbedding encode_negative(const DiffusionModel& pipeline, const GuidanceOptions& options);
 
-/// eps(y) for each of these texts (one row each), in one call of the U-Net; constants.
+/// eps(y) for each of these texts (one row each), in one call of the U-Net; constants. The rows are
+/// shared out among the input's processes, each of which gets all.
 std::vector<at::Tensor> predict_each(const DiffusionModel& pipeline, const NoisyInput& input,
                                      const std::vector<TextEmbedding>& texts);
 

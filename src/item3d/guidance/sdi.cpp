@@ -37,7 +37,7 @@ at::Tensor InversionDistillation::invert(const NoisedLatents& start, std::int64_
                                          std::int64_t iteration) const {
     IterationDraws draws = iteration_draws(options_, iteration);
     const std::vector<std::int64_t> levels = inversion_levels(t, draws.uniform);
-    at::Tensor latents = start.latents.detach();
+    at::Tensor latents = start.latents;
     for (std::size_t i = 0; i + 1 < levels.size(); ++i) {
         const double from = alpha_of_level(*pipeline_, levels[i]);
         const double to = alpha_of_level(*pipeline_, levels[i + 1]);
@@ -61,7 +61,7 @@ GuidanceOutput InversionDistillation::step(const GuidanceInput& input, std::int6
     const at::Tensor noise = predict_guided(*pipeline_, noisy_input(start, latents, t),
                                             target_text_, base_text_, options_.guidance_scale);
     const at::Tensor direction =
-        start.latents.detach() - clean_latents(latents, noise, alpha_at(*pipeline_, t));
+        start.latents - clean_latents(latents, noise, alpha_at(*pipeline_, t));
     return finish_step(start, direction, direction, before);
 }
 

@@ -1,8 +1,8 @@
 #include "item3d/hub/download.h"
 
+#include "item3d/core/digest.h"
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
-#include "item3d/hub/digest.h"
 #include "item3d/hub/file_lock.h"
 
 #include <fcntl.h>

@@ -46,7 +46,10 @@ fs::path find_prior(const std::string& name) {
 }
 
 fs::path find_in_prior(const fs::path& prior, const std::string& name) {
-    return fs::exists(prior / name / "config.json") ? prior / name : fs::path();
+    const fs::path folder = prior / name;
+    const bool is_there =
+        fs::exists(folder / "config.json") || fs::exists(folder / "model_index.json");
+    return is_there ? folder : fs::path();
 }
 
 }  // namespace item3d

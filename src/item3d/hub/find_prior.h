@@ -18,8 +18,9 @@ std::filesystem::path installed_priors_folder();
 /// in this order. Throws InputError that says where was looked and what to try.
 std::filesystem::path find_prior(const std::string& name);
 
-/// The network of that name that a prior brings along (a sub-folder with a config.json); empty
-/// where it brings none. "clip": CLIPModel for scores; "captioner": BLIP for captions.
+/// The network of that name that a prior brings along (a sub-folder with a config.json or a
+/// model_index.json); empty where it brings none. "clip": CLIPModel for scores; "captioner": BLIP
+/// for captions; "segmenter": CLIPSeg for regions; "instruct": an InstructPix2Pix pipeline.
 std::filesystem::path find_in_prior(const std::filesystem::path& prior, const std::string& name);
 
 }  // namespace item3d

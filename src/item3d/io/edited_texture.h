@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 
 namespace item3d {
 
@@ -30,6 +31,8 @@ class EditedTexture {
 
     /// The bytes of the file; they are made once.
     const Bytes& encoded() const;
+    /// Takes the place of encoded() for all copies: the same picture with metadata.
+    void set_encoded(Bytes bytes) { picture_->encoded = std::move(bytes); }
 
     /// The same for all copies, and for no other.
     const void* identity() const { return picture_.get(); }

@@ -6,6 +6,7 @@
 #include "item3d/io/image/openexr.h"
 #include "item3d/io/image/png.h"
 #include "item3d/io/image/radiance.h"
+#include "item3d/io/image_claims.h"
 #include "item3d/io/obj/write.h"
 #include "item3d/io/text.h"
 
@@ -30,15 +31,17 @@ void save_image(const std::filesystem::path& path, const Image& image, int bits_
     write_atomically(path, std::span<const std::uint8_t>(bytes));
 }
 
-void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit) {
+void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit,
+                const Provenance& provenance) {
     const std::string extension = to_lower(path.extension().string());
     std::vector<EditedTexture> textures;
     for (const auto& [index, material] : edit.materials)
         textures.insert(textures.end(),
                         {material.base_color, material.metallic_roughness, material.normal});
     encode_all(textures);
+    put_claims(provenance, model, edit);
     if (extension == ".glb" || extension == ".gltf" || extension == ".vrm") {
-        write_gltf(path, model, edit);
+        write_gltf(path, model, edit, provenance);
     } else if (extension == ".obj") {
         write_obj(path, model, edit);
     } else {

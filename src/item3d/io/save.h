@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/io/edited_texture.h"
+#include "item3d/provenance/provenance.h"
 #include "item3d/scene/model.h"
 
 #include <filesystem>
@@ -58,6 +59,8 @@ struct ModelEdit {
 /// and PNGs). From a glTF source the document itself is patched: everything that was not edited
 /// (nodes, names, animations, skins, cameras, other materials, unknown extensions, extras) stays
 /// byte for byte or value for value. Other sources are written as a new, minimal document.
-void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit = {});
+/// provenance: of edits by sentences; a glTF and the textures of the edit carry it (io/claims.h).
+void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit = {},
+                const Provenance& provenance = {});
 
 }  // namespace item3d

@@ -127,6 +127,7 @@ class LayerReader {
         header.at("model").get_to(layer.model);
         header.at("model_hash").get_to(layer.model_hash);
         layer.settings = header.at("settings");
+        if (header.contains("claim")) header.at("claim").get_to(layer.claim);
         layer.field = header.at("field");
         if (header.contains("channels")) {
             const json& channels = header.at("channels");
@@ -303,6 +304,7 @@ void save_layer(const std::filesystem::path& path, const EditLayer& layer) {
                               {"metallic", channels.metallic},
                               {"normal", channels.normal}};
     }
+    if (layer.claim != EditClaim()) header["claim"] = layer.claim;
     if (layer.region)
         header["region"] = {{"include", layer.region->include},
                             {"exclude", layer.region->exclude},

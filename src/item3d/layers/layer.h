@@ -3,6 +3,7 @@
 
 #include "item3d/field/bake/bake.h"
 #include "item3d/io/save.h"
+#include "item3d/provenance/claim.h"
 #include "item3d/tensors/safetensors.h"
 
 #include <nlohmann/json.hpp>
@@ -74,6 +75,7 @@ struct EditLayer {
     std::string model;           ///< file name
     std::string model_hash;      ///< hash_of_file()
     nlohmann::json settings;     ///< "from", "to" and all others, as in edit.json
+    EditClaim claim;             ///< of its edit; empty where that says nothing of itself
     std::vector<LayerPicture> pictures;
     std::map<int, LayerMaterial> materials;   ///< by index into Model::materials
     std::map<int, PrimitiveEdit> primitives;  ///< by index into Model::primitives

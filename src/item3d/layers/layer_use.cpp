@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -83,6 +85,18 @@ LayerUse parse_layer_use(const std::string& text) {
         text.substr(end + 1, second == std::string::npos ? second : second - end - 1), text);
     if (second != std::string::npos) use.channels = parse_channels(text.substr(second + 1), text);
     return use;
+}
+
+std::string strength_text(const LayerUse& use) {
+    std::vector<std::string> names;
+    for (const ChannelName& known : channel_names)
+        if (use.channels.*known.channel) names.emplace_back(known.name);
+    const bool is_whole = names.size() == std::size(channel_names);
+    if (is_whole && use.strength == LayerUse::strength_steps) return "";
+    std::string text =
+        fmt::format("{:g}", static_cast<double>(use.strength) / LayerUse::strength_steps);
+    if (!is_whole) text += fmt::format(":{}", fmt::join(names, ","));
+    return text;
 }
 
 }  // namespace item3d

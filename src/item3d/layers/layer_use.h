@@ -31,4 +31,7 @@ struct LayerUse {
 /// and highest, and for a channel that there is not.
 LayerUse parse_layer_use(const std::string& text);
 
+/// What would be behind the layer's name: "0.5:roughness"; empty where it is applied as a whole.
+std::string strength_text(const LayerUse& use);
+
 }  // namespace item3d

@@ -93,6 +93,20 @@ void rebake_all(const LayeredModelRequest& request, const Model& model, const st
             applied.layer = request.rebake(applied.layer, model, request.texture_size);
 }
 
+/// Of the edits that the layers are of, in an order that does not depend on that of the layers.
+std::vector<EditClaim> claims_of(const std::vector<AppliedLayer>& layers) {
+    std::vector<EditClaim> claims;
+    for (const AppliedLayer& applied : layers) {
+        if (applied.use.strength == 0 || applied.layer.claim == EditClaim()) continue;
+        claims.push_back(applied.layer.claim);
+        claims.back().strength = strength_text(applied.use);
+    }
+    std::sort(claims.begin(), claims.end(), [](const EditClaim& a, const EditClaim& b) {
+        return json(a).dump() < json(b).dump();
+    });
+    return claims;
+}
+
 json record_of(const LayeredModelRequest& request, const Model& model,
                const std::vector<AppliedLayer>& layers, const ModelEdit& edit,
                const std::string& rebaked) {
@@ -139,7 +153,7 @@ json write_layered_model(const LayeredModelRequest& request) {
         write_unchanged(request, model);
     } else {
         choose_codings(model, request.texture_format.value_or(format_of(layers)), edit);
-        save_model(request.output, model, edit);
+        save_model(request.output, model, edit, {claims_of(layers), request.sign_key});
     }
     return record_of(request, model, layers, edit, rebaked);
 }

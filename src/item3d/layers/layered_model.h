@@ -4,12 +4,14 @@
 #include "item3d/io/texture_format.h"
 #include "item3d/layers/layer.h"
 #include "item3d/layers/layer_use.h"
+#include "item3d/provenance/signing.h"
 #include "item3d/scene/model.h"
 
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +26,7 @@ struct LayeredModelRequest {
     /// Of the textures that are written; none: as the layers' edits wrote them, where they agree.
     std::optional<TextureFormat> texture_format;
     int texture_size = 0;  ///< longest edge of the textures that layers change; 0: as they are
+    std::shared_ptr<const SigningKey> sign_key = nullptr;  ///< null: the result is not signed
     /// Makes a layer anew for a model, from its field, with textures of this size (0: as its
     /// edit's). Null: layers that do not fit are refused.
     std::function<EditLayer(const EditLayer&, const Model&, int texture_size)> rebake = nullptr;

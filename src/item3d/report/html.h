@@ -4,6 +4,7 @@
 // are escaped here.
 #pragma once
 
+#include "item3d/core/data_uri.h"
 #include "item3d/core/files.h"
 #include "item3d/core/html_escape.h"
 
@@ -20,9 +21,6 @@ struct ReportImage {
 };
 
 using TableRows = std::vector<std::pair<std::string, std::string>>;
-
-/// "data:image/png;base64,...".
-std::string data_uri(const Bytes& bytes);
 
 /// A picture with its caption below (none when empty). `checkered` shows what is transparent.
 std::string html_figure(const ReportImage& image, bool checkered = false);

@@ -5,9 +5,11 @@
 #include "item3d/edit/detail/painting_plan.h"
 #include "item3d/edit/optimize/checkpoint_state.h"
 #include "item3d/edit/optimize/checkpoint_writer.h"
+#include "item3d/edit/optimize/point_share.h"
 #include "item3d/edit/optimize/render_view.h"
 #include "item3d/networks/diffusion/generate.h"
 #include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/processes/gradients.h"
 
 #include <algorithm>
 #include <map>
@@ -63,18 +65,25 @@ struct PaintedView {
 };
 
 /// How far the channels that the stage leaves alone have moved; the field's features are shared by
-/// all of them. `now` is as of up to half a pixel aside, which they vary little over.
-at::Tensor drift(const MaterialSample& now, const MaterialSample& before) {
-    at::Tensor moved = (now.orm - before.orm).square().mean();
-    if (before.normal.defined()) moved = moved + (now.normal - before.normal).square().mean();
+/// all of them. `now` is as of up to half a pixel aside, which they vary little over. These points'
+/// part of the mean over `points` of them.
+at::Tensor drift(const MaterialSample& now, const MaterialSample& before, std::int64_t points) {
+    const auto values = static_cast<double>(3 * points);
+    at::Tensor moved = (now.orm - before.orm).square().sum() / values;
+    if (before.normal.defined())
+        moved = moved + (now.normal - before.normal).square().sum() / values;
     return moved;
 }
 
 /// The stage in progress.
 class Painter {
   public:
-    Painter(const EditScene& scene, const EditPlan& plan, EditState& state)
-        : scene_(scene), plan_(plan), state_(state), views_(plan_painting(scene, plan)) {
+    Painter(const EditRequest& request, const EditScene& scene, EditState& state)
+        : processes_(request.processes),
+          scene_(scene),
+          plan_(request.plan),
+          state_(state),
+          views_(plan_painting(scene, plan_)) {
         set_learning_rates(1);
     }
 
@@ -91,6 +100,7 @@ class Painter {
     void set_learning_rates(double factor);
     void fit_all();
 
+    const ProcessGroup& processes_;
     const EditScene& scene_;
     const EditPlan& plan_;
     EditState& state_;
@@ -116,6 +126,7 @@ EditView Painter::render(std::size_t index, const GBuffer& gbuffer, float spread
     options.light = &scene_.lights->studio();
     options.spread = spread_pixels;
     options.spread_draw = draw;
+    options.processes = processes_;
     return render_view(scene_, plan_, state_.field, gbuffer, options);
 }
 
@@ -156,6 +167,7 @@ at::Tensor Painter::target(std::size_t index, const GBuffer& gbuffer) const {
     options.eta = 1;
     options.seed = mix_bits(plan_.seed) + index;
     options.show_progress = false;
+    options.processes = processes_;
     const at::Tensor condition = condition_of_shape(prior, gbuffer.shape, latents);
     const at::Tensor sampled = generate_latents(prior, options, condition);
     const at::Tensor decoded = prior.decode_image(sampled) / 2 + 0.5f;
@@ -174,7 +186,11 @@ void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
     const at::Tensor apart =
         ((view.images - state_.detail.targets[chosen]).square() * weight).sum() /
         (weight.sum() + 1e-4f);
-    (apart + drift(view.material, before)).backward();
+    const at::Tensor moved =
+        drift(view.material, narrow(before, view.points), gbuffer.surface.count());
+    // All processes have the picture: it counts once.
+    (processes_.first() ? apart + moved : 0 * apart + moved).backward();
+    sum_gradients(processes_, state_.detail.optimizer.parameters());
     state_.detail.optimizer.step();
     state_.detail.optimizer.zero_grad();
 }
@@ -226,7 +242,7 @@ void add_detail(const EditRequest& request, const EditScene& scene, EditState& s
     if (!state.detail.has_begun()) state.detail.begin(state.field);
     Progress progress("detail", plan.detail_views, state.iteration - plan.iterations);
     CheckpointWriter checkpoints(request, scene, state.fitted);
-    Painter painter(scene, plan, state);
+    Painter painter(request, scene, state);
     while (state.iteration < total) {
         painter.paint(state.detail.targets.size());
         progress.update(state.iteration - plan.iterations);

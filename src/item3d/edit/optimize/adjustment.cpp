@@ -35,7 +35,10 @@ std::vector<at::Tensor> to_bytes(const at::Tensor& pictures) {
 }  // namespace
 
 DirectionAdjustment::DirectionAdjustment(const EditRequest& request, const EditScene& scene)
-    : plan_(request.plan), scene_(scene), cameras_(field_cameras(scene, caption_views)) {
+    : plan_(request.plan),
+      scene_(scene),
+      processes_(request.processes),
+      cameras_(field_cameras(scene, caption_views)) {
     if (!scene.captioner) return;
     source_.emplace(
         scene.prior(), plan_.from, plan_.to,
@@ -55,28 +58,44 @@ void DirectionAdjustment::finish(EditState& state) const {
 void DirectionAdjustment::observe(EditState& state) const {
     std::vector<AdjustmentRecord>& records = state.adjustment.records;
     const bool asks = source_ && state.adjustment.failure.empty();
-    // The first view alone where only people look.
-    const std::vector<Camera> cameras(cameras_.begin(),
-                                      asks ? cameras_.end() : cameras_.begin() + 1);
-    const at::Tensor pictures = draw_field(scene_, state.field, current_light(scene_, state),
-                                           cameras, caption_pixels(plan_));
-
     AdjustmentRecord record;
     record.iteration = static_cast<std::int64_t>(state.direction_length.size());
-    record.picture = to_bytes(pictures).front();
     record.direction = recent_mean(state.direction_length, records);
     record.source_loss = recent_mean(state.source_loss, records);
-    if (asks) {
-        for (const Caption& caption : follow(state, pictures))
-            record.captions.push_back(caption.text);
+    std::optional<TextEmbedding> shift;
+    if (processes_.first()) {
+        // The first view alone where only people look.
+        const std::vector<Camera> cameras(cameras_.begin(),
+                                          asks ? cameras_.end() : cameras_.begin() + 1);
+        const at::Tensor pictures = draw_field(scene_, state.field, current_light(scene_, state),
+                                               cameras, caption_pixels(plan_));
+        record.picture = to_bytes(pictures).front();
+        if (asks) shift = follow(state, pictures, record.captions);
     }
+    if (source_) shift = handed_on(shift);
+    if (shift) state.guidance->shift_source(*shift);
     record.text = state.guidance->text_direction();
     if (!record.text) record.source_loss.reset();
     records.push_back(std::move(record));
 }
 
-std::vector<Caption> DirectionAdjustment::follow(EditState& state,
-                                                 const at::Tensor& pictures) const {
+/// The first process's.
+std::optional<TextEmbedding> DirectionAdjustment::handed_on(
+    const std::optional<TextEmbedding>& shift) const {
+    if (!processes_.several()) return shift;
+    NamedTensors tensors;
+    if (shift) tensors.emplace_back("states", shift->states.cpu());
+    if (shift && shift->pooled.defined()) tensors.emplace_back("pooled", shift->pooled.cpu());
+    tensors = processes_.broadcast(tensors);
+    if (tensors.empty()) return std::nullopt;
+    TextEmbedding all{tensors[0].second.to(scene_.device)};
+    if (tensors.size() > 1) all.pooled = tensors[1].second.to(scene_.device);
+    return all;
+}
+
+std::optional<TextEmbedding> DirectionAdjustment::follow(EditState& state,
+                                                         const at::Tensor& pictures,
+                                                         std::vector<std::string>& said) const {
     AdjustmentState& adjustment = state.adjustment;
     std::vector<Caption> captions;
     try {
@@ -91,13 +110,13 @@ std::vector<Caption> DirectionAdjustment::follow(EditState& state,
         throw;
     } catch (const std::exception& error) {
         give_up(adjustment, error.what());
-        return {};
+        return std::nullopt;
     }
-    if (const auto shift = source_->shift(adjustment.captions_before, captions))
-        state.guidance->shift_source(*shift);
-    else
-        give_up(adjustment, "the captioner says nothing, or does not come to an end");
-    return captions;
+    for (const Caption& caption : captions)
+        said.push_back(caption.text);
+    const auto shift = source_->shift(adjustment.captions_before, captions);
+    if (!shift) give_up(adjustment, "the captioner says nothing, or does not come to an end");
+    return shift;
 }
 
 void DirectionAdjustment::give_up(AdjustmentState& state, const std::string& reason) const {

@@ -27,11 +27,15 @@ class DirectionAdjustment {
 
   private:
     void observe(EditState& state) const;
-    std::vector<Caption> follow(EditState& state, const at::Tensor& pictures) const;
+    /// What the captioner's words move the source by; none where it is given up.
+    std::optional<TextEmbedding> follow(EditState& state, const at::Tensor& pictures,
+                                        std::vector<std::string>& said) const;
+    std::optional<TextEmbedding> handed_on(const std::optional<TextEmbedding>& shift) const;
     void give_up(AdjustmentState& state, const std::string& reason) const;
 
     const EditPlan& plan_;
     const EditScene& scene_;
+    const ProcessGroup& processes_;
     std::vector<Camera> cameras_;
     std::optional<CaptionSource> source_;
 };

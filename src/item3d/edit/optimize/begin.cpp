@@ -1,5 +1,6 @@
 #include "item3d/edit/optimize/begin.h"
 
+#include "item3d/core/date.h"
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/optimize/checkpoint_state.h"
@@ -56,10 +57,12 @@ std::unique_ptr<LightModel> begin_light(const EditScene& scene, const EditPlan& 
 }
 
 /// Makes the field look like the input, with metallic and roughness where the edit starts.
-void fit_field(const EditScene& scene, const EditPlan& plan, EditState& state) {
+void fit_field(const EditRequest& request, const EditScene& scene, EditState& state) {
+    const EditPlan& plan = request.plan;
     FitOptions options;
     options.steps = plan.fit_steps;
     options.seed = plan.seed;
+    options.processes = request.processes;
     fit_to_materials(state.field, scene.geometry, *scene.space, *scene.textured, options);
     state.fitted = snapshot(state.field);
     const auto begin_at = [&](OrmChannel channel, std::optional<float> mean) {
@@ -74,6 +77,8 @@ void fit_field(const EditScene& scene, const EditPlan& plan, EditState& state) {
 EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     const EditPlan& plan = request.plan;
     EditState state;
+    require_one_request(request, state);
+    state.begun = utc_date();
     state.field = NeuralTexture(suggest_field_options(
         scene.geometry, *scene.space, finest_texture(scene, plan.texture_size), plan.seed));
     state.field->to(scene.device);
@@ -93,6 +98,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         state.guidance = guidance_of_method(request, scene);
         state.prior_weights = scene.hashing_weights.get();
         state.networks = {scene.prior()};
+        require_one_request(request, state);
     };
 
     if (request.resume) {
@@ -106,7 +112,7 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
     }
     // What a method lacks is told before the fit takes its seconds.
     if (!state.guidance && plan.method != "item3d") begin_guidance();
-    if (plan.edits_texture) fit_field(scene, plan, state);
+    if (plan.edits_texture) fit_field(request, scene, state);
     if (!state.guidance) begin_guidance();  // the prior was loaded meanwhile
     if (plan.edits_texture) save_state(request, state);
     return state;

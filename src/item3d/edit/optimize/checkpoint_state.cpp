@@ -1,5 +1,7 @@
 #include "item3d/edit/optimize/checkpoint_state.h"
 
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/tensors/checkpoint.h"
 
 namespace item3d {
@@ -18,7 +20,8 @@ nlohmann::json identity_of(const EditRequest& request, const EditState& state) {
     if (request.plan.method == "clip")
         identity["teacher"] = (request.teacher.empty() ? request.clip : request.teacher).string();
     if (!request.inpainting.empty()) identity["inpainting"] = request.inpainting.string();
-    if (!request.instruct.empty()) identity["instruct"] = request.instruct.string();
+    if (request.plan.method == "in2n" && !request.instruct.empty())
+        identity["instruct"] = request.instruct.string();
     if (request.plan.asks_captioner) identity["captioner"] = request.captioner.string();
     return identity;
 }
@@ -81,11 +84,28 @@ void append_field(NamedTensors& tensors, const EditState& state) {
     append_adjustment(tensors, state.adjustment);
 }
 
+/// That of the first process, on all of them.
+std::optional<Checkpoint> read_checkpoint(const EditRequest& request) {
+    const ProcessGroup& processes = request.processes;
+    std::optional<Checkpoint> checkpoint;
+    if (processes.first()) checkpoint = load_checkpoint(checkpoint_path(request));
+    if (!processes.several()) return checkpoint;
+    nlohmann::json header;
+    if (checkpoint) header = {checkpoint->identity, checkpoint->iteration};
+    header = nlohmann::json::parse(processes.broadcast(header.dump()));
+    if (header.is_null()) return std::nullopt;
+    Checkpoint all{header[0], header[1].get<std::int64_t>(), {}};
+    all.tensors = processes.broadcast(checkpoint ? checkpoint->tensors : NamedTensors());
+    return all;
+}
+
 }  // namespace
 
 void save_state(const EditRequest& request, const EditState& state) {
+    if (!request.processes.first()) return;
     Checkpoint checkpoint;
     checkpoint.identity = identity_of(request, state);
+    checkpoint.identity["begun"] = state.begun;
     checkpoint.iteration = state.iteration;
     if (state.painter) {
         for (const auto& [name, tensor] : state.painter->state())
@@ -97,8 +117,25 @@ void save_state(const EditRequest& request, const EditState& state) {
     save_checkpoint(checkpoint_path(request), checkpoint);
 }
 
+void require_one_request(const EditRequest& request, const EditState& state) {
+    const ProcessGroup& processes = request.processes;
+    if (!processes.several()) return;
+    const nlohmann::json own = identity_of(request, state);
+    const auto first = nlohmann::json::parse(processes.broadcast(own.dump()));
+    std::string difference;
+    for (const auto& [key, value] : own.items())
+        if (difference.empty() && (!first.contains(key) || first.at(key) != value))
+            difference =
+                fmt::format("has another '{}' than process 0: {} instead of {}", key, value.dump(),
+                            first.contains(key) ? first.at(key).dump() : "none");
+    if (!processes.any(!difference.empty())) return;
+    throw InputError(fmt::format("process {} of {}", processes.rank(), processes.size()),
+                     difference.empty() ? "another process has other files or options" : difference,
+                     "give all of them the same");
+}
+
 bool load_state(const EditRequest& request, EditState& state) {
-    const auto checkpoint = load_checkpoint(checkpoint_path(request));
+    const auto checkpoint = read_checkpoint(request);
     if (!checkpoint) return false;
     require_same_identity(checkpoint_path(request), checkpoint->identity,
                           identity_of(request, state),
@@ -107,6 +144,7 @@ bool load_state(const EditRequest& request, EditState& state) {
 
     const CheckpointReader reader(checkpoint_path(request).string(), checkpoint->tensors);
     state.iteration = checkpoint->iteration;
+    state.begun = checkpoint->identity.value("begun", state.begun);
     if (reader.has("unet_rows"))
         state.earlier_unet_rows = reader.get("unet_rows").item<std::int64_t>();
     if (state.painter) {

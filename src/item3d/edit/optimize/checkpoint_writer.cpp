@@ -8,6 +8,8 @@
 #include "item3d/io/save.h"
 #include "item3d/render/pictures.h"
 
+#include <cmath>
+
 namespace item3d {
 namespace {
 
@@ -68,13 +70,27 @@ void CheckpointWriter::update_preview(EditState& state) {
     preview_.update(state.field, current_light(scene_, state));
 }
 
+bool CheckpointWriter::share_progress(EditState& state) const {
+    const ProcessGroup& processes = request_.processes;
+    if (!processes.several()) return interrupted();
+    const std::int64_t own = state.own_unet_rows();
+    at::Tensor message =
+        at::tensor({interrupted() ? 1.0f : 0.0f, static_cast<float>(own)}, at::kFloat);
+    processes.sum(message);
+    state.unet_rows_elsewhere =
+        static_cast<std::int64_t>(std::lround(message[1].item<float>())) - own;
+    return message[0].item<float>() > 0;
+}
+
 void CheckpointWriter::after_step(EditState& state, Progress& progress) {
     const std::int64_t total = request_.plan.total_iterations;
-    const bool stop = interrupted() || state.iteration == request_.stop_after;
+    const ProcessGroup& processes = request_.processes;
+    const bool stop = share_progress(state) || state.iteration == request_.stop_after;
     if (stop && state.iteration < total) {
         progress.finish();
         interrupt(request_, state);
     }
+    if (!processes.first()) return;
     if (seconds_now() - checkpointed_ > seconds_between_checkpoints) {
         save_state(request_, state);
         checkpointed_ = seconds_now();

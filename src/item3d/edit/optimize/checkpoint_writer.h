@@ -12,7 +12,8 @@
 
 namespace item3d {
 
-/// Writes the checkpoint and throws Interrupted with the command that goes on.
+/// Writes the checkpoint, where this is the first process, and throws Interrupted with the command
+/// that goes on.
 [[noreturn]] void interrupt(const EditRequest& request, const EditState& state);
 
 /// A picture of the edit so far, refreshed in the output folder while it runs.
@@ -39,11 +40,14 @@ class CheckpointWriter {
   public:
     /// fitted: the field before the edit, for LiveTextures; none with a painter.
     CheckpointWriter(const EditRequest& request, const EditScene& scene, NeuralTexture& fitted);
-    /// Call after each step. Throws Interrupted, with the checkpoint written, after Ctrl-C or at
-    /// the request's stop_after unless the edit is done by then.
+    /// Call after each step, on all processes. Throws Interrupted, with the checkpoint written,
+    /// after Ctrl-C of any process or at the request's stop_after unless the edit is done by then.
     void after_step(EditState& state, Progress& progress);
 
   private:
+    /// Takes over how many rows the other processes' networks were asked; whether any process is to
+    /// stop.
+    bool share_progress(EditState& state) const;
     void update_preview(EditState& state);
 
     const EditRequest& request_;

@@ -11,6 +11,7 @@
 #include "item3d/edit/optimize/method_guidance.h"
 #include "item3d/edit/optimize/render_view.h"
 #include "item3d/guidance/noised_latents.h"
+#include "item3d/processes/gradients.h"
 #include "item3d/render/scatter.h"
 
 #include <cmath>
@@ -58,12 +59,14 @@ void end_where_converged(const EditPlan& plan, EditState& state) {
     state.iteration = plan.iterations;
 }
 
-GBuffer rasterize_iteration(const EditScene& scene, const EditPlan& plan, std::int64_t iteration) {
+GBuffer rasterize_iteration(const EditScene& scene, const EditPlan& plan, std::int64_t iteration,
+                            const Share& views) {
     std::vector<Camera> cameras = cameras_of_method(scene, plan, iteration);
     const bool is_fixed = plan.method == "in2n";
     if (scene.region_views && !is_fixed)
         scene.region_views->take_turns(cameras, plan.seed, iteration);
-    return rasterize_views(scene, plan, cameras);
+    const auto first = cameras.begin() + views.first;
+    return rasterize_views(scene, plan, {first, first + views.count});
 }
 
 /// [N, 1, h, w], 1 where a pixel of the region, or one beside it, falls on a latent.
@@ -75,24 +78,83 @@ at::Tensor edited_latents(const GBuffer& gbuffer, const at::Tensor& latents) {
     return at::max_pool2d(covered, {3, 3}, {1, 1}, {1, 1}).gt(0).to(latents.dtype());
 }
 
-/// The images that guidance sees. The unedited model is the field as it was fitted, so that a
-/// render that has not been edited yet equals its reference.
-GuidanceInput render_guidance_input(const EditScene& scene, const EditPlan& plan,
-                                    const GBuffer& gbuffer, EditState& state) {
+SeenShape narrow(const SeenShape& shape, const Share& views) {
+    const auto rows = [&](const at::Tensor& all) {
+        return all.defined() ? all.narrow(0, views.first, views.count) : all;
+    };
+    return {rows(shape.depth), rows(shape.position), rows(shape.normal)};
+}
+
+/// The pictures of an iteration, as far as this process draws them, and the part that it hands to
+/// guidance.
+struct IterationPictures {
+    ViewShare views;
+    GBuffer gbuffer;    ///< of views.drawn()
+    at::Tensor images;  ///< of them
+    GuidanceInput input;
+};
+
+/// The unedited model is the field as it was fitted, so that a render that has not been edited yet
+/// equals its reference.
+IterationPictures draw_iteration(const EditRequest& request, const EditScene& scene,
+                                 EditState& state) {
+    const EditPlan& plan = request.plan;
+    IterationPictures pictures;
+    pictures.views = share_views(request.processes, plan.batch);
+    const Share drawn = pictures.views.drawn();
+    pictures.gbuffer = rasterize_iteration(scene, plan, state.iteration, drawn);
     ViewOptions options{state.iteration};
+    options.first_view = static_cast<int>(drawn.first);
+    options.total_views = plan.batch;
+    if (pictures.views.by_points) options.processes = request.processes;
     EnvironmentLight light;
     if (state.light) {
         light = prefilter_light(scene, *state.light);
         options.light = &light;
     }
-    GuidanceInput input{render_view(scene, plan, state.field, gbuffer, options).images,
-                        gbuffer.shape};
+    const Share own{pictures.views.own.first - drawn.first, pictures.views.own.count};
+    const auto draw = [&](NeuralTexture& field) {
+        return render_view(scene, plan, field, pictures.gbuffer, options).images;
+    };
+    pictures.images = draw(state.field);
+    GuidanceInput& input = pictures.input;
+    input.images = pictures.images.narrow(0, own.first, own.count);
+    input.shape = narrow(pictures.gbuffer.shape, own);
+    input.processes = request.processes;
+    input.first = pictures.views.own.first;
+    input.total = plan.batch;
     if (state.guidance->needs_reference()) {
         const at::NoGradGuard no_grad;
         if (state.light) options.light = &state.first_light;
-        input.reference = render_view(scene, plan, state.fitted, gbuffer, options).images;
+        input.reference = draw(state.fitted).narrow(0, own.first, own.count);
     }
-    return input;
+    return pictures;
+}
+
+/// Of all views, to the parameters' gradients.
+void backward(const EditRequest& request, const EditScene& scene,
+              const ColorRegularizer& color_regularizer, const IterationPictures& pictures,
+              const GuidanceOutput& guidance, EditState& state) {
+    const ProcessGroup& processes = request.processes;
+    if (pictures.views.own.count > 0) {
+        // A single bad prediction (an overflow in bf16) must not destroy the field.
+        at::Tensor gradient = at::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
+        if (scene.region)
+            gradient =
+                gradient * edited_latents(pictures.gbuffer, gradient)
+                               .narrow(0, pictures.views.own.first - pictures.views.drawn().first,
+                                       gradient.size(0));
+        guidance.latents.backward(gradient / request.plan.batch);
+    } else {
+        // Points of the others' pictures may be this process's.
+        pictures.images.backward(at::zeros_like(pictures.images));
+    }
+    // Once for all: by a process that has no picture, if there is one.
+    if (processes.rank() + 1 == processes.size()) {
+        color_regularizer.backward(state);
+        if (state.light) state.light->regularization().backward();
+    }
+    sum_gradients(processes, state.optimizer.parameters());
 }
 
 void set_learning_rates(const EditPlan& plan, EditState& state) {
@@ -104,31 +166,35 @@ void set_learning_rates(const EditPlan& plan, EditState& state) {
         state.optimizer.options("light").learning_rate = factor * plan.light_learning_rate;
 }
 
-void run_iteration(const EditScene& scene, const EditPlan& plan,
+/// The first process's numbers: when an edit has converged must be the same for all, and another
+/// kind of CPU rounds otherwise.
+void record_step(const ProcessGroup& processes, const GuidanceOutput& guidance, EditState& state) {
+    at::Tensor curves = at::zeros({2});
+    if (processes.first()) curves = at::tensor({guidance.direction_length, guidance.source_loss});
+    processes.sum(curves);
+    state.direction_length.push_back(curves[0].item<float>());
+    state.source_loss.push_back(curves[1].item<float>());
+    ++state.iteration;
+}
+
+void run_iteration(const EditRequest& request, const EditScene& scene,
                    const ColorRegularizer& color_regularizer, EditState& state,
                    IterationTimes& times) {
+    const EditPlan& plan = request.plan;
+    const double exchanged = request.processes.exchange_seconds();
     const double start = seconds_now();
-    const GBuffer gbuffer = rasterize_iteration(scene, plan, state.iteration);
-    const GuidanceInput input = render_guidance_input(scene, plan, gbuffer, state);
+    const IterationPictures pictures = draw_iteration(request, scene, state);
     const double rendered = seconds_now();
-    const GuidanceOutput guidance = state.guidance->step(input, state.iteration);
+    const GuidanceOutput guidance = state.guidance->step(pictures.input, state.iteration);
     const double guided = seconds_now();
-
-    // A single bad prediction (an overflow in bf16) must not destroy the field.
-    at::Tensor gradient = at::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
-    if (scene.region) gradient = gradient * edited_latents(gbuffer, gradient);
-    guidance.latents.backward(gradient / plan.batch);
-    color_regularizer.backward(state);
-    if (state.light) state.light->regularization().backward();
+    backward(request, scene, color_regularizer, pictures, guidance, state);
     const double back = seconds_now();
 
     set_learning_rates(plan, state);
     state.optimizer.step();
     state.optimizer.zero_grad();
 
-    state.direction_length.push_back(guidance.direction_length);
-    state.source_loss.push_back(guidance.source_loss);
-    ++state.iteration;
+    record_step(request.processes, guidance, state);
 
     ++times.iterations;
     times.render += rendered - start;
@@ -136,6 +202,7 @@ void run_iteration(const EditScene& scene, const EditPlan& plan,
     times.unet += guidance.seconds_unet;
     times.backward += back - guided;
     times.step += seconds_now() - back;
+    times.exchange += request.processes.exchange_seconds() - exchanged;
 }
 
 }  // namespace
@@ -159,7 +226,7 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
         CheckpointWriter checkpoints(request, scene, state.fitted);
         while (state.iteration < plan.iterations) {
             adjust([&] { adjustment.before_iteration(state); });
-            run_iteration(scene, plan, color_regularizer, state, times);
+            run_iteration(request, scene, color_regularizer, state, times);
             end_where_converged(plan, state);
             progress.update(state.iteration,
                             fmt::format("direction {:.3f}", state.direction_length.back()));

@@ -17,7 +17,8 @@ struct IterationTimes {
     double unet = 0;
     double backward = 0;
     double step = 0;
-    double adjust = 0;  ///< pictures and captions of DirectionAdjustment
+    double adjust = 0;    ///< pictures and captions of DirectionAdjustment
+    double exchange = 0;  ///< with other processes, waiting included; a part of the others
 };
 
 /// Runs the remaining iterations, or as many as the edit takes to converge; writes checkpoints and

@@ -1,6 +1,8 @@
 #include "item3d/edit/optimize/render_view.h"
 
 #include "item3d/core/random.h"
+#include "item3d/edit/optimize/point_share.h"
+#include "item3d/processes/shared_rows.h"
 #include "item3d/region/seen_shape.h"
 #include "item3d/render/antialias.h"
 #include "item3d/render/pictures.h"
@@ -26,6 +28,12 @@ at::Tensor offsets(const at::Tensor& positions, const EditScene& scene, const Ed
 
 }  // namespace
 
+ViewShare share_views(const ProcessGroup& processes, int total) {
+    if (total >= processes.size()) return {total, processes.share(total), false};
+    const std::int64_t first = std::min(processes.rank(), total);
+    return {total, {first, processes.rank() < total ? 1 : 0}, true};
+}
+
 GBuffer rasterize_views(const EditScene& scene, const EditPlan& plan,
                         const std::vector<Camera>& cameras) {
     const int size = plan.resolution * plan.supersampling;
@@ -43,17 +51,24 @@ EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture
     const EnvironmentLight light =
         options.light ? *options.light : scene.lights->pick(plan.seed, options.iteration);
     EditView view;
-    view.surface = surface;
-    if (options.spread > 0) {
-        view.surface.position = surface.position + offsets(surface.position, scene, plan, options);
-    }
-    view.material = scene.source->sample(view.surface, field, own);
-    at::Tensor radiance = shade(surface, view.material, light);
+    view.points = options.processes.share(surface.count());
+    const auto [first, count] = view.points;
+    const Surface shaded = narrow(surface, view.points);
+    view.surface = shaded;
+    if (options.spread > 0)
+        view.surface.position =
+            shaded.position +
+            offsets(surface.position, scene, plan, options).narrow(0, first, count);
+    view.material = scene.source->sample(view.surface, field, narrow(own, view.points));
+    at::Tensor radiance = shade(shaded, view.material, light);
     if (view.material.emissive.defined()) radiance = radiance + view.material.emissive;
+    radiance = gather_rows(options.processes, radiance, first, surface.count());
 
     const int views = raster.views(), size = raster.width();
+    const int total = options.total_views > 0 ? options.total_views : views;
     const at::Tensor background =
-        sample_backgrounds(plan.background, views, plan.seed, options.iteration)
+        sample_backgrounds(plan.background, total, plan.seed, options.iteration)
+            .narrow(0, options.first_view, views)
             .to(scene.device)
             .view({views, 1, 1, 3})
             .expand({views, size, size, 3});

@@ -5,6 +5,7 @@
 #include "item3d/edit/scene.h"
 #include "item3d/edit/state.h"
 #include "item3d/networks/diffusion/shape_condition.h"
+#include "item3d/processes/process_group.h"
 #include "item3d/tensors/tensor.h"
 
 #include <cstdint>
@@ -23,11 +24,24 @@ struct GBuffer {
 GBuffer rasterize_views(const EditScene& scene, const EditPlan& plan,
                         const std::vector<Camera>& cameras);
 
+/// Where some of the N views of an iteration are this process's to hand to the prior. With fewer
+/// views than processes, each process shades a part of all their points (ViewOptions::processes).
+struct ViewShare {
+    int total = 0;  ///< N
+    Share own;
+    bool by_points = false;
+    /// Of the G-buffer: all views where points are shared out, this process's otherwise.
+    Share drawn() const { return by_points ? Share{0, total} : own; }
+};
+ViewShare share_views(const ProcessGroup& processes, int total);
+
 struct EditView {
-    at::Tensor images;        ///< [N, 3, R, R] sRGB, differentiable in the field
-    at::Tensor coverage;      ///< [N, 1, R, R] 0 .. 1, how much of each pixel the model covers
-    MaterialSample material;  ///< at the surface points of the picture
-    Surface surface;          ///< those points, where the material was looked up
+    at::Tensor images;    ///< [N, 3, R, R] sRGB, differentiable in the field
+    at::Tensor coverage;  ///< [N, 1, R, R] 0 .. 1, how much of each pixel the model covers
+    MaterialSample
+        material;     ///< at the surface points of the picture, this process's share of them
+    Surface surface;  ///< those points, where the material was looked up
+    Share points;     ///< their places among the G-buffer's
 };
 
 struct ViewOptions {
@@ -37,6 +51,11 @@ struct ViewOptions {
     float spread = 0;
     std::uint64_t spread_draw = 0;            ///< another draw of those offsets
     const EnvironmentLight* light = nullptr;  ///< null: what the scene's lights have for it
+    /// Processes that share out the points of the pictures; each gets the pictures, whose backward
+    /// pass all must call together (gather_rows()).
+    ProcessGroup processes = {};
+    int first_view = 0;   ///< of the G-buffer's views among the iteration's
+    int total_views = 0;  ///< of the iteration; 0: those of the G-buffer
 };
 
 EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture& field,

@@ -3,6 +3,7 @@
 #include "item3d/core/files.h"
 #include "item3d/core/progress.h"
 #include "item3d/edit/outputs/bake_options.h"
+#include "item3d/edit/outputs/edit_claim.h"
 #include "item3d/edit/outputs/layer_file.h"
 #include "item3d/field/bake/bake.h"
 #include "item3d/io/file_names.h"
@@ -97,7 +98,7 @@ EditedModel bake_textures(const EditRequest& request, const EditScene& scene, Ed
 
     EditedModel edited;
     const auto path = request.output / model_file_name(request.model);
-    save_model(path, scene.model, edit);
+    save_model(path, scene.model, edit, provenance_of(request, state));
     if (!state.painter) write_layer_file(request, scene, state, edit, unedited);
     unedited.clear();
     make_output_folder(request.output / "textures");
@@ -127,6 +128,10 @@ std::string model_file_name(const std::filesystem::path& source) {
     return to_lower(source.extension().string()) == ".vrm" ? "model.vrm" : "model.glb";
 }
 
+Image new_light(const LightModel& light) {
+    return light.image(light_height);
+}
+
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state) {
     const at::NoGradGuard no_grad;
     EditedModel edited;
@@ -137,7 +142,7 @@ EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, Ed
         edited.model = scene.model;
     }
     if (state.light) {
-        edited.light = state.light->image(light_height);
+        edited.light = new_light(*state.light);
         for (const char* name : {"light.hdr", "light.exr"})
             save_image(request.output / name, *edited.light, 32);
     }

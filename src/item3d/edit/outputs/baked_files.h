@@ -25,6 +25,9 @@ struct EditedModel {
 /// Name of the edited model's file: "model.glb", or "model.vrm" for an avatar.
 std::string model_file_name(const std::filesystem::path& source);
 
+/// The picture of a light that was optimised, as it is written.
+Image new_light(const LightModel& light);
+
 /// Writes model.glb, layer.safetensors and textures/; where the texture is not edited, model.glb
 /// alone, with all its bytes. Where the light is, light.hdr and light.exr.
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state);

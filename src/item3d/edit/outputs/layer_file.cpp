@@ -1,5 +1,6 @@
 #include "item3d/edit/outputs/layer_file.h"
 
+#include "item3d/edit/outputs/edit_claim.h"
 #include "item3d/layers/layer_field.h"
 #include "item3d/layers/make_layer.h"
 #include "item3d/tensors/checkpoint.h"
@@ -12,6 +13,7 @@ void write_layer_file(const EditRequest& request, const EditScene& scene, const 
     layer.model = request.model.filename().string();
     layer.model_hash = hash_of_file(request.model);
     layer.settings = request.plan;
+    if (request.plan.provenance == SaysProvenance::on) layer.claim = claim_of(request, state);
     const ChannelMask& channels = scene.start.channels;
     layer.channels = {channels.base_color, channels.occlusion, channels.roughness,
                       channels.metallic, channels.normal};

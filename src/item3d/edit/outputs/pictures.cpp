@@ -4,6 +4,7 @@
 #include "item3d/edit/material_source.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
+#include "item3d/processes/shared_rows.h"
 #include "item3d/region/preview.h"
 #include "item3d/render/pictures.h"
 #include "item3d/report/animation.h"
@@ -44,6 +45,16 @@ std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
     return images;
 }
 
+/// ModelDrawing::draw(), of which each process draws a part.
+at::Tensor draw_together(const ProcessGroup& processes, const ModelDrawing& drawing,
+                         const std::vector<Camera>& cameras, int pixels, at::Device device) {
+    return compute_rows(processes, static_cast<std::int64_t>(cameras.size()), {pixels, pixels, 4},
+                        device, [&](std::int64_t first, std::int64_t count) {
+                            const auto begin = cameras.begin() + first;
+                            return drawing.draw({begin, begin + count}, pixels);
+                        });
+}
+
 at::Tensor pictures_before(const EditRequest& request, const EditScene& scene,
                            const EnvironmentLight& light, const std::vector<Camera>& cameras,
                            const std::optional<DrawnModel>& drawn) {
@@ -51,16 +62,27 @@ at::Tensor pictures_before(const EditRequest& request, const EditScene& scene,
                           drawn->light == request.plan.light &&
                           drawn->pixels == request.picture_pixels;
     return is_drawn ? drawn->pictures
-                    : draw_pictures(scene.model, light, cameras, request.picture_pixels);
+                    : draw_together(request.processes, ModelDrawing(scene.model, light), cameras,
+                                    request.picture_pixels, scene.device);
 }
 
+/// Of the first process; of the others it has no bytes.
 ReportImage draw_turntable(const EditRequest& request, const EditScene& scene,
                            const ModelDrawing& drawing) {
+    const ProcessGroup& processes = request.processes;
+    const auto cameras = picture_cameras(scene.model, turntable_frames);
     std::vector<Image> frames;
-    for (const Camera& camera : picture_cameras(scene.model, turntable_frames)) {
-        const at::Tensor frame = drawing.draw({camera}, request.picture_pixels * 3 / 4);
-        frames.push_back(flatten(to_pictures(frame).front(), turntable_ground));
+    // As many at a time as there are processes, to keep memory low.
+    for (auto next = cameras.begin(); next != cameras.end();) {
+        const auto end = next + std::min<std::ptrdiff_t>(processes.size(), cameras.end() - next);
+        const at::Tensor drawn = draw_together(processes, drawing, {next, end},
+                                               request.picture_pixels * 3 / 4, scene.device);
+        next = end;
+        if (!processes.first()) continue;
+        for (const Image& picture : to_pictures(drawn))
+            frames.push_back(flatten(picture, turntable_ground));
     }
+    if (!processes.first()) return {};
     ReportImage image{request.plan.to, encode_animation(frames)};
     write_atomically(request.output / "turntable.webp", image.bytes);
     return image;
@@ -78,13 +100,18 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
     const EnvironmentLight new_light =
         edited.light ? prefilter(*edited.light, texels, scene.device) : light;
     const ModelDrawing drawing(edited.model, new_light);
-    const at::Tensor after = drawing.draw(cameras, view_pixels);
+    const at::Tensor after =
+        draw_together(request.processes, drawing, cameras, view_pixels, scene.device);
+    std::optional<ReportImage> turntable;
+    if (request.draws_turntable) turntable = draw_turntable(request, scene, drawing);
+    if (!request.processes.first()) return {};
     session.drawn.reset();
     if (!edited.light && edited.is_as_read)
         session.drawn = {request.output / model_file_name(request.model), request.plan.light,
                          view_pixels, after};
 
     Pictures pictures;
+    pictures.turntable = std::move(turntable);
     const auto before_pictures = to_pictures(before);
     const auto after_pictures = to_pictures(after);
     save_sheet(request.output / "before.png", before_pictures, request.plan.from);
@@ -99,8 +126,6 @@ Pictures render_pictures(const EditRequest& request, const EditScene& scene,
         pictures.region = to_report(region);
         pictures.outside = compare_outside(scene, edited.model);
     }
-
-    if (request.draws_turntable) pictures.turntable = draw_turntable(request, scene, drawing);
 
     const at::Tensor weights =
         scene.region ? mean_weights(*scene.region, scene.geometry, *scene.space) : at::Tensor();

@@ -28,6 +28,8 @@ struct Pictures {
 /// Draws the same views of both models, each in its light; writes before.png, after.png,
 /// region.png where there is a region, and turntable.webp. With `clip`, scores them too. Pictures
 /// that the session has of the model are not drawn again; those of the edited one are left there.
+/// The request's processes share out what is drawn of whole models; only the first one returns
+/// pictures and writes.
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
                          const EditedModel& edited, const Clip* clip, EditSession& session);
 

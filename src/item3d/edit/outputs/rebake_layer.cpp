@@ -140,6 +140,7 @@ EditLayer rebake_layer(const EditLayer& layer, const Model& file_model, int text
     made.model = layer.model;
     made.model_hash = layer.model_hash;
     made.settings = layer.settings;
+    made.claim = layer.claim;
     made.channels = layer.channels;
     made.region = layer.region;
     return made;

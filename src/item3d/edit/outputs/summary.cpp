@@ -4,6 +4,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/version.h"
+#include "item3d/edit/outputs/edit_claim.h"
 #include "item3d/edit/painting/painting.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/srgb.h"
@@ -42,11 +43,13 @@ json seconds_json(const StageTimes& times) {
     return seconds;
 }
 
-json iteration_json(const IterationTimes& times) {
+json iteration_json(const IterationTimes& times, bool several_processes) {
     const auto count = static_cast<double>(std::max<std::int64_t>(1, times.iterations));
-    return {{"render", times.render / count}, {"encode", times.encode / count},
-            {"unet", times.unet / count},     {"backward", times.backward / count},
-            {"step", times.step / count},     {"adjust", times.adjust / count}};
+    json result = {{"render", times.render / count}, {"encode", times.encode / count},
+                   {"unet", times.unet / count},     {"backward", times.backward / count},
+                   {"step", times.step / count},     {"adjust", times.adjust / count}};
+    if (several_processes) result["exchange"] = times.exchange / count;
+    return result;
 }
 
 json adjustment_json(const EditRequest& request, const AdjustmentState& adjustment) {
@@ -73,32 +76,35 @@ json summary_json(const EditRequest& request, const EditScene& scene, const Edit
                 remade[scene.model.materials[static_cast<std::size_t>(material)].name] = set.remade;
         }
     }
-    json summary = {{"version", version()},
-                    {"command", request.command},
-                    {"model", request.model.string()},
-                    {"from", plan.from},
-                    {"to", plan.to},
-                    {"read_as", {{"from", scene.from}, {"to", scene.to}}},
-                    {"prior", request.prior.string()},
-                    {"method", plan.method},
-                    {"guidance", plan.guidance},
-                    {"seed", plan.seed},
-                    {"device", scene.device.is_cuda() ? "cuda" : "cpu"},
-                    {"precision", precision_name(scene.precision)},
-                    {"threads", at::get_num_threads()},
-                    {"iterations", plan.iterations},
-                    {"iterations_done", state.direction_length.size()},
-                    {"unet_rows", state.unet_rows()},
-                    {"adjustment", adjustment_json(request, state.adjustment)},
-                    {"settings", plan},
-                    {"new_uv_maps", remade},
-                    {"scores",
-                     {{"detail_kept", pictures.detail_kept},
-                      {"before", means_json(pictures.means_before)},
-                      {"after", means_json(pictures.means_after)}}},
-                    {"seconds", seconds_json(times)},
-                    {"seconds_per_iteration", iteration_json(iteration_times)},
-                    {"peak_memory_bytes", peak_memory_bytes()}};
+    json summary = {
+        {"version", version()},
+        {"command", request.command},
+        {"model", request.model.string()},
+        {"from", plan.from},
+        {"to", plan.to},
+        {"read_as", {{"from", scene.from}, {"to", scene.to}}},
+        {"prior", request.prior.string()},
+        {"method", plan.method},
+        {"guidance", plan.guidance},
+        {"seed", plan.seed},
+        {"device", scene.device.is_cuda() ? "cuda" : "cpu"},
+        {"precision", precision_name(scene.precision)},
+        {"threads", at::get_num_threads()},
+        {"processes", request.processes.size()},
+        {"iterations", plan.iterations},
+        {"iterations_done", state.direction_length.size()},
+        {"unet_rows", state.unet_rows()},
+        {"adjustment", adjustment_json(request, state.adjustment)},
+        {"settings", plan},
+        {"claim", claim_of(request, state)},
+        {"new_uv_maps", remade},
+        {"scores",
+         {{"detail_kept", pictures.detail_kept},
+          {"before", means_json(pictures.means_before)},
+          {"after", means_json(pictures.means_after)}}},
+        {"seconds", seconds_json(times)},
+        {"seconds_per_iteration", iteration_json(iteration_times, request.processes.several())},
+        {"peak_memory_bytes", peak_memory_bytes()}};
     if (!scene.model.variants.empty() && plan.edits_texture) {
         summary["variants"] = {{"changed", variants_with(scene.model, scene.materials, true)},
                                {"left", variants_with(scene.model, scene.materials, false)}};

@@ -1,6 +1,7 @@
 #include "item3d/edit/painting/painting.h"
 
 #include "item3d/baselines/methods.h"
+#include "item3d/core/date.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
@@ -69,6 +70,7 @@ std::string painted_view_file(std::size_t index) {
 EditState begin_painting(const EditRequest& request, const EditScene& scene) {
     const at::NoGradGuard no_grad;
     EditState state;
+    state.begun = utc_date();
     state.painting = painting_scene(request, scene);
     state.painter =
         make_painter(request.plan.method, *state.painting, request.plan.painter_options());

@@ -138,13 +138,10 @@ std::string GltfBuilder::unused_file_name(const std::string& stem,
     }
 }
 
-std::size_t GltfBuilder::add_texture(const Bytes& bytes, ImageEncoding encoding,
-                                     const std::string& name, int sampler) {
+std::size_t GltfBuilder::add_image(const Bytes& bytes, ImageEncoding encoding,
+                                   const std::string& name) {
     Json image = Json::object();
     if (!name.empty()) image["name"] = name;
-    const char* extension = encoding == ImageEncoding::webp   ? "EXT_texture_webp"
-                            : encoding == ImageEncoding::ktx2 ? "KHR_texture_basisu"
-                                                              : nullptr;
     if (images_in_files_) {
         const std::string file = unused_file_name(
             stem_ + "_" + plain_file_name(name.empty() ? "texture" : name), extension_of(encoding));
@@ -157,9 +154,17 @@ std::size_t GltfBuilder::add_texture(const Bytes& bytes, ImageEncoding encoding,
                     : encoding == ImageEncoding::jpeg ? "image/jpeg"
                                                       : "image/png");
     }
+    return append(json_, "images", std::move(image));
+}
+
+std::size_t GltfBuilder::add_texture(const Bytes& bytes, ImageEncoding encoding,
+                                     const std::string& name, int sampler) {
+    const char* extension = encoding == ImageEncoding::webp   ? "EXT_texture_webp"
+                            : encoding == ImageEncoding::ktx2 ? "KHR_texture_basisu"
+                                                              : nullptr;
     Json texture = Json::object();
     if (sampler >= 0) texture["sampler"] = sampler;
-    const std::size_t source = append(json_, "images", std::move(image));
+    const std::size_t source = add_image(bytes, encoding, name);
     if (extension != nullptr) {
         texture["extensions"][extension]["source"] = source;
     } else {

@@ -28,6 +28,8 @@ class GltfBuilder {
     std::size_t add_floats(std::span<const float> values, std::size_t components,
                            bool with_bounds = false);
     std::size_t add_indices(std::span<const std::uint32_t> indices, std::size_t vertex_count);
+    /// Adds a picture as an image; returns its index.
+    std::size_t add_image(const Bytes& bytes, ImageEncoding encoding, const std::string& name);
     /// Adds a picture as image and texture; sampler -1: none. Returns the texture's index. Lists of
     /// extensions are list_texture_extensions()' work.
     std::size_t add_texture(const Bytes& bytes, ImageEncoding encoding, const std::string& name,

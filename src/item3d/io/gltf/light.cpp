@@ -104,7 +104,8 @@ Bytes with_lights(const SourceDocument& document, const ModelLights& lights) {
 
 }  // namespace
 
-void save_lit_model(const fs::path& path, const Model& model, const ModelLights& lights) {
+void save_lit_model(const fs::path& path, const Model& model, const ModelLights& lights,
+                    const Provenance& provenance) {
     if (to_lower(path.extension().string()) != ".glb") {
         throw InputError(path.string(), "a model with its light is written as .glb");
     }
@@ -120,7 +121,9 @@ void save_lit_model(const fs::path& path, const Model& model, const ModelLights&
         save_model(temporary, model);
         if (!has_lights) return;
         const auto document = parse_gltf(temporary, read_bytes(temporary));
-        write_atomically(temporary, std::span<const std::uint8_t>(with_lights(*document, lights)));
+        const Bytes lit = with_lights(*document, lights);
+        write_atomically(temporary, std::span<const std::uint8_t>(
+                                        claimed_glb(path, lit, *document, provenance)));
     });
 }
 

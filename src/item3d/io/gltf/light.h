@@ -3,6 +3,7 @@
 
 #include "item3d/core/math.h"
 #include "item3d/lighting/image_based_light.h"
+#include "item3d/provenance/provenance.h"
 #include "item3d/scene/model.h"
 
 #include <filesystem>
@@ -28,8 +29,8 @@ struct ModelLights {
 
 /// Writes a .glb in which geometry, materials and the bytes of all pictures are those of the
 /// model's glTF. Without lights a .glb that refers to no other file is copied byte for byte; models
-/// of other formats are written anew.
+/// of other formats are written anew. provenance: of the lights; a file with lights carries it.
 void save_lit_model(const std::filesystem::path& path, const Model& model,
-                    const ModelLights& lights = {});
+                    const ModelLights& lights = {}, const Provenance& provenance = {});
 
 }  // namespace item3d

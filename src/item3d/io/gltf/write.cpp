@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/io/find_file.h"
+#include "item3d/io/gltf/claims.h"
 #include "item3d/io/gltf/make.h"
 #include "item3d/io/gltf/patch.h"
 #include "item3d/io/gltf/references.h"
@@ -133,6 +134,19 @@ void tidy(const SourceDocument& document, GltfBuilder& builder) {
     }
 }
 
+/// The text of a .gltf whose other files lie there already.
+std::string claimed_gltf(const fs::path& path, const Json& json, const SourceDocument& document,
+                         const Provenance& provenance) {
+    const auto text_of = [](const Json& root) {
+        return root.dump(1, ' ', false, Json::error_handler_t::replace);
+    };
+    std::string text = text_of(json);
+    if (provenance.edits.empty()) return text;
+    const auto written = parse_gltf(path, Bytes(text.begin(), text.end()));
+    put_claim(provenance, document, *written);
+    return text_of(written->json);
+}
+
 std::vector<PrimitiveUse> primitive_uses(const Model& model, bool is_made) {
     std::vector<PrimitiveUse> uses;
     for (std::size_t i = 0; i < model.primitives.size(); ++i) {
@@ -194,37 +208,55 @@ Bytes to_glb(const Json& json, const Bytes& binary, const SourceDocument& docume
     return out;
 }
 
-void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit) {
-    const bool is_binary = to_lower(path.extension().string()) != ".gltf";
+Bytes claimed_glb(const fs::path& path, const Bytes& glb, const SourceDocument& source,
+                  const Provenance& provenance) {
+    if (provenance.edits.empty()) return glb;
+    const auto written = parse_gltf(path, glb);
+    put_claim(provenance, source, *written);
+    return to_glb(written->json, written->has_binary_chunk ? written->buffers[0] : Bytes(),
+                  *written);
+}
+
+void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit,
+                const Provenance& provenance) {
     const std::shared_ptr<const SourceDocument> document =
         model.source ? model.source : make_gltf(model, edit);
     const std::vector<PrimitiveUse> uses = primitive_uses(model, !model.source);
-    Json json = document->json;
+    const auto patch = [&](GltfBuilder& builder) {
+        patch_gltf(*document, uses, edit, builder);
+        if (!edit.materials.empty()) tidy(*document, builder);
+    };
+    write_patched(path, *document, patch, provenance);
+}
 
+void write_patched(const fs::path& path, const SourceDocument& document,
+                   const std::function<void(GltfBuilder&)>& patch, const Provenance& provenance) {
+    const bool is_binary = to_lower(path.extension().string()) != ".gltf";
+    Json json = document.json;
     // New data goes to the end of the BIN chunk, or to a buffer of its own.
-    const bool own_buffer = !is_binary && !document->has_binary_chunk;
+    const bool own_buffer = !is_binary && !document.has_binary_chunk;
     Bytes binary;
     if (is_binary) {
-        binary = pack_buffers(*document, json);
-    } else if (document->has_binary_chunk) {
-        binary = document->buffers[0];
+        binary = pack_buffers(document, json);
+    } else if (document.has_binary_chunk) {
+        binary = document.buffers[0];
     }
-    const std::size_t buffer = own_buffer ? document->buffers.size() : 0;
+    const std::size_t buffer = own_buffer ? document.buffers.size() : 0;
     GltfBuilder builder(json, buffer, std::move(binary), !is_binary, path.stem().string());
-    if (is_binary) embed_images(*document, builder);
-    patch_gltf(*document, uses, edit, builder);
-    if (!edit.materials.empty()) tidy(*document, builder);
+    if (is_binary) embed_images(document, builder);
+    patch(builder);
     builder.finish();
-    forget_unused_extensions(document->json, json);
+    forget_unused_extensions(document.json, json);
 
     if (is_binary) {
-        write_atomically(path,
-                         std::span<const std::uint8_t>(to_glb(json, builder.binary(), *document)));
+        const Bytes glb = to_glb(json, builder.binary(), document);
+        write_atomically(
+            path, std::span<const std::uint8_t>(claimed_glb(path, glb, document, provenance)));
         return;
     }
     const fs::path folder = path.parent_path();
     // Before the new files, which no name in the document is that of.
-    copy_files(*document, builder.files(), json, folder);
+    copy_files(document, builder.files(), json, folder);
     if (!builder.binary().empty()) {
         const std::string name = builder.unused_file_name(path.stem().string(), ".bin");
         json["buffers"][buffer]["uri"] = path_to_uri(name);
@@ -233,8 +265,7 @@ void write_gltf(const fs::path& path, const Model& model, const ModelEdit& edit)
     for (const auto& [name, bytes] : builder.files()) {
         write_atomically(folder / name, std::span<const std::uint8_t>(bytes));
     }
-    write_atomically(path,
-                     std::string_view(json.dump(1, ' ', false, Json::error_handler_t::replace)));
+    write_atomically(path, std::string_view(claimed_gltf(path, json, document, provenance)));
 }
 
 }  // namespace item3d

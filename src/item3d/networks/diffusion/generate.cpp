@@ -5,6 +5,7 @@
 #include "item3d/core/progress.h"
 #include "item3d/core/random.h"
 #include "item3d/networks/diffusion/samplers/sampler.h"
+#include "item3d/processes/shared_rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,12 +88,18 @@ void keep_image(const GenerateOptions& options, const Sampler* sampler, int i,
     latents = image * mask + latents * (1 - mask);
 }
 
+/// Rows [first, first + count).
+at::Tensor narrow(const at::Tensor& all, std::int64_t first, std::int64_t count) {
+    return all.defined() ? all.narrow(0, first, count) : all;
+}
+
 /// Classifier-free guidance (Ho and Salimans 2022): the network, asked with and without the prompt.
 class GuidedNetwork {
   public:
     GuidedNetwork(const DiffusionModel& model, const GenerateOptions& options, std::int64_t rows,
                   const at::Tensor& condition)
         : model_(model),
+          processes_(options.processes),
           scale_(options.guidance_scale),
           text_(model.encode_text({options.prompt}).expand(rows)) {
         if (condition.defined())
@@ -109,7 +116,14 @@ class GuidedNetwork {
         const at::Tensor input = guided() ? at::cat({latents, latents}) : latents;
         const at::Tensor timesteps =
             at::full({input.size(0)}, timestep, at::kFloat).to(latents.device());
-        const at::Tensor output = model_.predict(input, timesteps, text_, condition_);
+        const at::Tensor output = compute_rows(
+            processes_, input.size(0), input.sizes().slice(1), latents.options(),
+            [&](std::int64_t first, std::int64_t count) {
+                return model_.predict(
+                    narrow(input, first, count), narrow(timesteps, first, count),
+                    {narrow(text_.states, first, count), narrow(text_.pooled, first, count)},
+                    narrow(condition_, first, count));
+            });
         if (!guided()) return output;
         const auto halves = output.chunk(2);
         return halves[0] + scale_ * (halves[1] - halves[0]);
@@ -119,6 +133,7 @@ class GuidedNetwork {
     bool guided() const { return scale_ != 1.0f; }
 
     const DiffusionModel& model_;
+    const ProcessGroup& processes_;
     float scale_;
     TextEmbedding text_;
     at::Tensor condition_;

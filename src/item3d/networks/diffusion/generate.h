@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/networks/diffusion/diffusion_model.h"
+#include "item3d/processes/process_group.h"
 
 #include <cstdint>
 #include <optional>
@@ -32,6 +33,8 @@ struct GenerateOptions {
     /// detail with it.
     double eta = 0;
     bool show_progress = true;
+    /// Processes that ask for the same pictures share out the rows of each step.
+    ProcessGroup processes = {};
 };
 
 /// Sampling with classifier-free guidance; images [count, H, W, 3] in [0, 1] (sRGB).

@@ -7,6 +7,7 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <set>
 
 namespace item3d {
@@ -39,6 +40,8 @@ RunningPipeline RunningPipeline::load(const std::filesystem::path& folder, at::D
                                       const RunNeeds& needs) {
     const PipelineIndex index = PipelineIndex::read(folder);
     RunningPipeline pipeline;
+    pipeline.folder_ = folder;
+    pipeline.extras_ = extras;
     pipeline.sdxl_ = index.has_second_text_encoder;
     pipeline.force_zeros_for_empty_prompt_ = index.force_zeros_for_empty_prompt;
     {
@@ -63,6 +66,36 @@ RunningPipeline RunningPipeline::load(const std::filesystem::path& folder, at::D
     release_convolution_weights(*pipeline.networks_);
     malloc_trim(0);
     return pipeline;
+}
+
+bool RunningPipeline::knows_prompts(const std::vector<std::string>& prompts) const {
+    return std::all_of(prompts.begin(), prompts.end(),
+                       [&](const std::string& prompt) { return encoded_.contains(prompt); });
+}
+
+void RunningPipeline::learn_prompts(const std::vector<std::string>& prompts) {
+    if (knows_prompts(prompts)) return;
+    ITEM3D_CHECK(can_learn_prompts(), "text encoders with a LoRA are loaded with the U-Net");
+    std::vector<std::string> unknown;
+    for (const std::string& prompt : prompts)
+        if (!encoded_.contains(prompt)) unknown.push_back(prompt);
+    TextEncoders text = TextEncoders::load(folder_, sdxl_, device());
+    add_embeddings(extras_, text);
+    encoded_.merge(encode_each(text, unknown));
+    text.release_weights();
+    malloc_trim(0);
+}
+
+RunningPipeline RunningPipeline::renewed() const {
+    RunningPipeline other;  // with a count of its own
+    other.tokenizer_ = tokenizer_;
+    other.networks_ = networks_;
+    other.sdxl_ = sdxl_;
+    other.force_zeros_for_empty_prompt_ = force_zeros_for_empty_prompt_;
+    other.folder_ = folder_;
+    other.extras_ = extras_;
+    other.encoded_ = encoded_;
+    return other;
 }
 
 TextEmbedding RunningPipeline::encode_text(const std::vector<std::string>& prompts) const {

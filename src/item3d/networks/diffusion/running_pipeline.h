@@ -24,10 +24,21 @@ class RunningPipeline : public DiffusionModel {
                                 at::ScalarType dtype, const PipelineExtras& extras,
                                 const RunNeeds& needs);
 
-    /// Of the prompts that load() was told, and of no text.
+    /// Of the prompts that load() and learn_prompts() were told, and of no text.
     TextEmbedding encode_text(const std::vector<std::string>& prompts) const override;
 
+    /// Loads the text encoders once more where a prompt is new, and releases them. A LoRA is fused
+    /// into text encoders and U-Net together, so a pipeline with one cannot learn.
+    void learn_prompts(const std::vector<std::string>& prompts);
+    bool can_learn_prompts() const { return extras_.lora.empty(); }
+    /// Whether encode_text() is ready for all of these.
+    bool knows_prompts(const std::vector<std::string>& prompts) const;
+    /// The same networks for another edit, with predicted_rows() counted from 0.
+    RunningPipeline renewed() const;
+
   private:
+    std::filesystem::path folder_;
+    PipelineExtras extras_;
     std::map<std::string, TextEmbedding> encoded_;  ///< a row each
 };
 

@@ -3,7 +3,7 @@
 // on timing.
 #pragma once
 
-#include "item3d/prior/training/process_group.h"
+#include "item3d/processes/process_group.h"
 #include "item3d/tensors/tensor.h"
 
 #include <torch/nn/module.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "item3d/prior/data/views.h"
-#include "item3d/prior/training/process_group.h"
+#include "item3d/processes/process_group.h"
 #include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>

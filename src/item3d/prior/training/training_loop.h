@@ -2,8 +2,8 @@
 // rate, checkpoints, progress.
 #pragma once
 
-#include "item3d/prior/training/process_group.h"
 #include "item3d/prior/training/replicas.h"
+#include "item3d/processes/process_group.h"
 #include "item3d/tensors/tensor.h"
 
 #include <nlohmann/json.hpp>

@@ -1,10 +1,11 @@
-// Checksums of downloads: SHA-256, and the SHA-1 that git gives a file.
+// Checksums: SHA-256, and the SHA-1 that git gives a file.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace item3d {
 
@@ -36,5 +37,9 @@ class Digest {
     struct Context;
     std::unique_ptr<Context> context_;  ///< null for DigestKind::none
 };
+
+/// SHA-256 in lower-case hexadecimal.
+std::string sha256(std::span<const std::uint8_t> bytes);
+std::string sha256(std::string_view text);
 
 }  // namespace item3d

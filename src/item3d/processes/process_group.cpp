@@ -1,4 +1,4 @@
-#include "item3d/prior/training/process_group.h"
+#include "item3d/processes/process_group.h"
 
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
@@ -29,9 +29,11 @@ constexpr std::chrono::minutes message_timeout{30};
 /// How long process 0 waits for others to see what they asked for; one that has died never does.
 constexpr std::chrono::seconds farewell{30};
 
-/// c10d's messages go on with a stack trace, and Gloo's begin with "[its/source.cc:123] ".
+/// c10d's messages go on with a stack trace and advice, and Gloo's begin with "[its/source.cc:123]
+/// ".
 std::string first_line(const std::string& text) {
-    const std::string line = text.substr(0, text.find('\n'));
+    const std::string whole = text.substr(0, text.find('\n'));
+    const std::string line = whole.substr(0, whole.find(". This is typically"));
     const std::size_t place = line.find(".cc:");
     const std::size_t end = line.find("] ");
     return line[0] == '[' && place < end && end != std::string::npos ? line.substr(end + 2) : line;
@@ -120,18 +122,30 @@ at::Tensor bytes_of(const at::Tensor& tensor) {
 }  // namespace
 
 LostProcess::LostProcess(const std::string& reason)
-    : ResourceError(fmt::format("another process of this training is gone ({}); see what the "
-                                "others said, then start all of them again with --resume",
+    : ResourceError(fmt::format("another process of this run is gone ({}); see what the others "
+                                "said, then start all of them again with --resume",
                                 reason)) {}
 
 struct ProcessGroup::Connection {
     c10::intrusive_ptr<c10d::Store> store;
     c10::intrusive_ptr<c10d::ProcessGroupGloo> gloo;
     std::int64_t waits = 0;  ///< wait_for_first() so far
+    double seconds = 0;      ///< ProcessGroup::exchange_seconds()
 
     void broadcast(const at::Tensor& tensor) const {
         std::vector<at::Tensor> message{tensor};
         gloo->broadcast(message)->wait();
+    }
+    void sum(const at::Tensor& tensor) const {
+        std::vector<at::Tensor> message{tensor};
+        gloo->allreduce(message)->wait();
+    }
+    /// exchange(), timed.
+    template <class Function>
+    void timed(Function&& function) {
+        const auto began = Clock::now();
+        exchange(function);
+        seconds += std::chrono::duration<double>(Clock::now() - began).count();
     }
 };
 
@@ -184,20 +198,46 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds patience) {
     return group;
 }
 
+Share share_of(int rank, int size, std::int64_t total) {
+    const std::int64_t first = total * rank / size;
+    return {first, total * (rank + 1) / size - first};
+}
+
 void ProcessGroup::sum(at::Tensor tensor) const {
-    if (!connection_) return;
+    if (!connection_ || tensor.numel() == 0) return;
     ITEM3D_CHECK(tensor.scalar_type() == at::kFloat && tensor.is_contiguous(),
                  "processes add up contiguous float32 tensors");
-    exchange([&] {
-        std::vector<at::Tensor> message{tensor};
-        connection_->gloo->allreduce(message)->wait();
+    const at::NoGradGuard no_grad;
+    const at::Tensor message = tensor.cpu();  // itself where it is there
+    connection_->timed([&] { connection_->sum(message); });
+    if (!tensor.is_cpu()) tensor.copy_(message);
+}
+
+std::vector<at::Tensor> ProcessGroup::gather(const at::Tensor& tensor) const {
+    at::Tensor own = tensor.detach().cpu().contiguous();
+    if (!connection_ || own.numel() == 0)
+        return std::vector<at::Tensor>(static_cast<std::size_t>(size_), own);
+    std::vector<std::vector<at::Tensor>> all(1);
+    for (int i = 0; i < size_; ++i)
+        all[0].push_back(at::empty_like(own));
+    connection_->timed([&] {
+        std::vector<at::Tensor> message{own};
+        connection_->gloo->allgather(all, message)->wait();
     });
+    return all[0];
+}
+
+bool ProcessGroup::any(bool said) const {
+    if (!connection_) return said;
+    at::Tensor count = at::full({1}, said ? 1.0f : 0.0f);
+    sum(count);
+    return count.item<float>() > 0;
 }
 
 std::string ProcessGroup::broadcast(const std::string& text) const {
     if (!connection_) return text;
     std::string result = text;
-    exchange([&] {
+    connection_->timed([&] {
         at::Tensor length = at::tensor({static_cast<std::int64_t>(text.size())});
         connection_->broadcast(length);
         result.resize(static_cast<std::size_t>(length.item<std::int64_t>()));
@@ -223,14 +263,18 @@ NamedTensors ProcessGroup::broadcast(const NamedTensors& tensors) const {
         result.emplace_back(header[i][0].get<std::string>(),
                             first() ? tensors[i].second.contiguous() : at::empty(shape, dtype));
         if (result[i].second.numel() == 0) continue;
-        exchange([&] { connection_->broadcast(bytes_of(result[i].second)); });
+        connection_->timed([&] { connection_->broadcast(bytes_of(result[i].second)); });
     }
     return result;
 }
 
 void ProcessGroup::barrier() const {
     if (!connection_) return;
-    exchange([&] { connection_->gloo->barrier()->wait(); });
+    connection_->timed([&] { connection_->gloo->barrier()->wait(); });
+}
+
+double ProcessGroup::exchange_seconds() const {
+    return connection_ ? connection_->seconds : 0;
 }
 
 void ProcessGroup::wait_for_first() const {

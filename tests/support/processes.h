@@ -68,29 +68,32 @@ struct ProcessResult {
     std::string output;
 };
 
-/// Runs the current test again in two processes that find RANK, WORLD_SIZE, MASTER_ADDR and
-/// MASTER_PORT set, and `folder` as process_folder().
-inline std::vector<ProcessResult> run_as_processes(const std::filesystem::path& folder) {
+/// Runs the current test again in `count` processes that find RANK, WORLD_SIZE, MASTER_ADDR and
+/// MASTER_PORT set, and `folder`, which is made, as process_folder().
+inline std::vector<ProcessResult> run_as_processes(const std::filesystem::path& folder,
+                                                   int count = 2) {
+    std::filesystem::create_directories(folder);
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     const std::string filter = std::string(test->test_suite_name()) + "." + test->name();
     const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
     const std::string port = std::to_string(free_port());
+    const auto base = [&](int rank) {
+        return (folder / ("process" + std::to_string(rank))).string();
+    };
     std::string command;
-    for (const char* rank : {"0", "1"}) {
-        const std::string base = (folder / ("process" + std::string(rank))).string();
-        command += "(RANK=" + std::string(rank) + " WORLD_SIZE=2 MASTER_ADDR=localhost " +
-                   "MASTER_PORT=" + port + " ITEM3D_TEST_FOLDER='" + folder.string() +
-                   "' timeout 60 '" + program + "' --gtest_filter=" + filter + " >'" + base +
-                   ".out' 2>&1; echo $? >'" + base + ".code') & ";
-    }
+    for (int rank = 0; rank < count; ++rank)
+        command += "(RANK=" + std::to_string(rank) + " WORLD_SIZE=" + std::to_string(count) +
+                   " MASTER_ADDR=localhost MASTER_PORT=" + port + " ITEM3D_TEST_FOLDER='" +
+                   folder.string() + "' timeout 60 '" + program + "' --gtest_filter=" + filter +
+                   " >'" + base(rank) + ".out' 2>&1; echo $? >'" + base(rank) + ".code') & ";
     EXPECT_EQ(std::system((command + "wait").c_str()), 0);
-    std::vector<ProcessResult> results(2);
-    for (std::size_t rank = 0; rank < results.size(); ++rank) {
-        const std::string base = (folder / ("process" + std::to_string(rank))).string();
-        std::ifstream(base + ".code") >> results[rank].code;
+    std::vector<ProcessResult> results(static_cast<std::size_t>(count));
+    for (int rank = 0; rank < count; ++rank) {
+        ProcessResult& result = results[static_cast<std::size_t>(rank)];
+        std::ifstream(base(rank) + ".code") >> result.code;
         std::ostringstream text;
-        text << std::ifstream(base + ".out").rdbuf();
-        results[rank].output = text.str();
+        text << std::ifstream(base(rank) + ".out").rdbuf();
+        result.output = text.str();
     }
     return results;
 }

@@ -1,4 +1,4 @@
-#include "item3d/hub/digest.h"
+#include "item3d/core/digest.h"
 
 #include "item3d/core/error.h"
 
@@ -54,6 +54,16 @@ std::string Digest::finish() {
     for (unsigned int i = 0; i < length; ++i)
         text += fmt::format("{:02x}", value[i]);
     return text;
+}
+
+std::string sha256(std::span<const std::uint8_t> bytes) {
+    Digest digest(DigestKind::sha256, bytes.size());
+    digest.update(bytes);
+    return digest.finish();
+}
+
+std::string sha256(std::string_view text) {
+    return sha256({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 }  // namespace item3d

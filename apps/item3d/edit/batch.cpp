@@ -1,0 +1,314 @@
+// item3d batch: many edits and relightings, by as many workers as there are.
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/batch_jobs.h"
+#include "apps/item3d/edit/commands.h"
+#include "item3d/batch/gallery.h"
+#include "item3d/batch/plan_jobs.h"
+#include "item3d/batch/results_table.h"
+#include "item3d/batch/retry.h"
+#include "item3d/batch/status.h"
+#include "item3d/batch/supervisor.h"
+#include "item3d/batch/worker.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+#include "item3d/core/seeds.h"
+#include "item3d/core/version.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct WorkLimits {
+    double stale_seconds = 60;
+    AttemptLimits attempts;
+};
+
+struct BatchCommand : CommonOptions {
+    fs::path jobs;
+    fs::path output;
+    JobMatrix matrix;
+    std::vector<std::string> values;  ///< NAME=VALUE
+    std::string seeds;
+    int workers = 1;
+    WorkLimits limits;
+};
+
+struct WorkCommand : CommonOptions {
+    fs::path folder;
+    WorkLimits limits;
+    double until_seconds = 0;
+    double idle_seconds = -1;
+    std::size_t index = 0;
+};
+
+struct StatusCommand : CommonOptions {
+    fs::path folder;
+    bool watch = false;
+};
+
+void add_limits(CLI::App& command, WorkLimits& limits) {
+    command
+        .add_option("--stale-seconds", limits.stale_seconds,
+                    "A worker on another machine without a heartbeat for so long is taken for dead")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str();
+    command
+        .add_option("--retries", limits.attempts.retries,
+                    "Further attempts after an error that may pass, as for want of memory")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    command
+        .add_option("--deaths", limits.attempts.max_deaths,
+                    "Give a job up after more than so many attempts whose worker died")
+        ->check(CLI::Range(0, 1000000))
+        ->capture_default_str();
+}
+
+std::vector<std::string> limit_arguments(const WorkLimits& limits) {
+    return {"--stale-seconds", fmt::format("{}", limits.stale_seconds),
+            "--retries",       std::to_string(limits.attempts.retries),
+            "--deaths",        std::to_string(limits.attempts.max_deaths)};
+}
+
+std::vector<JobRow> rows_of(const BatchCommand& command) {
+    const bool by_options = !command.matrix.models.empty();
+    if (command.jobs.empty() && !by_options)
+        throw UsageError("a file of jobs is expected, or --models, --from and --to");
+    if (!command.jobs.empty() &&
+        (by_options || !command.matrix.from.empty() || !command.matrix.to.empty()))
+        throw UsageError(
+            "a file of jobs has models and sentences itself: without --models, "
+            "--from and --to");
+    if (by_options && (command.matrix.from.empty() || command.matrix.to.empty()))
+        throw UsageError("--models goes with --from and --to");
+    std::vector<std::string> values = command.values;
+    if (!command.seeds.empty())
+        for (const std::uint64_t seed : parse_seeds(command.seeds))
+            values.push_back(fmt::format("seed={}", seed));
+    if (command.device != "auto") values.push_back("device=" + command.device);
+    return with_values(by_options ? matrix_rows(command.matrix) : read_job_rows(command.jobs),
+                       values);
+}
+
+/// Plans the jobs before anything is written, and adds those that the batch does not have yet.
+BatchFolder add_jobs(const fs::path& output, const std::vector<JobRow>& rows) {
+    JobPlanning planning{job_commands(), version(), identity_of_prior, check_job, {}};
+    if (BatchFolder::is_begun(output)) {
+        const BatchView view(BatchFolder::open(output));
+        for (const BatchEntry& entry : view.entries())
+            if (entry.is_current() && !entry.job.name.empty())
+                planning.known_names[entry.job.name] = entry.job.id;
+    }
+    std::vector<BatchJob> jobs = plan_jobs(rows, planning);
+    const BatchFolder folder = BatchFolder::create(output);
+    const BatchView view(folder);
+    std::vector<BatchJob> added;
+    std::size_t known = 0, replaced = 0;
+    for (BatchJob& job : jobs) {
+        const auto before = view.find_key(job.key);
+        if (before && view.entry(*before).job.id == job.id) {
+            ++known;
+            continue;
+        }
+        if (before) ++replaced;
+        added.push_back(std::move(job));
+    }
+    folder.add_jobs(added);
+    note(fmt::format(
+        "{} jobs were added{}{}", added.size(),
+        known > 0 ? fmt::format(", {} are there already", known) : "",
+        replaced > 0 ? fmt::format(", {} take the place of earlier ones", replaced) : ""));
+}
+
+void write_pages(const BatchFolder& folder, const BatchView& view) {
+    write_atomically(folder.path() / "results.csv", std::string_view(results_csv(view)));
+    write_atomically(folder.path() / "index.html", std::string_view(gallery_html(folder, view)));
+}
+
+/// Throws InputError where a job failed.
+void conclude(const BatchFolder& folder, bool json) {
+    BatchView view(folder);
+    const BatchStatus status = status_of(folder, view);
+    write_pages(folder, view);
+    if (json)
+        print_json(status_json(status, view));
+    else
+        fmt::print("{}\n", (folder.path() / "index.html").string());
+    if (status.failed > 0)
+        throw InputError(folder.path().string(),
+                         fmt::format("{} of {} jobs failed", status.failed, status.jobs),
+                         "index.html shows them first, and `item3d batch retry` tries them again");
+}
+
+void run_batch(const BatchCommand& command) {
+    if (command.output.empty()) throw UsageError("-o is required: a folder for the batch");
+    const BatchFolder folder = add_jobs(command.output, rows_of(command));
+    if (command.workers == 0) return;
+    SupervisorOptions options;
+    options.command = {fs::read_symlink("/proc/self/exe").string(), "batch", "work",
+                       folder.path().string()};
+    const std::vector<std::string> limits = limit_arguments(command.limits);
+    options.command.insert(options.command.end(), limits.begin(), limits.end());
+    if (command.quiet) options.command.emplace_back("--quiet");
+    options.workers = command.workers;
+    options.threads = command.threads;
+    supervise(folder, options);
+    conclude(folder, command.json);
+}
+
+void run_work(const WorkCommand& command) {
+    const BatchFolder folder = BatchFolder::open(command.folder);
+    WorkerOptions options;
+    options.limits = command.limits.attempts;
+    options.stale_after =
+        std::chrono::milliseconds(static_cast<std::int64_t>(1000 * command.limits.stale_seconds));
+    options.beat_every = std::min(options.beat_every, options.stale_after / 4);
+    options.until_seconds = command.until_seconds;
+    options.idle_seconds = command.idle_seconds;
+    options.index = command.index;
+    JobProcess process(command.quiet);
+    const WorkerCounts counts =
+        run_worker(folder, options, [&](const ClaimedJob& job) { return process.run(job); });
+    if (command.json)
+        print_json({{"done", counts.done},
+                    {"failed", counts.failed},
+                    {"released", counts.released},
+                    {"lost", counts.lost}});
+    else
+        note(fmt::format("{} jobs done, {} failed, {} released, {} lost", counts.done,
+                         counts.failed, counts.released, counts.lost));
+}
+
+void run_status(const StatusCommand& command) {
+    const BatchFolder folder = BatchFolder::open(command.folder);
+    BatchView view(folder);
+    for (;;) {
+        const BatchStatus status = status_of(folder, view);
+        if (command.json) {
+            print_json(status_json(status, view));
+        } else {
+            // A terminal shows the newest state alone.
+            fmt::print("{}{}", command.watch && ::isatty(STDOUT_FILENO) ? "\033[H\033[2J" : "",
+                       status_text(status, view));
+            std::fflush(stdout);
+        }
+        if (!command.watch || view.open_count() == 0 || interrupted()) return;
+        for (int tenths = 0; tenths < 20 && !interrupted(); ++tenths)
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        view.refresh();
+    }
+}
+
+void run_report(const StatusCommand& command) {
+    const BatchFolder folder = BatchFolder::open(command.folder);
+    BatchView view(folder);
+    const BatchStatus status = status_of(folder, view);
+    write_pages(folder, view);
+    if (command.json)
+        print_json(status_json(status, view));
+    else
+        fmt::print("{}\n", (folder.path() / "index.html").string());
+}
+
+void run_retry(const StatusCommand& command) {
+    const BatchFolder folder = BatchFolder::open(command.folder);
+    const std::size_t count = retry_failed_jobs(folder);
+    if (command.json)
+        print_json({{"waiting", count}});
+    else
+        note(fmt::format("{} jobs that failed wait again", count));
+}
+
+std::shared_ptr<StatusCommand> add_folder_command(CLI::App& batch, const std::string& name,
+                                                  const std::string& description,
+                                                  void (*run)(const StatusCommand&)) {
+    auto options = std::make_shared<StatusCommand>();
+    CLI::App* command = add_command(batch, name, description, *options);
+    command->add_option("DIR", options->folder, "The folder of a batch")->required();
+    if (name == "status")
+        command->add_flag("--watch", options->watch,
+                          "Again every two seconds, until all jobs are done or failed");
+    command->callback([options, run] {
+        start_command(*options);
+        run(*options);
+    });
+    return options;
+}
+
+void add_work_command(CLI::App& batch) {
+    auto options = std::make_shared<WorkCommand>();
+    CLI::App* command = add_command(
+        batch, "work", "One worker of a batch, on any machine that shares its folder", *options);
+    command->add_option("DIR", options->folder, "The folder of a batch")->required();
+    add_limits(*command, options->limits);
+    command
+        ->add_option("--until-seconds", options->until_seconds,
+                     "Write a checkpoint, release the job in hand and end after so long")
+        ->check(CLI::Range(0.0, 1e9));
+    command
+        ->add_option("--idle-seconds", options->idle_seconds,
+                     "End after so long without a job to claim, although others still run; without "
+                     "it, wait for them: theirs may have to be taken over")
+        ->check(CLI::Range(0.0, 1e9));
+    command->add_option("--index", options->index,
+                        "Of this worker among several: where priors differ, each begins with the "
+                        "jobs of another one");
+    command->callback([options] {
+        start_command(*options);
+        run_work(*options);
+    });
+}
+
+}  // namespace
+
+void add_batch_command(CLI::App& app) {
+    auto options = std::make_shared<BatchCommand>();
+    CLI::App* command = add_command(app, "batch", *options);
+    command->add_option("JOBS", options->jobs,
+                        "CSV or JSON Lines: model, from, to, name, after, command (edit or "
+                        "relight), and any option of that command");
+    command->add_option("-o,--output", options->output,
+                        "Folder of the batch; one that is there gets the jobs that are new");
+    const auto each = [](CLI::Option* option) { option->allow_extra_args(false); };
+    command->add_option("--models", options->matrix.models,
+                        "Models in place of JOBS: files, or a pattern in quotes ('shop/*.glb')");
+    each(command->add_option("--from", options->matrix.from,
+                             "Sentence of the models as they are, in which {name} is the file's "
+                             "name; once, or as often as --to"));
+    each(command->add_option("--to", options->matrix.to,
+                             "Sentence of what they shall become; may be given several times"));
+    command->add_option("--seeds", options->seeds,
+                        "0..2, or numbers with commas: each job with each seed");
+    each(command->add_option("--with", options->values,
+                             "NAME=VALUE: an option for all jobs, as iterations=100; a name given "
+                             "several times is every job with each value"));
+    command
+        ->add_option("--workers", options->workers,
+                     "Processes on this machine, as far as memory allows, which share its cores; "
+                     "0 adds jobs and leaves them to others (item3d batch work)")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    add_limits(*command, options->limits);
+    add_work_command(*command);
+    add_folder_command(*command, "status", "How far a batch is", run_status);
+    add_folder_command(*command, "report", "Write a batch's index.html and results.csv",
+                       run_report);
+    add_folder_command(*command, "retry", "Let the jobs that failed wait again", run_retry);
+    command->callback([command, options] {
+        if (!command->get_subcommands().empty()) return;
+        start_command(*options);
+        run_batch(*options);
+    });
+}
+
+}  // namespace item3d

@@ -1,0 +1,150 @@
+// item3d provenance: what a file says of how it was edited, and who signed that.
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+#include "item3d/io/read_provenance.h"
+
+#include <memory>
+#include <string>
+
+namespace item3d {
+namespace {
+
+struct ProvenanceCommand : CommonOptions {
+    std::filesystem::path file;
+    std::filesystem::path public_key;
+};
+
+/// Exit codes of this command alone (docs/provenance.md).
+constexpr auto altered = static_cast<ExitCode>(5);
+constexpr auto other_signer = static_cast<ExitCode>(6);
+constexpr auto not_signed = static_cast<ExitCode>(7);
+
+/// What became of a file since it was signed, for the exit code.
+class Mismatch : public Error {
+  public:
+    Mismatch(ExitCode code, const std::filesystem::path& file, const std::string& problem)
+        : Error(code, file.string() + ": " + problem) {}
+};
+
+void print_line(const char* title, const std::string& text) {
+    if (!text.empty()) fmt::print("{:<16}{}\n", title, text);
+}
+
+std::string words_for(ContentState state) {
+    return state == ContentState::same      ? "as it was written"
+           : state == ContentState::changed ? "CHANGED since"
+                                            : "not there any more";
+}
+
+void print_edit(const EditClaim& edit) {
+    print_line("edit", fmt::format("\"{}\" -> \"{}\"", edit.from, edit.to));
+    print_line("  look", edit.variant);
+    print_line("  strength", edit.strength);
+    print_line("  method", edit.method);
+    print_line("  prior",
+               edit.prior +
+                   (edit.prior_hash.empty() ? "" : fmt::format(" (weights {})", edit.prior_hash)));
+    print_line("  input", edit.input + (edit.input_sha256.empty()
+                                            ? ""
+                                            : fmt::format(" (SHA-256 {})", edit.input_sha256)));
+    print_line("  begun", edit.date);
+}
+
+void print_text(const FileProvenance& provenance, bool is_by_given_key, bool has_key) {
+    const PacketFacts& facts = provenance.facts;
+    print_line("source type", facts.source_type);
+    print_line("creator", facts.creator);
+    print_line("rights", facts.rights);
+    print_line("usage terms", facts.usage_terms);
+    print_line("copyright", provenance.copyright);
+    print_line("generator", provenance.generator);
+    print_line("problem", facts.problem);
+    if (!provenance.has_claim()) {
+        fmt::print("no claim of item3d\n");
+        return;
+    }
+    const std::string program = facts.claim.value("program", nlohmann::json("?")).dump();
+    print_line("written by",
+               program.substr(1, program.size() - 2) + " " +
+                   (facts.claim.contains("version") && facts.claim["version"].is_string()
+                        ? facts.claim["version"].get<std::string>()
+                        : ""));
+    for (const EditClaim& edit : edits_of(facts.claim))
+        print_edit(edit);
+    for (const CheckedImage& checked : provenance.images)
+        print_line("image", fmt::format("{} {}: {}", checked.image.image, checked.image.name,
+                                        words_for(checked.state)));
+    if (facts.claim.contains("document_sha256"))
+        print_line("all else", words_for(provenance.document));
+    const std::string key = public_key_of(facts.claim);
+    switch (provenance.signature) {
+        case SignatureState::none:
+            print_line("signature", "none: anyone could have written this");
+            break;
+        case SignatureState::invalid:
+            print_line("signature", "of other claims than these: they were CHANGED since");
+            break;
+        case SignatureState::valid:
+            print_line("signature", "of the key " + key +
+                                        (!has_key          ? " (--public-key says whose)"
+                                         : is_by_given_key ? ", the given one"
+                                                           : ", ANOTHER than the given one"));
+            break;
+    }
+}
+
+/// Throws what the exit code is to say.
+void judge(const ProvenanceCommand& options, const FileProvenance& provenance,
+           const std::string& key) {
+    const auto fail = [&](ExitCode code, const std::string& problem) {
+        throw Mismatch(code, options.file, problem);
+    };
+    if (!key.empty() && provenance.signature == SignatureState::none)
+        fail(not_signed, "is not signed");
+    if (provenance.has_claim() && !provenance.is_unchanged())
+        fail(altered, "was altered since it was written");
+    if (!key.empty() && public_key_of(provenance.facts.claim) != key)
+        fail(other_signer, "is signed by another key");
+}
+
+void run_provenance(const ProvenanceCommand& options) {
+    const std::string key = options.public_key.empty() ? "" : load_public_key(options.public_key);
+    const FileProvenance provenance = read_provenance(options.file);
+    const bool is_by_given_key = !key.empty() && provenance.signature == SignatureState::valid &&
+                                 public_key_of(provenance.facts.claim) == key;
+    if (options.json) {
+        nlohmann::json out = provenance_json(provenance);
+        out["file"] = options.file.string();
+        if (!key.empty()) out["signed_by_given_key"] = is_by_given_key;
+        print_json(out);
+    } else {
+        print_text(provenance, is_by_given_key, !key.empty());
+    }
+    judge(options, provenance, key);
+}
+
+}  // namespace
+
+void add_provenance_command(CLI::App& app) {
+    auto options = std::make_shared<ProvenanceCommand>();
+    CLI::App* command = add_command(app, "provenance", *options);
+    command->add_option("FILE", options->file, "A .glb, .gltf, PNG, JPEG or WebP")->required();
+    command->add_option("--public-key", options->public_key,
+                        "Ed25519 public key in PEM (openssl pkey -pubout): says whether the file "
+                        "is signed by it");
+    command->footer(
+        "\nExit codes: 0 what is claimed is so (or nothing is), 5 altered since, 6 signed by "
+        "another key\nthan --public-key, 7 not signed though --public-key is given; 3 for files "
+        "that cannot be read.\n\n  openssl genpkey -algorithm ed25519 -out shop.pem\n  openssl "
+        "pkey -in shop.pem -pubout -out shop.pub.pem\n  item3d edit mug.glb --from \"a red mug\" "
+        "--to \"a golden mug\" -o out --sign-key shop.pem\n  item3d provenance out/model.glb "
+        "--public-key shop.pub.pem\n");
+    command->callback([options] {
+        start_command(*options);
+        run_provenance(*options);
+    });
+}
+
+}  // namespace item3d

@@ -1,0 +1,28 @@
+// --sign-key: the key with which claims of provenance are signed.
+#pragma once
+
+#include "item3d/provenance/signing.h"
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+
+namespace item3d {
+
+struct SignKeyOption {
+    std::filesystem::path path;  ///< empty: nothing is signed
+
+    /// Null without a path. Throws InputError for a file that is no such key.
+    std::shared_ptr<const SigningKey> load() const {
+        return path.empty() ? nullptr : std::make_shared<const SigningKey>(SigningKey::load(path));
+    }
+};
+
+inline void add_sign_key(CLI::App& command, SignKeyOption& option) {
+    command.add_option("--sign-key", option.path,
+                       "Ed25519 private key in PEM (openssl genpkey -algorithm ed25519) that signs "
+                       "what is written; item3d provenance --public-key verifies it");
+}
+
+}  // namespace item3d

@@ -1,0 +1,73 @@
+// item3d variants: several edits of a model as looks of one file.
+#include "item3d/io/variants.h"
+
+#include "apps/item3d/command.h"
+#include "apps/item3d/edit/commands.h"
+#include "apps/item3d/edit/model_options.h"
+#include "apps/item3d/edit/sign_key_option.h"
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+
+#include <memory>
+#include <string>
+
+namespace item3d {
+namespace {
+
+struct VariantsCommand : CommonOptions {
+    VariantsRequest request;
+    std::string provenance = "on";
+    SignKeyOption sign_key;
+};
+
+void run_variants(VariantsCommand& options) {
+    VariantsRequest& request = options.request;
+    request.says_provenance = options.provenance == "on";
+    if (!request.says_provenance && !options.sign_key.path.empty())
+        throw UsageError("--provenance off writes nothing that --sign-key could sign");
+    request.sign_key = options.sign_key.load();
+    start_command(options);
+    const nlohmann::json record = write_variants(request);
+    if (options.json) {
+        print_json(record);
+        return;
+    }
+    for (const nlohmann::json& variant : record["variants"])
+        fmt::print("{}\n", variant["name"].get<std::string>());
+}
+
+}  // namespace
+
+void add_variants_command(CLI::App& app) {
+    auto options = std::make_shared<VariantsCommand>();
+    CLI::App* command = add_command(app, "variants", *options);
+    VariantsRequest& request = options->request;
+    command->add_option("MODEL", request.model, "The model that was edited: .glb, .gltf or .obj")
+        ->required();
+    command
+        ->add_option("EDIT_DIR", request.edits, "Folders that item3d edit -o left, of this model")
+        ->required();
+    command->add_option("-o,--output", request.output, "The .glb or .gltf to write")->required();
+    command
+        ->add_option("--name", request.names,
+                     "Name of a look, once for each EDIT_DIR in their order; without it, the "
+                     "target sentence without its article")
+        ->allow_extra_args(false);
+    command->add_option("--original", request.original,
+                        "Name of the model's own look; without it, \"original\", or none where "
+                        "the model has variants already");
+    add_texture_folders(*command, request.texture_folders);
+    command
+        ->add_option("--provenance", options->provenance,
+                     "on: the file says by which edits it came to be; off: nothing")
+        ->check(CLI::IsMember({"on", "off"}))
+        ->capture_default_str();
+    add_sign_key(*command, options->sign_key);
+    command->footer(
+        "\nThe model's own look is shown first; viewers offer the others by name.\n\n  item3d "
+        "variants mug.glb golden blue -o shop.glb\n  item3d render shop.glb --variant \"golden "
+        "mug\" -o golden.png\n");
+    command->callback([options] { run_variants(*options); });
+}
+
+}  // namespace item3d

@@ -1,0 +1,147 @@
+#include "item3d/batch/attempt.h"
+
+#include "item3d/core/disk_full.h"
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+#include "item3d/core/progress.h"
+
+#include <chrono>
+#include <system_error>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using Stop = AttemptEnd::Stop;
+
+constexpr const char* checkpoint_name = "checkpoint.safetensors";
+constexpr const char* plan_state_name = "plan_state.json";
+constexpr const char* event_name = "job.json";
+
+std::string one_line(const std::string& text) {
+    constexpr std::size_t longest = 1000;
+    return text.substr(0, std::min(text.find('\n'), longest));
+}
+
+bool says_disk_full(const std::exception& error) {
+    if (dynamic_cast<const DiskFull*>(&error)) return true;
+    const auto* system = dynamic_cast<const fs::filesystem_error*>(&error);
+    return system && system->code() == std::errc::no_space_on_device;
+}
+
+void write_event(const Claim& claim, const JobEvent& event) {
+    write_atomically(
+        claim.folder() / event_name,
+        std::string_view(json(event).dump(2, ' ', false, json::error_handler_t::replace) + "\n"));
+}
+
+AttemptEnd publish(const Claim& claim, JobEvent event, JobState state) {
+    event.state = state;
+    write_event(claim, event);
+    std::error_code ignored;
+    fs::remove(claim.folder() / checkpoint_name, ignored);  // as large as all the rest
+    const bool is_published =
+        claim.publish(state == JobState::done ? FolderState::done : FolderState::failed);
+    return {std::move(event), !is_published, Stop::none, ""};
+}
+
+AttemptEnd release(const Claim& claim, JobEvent event, Stop stop, const std::string& reason) {
+    try {
+        write_event(claim, event);
+    } catch (const Error&) {
+        // A full disk: the counts of the attempts before stand.
+    }
+    const bool is_released = claim.release();
+    return {std::move(event), !is_released, stop, reason};
+}
+
+json run_or_begin_anew(const ClaimedJob& job, const Claim& claim, const JobRunner& run) {
+    try {
+        return run(job);
+    } catch (const InputError&) {
+        // The checkpoint may be what is wrong.
+        if (!job.resume || !claim.is_held()) throw;
+    }
+    warn(title_of(job.job) + ": cannot go on from its checkpoint and begins anew");
+    fs::remove(job.folder / checkpoint_name);
+    fs::remove(job.folder / plan_state_name);
+    return run({job.job, job.model, job.folder, false});
+}
+
+AttemptEnd after_error(const Claim& claim, JobEvent event, const std::exception& error,
+                       const AttemptLimits& limits) {
+    if (!claim.is_held()) return {std::move(event), true, Stop::none, ""};
+    if (says_disk_full(error))
+        return release(claim, std::move(event), Stop::disk_full, error.what());
+    if (dynamic_cast<const Interrupted*>(&error))
+        return release(claim, std::move(event), Stop::interrupted, "");
+    ++event.errors;
+    event.message = one_line(error.what());
+    const bool is_final = dynamic_cast<const InputError*>(&error) ||
+                          dynamic_cast<const UsageError*>(&error) || event.errors > limits.retries;
+    return is_final ? publish(claim, std::move(event), JobState::failed)
+                    : release(claim, std::move(event), Stop::none, "");
+}
+
+}  // namespace
+
+JobEvent read_event(const fs::path& folder) {
+    std::error_code code;
+    if (!fs::exists(folder / event_name, code)) return {};
+    const json value = json::parse(read_text(folder / event_name), nullptr, false);
+    try {
+        return value.get<JobEvent>();
+    } catch (const json::exception&) {
+        return {};
+    }
+}
+
+JobEvent begin_event(const BatchJob& job, const Claim& claim, const std::string& worker) {
+    JobEvent event = read_event(claim.folder());
+    if (event.state == JobState::failed) event.errors = event.deaths = 0;  // to be tried anew
+    event.job = job.id;
+    event.state = JobState::waiting;
+    event.worker = worker;
+    event.attempt = claim.attempt();
+    event.message.clear();
+    event.outcome = nullptr;
+    return event;
+}
+
+AttemptEnd run_attempt(const BatchJob& job, const fs::path& model, const Claim& claim,
+                       JobEvent event, const AttemptLimits& limits, const JobRunner& run) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto count_seconds = [&] {
+        event.seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    try {
+        if (claim.attempt() > 1) write_event(claim, event);  // before this one can die as well
+        if (event.deaths > limits.max_deaths)
+            return give_up(claim, std::move(event),
+                           fmt::format("its worker died {} times while it ran, as for want of "
+                                       "memory",
+                                       event.deaths));
+        // Between two edits of a plan there is no checkpoint.
+        const bool resume = fs::exists(claim.folder() / checkpoint_name) ||
+                            fs::exists(claim.folder() / plan_state_name);
+        note(fmt::format("{}: {}{}", title_of(job), job.folder,
+                         resume ? ", from its checkpoint" : ""));
+        event.outcome = run_or_begin_anew({job, model, claim.folder(), resume}, claim, run);
+        count_seconds();
+        return publish(claim, event, JobState::done);
+    } catch (const std::exception& error) {
+        count_seconds();
+        event.outcome = nullptr;
+        return after_error(claim, std::move(event), error, limits);
+    }
+}
+
+AttemptEnd give_up(const Claim& claim, JobEvent event, const std::string& message) {
+    event.message = message;
+    return publish(claim, std::move(event), JobState::failed);
+}
+
+}  // namespace item3d

@@ -1,0 +1,99 @@
+#include "item3d/batch/batch_folder.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/format.h"
+
+#include <algorithm>
+#include <random>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* mark_name = "batch.json";
+constexpr const char* format_name = "item3d batch 1";
+constexpr std::uintmax_t least_space = 1 << 20;
+
+/// Throws InputError where the mark is not that of a batch that this program knows.
+void check_mark(const fs::path& folder) {
+    const json mark = json::parse(read_text(folder / mark_name), nullptr, false);
+    const std::string format =
+        mark.is_object() && mark.contains("format") && mark["format"].is_string()
+            ? mark["format"].get<std::string>()
+            : "";
+    if (format != format_name)
+        throw InputError((folder / mark_name).string(),
+                         format.empty()
+                             ? "is not the mark of a batch"
+                             : "is of the format '" + format + "', expected '" + format_name + "'",
+                         "choose another folder");
+}
+
+int number_of(const fs::path& file) {
+    return static_cast<int>(std::strtol(file.filename().c_str(), nullptr, 10));
+}
+
+}  // namespace
+
+std::string random_suffix() {
+    std::random_device device;
+    return fmt::format("{:04x}", device() & 0xffff);
+}
+
+bool BatchFolder::is_begun(const fs::path& path) {
+    std::error_code code;
+    if (fs::exists(path / mark_name, code)) {
+        check_mark(path);
+        return true;
+    }
+    if (fs::exists(path, code) && !(fs::is_directory(path, code) && fs::is_empty(path, code)))
+        throw InputError(path.string(), "holds something else than a batch",
+                         "choose a new folder, or that of a batch");
+    return false;
+}
+
+BatchFolder BatchFolder::create(const fs::path& path) {
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    if (is_begun(whole)) return BatchFolder(whole);
+    make_output_folder(whole);
+    BatchFolder folder(whole);
+    fs::create_directories(folder.jobs());
+    fs::create_directories(folder.workers());
+    fs::create_directories(whole / "runs");
+    write_atomically(whole / mark_name,
+                     std::string_view(json{{"format", format_name}}.dump() + "\n"));
+    return folder;
+}
+
+BatchFolder BatchFolder::open(const fs::path& path) {
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    std::error_code code;
+    if (!fs::exists(whole / mark_name, code))
+        throw InputError(path.string(), "is not the folder of a batch",
+                         "`item3d batch JOBS -o " + path.string() + "` begins one");
+    check_mark(whole);
+    return BatchFolder(whole);
+}
+
+void BatchFolder::add_jobs(const std::vector<BatchJob>& added) const {
+    if (added.empty()) return;
+    std::string lines;
+    for (const BatchJob& job : added)
+        lines += json(job).dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+    int last = 0;
+    for (const auto& entry : fs::directory_iterator(jobs()))
+        last = std::max(last, number_of(entry.path()));
+    write_atomically(jobs() / fmt::format("{:06}-{}.jsonl", last + 1, random_suffix()),
+                     std::string_view(lines));
+}
+
+bool BatchFolder::is_full() const {
+    std::error_code code;
+    const fs::space_info space = fs::space(path_, code);
+    return !code && space.available < least_space;
+}
+
+}  // namespace item3d

@@ -1,0 +1,113 @@
+#include "item3d/batch/batch_view.h"
+
+#include "item3d/batch/claim.h"
+#include "item3d/core/error.h"
+
+namespace item3d {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+BatchView::BatchView(const BatchFolder& folder)
+    : folder_(folder), jobs_(folder.jobs()), journals_(folder.workers()) {
+    refresh();
+}
+
+BatchView::News BatchView::refresh() {
+    News news;
+    for (const std::string& line : jobs_.new_lines()) {
+        BatchJob job;
+        try {
+            json::parse(line).get_to(job);
+        } catch (const json::exception&) {
+            throw InputError(folder_.jobs().string(), "holds a line that is no job",
+                             "begin the batch anew in another folder");
+        }
+        if (const auto index = add(std::move(job))) news.added.push_back(*index);
+    }
+    for (const std::string& line : journals_.new_lines()) {
+        const json value = json::parse(line, nullptr, false);
+        if (value.is_discarded()) continue;
+        JobEvent event;
+        try {
+            value.get_to(event);
+        } catch (const json::exception&) {
+            continue;
+        }
+        if (take(event)) news.told.push_back(by_id_.at(event.job));
+    }
+    return news;
+}
+
+void BatchView::tell(const JobEvent& event) {
+    take(event);
+}
+
+/// The job's index where it is asked for now and was not before.
+std::optional<std::size_t> BatchView::add(BatchJob job) {
+    const auto [place, is_new] = by_id_.try_emplace(job.id, entries_.size());
+    const std::size_t index = place->second;
+    const auto [key, is_new_key] = by_key_.try_emplace(job.key, index);
+    if (is_new) {
+        entries_.emplace_back();
+        entries_.back().job = std::move(job);
+    }
+    if (!is_new_key && key->second == index) return std::nullopt;
+    if (!is_new_key) {
+        count(key->second, -1);
+        key->second = index;
+    }
+    count(index, 1);
+    return entries_[index].askers == 1 ? std::optional(index) : std::nullopt;
+}
+
+void BatchView::count(std::size_t index, int askers) {
+    BatchEntry& entry = entries_[index];
+    const bool was_open = entry.is_current() && !entry.is_finished();
+    entry.askers += askers;
+    const bool is_open = entry.is_current() && !entry.is_finished();
+    open_ = open_ + (is_open ? 1 : 0) - (was_open ? 1 : 0);
+}
+
+bool BatchView::take(const JobEvent& event) {
+    const auto found = by_id_.find(event.job);
+    if (found == by_id_.end()) return false;
+    BatchEntry& entry = entries_[found->second];
+    // Journals are read one after another; attempts tell which line is the later one.
+    if (entry.state == JobState::done || event.attempt < entry.last.attempt) return false;
+    const bool was_open = entry.is_current() && !entry.is_finished();
+    entry.state = event.state;
+    entry.last = event;
+    const bool is_open = entry.is_current() && !entry.is_finished();
+    open_ = open_ + (is_open ? 1 : 0) - (was_open ? 1 : 0);
+    return true;
+}
+
+std::optional<std::size_t> BatchView::find(const std::string& id) const {
+    const auto found = by_id_.find(id);
+    return found == by_id_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::size_t> BatchView::find_key(const std::string& key) const {
+    const auto found = by_key_.find(key);
+    return found == by_key_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<std::size_t> BatchView::begun() const {
+    std::unordered_set<std::string> there;
+    std::error_code code;
+    for (const auto& shard : fs::directory_iterator(folder_.path() / "runs", code))
+        for (const auto& entry : fs::directory_iterator(shard.path(), code))
+            there.insert(entry.path().filename().string());
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const BatchEntry& entry = entries_[i];
+        const std::string& folder = entry.job.folder;
+        if (entry.is_current() && !entry.is_finished() &&
+            there.contains(folder.substr(folder.rfind('/') + 1)))
+            indices.push_back(i);
+    }
+    return indices;
+}
+
+}  // namespace item3d

@@ -1,0 +1,64 @@
+#include "item3d/batch/process_mark.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string first_line_of(const fs::path& path) {
+    std::ifstream file(path);
+    std::string line;
+    std::getline(file, line);
+    return line;
+}
+
+/// In ticks since the machine started; "" where there is no such process, or it is dead and not
+/// yet waited for.
+std::string start_of(long pid) {
+    const std::string line = first_line_of("/proc/" + std::to_string(pid) + "/stat");
+    // The program's name, in parentheses, may hold spaces and parentheses.
+    const std::size_t behind = line.rfind(')');
+    if (behind == std::string::npos) return "";
+    std::istringstream fields(line.substr(behind + 1));
+    std::string field;
+    constexpr int state = 1, start = 20;  // fields 3 and 22 of the line
+    for (int i = 1; fields >> field; ++i) {
+        if (i == state && (field == "Z" || field == "X")) return "";
+        if (i == start) return field;
+    }
+    return "";
+}
+
+std::string space_of_ids() {
+    std::error_code code;
+    return first_line_of("/proc/sys/kernel/random/boot_id") + " " +
+           fs::read_symlink("/proc/self/ns/pid", code).string();
+}
+
+}  // namespace
+
+std::string host_name() {
+    char name[256] = {};
+    ::gethostname(name, sizeof(name) - 1);
+    const std::string whole = name;
+    return whole.substr(0, whole.find('.'));
+}
+
+nlohmann::json this_process() {
+    const long pid = ::getpid();
+    return {
+        {"host", host_name()}, {"pid", pid}, {"start", start_of(pid)}, {"space", space_of_ids()}};
+}
+
+bool has_ended(const nlohmann::json& process) {
+    if (!process.is_object() || process.value("space", "") != space_of_ids()) return false;
+    return start_of(process.value("pid", 0L)) != process.value("start", "");
+}
+
+}  // namespace item3d

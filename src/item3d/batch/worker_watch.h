@@ -1,0 +1,43 @@
+// Whether another worker still works at a job.
+#pragma once
+
+#include "item3d/batch/batch_folder.h"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <map>
+#include <string>
+
+namespace item3d {
+
+/// Judges by what this process itself has seen: a worker is lost where its heartbeat has not
+/// changed for a while on this process's own clock, where it said that it ended, or where it ran on
+/// this machine and its process is gone. Clocks of different machines are never compared.
+class WorkerWatch {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    WorkerWatch(const BatchFolder& folder, std::chrono::milliseconds stale_after)
+        : workers_(folder.workers()), stale_after_(stale_after) {}
+
+    /// Whether `worker` works at `job` no more. `sign`: what else would have changed if it did (the
+    /// attempt). The first call for a job begins to watch; now: of this process's clock.
+    bool is_lost(const std::string& job, const std::string& worker, const std::string& sign,
+                 Clock::time_point now = Clock::now());
+    void forget(const std::string& job) { seen_.erase(job); }
+
+  private:
+    struct Seen {
+        std::string sign;
+        Clock::time_point since;
+    };
+    std::filesystem::path workers_;
+    std::chrono::milliseconds stale_after_;
+    std::map<std::string, Seen> seen_;  ///< by job
+};
+
+/// What a worker's file says; null where there is none that can be read.
+nlohmann::json read_heartbeat(const std::filesystem::path& file);
+
+}  // namespace item3d

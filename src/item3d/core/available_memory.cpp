@@ -1,0 +1,65 @@
+#include "item3d/core/available_memory.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double unlimited = 1e18;
+
+double of_the_machine() {
+    std::ifstream file("/proc/meminfo");
+    std::string key, unit;
+    double kilobytes = 0;
+    while (file >> key >> kilobytes && std::getline(file, unit))
+        if (key == "MemAvailable:") return 1024 * kilobytes;
+    return unlimited;
+}
+
+/// The number of the file; `otherwise` where it has none ("max").
+double number_in(const fs::path& path, double otherwise) {
+    std::ifstream file(path);
+    double value = 0;
+    return file >> value ? value : otherwise;
+}
+
+/// Bytes of files that the group's limit counts and the system gives back when asked.
+double reclaimable(const fs::path& group) {
+    std::ifstream file(group / "memory.stat");
+    std::string key;
+    double value = 0;
+    while (file >> key >> value)
+        if (key == "inactive_file") return value;
+    return 0;
+}
+
+/// Of this process's group and those around it (version 2 of control groups).
+double of_the_groups() {
+    std::ifstream file("/proc/self/cgroup");
+    std::string line, group;
+    while (std::getline(file, line))
+        if (line.starts_with("0::/")) group = line.substr(4);
+    const fs::path root = "/sys/fs/cgroup";
+    double left = unlimited;
+    for (fs::path folder = root / group; folder != root && folder.has_relative_path();
+         folder = folder.parent_path()) {
+        const double limit = number_in(folder / "memory.max", unlimited);
+        if (limit < unlimited)
+            left = std::min(left,
+                            limit - number_in(folder / "memory.current", 0) + reclaimable(folder));
+    }
+    return std::max(0.0, left);
+}
+
+}  // namespace
+
+double available_memory() {
+    return std::min(of_the_machine(), of_the_groups());
+}
+
+}  // namespace item3d

@@ -1,0 +1,38 @@
+#include "item3d/core/interrupt.h"
+
+#include "item3d/core/progress.h"
+
+#include <atomic>
+#include <csignal>
+
+namespace item3d {
+namespace {
+
+// Process-wide by nature: there is one signal handler.
+std::atomic<bool> wanted = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
+
+void on_interrupt(int signal) {
+    // Schedulers may send SIGTERM several times: a second Ctrl-C alone ends the program at once.
+    const bool is_second = wanted.exchange(true);
+    if (!is_second || signal != SIGINT) return;
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+}
+
+}  // namespace
+
+void install_interrupt_handler() {
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+}
+
+void request_interrupt() {
+    wanted = true;
+}
+
+bool interrupted() {
+    return wanted;
+}
+
+}  // namespace item3d

@@ -1,0 +1,16 @@
+// Names: of files made of sentences, and the one that somebody meant.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace item3d {
+
+/// Lower-case letters and digits, at most 40, words joined by dashes; "case" where there are none.
+std::string slug(const std::string& text);
+
+/// The one of `known`, which is not empty, that takes the fewest insertions, deletions and
+/// replacements of letters (Levenshtein) to become `name`.
+std::string nearest_name(const std::string& name, const std::vector<std::string>& known);
+
+}  // namespace item3d

@@ -1,0 +1,15 @@
+// A process's share of the points of pictures.
+#pragma once
+
+#include "item3d/edit/material_source.h"
+#include "item3d/processes/process_group.h"
+#include "item3d/render/interpolate.h"
+
+namespace item3d {
+
+/// These points of them.
+Surface narrow(const Surface& all, const Share& points);
+MaterialSample narrow(const MaterialSample& all, const Share& points);
+OwnMaterial narrow(const OwnMaterial& all, const Share& points);
+
+}  // namespace item3d

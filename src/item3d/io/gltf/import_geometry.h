@@ -1,0 +1,29 @@
+// Vertices and triangles of one glTF document taken over into another. Internal to io.
+#pragma once
+
+#include "item3d/io/gltf/builder.h"
+#include "item3d/io/gltf/content.h"
+
+#include <cstddef>
+#include <map>
+#include <string>
+
+namespace item3d {
+
+/// What is equal is added once.
+class GeometryImport {
+  public:
+    explicit GeometryImport(GltfBuilder& builder) : builder_(builder) {}
+
+    /// Gives `primitive`, of the builder's document, the vertices, triangles and morph targets of
+    /// `edited`, a plain one of `content`'s document. uv_set: where what looked at set 0 finds it.
+    void replace(DocumentContent& content, const Json& edited, std::size_t uv_set, Json& primitive);
+
+  private:
+    Json add_attributes(DocumentContent& content, const Json& attributes);
+
+    GltfBuilder& builder_;
+    std::map<std::string, std::size_t> accessors_;  ///< by content
+};
+
+}  // namespace item3d

@@ -1,0 +1,33 @@
+// What is read of a metadata packet, whoever wrote it.
+#pragma once
+
+#include "item3d/provenance/claim.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace item3d {
+
+struct PacketFacts {
+    nlohmann::json claim;                      ///< item3d's, as it was read; null: none
+    std::string source_type;                   ///< Iptc4xmpExt:DigitalSourceType
+    std::string creator, rights, usage_terms;  ///< dc:creator, dc:rights, xmpRights:UsageTerms
+    std::string problem;                       ///< why the packet cannot be read; empty: it can
+};
+
+/// A standard property that says of an edited file what the claim says.
+struct PacketProperty {
+    std::string_view space;
+    std::string_view prefix;
+    std::string_view name;
+    std::string value;  ///< empty: the property goes
+};
+
+/// Of IPTC Photo Metadata 2025.1 (DigitalSourceType, AISystemUsed, AISystemVersionUsed,
+/// AIPromptInformation) and XMP (ModifyDate). They take the place of a source's.
+std::vector<PacketProperty> properties_of(const nlohmann::json& claim);
+
+}  // namespace item3d
