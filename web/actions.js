@@ -104,8 +104,7 @@ export class Actions {
   async start() {
     const { project } = this.store.state;
     const result = asResult(await api(`projects/${project?.id}/edits`, { json: editBody(this.store.state) }));
-    this.arrived(result);
-    this.select(result.id);
+    this.begun(result);
   }
 
   /** @param {Result} result to run again as it was */
@@ -113,8 +112,7 @@ export class Actions {
     try {
       const { from, to, settings, region, exclude, feather, parent } = result;
       const again = asResult(await api(`projects/${result.project}/edits`, { json: { from, to, settings, region, exclude, feather, parent: asNumber(parent) } }));
-      this.arrived(again);
-      this.select(again.id);
+      this.begun(again);
     } catch (error) {
       failed(error);
     }
@@ -123,11 +121,16 @@ export class Actions {
   /** @param {Result} result @param {'pause'|'resume'|'cancel'} what */
   async act(result, what) {
     try {
-      const answer = await api(`results/${result.id}/${what}`, { method: 'POST' });
-      if (answer?.id) this.arrived(asResult(answer));
+      await api(`results/${result.id}/${what}`, { method: 'POST' }); // what comes of it is an event
     } catch (error) {
       failed(error);
     }
+  }
+
+  /** Something was begun. Events may have told more of it by now than the answer does. @param {Result} result */
+  begun(result) {
+    if (!this.store.state.results.some(({ id }) => id === result.id)) this.arrived(result);
+    this.select(result.id);
   }
 
   /** A result is new or has changed. @param {Result} result */
@@ -173,7 +176,7 @@ export class Actions {
   async patch(result, patch) {
     this.arrived({ ...result, ...patch });
     try {
-      this.arrived(asResult(await api(`results/${result.id}`, { method: 'PATCH', json: patch })));
+      await api(`results/${result.id}`, { method: 'PATCH', json: patch });
     } catch (error) {
       this.arrived(result);
       failed(error);
@@ -239,16 +242,14 @@ export class Actions {
   async relight() {
     const { project, light } = this.store.state;
     const result = asResult(await api(`projects/${project?.id}/relight`, { json: { ...lightBody(light), parent: this.parent() } }));
-    this.arrived(result);
-    this.select(result.id);
+    this.begun(result);
   }
 
   /** Optimises a light for two sentences. @param {string} to */
   async findLight(to) {
     const { project, light, from } = this.store.state;
     const result = asResult(await api(`projects/${project?.id}/relight`, { json: { from_light: light.name, from: from || 'an object', to, parent: this.parent() } }));
-    this.arrived(result);
-    this.select(result.id);
+    this.begun(result);
   }
 
   parent() {

@@ -9,6 +9,20 @@ namespace {
 
 using StudioDatabase = StudioFolder;
 
+TEST_F(StudioDatabase, OpensWhatACrashLeft) {
+    constexpr int count = 200;
+    const auto crashed = options_.folder / "crashed";
+    std::filesystem::create_directories(crashed);
+    StudioStore store(options_.folder);
+    const std::int64_t project = store.add_project("mug.glb");
+    for (int i = 0; i < count; ++i)
+        store.add_result(edit(project, "a golden mug"));
+    // The newest pages are in the log alone while the database is open.
+    for (const char* name : {"studio.sqlite", "studio.sqlite-wal"})
+        std::filesystem::copy_file(options_.folder / name, crashed / name);
+    EXPECT_EQ(StudioStore(crashed).results(project).size(), count);
+}
+
 TEST_F(StudioDatabase, KeepsProjectsAndResultsFromOneRunToTheNext) {
     std::int64_t project = 0, id = 0;
     {

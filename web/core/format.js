@@ -4,8 +4,9 @@
 export function duration(seconds) {
   if (!(seconds >= 0)) return '';
   if (seconds < 90) return `${Math.round(seconds)} s`;
-  if (seconds < 5400) return `${Math.floor(seconds / 60)} min ${String(Math.round(seconds % 60)).padStart(2, '0')} s`;
-  return `${Math.floor(seconds / 3600)} h ${String(Math.round(seconds % 3600 / 60)).padStart(2, '0')} min`;
+  const rest = (/** @type {number} */ part) => String(Math.floor(part)).padStart(2, '0');
+  if (seconds < 3600) return `${Math.floor(seconds / 60)}:${rest(seconds % 60)} min`;
+  return `${Math.floor(seconds / 3600)}:${rest(seconds % 3600 / 60)} h`;
 }
 
 /** @param {number} bytes */

@@ -54,6 +54,8 @@ void Sqlite::run(const std::string& statements) {
 }
 
 void Sqlite::check() {
+    // After a crash the newest pages are in the log alone, and the file is shorter than it will be.
+    run("PRAGMA wal_checkpoint(TRUNCATE)");
     SqliteRows sizes(*this,
                      "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size");
     sizes.next();
