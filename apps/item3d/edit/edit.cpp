@@ -243,9 +243,6 @@ void add_edit_options(CLI::App& command, EditCommandOptions& options) {
                        "CLIPSeg in the transformers layout, for --region words=...; without it, "
                        "the one that the prior brings along, else the prior's cross-attention");
     command.add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
-    command.add_option("--live", request.live,
-                       "A folder in which small textures of the edit so far are renewed about "
-                       "every second, for programs that show them");
     add_texture_folders(command, request.texture_folders);
     add_sign_key(command, options.sign_key);
     command.add_flag("--allow-missing-textures", request.allow_missing_textures,
@@ -273,6 +270,9 @@ void add_edit_command(CLI::App& app) {
     auto options = std::make_shared<EditCommandOptions>();
     CLI::App* command = add_command(app, "edit", *options);
     add_edit_options(*command, *options);
+    command->add_option("--live", options->request.live,
+                        "A folder in which small textures of the edit so far are renewed about "
+                        "every second, for programs that show them");
     command->footer(
         "Several processes, machines or devices make one edit where RANK, WORLD_SIZE, MASTER_ADDR "
         "and MASTER_PORT are set, as torchrun does (docs/clusters.md).");
