@@ -72,7 +72,7 @@ TEST_F(MethodTest, texels_outside_of_a_region_stay_to_the_bit) {
 }
 
 TEST_F(MethodTest, in2n_edits_by_a_prior_that_follows_instructions_alone) {
-    EditRequest edit = by("in2n", "out", 11);
+    EditRequest edit = by("in2n", "out", 11, {{"iterations", 11}});
     const auto complaint = [&] {
         try {
             edit_model(edit);
