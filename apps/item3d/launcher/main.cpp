@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -65,10 +66,29 @@ std::filesystem::path program_of(std::string_view family) {
     return here.parent_path() / "lib/item3d" / name;
 }
 
+/// Becomes the program. A package (scripts/package.sh) brings the C library that its programs were
+/// linked with, and that library's loader, which starts them whatever the system's own are.
+void execute(const std::filesystem::path& program, char** arguments) {
+    std::error_code code;
+    const std::string folder = program.parent_path().string(), system = folder + "/system",
+                      loader = system + "/ld-linux-x86-64.so.2";
+    if (!std::filesystem::exists(loader, code)) {
+        execv(program.c_str(), arguments);
+        return;
+    }
+    const std::string libraries = folder + ":" + system;
+    std::vector<const char*> all = {loader.c_str(), "--library-path", libraries.c_str(),
+                                    "--argv0",      arguments[0],     program.c_str()};
+    for (char** argument = arguments + 1; *argument != nullptr; ++argument)
+        all.push_back(*argument);
+    all.push_back(nullptr);
+    execv(loader.c_str(), const_cast<char**>(all.data()));
+}
+
 int become(const CommandEntry& command, char** arguments) {
     const auto program = program_of(command.family);
     wait_briefly();
-    execv(program.c_str(), arguments);
+    execute(program, arguments);
     if (errno == ENOENT)
         std::fprintf(stderr,
                      "item3d: error: %s is not there; build it (make) or install item3d again\n",
