@@ -9,6 +9,7 @@
 # make format     format all sources
 # make lint       run clang-tidy on all sources (needs clang-tidy and libomp-dev)
 # make install    install to PREFIX (default /usr/local)
+# make package   an archive, a .deb and a wheel that run on any Linux of x86-64 (scripts/package.sh)
 # make clean      remove what was built; .deps/ stays
 #
 # JOBS=N limits how many compilers run at once.
@@ -19,7 +20,7 @@ JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
 .PHONY: setup configure build demo studio test-browser check-format check-layers test-loaders test-build test check cuda \
-    bench bench-build format lint install clean
+    bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
 CUDA := $(if $(filter x86_64,$(shell uname -m)),cuda)
@@ -91,6 +92,10 @@ lint: configure
 install: build
 	@$(BUILD) --target parity rooms
 	@cmake --install build --prefix "$(PREFIX)"
+
+package: build
+	@$(BUILD) --target item3d_static
+	@scripts/package.sh build
 
 clean:
 	rm -rf build build-debug build-asan

@@ -1,12 +1,14 @@
-# cmake --install BUILD --prefix PREFIX [--component programs|development]
+# cmake --install BUILD --prefix PREFIX [--component programs|parity|development]
 #
 # programs:
-#   bin/item3d, bin/parity   the programs that people start
+#   bin/item3d               the program that people start
 #   lib/item3d/              what item3d becomes (item3d-edit, ...), LibTorch's libraries, found through
 #                            $ORIGIN, and libitem3d_cuda.so (cmake/Cuda.cmake) and libitem3d_ktx2.so (cmake/Ktx2.cmake),
 #                            opened from there
 #   share/item3d/            assets: the embedded prior and the demo model; web/: the studio's page,
 #                            with three.js in web/three/
+# parity:
+#   bin/parity               compares networks with reference numbers
 # development: the rooms as libraries for find_package(item3d), with LibTorch's headers where
 # ITEM3D_TORCH_ROOT has them
 #   include/item3d/, lib/libitem3d_*.a, lib/cmake/item3d/

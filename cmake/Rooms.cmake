@@ -144,10 +144,13 @@ function(item3d_room NAME)
     endif()
 endfunction()
 
-# item3d_program(NAME KIND SOURCES file... [LINK target...] [INSTALL folder]): one executable, at the
-# top of the build folder.
+# item3d_program(NAME KIND SOURCES file... [LINK target...] [INSTALL folder] [COMPONENT name]): one
+# executable, at the top of the build folder.
 function(item3d_program NAME KIND)
-    cmake_parse_arguments(ARG "" "INSTALL" "SOURCES;LINK" ${ARGN})
+    cmake_parse_arguments(ARG "" "INSTALL;COMPONENT" "SOURCES;LINK" ${ARGN})
+    if(NOT ARG_COMPONENT)
+        set(ARG_COMPONENT programs)
+    endif()
     add_executable(${NAME} ${ARG_SOURCES})
     target_include_directories(${NAME} PRIVATE ${CMAKE_SOURCE_DIR})
     target_link_libraries(${NAME} PRIVATE ${ARG_LINK} item3d_options)
@@ -161,6 +164,6 @@ function(item3d_program NAME KIND)
             list(APPEND RPATH ${ITEM3D_TORCH_ROOT}/lib)
         endif()
         set_target_properties(${NAME} PROPERTIES INSTALL_RPATH "${RPATH}")
-        install(TARGETS ${NAME} RUNTIME DESTINATION ${ARG_INSTALL} COMPONENT programs)
+        install(TARGETS ${NAME} RUNTIME DESTINATION ${ARG_INSTALL} COMPONENT ${ARG_COMPONENT})
     endif()
 endfunction()

