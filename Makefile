@@ -1,6 +1,7 @@
 # make            set the machine up and build all programs
 # make demo       edit the demo model and say where its report is
 # make test       check format and layers, test the loaders under sanitizers, build and test everything
+# make test-slurm a batch on a Slurm of two nodes, started on this machine (needs slurm-wlm and munge)
 # make check      the tests that run no whole edits, on a built tree
 # make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
@@ -16,7 +17,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo check-format check-layers test-loaders test-build test check cuda \
+.PHONY: setup configure build demo check-format check-layers test-loaders test-build test test-slurm check cuda \
     bench bench-build format lint install clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
@@ -54,6 +55,9 @@ test-build:
 
 test: check-format check-layers test-loaders test-build
 	@ctest --preset release
+
+test-slurm: build
+	@scripts/slurm_test.sh build
 
 check: configure
 	@$(BUILD)
