@@ -2,6 +2,7 @@
 # make demo       edit the demo model and say where its report is
 # make studio     build item3d studio and open it on the demo model
 # make test       check format and layers, test the loaders under sanitizers, build and test everything
+# make test-slurm a batch on a Slurm of two nodes, started on this machine (needs slurm-wlm and munge)
 # make check      the tests that run no whole edits, on a built tree
 # make test-browser   the whole of item3d studio in Chromium (make test has a short run of it)
 # make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
@@ -19,7 +20,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo studio test-browser check-format check-layers test-loaders test-build test check cuda \
+.PHONY: setup configure build demo studio test-browser check-format check-layers test-loaders test-build test test-slurm check cuda \
     bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
@@ -61,6 +62,9 @@ test-build:
 
 test: check-format check-layers test-loaders test-build
 	@ctest --preset release
+
+test-slurm: build
+	@scripts/slurm_test.sh build
 
 check: configure
 	@$(BUILD)

@@ -6,6 +6,7 @@
 #include "item3d/batch/plan_jobs.h"
 #include "item3d/batch/results_table.h"
 #include "item3d/batch/retry.h"
+#include "item3d/batch/slurm/slurm_submit.h"
 #include "item3d/batch/status.h"
 #include "item3d/batch/supervisor.h"
 #include "item3d/batch/worker.h"
@@ -41,6 +42,9 @@ struct BatchCommand : CommonOptions {
     std::vector<std::string> values;  ///< NAME=VALUE
     std::string seeds;
     int workers = 1;
+    bool slurm = false;
+    std::vector<std::string> sbatch_options;
+    int gpus_per_worker = 0;
     WorkLimits limits;
 };
 
@@ -152,10 +156,41 @@ void conclude(const BatchFolder& folder, bool json) {
                          "index.html shows them first, and `item3d batch retry` tries them again");
 }
 
+/// The workers are array tasks, which may still wait when this returns.
+void submit_batch(const BatchCommand& command, const BatchFolder& folder) {
+    SlurmJob job;
+    job.program = launcher_program();
+    job.batch = fs::absolute(folder.path());
+    job.threads = command.threads;
+    job.gpus_per_worker = command.gpus_per_worker;
+    job.sbatch_options = command.sbatch_options;
+    job.worker_arguments = limit_arguments(command.limits);
+    if (command.quiet) job.worker_arguments.emplace_back("--quiet");
+    const SlurmSubmission submission = submit_to_slurm(job, command.workers);
+    if (command.json)
+        print_json({{"script", submission.script.string()},
+                    {"arrays", submission.arrays},
+                    {"summary", submission.summary}});
+    else
+        fmt::print(
+            "{} workers are Slurm's jobs {}, and {} writes the summary; how far they are: "
+            "item3d batch status {}\n",
+            command.workers, fmt::join(submission.arrays, ", "), submission.summary,
+            shell_word(job.batch.string()));
+}
+
 void run_batch(const BatchCommand& command) {
     if (command.output.empty()) throw UsageError("-o is required: a folder for the batch");
+    if (!command.slurm && (!command.sbatch_options.empty() || command.gpus_per_worker > 0))
+        throw UsageError("--sbatch-option and --gpus-per-worker go with --slurm");
+    if (command.slurm && command.workers == 0)
+        throw UsageError("--slurm: --workers is the number of workers, expected at least 1");
     const BatchFolder folder = add_jobs(command.output, rows_of(command));
     if (command.workers == 0) return;
+    if (command.slurm) {
+        submit_batch(command, folder);
+        return;
+    }
     SupervisorOptions options;
     options.command = {launcher_program().string(), "batch", "work", folder.path().string()};
     const std::vector<std::string> limits = limit_arguments(command.limits);
@@ -298,6 +333,17 @@ void add_batch_command(CLI::App& app) {
                      "Processes on this machine, as far as memory allows, which share its cores; "
                      "0 adds jobs and leaves them to others (item3d batch work)")
         ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    command->add_flag("--slurm", options->slurm,
+                      "Submit --workers workers of --threads CPUs to Slurm, as tasks of an array "
+                      "(sbatch), and return");
+    each(command->add_option("--sbatch-option", options->sbatch_options,
+                             "An option of sbatch for --slurm, as --sbatch-option=--time=2:00:00; "
+                             "may be given several times"));
+    command
+        ->add_option("--gpus-per-worker", options->gpus_per_worker,
+                     "GPUs that --slurm asks for each worker, which computes on one")
+        ->check(CLI::Range(0, 1))
         ->capture_default_str();
     add_limits(*command, options->limits);
     add_work_command(*command);

@@ -1,0 +1,108 @@
+#!/bin/bash
+# A batch on a Slurm of two nodes, which this script starts on this machine and ends again: a node is
+# drained, a worker killed and another one pre-empted in the middle; every job must be done once,
+# with the bytes of an undisturbed run. `make test-slurm`; needs a built tree.
+set -u
+cd "$(dirname "$0")/.."
+source scripts/slurm_cluster.sh
+item3d=$PWD/${1:-build}/item3d
+
+missing=$(slurm_missing)
+if [ -n "$missing" ]; then
+    echo "test-slurm: skipped: $missing"
+    exit 0
+fi
+folder=$(mktemp -d /tmp/i3slurm.XXXXXX)
+finish() {
+    [ -n "${requeued:-}" ] && kill "$requeued" 2>/dev/null
+    slurm_stop
+    [ -z "${keep:-}" ] && rm -rf "$folder"
+}
+trap finish EXIT
+fail() {
+    echo "test-slurm: FAILED: $*; see $folder" >&2
+    keep=yes
+    exit 1
+}
+# Waits for a command to succeed, two minutes at most.
+wait_for() {
+    local what=$1 i
+    shift
+    for i in $(seq 600); do
+        "$@" && return
+        sleep 0.2
+    done
+    fail "$what did not come"
+}
+
+if ! slurm_start "$folder/slurm"; then
+    echo "test-slurm: skipped: Slurm's daemons do not run here (containers may forbid what they need)"
+    exit 0
+fi
+# A site has queued what was requeued wait for two minutes; here it may start at once.
+(
+    while sleep 0.5; do
+        for job in $(squeue --noheader --array --states=PENDING --format='%i %r' |
+            awk '$2 == "BeginTime" { print $1 }'); do
+            scontrol update "JobId=$job" StartTime=now
+        done
+    done
+) >/dev/null 2>&1 &
+requeued=$!
+
+# Jobs of a few seconds; every fourth goes on from the one before it.
+printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' >"$folder/square.obj"
+echo 'f 1 2 3 4' >>"$folder/square.obj"
+settings=(--with iterations=6 --with texture-size=64 --with picture-size=32 --with light-augment=off
+    --with detail=off)
+{
+    echo "name,model,from,to,seed,after"
+    for i in $(seq 12); do
+        if [ $((i % 4)) = 0 ]; then
+            echo "job$i,,a red square,a blue square,$i,job$((i - 1))"
+        else
+            echo "job$i,$folder/square.obj,a white square,a red square,$i,"
+        fi
+    done
+} >"$folder/jobs.csv"
+
+"$item3d" batch "$folder/jobs.csv" -o "$folder/alone" "${settings[@]}" --threads 1 --quiet ||
+    fail "the undisturbed batch"
+"$item3d" batch "$folder/jobs.csv" -o "$folder/out" "${settings[@]}" --slurm --workers 3 --threads 1 \
+    --sbatch-option --time=0:30:00 || fail "the submission"
+cat "$folder/out/slurm/workers.sh"
+
+done_jobs() { find "$folder/out/runs" -maxdepth 3 -name result 2>/dev/null | wc -l; }
+done_at_least() { [ "$(done_jobs)" -ge "$1" ]; }
+worker_on() { squeue --noheader --array --states=RUNNING --nodelist="$1" --format=%i | head -1; }
+
+wait_for "the first result" done_at_least 1
+# A worker is killed, as by the kernel for want of memory.
+kill -KILL "$(pgrep -f "batch work $folder/out" | head -1)" || fail "no worker to kill"
+wait_for "the third result" done_at_least 3
+# A node is drained, and what runs on it is told to go, as a pre-emption does.
+scontrol update NodeName=two State=DRAIN Reason=test
+task=$(worker_on two)
+[ -n "$task" ] && scancel --signal=TERM --batch "$task"
+wait_for "the sixth result" done_at_least 6
+scontrol update NodeName=two State=RESUME
+task=$(worker_on one)
+[ -n "$task" ] && scontrol requeue "$task"
+
+no_jobs_left() { [ -z "$(squeue --noheader)" ]; }
+for i in $(seq 600); do
+    no_jobs_left && break
+    sleep 0.5
+done
+no_jobs_left || fail "jobs are still queued: $(squeue --noheader)"
+
+[ "$(done_jobs)" = 12 ] || fail "$(done_jobs) of 12 jobs are done"
+[ -s "$folder/out/slurm/summary.log" ] || fail "no summary"
+cd "$folder/alone/runs" || fail "no reference"
+compared=0
+for model in */*/result/model.glb; do
+    cmp "$model" "$folder/out/runs/$model" || fail "another result: $model"
+    compared=$((compared + 1))
+done
+[ "$compared" = 12 ] || fail "$compared results compared"
+echo "test-slurm: 12 jobs done once, $(cat "$folder"/out/slurm/*.log | grep -c '^task ') starts of 3 workers, all bytes as undisturbed"
