@@ -6,6 +6,7 @@ set -u
 cd "$(dirname "$0")/.."
 source scripts/slurm_cluster.sh
 item3d=$PWD/${1:-build}/item3d
+export SOURCE_DATE_EPOCH=0  # results have the date of their edit in them
 
 missing=$(slurm_missing)
 if [ -n "$missing" ]; then

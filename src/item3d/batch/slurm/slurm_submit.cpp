@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int default_max_array_size = 1001;
-constexpr auto nap = std::chrono::milliseconds(20);
+constexpr auto poll_every = std::chrono::milliseconds(20);
 
 std::string trimmed(const std::string& text) {
     const std::size_t first = text.find_first_not_of(" \t\n\r");
@@ -45,7 +45,7 @@ Said run_slurm(const SlurmJob& job, std::vector<std::string> command) {
     ChildProgram child(command, output);
     std::optional<int> status;
     while (!(status = child.status()))
-        std::this_thread::sleep_for(nap);
+        std::this_thread::sleep_for(poll_every);
     const Said said{WIFEXITED(*status) && WEXITSTATUS(*status) == 0, trimmed(read_text(output))};
     fs::remove(output);
     return said;
