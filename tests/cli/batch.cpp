@@ -90,7 +90,12 @@ TEST_F(BatchProgram, MakesWhatTheCommandMakesAndNothingTwice) {
 
     const auto time = fs::last_write_time(found.at("a blue cube") / "model.glb");
     jobs_file({job("a blue {name}"), job("a silver {name}", {{"name", "gold"}})});
-    ASSERT_EQ(run(batch(file)).code, 0);
+    ASSERT_EQ(run(batch(file, "--variants")).code, 0);
+    const fs::path looks = folder_ / "out" / "variants" / "cube.glb";
+    EXPECT_EQ(run("render " + quoted(looks) + small_light() +
+                  "--size 16 --variant 'silver cube' -o " + quoted(folder_ / "look.png"))
+                  .code,
+              0);
     EXPECT_EQ(fs::last_write_time(found.at("a blue cube") / "model.glb"), time) << "done once";
     EXPECT_TRUE(results().contains("a silver cube"));
     EXPECT_EQ(status()["jobs"], 4) << "the golden one's place was taken";

@@ -1,6 +1,7 @@
 // item3d batch: many edits and relightings, by as many workers as there are.
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/batch_jobs.h"
+#include "apps/item3d/edit/batch_variants.h"
 #include "apps/item3d/edit/commands.h"
 #include "item3d/batch/gallery.h"
 #include "item3d/batch/plan_jobs.h"
@@ -42,6 +43,7 @@ struct BatchCommand : CommonOptions {
     std::vector<std::string> values;  ///< NAME=VALUE
     std::string seeds;
     int workers = 1;
+    bool variants = false;
     bool slurm = false;
     std::vector<std::string> sbatch_options;
     int gpus_per_worker = 0;
@@ -59,6 +61,7 @@ struct WorkCommand : CommonOptions {
 struct StatusCommand : CommonOptions {
     fs::path folder;
     bool watch = false;
+    bool variants = false;
 };
 
 void add_limits(CLI::App& command, WorkLimits& limits) {
@@ -183,6 +186,10 @@ void run_batch(const BatchCommand& command) {
     if (command.output.empty()) throw UsageError("-o is required: a folder for the batch");
     if (!command.slurm && (!command.sbatch_options.empty() || command.gpus_per_worker > 0))
         throw UsageError("--sbatch-option and --gpus-per-worker go with --slurm");
+    if (command.variants && (command.slurm || command.workers == 0))
+        throw UsageError(
+            "--variants: once jobs are done elsewhere, `item3d batch report DIR "
+            "--variants` writes them");
     if (command.slurm && command.workers == 0)
         throw UsageError("--slurm: --workers is the number of workers, expected at least 1");
     const BatchFolder folder = add_jobs(command.output, rows_of(command));
@@ -199,6 +206,7 @@ void run_batch(const BatchCommand& command) {
     options.workers = command.workers;
     options.threads = command.threads;
     supervise(folder, options);
+    if (command.variants) write_batch_variants(folder, BatchView(folder));
     conclude(folder, command.json);
 }
 
@@ -250,6 +258,7 @@ void run_report(const StatusCommand& command) {
     BatchView view(folder);
     const BatchStatus status = status_of(folder, view);
     write_pages(folder, view);
+    if (command.variants) write_batch_variants(folder, view);
     if (command.json)
         print_json(status_json(status, view));
     else
@@ -271,6 +280,11 @@ std::shared_ptr<StatusCommand> add_folder_command(CLI::App& batch, const std::st
     auto options = std::make_shared<StatusCommand>();
     CLI::App* command = add_command(batch, name, description, *options);
     command->add_option("DIR", options->folder, "The folder of a batch")->required();
+    if (name == "report")
+        command->add_flag(
+            "--variants", options->variants,
+            "Write variants/MODEL.glb as well: all edits of a model that are done, as "
+            "looks of one file");
     if (name == "status")
         command->add_flag("--watch", options->watch,
                           "Again every two seconds, until all jobs are done or failed");
@@ -325,6 +339,10 @@ void add_batch_command(CLI::App& app) {
                              "Sentence of what they shall become; may be given several times"));
     command->add_option("--seeds", options->seeds,
                         "0..2, or numbers with commas: each job with each seed");
+    command->add_flag(
+        "--variants", options->variants,
+        "At the end, write variants/MODEL.glb of each model: its edits as looks of one "
+        "file (KHR_materials_variants)");
     each(command->add_option("--with", options->values,
                              "NAME=VALUE: an option for all jobs, as iterations=100; a name given "
                              "several times is every job with each value"));
