@@ -120,7 +120,7 @@ nlohmann::json run_relight_job(const ClaimedJob& job, EditSession& session, bool
     return nlohmann::json::object();
 }
 
-/// What is written must be of the model that the job's identity names.
+/// Throws InputError where the model is not the one that the job's identity names.
 void check_model(const ClaimedJob& job) {
     if (!job.job.after.empty()) {
         if (job.model.empty())

@@ -1,4 +1,4 @@
-// What jobs of a batch may be: edits and relightings, run one after another in one process.
+// Jobs of a batch, edits and relightings, run one after another in one process.
 #pragma once
 
 #include "item3d/batch/attempt.h"
@@ -21,8 +21,8 @@ std::vector<JobCommand> job_commands();
 /// anything.
 void check_job(const std::string& command, const std::vector<std::string>& arguments);
 
-/// What decides the result of every job that runs a prior, the embedded one for "": its weights and
-/// settings. Throws InputError.
+/// Hash of all that decides the result of a job that runs a prior, the embedded one for "": its
+/// weights and settings. Throws InputError.
 std::string identity_of_prior(const std::string& prior);
 
 /// Runs jobs one after another in this process: those of one session (BatchJob) share networks.

@@ -202,7 +202,7 @@ nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session) {
     request.processes = ProcessGroup::from_environment();
     if (request.processes.several() && !options.plan_file.empty())
         throw UsageError("--plan: its edits are made by one process; without RANK and WORLD_SIZE");
-    // What all would say, the first one says.
+    // Messages come from the first process alone.
     if (!request.processes.first()) set_verbosity(Verbosity::quiet);
     request.prior = find_prior(options.prior);
     if (request.clip.empty()) request.clip = find_in_prior(request.prior, "clip");

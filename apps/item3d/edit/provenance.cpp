@@ -21,7 +21,7 @@ constexpr auto altered = static_cast<ExitCode>(5);
 constexpr auto other_signer = static_cast<ExitCode>(6);
 constexpr auto not_signed = static_cast<ExitCode>(7);
 
-/// What became of a file since it was signed, for the exit code.
+/// State of a file since it was signed, for the exit code.
 class Mismatch : public Error {
   public:
     Mismatch(ExitCode code, const std::filesystem::path& file, const std::string& problem)

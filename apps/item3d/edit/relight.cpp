@@ -182,7 +182,7 @@ Provenance provenance_of_light(const nlohmann::json& by_words,
 
 }  // namespace
 
-/// What guidance finds may be tinted and exposed; what else changes a light says where it comes
+/// A light found by guidance may be tinted and exposed; other changes say where light comes
 /// from, and so do the words.
 void check_relight_options(const RelightCommand& options) {
     if (!options.words.given()) {

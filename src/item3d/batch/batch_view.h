@@ -16,7 +16,7 @@ namespace item3d {
 struct BatchEntry {
     BatchJob job;
     JobState state = JobState::waiting;
-    /// Of the last line of a journal about it; `job` is empty where there was none.
+    /// The last line of a journal about it; `job` is empty where there was none.
     JobEvent last;
     int askers = 0;  ///< keys that mean it; 0: jobs that were asked later took its place
 
@@ -29,7 +29,7 @@ class BatchView {
     /// Reads all that is there.
     explicit BatchView(const BatchFolder& folder);
 
-    /// What refresh() found: indices of jobs that are asked for now, in the order in which they
+    /// Findings of refresh(): indices of jobs that are asked for now, in the order in which they
     /// were asked, and of those that a journal has told of.
     struct News {
         std::vector<std::size_t> added, told;

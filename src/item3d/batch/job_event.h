@@ -1,4 +1,4 @@
-// What became of a job, as a line of a worker's journal and a file beside the results.
+// The end of an attempt at a job, as a line of a worker's journal and a file beside the results.
 #pragma once
 
 #include <nlohmann/json.hpp>

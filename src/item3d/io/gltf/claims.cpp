@@ -15,21 +15,9 @@
 namespace item3d {
 namespace {
 
-/// json[a][b]...; null where that is not there.
-const Json* find_in(const Json& json, std::initializer_list<const char*> keys) {
-    const Json* value = &json;
-    for (const char* key : keys) {
-        if (!value->is_object()) return nullptr;
-        const auto found = value->find(key);
-        if (found == value->end()) return nullptr;
-        value = &*found;
-    }
-    return value;
-}
-
 std::optional<std::size_t> packet_index(const Json& json) {
-    const Json* index = find_in(json, {"asset", "extensions", packets_extension, "packet"});
-    const Json* packets = find_in(json, {"extensions", packets_extension, "packets"});
+    const Json* index = find_path(json, {"asset", "extensions", packets_extension, "packet"});
+    const Json* packets = find_path(json, {"extensions", packets_extension, "packets"});
     if (!index || !packets || !index->is_number_unsigned() || !packets->is_array())
         return std::nullopt;
     const auto number = index->get<std::size_t>();
@@ -39,7 +27,7 @@ std::optional<std::size_t> packet_index(const Json& json) {
 /// How many objects of the document refer to a packet.
 int count_uses(const Json& value, std::size_t packet) {
     if (!value.is_structured()) return 0;
-    const Json* own = find_in(value, {"extensions", packets_extension, "packet"});
+    const Json* own = find_path(value, {"extensions", packets_extension, "packet"});
     int uses = own && *own == packet ? 1 : 0;
     for (const Json& child : value)
         uses += count_uses(child, packet);
@@ -82,10 +70,10 @@ Json& own_packet(const SourceDocument& written, Json& json) {
 
 std::set<std::size_t> image_views(const Json& json) {
     std::set<std::size_t> views;
-    const Json* images = find_in(json, {"images"});
+    const Json* images = find_path(json, {"images"});
     if (!images || !images->is_array()) return views;
     for (const Json& image : *images)
-        if (const Json* view = find_in(image, {"bufferView"}); view && view->is_number_unsigned())
+        if (const Json* view = find_path(image, {"bufferView"}); view && view->is_number_unsigned())
             views.insert(view->get<std::size_t>());
     return views;
 }
@@ -100,7 +88,7 @@ Json content_of_view(const SourceDocument& document, Json view, const std::strin
     view.erase("buffer");
     view.erase("byteOffset");
     constexpr const char* meshopt = "EXT_meshopt_compression";
-    if (find_in(view, {"extensions", meshopt}) && !where.ends_with(meshopt))
+    if (find_path(view, {"extensions", meshopt}) && !where.ends_with(meshopt))
         view["extensions"][meshopt] =
             content_of_view(document, view["extensions"][meshopt], where + "." + meshopt);
     return view;
@@ -142,9 +130,9 @@ std::string packet_of_texture(const SourceDocument& document, const GltfObject& 
     const auto index = texture_info.index("index", root.list_size("textures"));
     if (!index) return "";
     const Json& texture = document.json["textures"][*index];
-    std::vector<const Json*> sources{find_in(texture, {"source"})};
+    std::vector<const Json*> sources{find_path(texture, {"source"})};
     for (const char* extension : {"KHR_texture_basisu", "EXT_texture_webp"})
-        sources.push_back(find_in(texture, {"extensions", extension, "source"}));
+        sources.push_back(find_path(texture, {"extensions", extension, "source"}));
     for (const Json* source : sources) {
         if (!source || !source->is_number_unsigned() ||
             source->get<std::size_t>() >= root.list_size("images"))
@@ -160,7 +148,7 @@ std::string packet_of_texture(const SourceDocument& document, const GltfObject& 
 }
 
 std::vector<std::string> image_hashes(const SourceDocument& document) {
-    const Json* images = find_in(document.json, {"images"});
+    const Json* images = find_path(document.json, {"images"});
     std::vector<std::string> hashes(images && images->is_array() ? images->size() : 0);
     for (std::size_t i = 0; i < hashes.size(); ++i) {
         try {
@@ -210,7 +198,7 @@ void put_claim(const Provenance& provenance, const SourceDocument& source,
     const std::vector<std::string> hashes = image_hashes(written);
     for (std::size_t i = 0; i < hashes.size(); ++i) {
         if (hashes[i].empty() || kept.contains(hashes[i])) continue;
-        const Json* name = find_in(written.json["images"][i], {"name"});
+        const Json* name = find_path(written.json["images"][i], {"name"});
         images.push_back(
             {number_text(i), name && name->is_string() ? name->get<std::string>() : "", hashes[i]});
     }

@@ -313,4 +313,15 @@ Bytes read_image_bytes(const SourceDocument& document, std::size_t index, Forgiv
     return Bytes(bytes.begin(), bytes.end());
 }
 
+const Json* find_path(const Json& json, std::initializer_list<const char*> keys) {
+    const Json* value = &json;
+    for (const char* key : keys) {
+        if (!value->is_object()) return nullptr;
+        const auto found = value->find(key);
+        if (found == value->end()) return nullptr;
+        value = &*found;
+    }
+    return value;
+}
+
 }  // namespace item3d

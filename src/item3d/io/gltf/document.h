@@ -107,4 +107,7 @@ std::span<const std::uint8_t> byte_range(const SourceDocument& document, const G
 /// The bytes that a buffer view covers, decompressed. Throws InputError.
 std::span<const std::uint8_t> buffer_view_bytes(const SourceDocument& document, std::size_t view);
 
+/// json[a][b]...; null where that is not there.
+const Json* find_path(const Json& json, std::initializer_list<const char*> keys);
+
 }  // namespace item3d

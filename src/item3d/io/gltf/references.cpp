@@ -12,17 +12,6 @@
 namespace item3d {
 namespace {
 
-const Json* find_path(const Json& json, std::initializer_list<const char*> keys) {
-    const Json* value = &json;
-    for (const char* key : keys) {
-        if (!value->is_object()) return nullptr;
-        const auto found = value->find(key);
-        if (found == value->end()) return nullptr;
-        value = &*found;
-    }
-    return value;
-}
-
 const Json* item_of(const Json& json, const char* list, std::size_t index) {
     const Json* items = find_path(json, {list});
     return items && items->is_array() && index < items->size() ? &(*items)[index] : nullptr;
