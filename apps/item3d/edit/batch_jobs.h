@@ -21,8 +21,8 @@ std::vector<JobCommand> job_commands();
 /// anything.
 void check_job(const std::string& command, const std::vector<std::string>& arguments);
 
-/// Hash of all that decides the result of a job that runs a prior, the embedded one for "": its
-/// weights and settings. Throws InputError.
+/// Identity of a prior, the embedded one for "": hashes of its weights and settings. Throws
+/// InputError.
 std::string identity_of_prior(const std::string& prior);
 
 /// Runs jobs one after another in this process: those of one session (BatchJob) share networks.

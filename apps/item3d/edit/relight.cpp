@@ -182,8 +182,8 @@ Provenance provenance_of_light(const nlohmann::json& by_words,
 
 }  // namespace
 
-/// A light found by guidance may be tinted and exposed; other changes say where light comes
-/// from, and so do the words.
+/// A light found by guidance may be tinted and exposed; the other changes say where light comes
+/// from, which the words do already.
 void check_relight_options(const RelightCommand& options) {
     if (!options.words.given()) {
         if (options.words.resume || !options.words.overrides.empty() ||
