@@ -16,9 +16,10 @@ using StudioProgram = Program;
 TEST_F(StudioProgram, ServesUntilItIsInterrupted) {
     const fs::path out = folder_ / "address", error = folder_ / "notes";
     const std::string data = quoted(folder_ / "data");
-    const std::string command = "'" ITEM3D_PROGRAM "' studio " + quoted(cube_) +
+    const std::string command = "( '" ITEM3D_PROGRAM "' studio " + quoted(cube_) +
                                 " --no-browser --folder " + data + " >" + quoted(out) + " 2>" +
-                                quoted(error) + " & echo $! >" + quoted(folder_ / "id");
+                                quoted(error) + " & echo $! >" + quoted(folder_ / "id") +
+                                "; wait $!; echo $? >" + quoted(folder_ / "status") + " ) &";
     const auto begin = std::chrono::steady_clock::now();
     ASSERT_EQ(std::system(command.c_str()), 0);
     for (int i = 0; i < 2000 && read_file(out).find('\n') == std::string::npos; ++i)
@@ -42,8 +43,10 @@ TEST_F(StudioProgram, ServesUntilItIsInterrupted) {
     EXPECT_GT(nlohmann::json::parse(page.Get("/api/about")->body)["settings"].size(), 20u);
 
     std::system(("kill -INT $(cat " + quoted(folder_ / "id") + ")").c_str());
-    for (int i = 0; i < 2000 && read_file(error).find("ended;") == std::string::npos; ++i)
+    // The database closes after the last line is printed: the end is that of the process.
+    for (int i = 0; i < 2000 && read_file(folder_ / "status").find('\n') == std::string::npos; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_EQ(read_file(folder_ / "status"), "0\n");
     EXPECT_NE(read_file(error).find("ended; what ran is paused"), std::string::npos);
 }
 
