@@ -157,6 +157,19 @@ TEST(NeuralTexture, StaysInItsRanges) {
     EXPECT_NEAR((sample.normal.square().sum(1) - 1.0f).abs().max().item<float>(), 0.0f, 1e-5f);
 }
 
+TEST(NeuralTexture, AGainOfTheBaseColorEndsAtOneAndItsGradientDoesNot) {
+    NeuralTexture field(NeuralTextureOptions{});
+    const at::Tensor positions = at::rand({50, 3}) * 1.8f - 0.9f;
+    const at::Tensor plain = field->forward(positions).base_color.detach();
+    field->set_base_color_gain(at::tensor({0.5f, 1.0f, 9.0f}));
+    const at::Tensor color = field->forward(positions).base_color;
+    EXPECT_TRUE(at::allclose(color.select(1, 0), 0.5f * plain.select(1, 0)));
+    EXPECT_TRUE(at::allclose(color.select(1, 1), plain.select(1, 1)));
+    EXPECT_FLOAT_EQ(color.select(1, 2).min().item<float>(), 1.0f);
+    color.select(1, 2).sum().backward();
+    EXPECT_GT(field->network_parameters().back().grad()[2].item<float>(), 0);
+}
+
 TEST(Fit, ReachesTheTexturesOnASphere) {
     const Fitted sphere(make_model(make_sphere()), 200);
     EXPECT_GT(sphere.result.base_color_psnr, 33.0);

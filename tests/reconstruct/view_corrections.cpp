@@ -89,6 +89,25 @@ TEST(ViewCorrections, GainsFollowADriftAndNotOneView) {
         EXPECT_NEAR(corrections.gain(i)[1].item<float>(), gains[i], 0.01f);
 }
 
+TEST(ViewCorrections, WhatAPartOfAPictureLacksIsNoGain) {
+    const Dataset dataset = photographs_of(three_arms(), 6, 24);
+    ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius, {});
+    at::Tensor drawn = at::full({1, 16, 16, 4}, 0.2f);
+    drawn.select(3, 3).fill_(1.0f);
+    for (std::size_t i = 0; i < 6; ++i) {
+        at::Tensor photograph = drawn.clone();
+        const float brighter = i % 2 == 0 ? 1.3f : 1.0f;
+        // Each row differs: none of the quotients stands for all of the picture.
+        for (std::int64_t row = 0; row < 16; ++row)
+            photograph[0][row].narrow(1, 0, 3).mul_(brighter *
+                                                    (0.6f + 0.05f * static_cast<float>(row)));
+        for (int k = 0; k < 12; ++k)
+            corrections.update_gain(i, drawn, photograph);
+    }
+    const at::Tensor apart = corrections.gains().log().abs();
+    EXPECT_LT(apart.max().item<float>(), 0.5f * std::log(1.3f));
+}
+
 TEST(ViewCorrections, ABlurredPictureIsFound) {
     Dataset dataset = photographs_of(three_arms(), 40, 128);
     for (std::size_t v = 0; v < dataset.train.size(); ++v) {

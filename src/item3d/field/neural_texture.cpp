@@ -134,6 +134,11 @@ MaterialSample NeuralTextureImpl::forward(const at::Tensor& positions) {
     const at::Tensor values = encoded(positions);
     MaterialSample sample;
     sample.base_color = srgb_to_linear(values.narrow(1, 0, 3));
+    if (base_color_gain_.defined()) {
+        // Beyond 1 the way back stays open.
+        const at::Tensor scaled = sample.base_color * base_color_gain_;
+        sample.base_color = scaled - (scaled - scaled.clamp_max(1.0f)).detach();
+    }
     sample.orm = values.narrow(1, 3, 3);
     const at::Tensor tangent = values.narrow(1, 6, 2);
     const at::Tensor normal = at::cat({tangent, at::ones_like(tangent.narrow(1, 0, 1))}, 1);

@@ -66,6 +66,9 @@ class NeuralTextureImpl {
     at::Tensor encoded(const at::Tensor& positions);
 
     const NeuralTextureOptions& options() const { return options_; }
+    /// Factors [3] of the linear base colour, which stays within 0 .. 1; gradients pass through
+    /// both. Not a parameter: it is its owner's to keep.
+    void set_base_color_gain(at::Tensor gain) { base_color_gain_ = std::move(gain); }
     const at::Tensor& table() const { return table_; }
     const HashGrid& grid() const { return grid_; }  ///< the table's levels
     /// Weights and biases of the network.
@@ -89,6 +92,7 @@ class NeuralTextureImpl {
     std::vector<at::Tensor> biases_;   ///< [out]
     at::Tensor low_, high_;            ///< [8] ranges of the outputs
     at::Tensor origin_;                ///< [3] the lower corner of the bounds
+    at::Tensor base_color_gain_;       ///< [3]; undefined: 1
 };
 
 /// A shared handle of a neural texture: copies are the same texture.

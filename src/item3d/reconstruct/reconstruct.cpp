@@ -15,6 +15,7 @@
 #include "item3d/reconstruct/outputs/report.h"
 #include "item3d/reconstruct/shape/align_poses.h"
 #include "item3d/reconstruct/stage_runner.h"
+#include "item3d/reconstruct/surface/light_scale.h"
 #include "item3d/reconstruct/surface/plain_model.h"
 #include "item3d/scene/far_origin.h"
 
@@ -240,6 +241,7 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
                           make_targets(dataset.train, start.model.bounds()), request.refine);
     runner.run(refinement);
     result.refine = refinement.curves();
+    balance_base_color(start.appearance.field, start.appearance.light);
     result.times.end_stage("refine");
 
     result.model = bake_and_save(request.output / "model.glb", mesh.apply(start.model),

@@ -1,11 +1,13 @@
 #include "item3d/reconstruct/stage.h"
 
+#include "item3d/reconstruct/surface/light_scale.h"
+
 #include <numeric>
 #include <utility>
 
 namespace item3d {
 
-bool Learning::update_light(const Appearance& appearance, int index, int every) {
+bool Learning::update_light(Appearance& appearance, int index, int every) {
     const bool learns = index % every == 0;
     if (learns) {
         light = appearance.light.prefiltered();
@@ -14,6 +16,8 @@ bool Learning::update_light(const Appearance& appearance, int index, int every) 
         const at::NoGradGuard no_gradient;
         light = appearance.light.prefiltered();
     }
+    const at::Tensor factor = balance_base_color(appearance.field, appearance.light);
+    base_color_factor = learns ? factor : at::Tensor();
     return learns;
 }
 
@@ -42,6 +46,7 @@ std::vector<double> curve_values(const at::Tensor& tensor) {
 
 NamedTensors Stage::state() const {
     NamedTensors tensors;
+    tensors.emplace_back("light.scale", appearance_.light.log_scale().detach());
     append_parameters(tensors, "field.", appearance_.field->named_parameters());
     const auto& levels = appearance_.light.parameters();
     for (std::size_t i = 0; i < levels.size(); ++i)
@@ -63,6 +68,7 @@ void Stage::load_state(const CheckpointReader& reader) {
     const auto& levels = appearance_.light.parameters();
     for (std::size_t i = 0; i < levels.size(); ++i)
         reader.copy("light." + std::to_string(i), levels[i]);
+    reader.copy("light.scale", appearance_.light.log_scale());
     corrections_.load_state(reader);
     learning_.optimizer.load_state(reader.with_prefix("optimizer."));
     learning_.iteration = static_cast<int>(reader.get("iteration").item<std::int64_t>());

@@ -29,10 +29,13 @@ struct Learning {
     /// The light as it was prefiltered last. A light's gradients are used once in a while, because
     /// prefiltering costs as much as a view.
     EnvironmentLight light;
+    /// ViewRenderOptions': the light's scale changes the base colour with it. Undefined while the
+    /// light stands still.
+    at::Tensor base_color_factor;
 
     /// Prefilters where an iteration asks for it, every `every` ones of `index`; says whether the
     /// light learns in this one. A function of the light and `index` alone.
-    bool update_light(const Appearance& appearance, int index, int every);
+    bool update_light(Appearance& appearance, int index, int every);
     void note_losses(const at::Tensor& picture, const at::Tensor& mask);
 };
 

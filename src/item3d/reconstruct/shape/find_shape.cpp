@@ -107,6 +107,8 @@ void ShapeSearch::begin_level(int level, const at::Tensor& start) {
     adam.add_group("network", appearance_.field->network_parameters(), {.learning_rate = 0.005});
     adam.add_group("light", appearance_.light.parameters(),
                    {.learning_rate = 0.05, .beta2 = 0.999});
+    adam.add_group("light scale", {appearance_.light.log_scale()},
+                   {.learning_rate = 0.02, .beta2 = 0.999});
     adam.add_group("values", {field_->values},
                    {.learning_rate = options_.value_learning_rate, .beta2 = 0.999});
     adam.add_group("offsets", {field_->offsets},
@@ -133,8 +135,7 @@ at::Tensor ShapeSearch::loss_besides_picture(const RenderedView& rendered,
     at::Tensor loss = sign_change_weight * sign_change_loss(surface.edges, field_->values) +
                       options_.smoothness_weight *
                           smoothness_loss(appearance_.field, rendered, nearest, 40 * nearest,
-                                          smoothness_points_of_shape, learning_.random) +
-                      options_.brightness_weight * brightness_loss(rendered);
+                                          smoothness_points_of_shape, learning_.random);
     if (surface.regularizer.defined() && !light_alone)
         loss = loss + options_.regularizer_weight * surface.regularizer;
     return loss;
@@ -155,7 +156,9 @@ void ShapeSearch::step() {
         light_alone ? surface.positions.detach() : surface.positions, surface.triangles);
     const std::size_t index = order_.at(iteration());
     const TargetView& view = views_[index];
-    ViewRenderOptions how{.one_material = light_alone, .gain = corrections_.gain(index)};
+    ViewRenderOptions how{.one_material = light_alone,
+                          .gain = corrections_.gain(index),
+                          .base_color_factor = learning_.base_color_factor};
     if (!light_alone) how.motion = corrections_.motion(index);
     const RenderedView rendered =
         render_view(geometry, appearance_.field, learning_.light, view, how);
@@ -168,7 +171,9 @@ void ShapeSearch::step() {
     if (options_.demodulation_weight > 0)
         loss = loss + options_.demodulation_weight *
                           demodulated_light_loss(rendered, learning_.light, view.image);
-    if (light_learns) loss = loss + options_.whiteness_weight * appearance_.light.whiteness_loss();
+    if (light_learns)
+        loss = loss + options_.whiteness_weight * appearance_.light.whiteness_loss() +
+               light_scale_loss(appearance_.light, learning_.light, rendered, options_.light_scale);
     loss.backward();
     const double rate = blend(1.0, 0.2, i, count);
     Adam& adam = learning_.optimizer;

@@ -6,6 +6,7 @@
 #include "item3d/reconstruct/shape/surface_extraction.h"
 #include "item3d/reconstruct/shape/visual_hull.h"
 #include "item3d/reconstruct/stage.h"
+#include "item3d/reconstruct/surface/light_scale.h"
 
 #include <cstdint>
 #include <memory>
@@ -26,7 +27,7 @@ struct ShapeOptions {
     double sign_change_weight_first = 0.05, sign_change_weight_last = 0.005;
     double smoothness_weight = 0.03;
     double whiteness_weight = 0.003;
-    double brightness_weight = 0.06;
+    LightScaleWeights light_scale;
     double demodulation_weight = 0.0;  ///< see RegularizerWeights
     double light_alone = 0.15;         ///< part of the iterations, see RefineOptions
     int light_every = 2;

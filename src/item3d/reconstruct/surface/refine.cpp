@@ -55,6 +55,8 @@ Refinement::Refinement(Appearance& appearance, ViewCorrections& corrections, Mov
         {.learning_rate = 0.5 * options.field_learning_rate});
     add("light", appearance.light.parameters(),
         {.learning_rate = options.light_learning_rate, .beta2 = 0.999});
+    add("light scale", {appearance.light.log_scale()},
+        {.learning_rate = options.light_scale_learning_rate, .beta2 = 0.999});
     if (mesh.moves())
         add("offsets", {mesh.offsets()},
             {.learning_rate = options.vertex_learning_rate * mesh.mean_edge(), .beta2 = 0.999});
@@ -64,6 +66,7 @@ Refinement::Refinement(Appearance& appearance, ViewCorrections& corrections, Mov
 void Refinement::trace() {
     traced_ = {};
     const at::NoGradGuard no_gradient;
+    balance_base_color(appearance_.field, appearance_.light);
     if (mesh_.moves()) traced_.offsets = mesh_.offsets().detach().clone();
     if (iteration() > 0) traced_.radiance = appearance_.light.radiance();
     occlusion_ = trace_occlusion(mesh_, traced_.radiance, options_.shadow_points);
@@ -90,6 +93,7 @@ RenderedView Refinement::render(const TargetView& view, ViewRenderOptions how) {
     }
     how.occlusion = occlusion_ ? &*occlusion_ : nullptr;
     how.indirect = indirect_ ? &*indirect_ : nullptr;
+    how.base_color_factor = learning_.base_color_factor;
     how.seed = mix_bits(options_.seed ^ static_cast<std::uint64_t>(iteration()));
     how.normal_map = options_.normal_map && !how.one_material;
     return render_view(geometry, appearance_.field, learning_.light, view, how);
@@ -100,13 +104,13 @@ at::Tensor Refinement::regularization(const RenderedView& rendered, const Target
     const RegularizerWeights& weights = options_.weights;
     at::Tensor loss = at::zeros({});
     if (rendered.surface.count() > 0) {
-        loss = loss +
-               weights.smoothness * smoothness_loss(appearance_.field, rendered, pixel_, farthest_,
-                                                    smoothness_points, learning_.random) +
-               weights.brightness * brightness_loss(rendered);
+        loss = loss + weights.smoothness * smoothness_loss(appearance_.field, rendered, pixel_,
+                                                           farthest_, smoothness_points,
+                                                           learning_.random);
         if (iteration() > options_.decision_begin * options_.iterations) {
             const at::Tensor metallic = rendered.material.orm.select(1, 2);
-            loss = loss + weights.decision * (metallic * (1 - metallic)).mean();
+            loss = loss + weights.decision * (metallic * (1 - metallic)).mean() +
+                   weights.dark_metal * dark_metal_loss(rendered);
         }
         if (weights.demodulation > 0)
             loss = loss + weights.demodulation *
@@ -136,7 +140,10 @@ void Refinement::step() {
     const at::Tensor mask = mask_loss(rendered.image, view.image);
     at::Tensor loss = corrections_.weight(index) * picture + regularization(rendered, view, mask) +
                       corrections_.motion_loss(index);
-    if (light_learns) loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss();
+    if (light_learns)
+        loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss() +
+               light_scale_loss(appearance_.light, learning_.light, rendered,
+                                options_.weights.light_scale);
     loss.backward();
     // The one material's colour is the object's; a light that could take it would keep it.
     if (light_alone) appearance_.light.take_color_from_gradients();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/reconstruct/stage.h"
+#include "item3d/reconstruct/surface/light_scale.h"
 #include "item3d/reconstruct/surface/movable_mesh.h"
 
 #include <cstdint>
@@ -14,11 +15,12 @@ namespace item3d {
 
 /// Weights of what is asked besides that renders look like the photographs.
 struct RegularizerWeights {
-    double mask = 1.0;           ///< coverage
-    double smoothness = 0.005;   ///< base colour, roughness and metallic vary little
-    double whiteness = 0.003;    ///< the light has little colour
-    double brightness = 0.03;    ///< white is like paper, see brightness_loss()
+    double mask = 1.0;          ///< coverage
+    double smoothness = 0.005;  ///< base colour, roughness and metallic vary little
+    double whiteness = 0.003;   ///< the light has little colour
+    LightScaleWeights light_scale;
     double decision = 0.01;      ///< metallic is 0 or 1, after decision_begin
+    double dark_metal = 0.03;    ///< metals are bright, after decision_begin
     double crumpling = 0.05;     ///< vertices move together
     double flat_normals = 0.01;  ///< the normal map is flat
     /// The light alone is as bright as the photographs (demodulated_light_loss()). Off: it was
@@ -43,6 +45,7 @@ struct RefineOptions {
     std::int64_t shadow_points = 32768;  ///< OcclusionOptions::most_points
     double field_learning_rate = 0.01;
     double light_learning_rate = 0.05;
+    double light_scale_learning_rate = 0.02;
     double vertex_learning_rate = 0.02;  ///< in mean edges
     RegularizerWeights weights;
     std::uint64_t seed = 0;

@@ -34,6 +34,7 @@ TrainableLight::TrainableLight(int height, float radiance) : height_(height) {
         const float start = rows == coarsest_height ? std::log(radiance) : 0.0f;
         levels_.push_back(at::full({rows, 2 * rows, 3}, start, at::kFloat).set_requires_grad(true));
     }
+    log_scale_ = at::zeros({3}).set_requires_grad(true);
     ITEM3D_CHECK(levels_.back().size(0) == height, "a power of two");
     solid_angle_ = at::empty({height, 1, 1});
     for (int y = 0; y < height; ++y)
@@ -44,7 +45,7 @@ at::Tensor TrainableLight::radiance() const {
     at::Tensor logarithm = enlarged(levels_.front(), height_);
     for (std::size_t i = 1; i < levels_.size(); ++i)
         logarithm = logarithm + enlarged(levels_[i], height_);
-    return logarithm.exp().contiguous();
+    return (logarithm + log_scale_).exp().contiguous();
 }
 
 EnvironmentLight TrainableLight::prefiltered() const {
@@ -62,7 +63,7 @@ void TrainableLight::take_color_from_gradients() {
 }
 
 at::Tensor TrainableLight::whiteness_loss() const {
-    const at::Tensor values = radiance();
+    const at::Tensor values = radiance() * (log_scale_.detach() - log_scale_).exp();
     return ((values - values.mean(2, true)).abs() * solid_angle_).sum() / 3;
 }
 

@@ -20,6 +20,9 @@ class TrainableLight {
 
     /// [h, 2h, 3] each; they require gradients.
     const std::vector<at::Tensor>& parameters() const { return levels_; }
+    /// The logarithm of a factor of all radiance, [3], beginning at 0; requires a gradient. See
+    /// light_scale.h.
+    const at::Tensor& log_scale() const { return log_scale_; }
     /// [H, 2H, 3].
     at::Tensor radiance() const;
     /// Differentiable, with a cube of `height` texels a side.
@@ -27,7 +30,8 @@ class TrainableLight {
     Image to_image() const;
 
     /// Mean distance of the texels' channels from their mean, by solid angle (nvdiffrec's
-    /// regulariser: of all lights that explain the pictures, the whitest).
+    /// regulariser: of all lights that explain the pictures, the whitest). No gradient reaches
+    /// log_scale().
     at::Tensor whiteness_loss() const;
     /// Sets the gradients of each texel's channels to their mean: the light learns no colour.
     void take_color_from_gradients();
@@ -35,6 +39,7 @@ class TrainableLight {
   private:
     int height_;
     std::vector<at::Tensor> levels_;
+    at::Tensor log_scale_;
     at::Tensor solid_angle_;  ///< [H, 1, 1], sums to 1 over all texels
 };
 

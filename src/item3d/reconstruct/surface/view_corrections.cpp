@@ -11,6 +11,7 @@ constexpr double rotation_rate = 0.0005;    ///< radians
 constexpr double translation_rate = 0.001;  ///< of the radius
 constexpr double motion_weight = 0.2;
 constexpr double unsure_gain = 0.03;  ///< natural logarithm
+constexpr double spread_weight = 2.0;
 /// Sharpness beside views from about the same side, under which a picture counts less
 /// (docs/reconstruct.md, "Poses, exposure, blur").
 constexpr double sharp_enough = 0.58;
@@ -118,7 +119,9 @@ ViewCorrections::ViewCorrections(const std::vector<Photograph>& views, Vec3 cent
                                  const CorrectionOptions& options)
     : rotations_(zeros_for(views.size())),
       translations_(zeros_for(views.size())),
-      log_gains_(gains_of_exif(views)),
+      exif_gains_(gains_of_exif(views)),
+      log_gains_(exif_gains_.clone()),
+      gain_spread_(at::zeros_like(log_gains_)),
       centre_(at::tensor({centre.x, centre.y, centre.z})),
       radius_(radius),
       options_(options),
@@ -169,8 +172,11 @@ void ViewCorrections::update_gain(std::size_t view, const at::Tensor& drawn,
                                     .logical_and(b > 0.01f)
                                     .logical_and(a > 0.005f);
         if (used.sum().item<std::int64_t>() < fewest_pixels) continue;
-        const at::Tensor found = (b.masked_select(used) / a.masked_select(used)).log().median();
+        const at::Tensor quotients = (b.masked_select(used) / a.masked_select(used)).log();
+        const at::Tensor found = quotients.median();
+        const at::Tensor spread = (quotients - found).abs().median();
         log_gains_[index][c] += 0.5 * (found - log_gains_[index][c]);
+        gain_spread_[index][c] += 0.5 * (spread - gain_spread_[index][c]);
     }
 }
 
@@ -206,7 +212,13 @@ double ViewCorrections::largest_shift() const {
 at::Tensor ViewCorrections::gains() const {
     const at::NoGradGuard no_gradient;
     if (!options_.exposure) return at::ones_like(log_gains_);
-    const at::Tensor apart = log_gains_ - std::get<0>(log_gains_.median(0));
+    at::Tensor beside = log_gains_ - exif_gains_;
+    beside = beside - std::get<0>(beside.median(0));
+    // All of a picture's pixels share an exposure; what only some of them lack is the model's
+    // fault.
+    const at::Tensor square = beside.square();
+    beside = beside * square / (square + (spread_weight * gain_spread_).square()).clamp_min(1e-12f);
+    const at::Tensor apart = exif_gains_ + beside;
     // One view in which something shines is no drift.
     if (apart.abs().median().item<double>() < unsure_gain) return at::ones_like(log_gains_);
     return apart.exp();
@@ -223,7 +235,8 @@ NamedTensors ViewCorrections::state() const {
     const at::NoGradGuard no_gradient;
     return {{"correction.rotations", at::stack(rotations_)},
             {"correction.translations", at::stack(translations_)},
-            {"correction.log_gains", log_gains_.clone()}};
+            {"correction.log_gains", log_gains_.clone()},
+            {"correction.gain_spread", gain_spread_.clone()}};
 }
 
 void ViewCorrections::load_state(const CheckpointReader& reader) {
@@ -237,6 +250,7 @@ void ViewCorrections::load_state(const CheckpointReader& reader) {
     load("correction.rotations", rotations_);
     load("correction.translations", translations_);
     reader.copy("correction.log_gains", log_gains_);
+    reader.copy("correction.gain_spread", gain_spread_);
 }
 
 std::vector<double> relative_sharpness(const std::vector<Photograph>& views, Vec3 centre) {

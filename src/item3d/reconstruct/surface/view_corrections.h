@@ -60,7 +60,8 @@ class ViewCorrections {
     /// Square of the motion, so that what no picture shows stays as it was; 0 where poses are kept.
     at::Tensor motion_loss(std::size_t view) const;
     /// [3], what radiance is multiplied by; undefined where exposure is kept. All are 1 where half
-    /// of them are within 3 % of it: gains may not explain what materials can.
+    /// of them are within 3 % of it, and each is nearer to EXIF's the more the picture's quotients
+    /// differ among themselves: gains may not explain what materials can.
     at::Tensor gain(std::size_t view) const;
     /// Moves the view's gain half the way to the one that brings what was drawn without any to the
     /// photograph: the median of their quotients. [1, H, W, 4] each, as TargetView's.
@@ -85,7 +86,9 @@ class ViewCorrections {
   private:
     std::vector<at::Tensor> rotations_;     ///< [3] each, axis times angle
     std::vector<at::Tensor> translations_;  ///< [3] each, of the radius
-    at::Tensor log_gains_;                  ///< [N, 3]
+    at::Tensor exif_gains_;                 ///< [N, 3], logarithms
+    at::Tensor log_gains_;                  ///< [N, 3], medians of quotients
+    at::Tensor gain_spread_;                ///< [N, 3], how far quotients are from these
     std::vector<double> weights_;
     at::Tensor centre_;
     float radius_;

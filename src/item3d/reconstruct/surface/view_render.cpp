@@ -16,7 +16,7 @@ namespace {
 constexpr float roughness_weight = 1.0f;
 constexpr float metallic_weight = 1.0f;
 constexpr double paper = 0.8;  ///< base colour of what looks white
-constexpr double far_from_paper = 0.25;
+constexpr float darkest_metal = 0.5f;
 
 /// Steps in all directions, of lengths from `nearest` to `farthest`.
 at::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random& random) {
@@ -77,6 +77,8 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
         shaded.base_color = shaded.base_color.mean(0, true).expand_as(shaded.base_color);
         shaded.orm = shaded.orm.mean(0, true).expand_as(shaded.orm);
     }
+    if (options.base_color_factor.defined())
+        shaded.base_color = shaded.base_color * options.base_color_factor;
     if (!options.normal_map) shaded.normal = at::Tensor();
     at::Tensor occlusion = at::ones_like(shaded.orm.narrow(1, 0, 1));
     if (options.occlusion != nullptr)
@@ -143,7 +145,7 @@ at::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLig
     white.orm = at::cat({white.orm.narrow(1, 0, 2), at::zeros_like(white.orm.narrow(1, 2, 1))}, 1);
     const at::Tensor lit = shade(view.surface, white, light).mean(1);
     const at::Tensor photograph = target.reshape({-1, 4}).index_select(0, view.surface.pixel);
-    // White is like paper, as brightness_loss() has it, and photographs end at 1.
+    // White is like paper, as light_scale_loss() has it, and photographs end at 1.
     const at::Tensor truth = photograph.narrow(1, 0, 3).amax(1);
     const at::Tensor open = (truth >= 0.999f).logical_and(lit > truth / paper);
     const at::Tensor used = (photograph.select(1, 3) > 0.99f).logical_and(open.logical_not());
@@ -151,15 +153,10 @@ at::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLig
     return (apart * used).mean();
 }
 
-at::Tensor brightness_loss(const RenderedView& view) {
+at::Tensor dark_metal_loss(const RenderedView& view) {
     if (view.surface.count() == 0) return at::zeros({});
-    constexpr double decile = 0.9;
-    const at::Tensor luminance =
-        (view.material.base_color * at::tensor({0.2126f, 0.7152f, 0.0722f})).sum(1);
-    const auto rank =
-        static_cast<std::int64_t>(decile * static_cast<double>(luminance.size(0) - 1));
-    const at::Tensor square = (std::get<0>(luminance.kthvalue(rank + 1)) - paper).square();
-    return square / (square + far_from_paper * far_from_paper);
+    const at::Tensor lacks = (darkest_metal - view.material.base_color.amax(1)).clamp_min(0.0f);
+    return (view.material.orm.select(1, 2) * lacks).mean();
 }
 
 }  // namespace item3d

@@ -46,6 +46,7 @@ struct ViewRenderOptions {
     bool one_material = false;  ///< the view's mean everywhere: only the light can explain shading
     RigidMotion motion = {};    ///< of the object in front of the camera; undefined tensors: none
     at::Tensor gain = {};       ///< [3], of all radiance; undefined: 1
+    at::Tensor base_color_factor = {};  ///< [3], where it meets the light; undefined: 1
 };
 
 /// Differentiable in the field, the light, and the geometry's positions and normals.
@@ -78,10 +79,8 @@ at::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float
 at::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLight& light,
                                   const at::Tensor& target);
 
-/// d^2 / (d^2 + 0.25^2), d the distance of the ninth decile of the view's base colour (luminance)
-/// from 0.8. Light and base colour of what does not shine are known up to a factor: of all pairs,
-/// the one whose white is like paper. What is far darker is let go (Geman and McClure 1987): it is
-/// black, and what shines on it says how bright the light is.
-at::Tensor brightness_loss(const RenderedView& view);
+/// Mean of metallic times what the largest channel of the base colour lacks of 0.5: no metal is
+/// darker, and a black metal looks like black varnish.
+at::Tensor dark_metal_loss(const RenderedView& view);
 
 }  // namespace item3d

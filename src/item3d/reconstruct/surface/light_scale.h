@@ -1,0 +1,38 @@
+// What photographs leave open: how bright the light is, and what colour it has as a whole.
+#pragma once
+
+#include "item3d/reconstruct/surface/trainable_light.h"
+#include "item3d/reconstruct/surface/view_render.h"
+#include "item3d/render/prefilter/environment_light.h"
+#include "item3d/tensors/tensor.h"
+
+namespace item3d {
+
+/// Of a surface that does not mirror, photographs tell the product of light and base colour alone.
+/// TrainableLight::log_scale() is that one direction of the optimisation: the radiance's factor, a
+/// channel, of which the base colour has the reciprocal. Highlights tell it, since a dielectric
+/// mirrors 4 % whatever its colour; where there are none, light_scale_loss() decides.
+struct LightScaleWeights {
+    /// Squared stops between 1 and what white paper reflects that faces the light's brightest side.
+    /// Photographs are exposed so that white is just white: of the ten lights that the project has
+    /// and photographs in, the mean is 1.0, the spread 0.6 stops.
+    double exposure = 0.01;
+    /// Squared distance from a grey light along blue and orange, as daylight varies.
+    double warmth = 0.01;
+    /// The same along green and magenta, as it hardly does.
+    double green = 0.1;
+    /// White is like paper: d^2 / (d^2 + 0.25^2), d the distance of the ninth decile of the view's
+    /// base colour (luminance) from 0.8. What is far darker is let go (Geman and McClure 1987).
+    double brightness = 0.01;
+};
+
+/// Sets the field's base colour gain to the reciprocal of the light's scale. Returns a factor [3]
+/// of the base colour, which is 1 and has the reciprocal's gradient; see ViewRenderOptions.
+at::Tensor balance_base_color(NeuralTexture& field, const TrainableLight& light);
+
+/// The weighted sum; light: prefiltered from `trainable`, view: drawn in it. Its gradient reaches
+/// log_scale() alone: neither the light's shape nor the materials change for it.
+at::Tensor light_scale_loss(const TrainableLight& trainable, const EnvironmentLight& light,
+                            const RenderedView& view, const LightScaleWeights& weights);
+
+}  // namespace item3d
