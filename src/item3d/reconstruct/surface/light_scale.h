@@ -16,14 +16,14 @@ struct LightScaleWeights {
     /// Squared stops between 1 and what white paper reflects that faces the light's brightest side.
     /// Photographs are exposed so that white is just white: of the ten lights that the project has
     /// and photographs in, the mean is 1.0, the spread 0.6 stops.
-    double exposure = 0.01;
+    double exposure = 0.003;
     /// Squared distance from a grey light along blue and orange, as daylight varies.
-    double warmth = 0.01;
+    double warmth = 0.003;
     /// The same along green and magenta, as it hardly does.
-    double green = 0.1;
+    double green = 0.03;
     /// White is like paper: d^2 / (d^2 + 0.25^2), d the distance of the ninth decile of the view's
     /// base colour (luminance) from 0.8. What is far darker is let go (Geman and McClure 1987).
-    double brightness = 0.01;
+    double brightness = 0.003;
 };
 
 /// Sets the field's base colour gain to the reciprocal of the light's scale. Returns a factor [3]
