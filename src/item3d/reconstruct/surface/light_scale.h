@@ -14,8 +14,8 @@ namespace item3d {
 /// mirrors 4 % whatever its colour; where there are none, light_scale_loss() decides.
 struct LightScaleWeights {
     /// Squared stops between 1 and what white paper reflects that faces the light's brightest side.
-    /// Photographs are exposed so that white is just white: of the ten lights that the project has
-    /// and photographs in, the mean is 1.0, the spread 0.6 stops.
+    /// Photographs are exposed so that white is just white: of the nine lights of the project's
+    /// scenes and reference data the mean is 1.1, the spread half a stop.
     double exposure = 0.003;
     /// Squared distance from a grey light along blue and orange, as daylight varies.
     double warmth = 0.003;
