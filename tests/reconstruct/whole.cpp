@@ -301,33 +301,6 @@ TEST(Refine, LossesSeeWhatTheyShould) {
         EXPECT_TRUE(level.grad().select(2, 0).equal(level.grad().select(2, 2)));
 }
 
-TEST(Refine, LightAloneIsComparedWithThePhotographsLargestChannel) {
-    const Model model = striped_sphere();
-    const Geometry geometry = Geometry::from_model(model);
-    TargetView view{"view", testing::ring_of_cameras(1).front(), at::zeros({1, 24, 24, 4})};
-    fit_depth_range(view.camera, model.bounds());
-    Appearance appearance = make_appearance(model.bounds(), {view}, AppearanceStart::matt, 0);
-    const EnvironmentLight light = appearance.light.prefiltered();
-    const RenderedView rendered = render_view(geometry, appearance.field, light, view);
-    MaterialSample white = rendered.shaded;
-    white.base_color = at::ones_like(white.base_color);
-    white.orm = white.orm * at::tensor({1.0f, 1.0f, 0.0f});
-    // Red paint, whose largest channel is that of paper.
-    const at::Tensor lit = shade(rendered.surface, white, light).mean(1, true).detach() * 0.8f;
-    const at::Tensor red = at::cat({lit, 0.1f * lit, 0.2f * lit, at::ones_like(lit)}, 1);
-    const auto picture = [&](float exposure) {
-        const at::Tensor scale = at::tensor({exposure, exposure, exposure, 1.0f});
-        return scatter(red * scale, rendered.surface, rendered.raster, at::zeros({4}));
-    };
-    EXPECT_NEAR(demodulated_light_loss(rendered, light, picture(1)).item<float>(), 0, 1e-4);
-    const at::Tensor darker = demodulated_light_loss(rendered, light, picture(0.5f));
-    EXPECT_GT(darker.item<float>(), 0.05f);
-    darker.backward();
-    // What is to be mended is the light, and not the base colour.
-    EXPECT_GT(appearance.light.parameters().front().grad().sum().item<float>(), 0);
-    EXPECT_EQ(demodulated_light_loss(rendered, light, view.image).item<float>(), 0);
-}
-
 TEST(MovableMesh, SeamsMoveAsOne) {
     Model model = striped_sphere();
     MovableMesh mesh(model, true);

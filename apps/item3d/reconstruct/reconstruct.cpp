@@ -27,7 +27,6 @@ struct ReconstructCommand : CommonOptions {
     std::string poses = "auto";
     bool keep_exposure = false;
     int cells = 96;
-    double demodulation = 0;
     std::uint64_t seed = 0;
     std::vector<std::filesystem::path> relit;
     std::vector<std::string> relit_lights;
@@ -59,7 +58,6 @@ ReconstructRequest make_request(const ReconstructCommand& options) {
                                                                 : PoseRefinement::automatic,
                            .exposure = !options.keep_exposure};
     request.shape.cells = {options.cells / 2, options.cells};
-    request.shape.demodulation_weight = request.refine.weights.demodulation = options.demodulation;
     request.shape.seed = request.refine.seed = options.seed;
     request.relit = relit_views(options);
     request.command = command_line();
@@ -190,11 +188,6 @@ void add_reconstruct_command(CLI::App& app) {
         ->capture_default_str();
     command->add_flag("--keep-exposure", options->keep_exposure,
                       "All pictures have one exposure and white balance");
-    command
-        ->add_option("--demodulation", options->demodulation,
-                     "Weight of a loss that makes the light alone as bright as the photographs")
-        ->check(CLI::Range(0.0, 100.0))
-        ->capture_default_str();
     command->add_option("--reference", request.reference,
                         "The true mesh, to measure a distance to");
     add_comparisons(*command, *options);

@@ -44,7 +44,6 @@ nlohmann::json identity_of(const ReconstructRequest& request, const Dataset& dat
                             {"move vertices", request.move_vertices},
                             {"shadows", request.refine.shadows},
                             {"normal map", request.refine.normal_map},
-                            {"demodulation", request.refine.weights.demodulation},
                             {"poses", pose_refinement_name(request.corrections.poses)},
                             {"matched exposure", request.corrections.exposure},
                             {"seed", request.refine.seed},

@@ -111,7 +111,6 @@ nlohmann::json summary_json(const Reconstruction& result) {
                              {"normal_map", request.refine.normal_map},
                              {"poses", pose_refinement_name(request.corrections.poses)},
                              {"matched_exposure", request.corrections.exposure},
-                             {"demodulation", request.refine.weights.demodulation},
                              {"texture_size", result.texture_size},
                              {"seed", request.refine.seed},
                              {"threads", at::get_num_threads()}}},

@@ -168,9 +168,6 @@ void ShapeSearch::step() {
     at::Tensor loss = corrections_.weight(index) * (picture + options_.mask_weight * mask) +
                       loss_besides_picture(rendered, surface, light_alone) +
                       corrections_.motion_loss(index);
-    if (options_.demodulation_weight > 0)
-        loss = loss + options_.demodulation_weight *
-                          demodulated_light_loss(rendered, learning_.light, view.image);
     if (light_learns)
         loss = loss + options_.whiteness_weight * appearance_.light.whiteness_loss() +
                light_scale_loss(appearance_.light, learning_.light, rendered, options_.light_scale);

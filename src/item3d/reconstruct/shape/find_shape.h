@@ -28,8 +28,7 @@ struct ShapeOptions {
     double smoothness_weight = 0.03;
     double whiteness_weight = 0.003;
     LightScaleWeights light_scale;
-    double demodulation_weight = 0.0;  ///< see RegularizerWeights
-    double light_alone = 0.15;         ///< part of the iterations, see RefineOptions
+    double light_alone = 0.15;  ///< part of the iterations, see RefineOptions
     int light_every = 2;
     int triangles = 20000;  ///< of the mesh that comes back, at most about
     std::uint64_t seed = 0;

@@ -99,8 +99,7 @@ RenderedView Refinement::render(const TargetView& view, ViewRenderOptions how) {
     return render_view(geometry, appearance_.field, learning_.light, view, how);
 }
 
-at::Tensor Refinement::regularization(const RenderedView& rendered, const TargetView& view,
-                                      const at::Tensor& mask) {
+at::Tensor Refinement::regularization(const RenderedView& rendered, const at::Tensor& mask) {
     const RegularizerWeights& weights = options_.weights;
     at::Tensor loss = at::zeros({});
     if (rendered.surface.count() > 0) {
@@ -112,9 +111,6 @@ at::Tensor Refinement::regularization(const RenderedView& rendered, const Target
             loss = loss + weights.decision * (metallic * (1 - metallic)).mean() +
                    weights.dark_metal * dark_metal_loss(rendered);
         }
-        if (weights.demodulation > 0)
-            loss = loss + weights.demodulation *
-                              demodulated_light_loss(rendered, learning_.light, view.image);
         if (options_.normal_map)
             loss = loss + weights.flat_normals * (1 - rendered.material.normal.select(1, 2)).mean();
     }
@@ -138,7 +134,7 @@ void Refinement::step() {
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
     const at::Tensor picture = picture_loss(rendered.image, view.image, background);
     const at::Tensor mask = mask_loss(rendered.image, view.image);
-    at::Tensor loss = corrections_.weight(index) * picture + regularization(rendered, view, mask) +
+    at::Tensor loss = corrections_.weight(index) * picture + regularization(rendered, mask) +
                       corrections_.motion_loss(index);
     if (light_learns)
         loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss() +

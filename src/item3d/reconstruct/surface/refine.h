@@ -23,9 +23,6 @@ struct RegularizerWeights {
     double dark_metal = 0.03;    ///< metals are bright, after decision_begin
     double crumpling = 0.05;     ///< vertices move together
     double flat_normals = 0.01;  ///< the normal map is flat
-    /// The light alone is as bright as the photographs (demodulated_light_loss()). Off: it was
-    /// worse on what was measured (docs/reconstruct.md).
-    double demodulation = 0.0;
 };
 
 struct RefineOptions {
@@ -77,8 +74,7 @@ class Refinement : public Stage {
     };
     void trace();
     RenderedView render(const TargetView& view, ViewRenderOptions how);
-    at::Tensor regularization(const RenderedView& rendered, const TargetView& view,
-                              const at::Tensor& mask);
+    at::Tensor regularization(const RenderedView& rendered, const at::Tensor& mask);
 
     MovableMesh& mesh_;
     std::vector<TargetView> views_;

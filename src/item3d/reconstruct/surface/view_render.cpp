@@ -15,7 +15,6 @@ namespace {
 
 constexpr float roughness_weight = 1.0f;
 constexpr float metallic_weight = 1.0f;
-constexpr double paper = 0.8;  ///< base colour of what looks white
 constexpr float darkest_metal = 0.5f;
 
 /// Steps in all directions, of lengths from `nearest` to `farthest`.
@@ -135,22 +134,6 @@ at::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float
     const at::Tensor change = (orm - beside.orm).abs().mean(0);
     return (linear_to_srgb(base_color) - linear_to_srgb(beside.base_color)).abs().mean() +
            roughness_weight * change[1] + metallic_weight * change[2];
-}
-
-at::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLight& light,
-                                  const at::Tensor& target) {
-    if (view.surface.count() == 0) return at::zeros({});
-    MaterialSample white = view.shaded;
-    white.base_color = at::ones_like(white.base_color);
-    white.orm = at::cat({white.orm.narrow(1, 0, 2), at::zeros_like(white.orm.narrow(1, 2, 1))}, 1);
-    const at::Tensor lit = shade(view.surface, white, light).mean(1);
-    const at::Tensor photograph = target.reshape({-1, 4}).index_select(0, view.surface.pixel);
-    // White is like paper, as light_scale_loss() has it, and photographs end at 1.
-    const at::Tensor truth = photograph.narrow(1, 0, 3).amax(1);
-    const at::Tensor open = (truth >= 0.999f).logical_and(lit > truth / paper);
-    const at::Tensor used = (photograph.select(1, 3) > 0.99f).logical_and(open.logical_not());
-    const at::Tensor apart = (log_srgb(lit) - log_srgb(truth / paper)).abs();
-    return (apart * used).mean();
 }
 
 at::Tensor dark_metal_loss(const RenderedView& view) {

@@ -42,10 +42,12 @@ struct ViewRenderOptions {
     /// What surfaces throw at each other; null: nothing. One ray of each lobe, drawn by `seed`.
     const IndirectLight* indirect = nullptr;
     std::uint64_t seed = 0;
-    bool normal_map = false;    ///< use the field's tangent-space normals
-    bool one_material = false;  ///< the view's mean everywhere: only the light can explain shading
-    RigidMotion motion = {};    ///< of the object in front of the camera; undefined tensors: none
-    at::Tensor gain = {};       ///< [3], of all radiance; undefined: 1
+    bool normal_map = false;  ///< use the field's tangent-space normals
+    /// The view's mean everywhere, so that only the light can explain shading; roughness and
+    /// metallic do not learn.
+    bool one_material = false;
+    RigidMotion motion = {};  ///< of the object in front of the camera; undefined tensors: none
+    at::Tensor gain = {};     ///< [3], of all radiance; undefined: 1
     at::Tensor base_color_factor = {};  ///< [3], where it meets the light; undefined: 1
 };
 
@@ -71,13 +73,6 @@ at::Tensor mask_loss(const at::Tensor& rendered, const at::Tensor& target);
 /// many small ones, which is what shading in a base colour looks like.
 at::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float nearest,
                            float farthest, std::int64_t count, Random& random);
-
-/// Hasselgren et al. 2022 ("Shape, Light, and Material Decomposition from Images using Monte Carlo
-/// Rendering and Denoising", section 4): mean absolute difference, log-sRGB, between what the light
-/// would leave of a white object, diffuse and specular, and the photograph's largest channel, which
-/// is about its brightness without the base colour's tint. Where `target` is covered whole.
-at::Tensor demodulated_light_loss(const RenderedView& view, const EnvironmentLight& light,
-                                  const at::Tensor& target);
 
 /// Mean of metallic times what the largest channel of the base colour lacks of 0.5: no metal is
 /// darker, and a black metal looks like black varnish.
