@@ -23,7 +23,7 @@ struct LightScaleWeights {
     double green = 0.03;
     /// White is like paper: d^2 / (d^2 + 0.25^2), d the distance of the ninth decile of the view's
     /// base colour (luminance) from 0.8. What is far darker is let go (Geman and McClure 1987).
-    double brightness = 0.01;
+    double brightness = 0.003;
 };
 
 /// Sets the field's base colour gain to the reciprocal of the light's scale. Returns a factor [3]
