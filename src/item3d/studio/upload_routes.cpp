@@ -118,9 +118,10 @@ void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& respo
     fs::create_directories(folder);
     fs::rename(incoming.path(), folder / name);
     const std::string material = request.get_param_value("material");
-    reply_json(response, {{"name", name},
-                          {"selector", "mask=" + name + (material.empty() ? "" : "@" + material)},
-                          {"url", fmt::format("api/projects/{}/masks/{}", project.id, name)}});
+    reply_json(response,
+               {{"name", name},
+                {"selector", "mask=masks/" + name + (material.empty() ? "" : "@" + material)},
+                {"url", fmt::format("api/projects/{}/masks/{}", project.id, name)}});
 }
 
 /// Kept as Radiance, whatever it came as.
@@ -132,7 +133,8 @@ void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& 
         throw InputError(given.string(), "is no light", "choose an .hdr, .exr, .png or .jpg file");
     const auto& presets = light_preset_names();
     std::string name = given.stem().string();
-    if (name == "sky" || std::find(presets.begin(), presets.end(), name) != presets.end())
+    if (name == "sky" || result_of_light(name) ||
+        std::find(presets.begin(), presets.end(), name) != presets.end())
         name = "own_" + name;
     const Incoming incoming(studio.folders().incoming(given.extension().string()));
     save_upload(reader, incoming.path(), longest_picture);
