@@ -13,12 +13,13 @@ import argparse
 import base64
 import json
 import re
+import shlex
 import struct
 import subprocess
 import tempfile
 import time
 
-from studio_page import MUG, Page, Server, check, difference, launch, sync_playwright
+from studio_page import MUG, PATIENCE, Page, Server, check, difference, launch, sync_playwright
 
 # Mean absolute difference of the model's pixels, of 255: the viewer's light is prefiltered at half the
 # size, its edges are multisampled.
@@ -159,7 +160,7 @@ def export(page, server, result):
 
 def pause_resume_cancel(page):
     """An edit is paused and goes on, another is cancelled and goes on after that."""
-    result = page.edit("a silver mug", iterations=400)
+    result = page.edit("a silver mug", iterations=150)
     page.wait_for(result, "running")
     page.until(f"(studio.store.state.results.find(({{ id }}) => id === '{result}').progress?.done ?? 0) > 0", "no progress")
     page.picture("running")
@@ -170,6 +171,19 @@ def pause_resume_cancel(page):
     page.tab.locator(".job button", has_text="Cancel").click()
     page.wait_for(result, "cancelled")
     return result
+
+
+def ended_on_the_command_line(page, item3d, server, result):
+    """What the studio began is ended by the command that it shows, and the studio knows it."""
+    project = json.loads(server.get(f"api/results/{result}"))
+    folder = f"{server.folder}/projects/{project['project']}"
+    command = [item3d, *shlex.split(project["command"])[1:], "--resume", "--quiet"]
+    done = subprocess.run(command, cwd=folder, stdout=subprocess.DEVNULL, timeout=10 * PATIENCE)
+    check(done.returncode == 0, f"{shlex.join(command)} ended with {done.returncode}")
+    page.tab.locator(".job button", has_text="Resume").click()
+    page.wait_for(result, "done")
+    seconds = json.loads(server.get(f"api/results/{result}"))["seconds"]
+    check(seconds == project["seconds"], "the studio ran an edit again that the command line had ended")
 
 
 def reload_in_the_middle(page, browser, server):
@@ -328,7 +342,7 @@ def main():
             wipe_and_layers(page, result)
             swaps_leave_nothing(page, result)
             export(page, server, result)
-            pause_resume_cancel(page)
+            ended_on_the_command_line(page, options.item3d, server, pause_resume_cancel(page))
             reload_in_the_middle(page, browser, server)
             network_cut(page)
             refused(server, browser)

@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-double number_of(const nlohmann::json& progress, const char* key) {
+double progress_number(const nlohmann::json& progress, const char* key) {
     const auto found = progress.find(key);
     return found != progress.end() && found->is_number() ? found->get<double>() : 0;
 }
@@ -27,8 +27,9 @@ std::optional<double> JobClock::seconds_left(const nlohmann::json& progress, dou
     if (!plan_) return std::nullopt;
     const auto& [before, optimize, detail, after] = *plan_;
     const std::string stage = progress.value("stage", std::string());
-    const double done = number_of(progress, "done"), total = number_of(progress, "total");
-    const double said = number_of(progress, "seconds_left");
+    const double done = progress_number(progress, "done"),
+                 total = progress_number(progress, "total");
+    const double said = progress_number(progress, "seconds_left");
     const bool says = progress.contains("seconds_left") && progress["seconds_left"].is_number();
     if (!left_) std::tie(left_, at_) = std::pair{plan_->total(), 0.0};
     double left = *left_ - (seconds - at_);

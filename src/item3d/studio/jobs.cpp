@@ -155,13 +155,13 @@ void StudioJobs::begin(StudioResult result) {
         running->live = LiveFolder(folder / live_folder_name);
         running->live.clear();
         running->clock = clock_(result);
+        result.state = ResultState::running;
+        result.message.clear();
+        store_.update_result(result);  // before it has begun: what runs may not be removed
         running->program = std::make_unique<ChildProgram>(
             arguments_of(folders_, command, result), folder / "log.txt",
             ChildSurroundings{folders_.project(result.project), "item3d"});
-        result.state = ResultState::running;
-        result.message.clear();
         running->result = result;
-        store_.update_result(result);
         running_ = std::move(running);
         events_.send("result", result_json(result), event_key(result.id));
     } catch (const std::exception& error) {
