@@ -204,7 +204,8 @@ StudioCommands::Arguments StudioCommands::relight(const StudioProject& project,
 StudioCommands::Arguments StudioCommands::reconstruct(const StudioProject& project,
                                                       const Json&) const {
     const fs::path photographs = folders_.project(project.id) / "photographs";
-    for (const char* name : {"transforms.json", "transforms_train.json", "poses_bounds.npy"})
+    for (const char* name : {"transforms.json", "transforms_train.json", "poses_bounds.npy",
+                             "sparse", "colmap/sparse"})
         if (fs::exists(photographs / name)) return {"photographs"};
     return {option("--from-images", "photographs")};
 }
