@@ -1,5 +1,5 @@
 // The edit: what, where, how, and what it will take.
-import { h, fill, icon, segments } from '../core/dom.js';
+import { h, fill, icon, oneStop, segments } from '../core/dom.js';
 import { api, asNumber } from '../core/api.js';
 import { text } from '../text.js';
 import { Vocabulary, sentenceField } from './sentence.js';
@@ -62,6 +62,7 @@ export function editForm(store, { start, remember, tools }) {
       remember();
       store.set({ to: withLook(word, store.state.from || store.state.to, about.words) });
     } }, word.base_color && h('i.swatch', { style: `--c:color(srgb-linear ${word.base_color.join(' ')})` }), nameOf(word))));
+    oneStop(looks);
     from.set(store.state.from);
     to.set(store.state.to);
   });
