@@ -38,7 +38,7 @@ export class Actions {
   /** @param {string} id @param {string} [result] to choose */
   async openProject(id, result) {
     const answer = await api(`projects/${encodeURIComponent(id)}`);
-    const project = { ...answer, id: String(answer.id) };
+    const project = { ...answer, id: String(answer.id), model: answer.model?.url ? answer.model : null }; // none yet, of photographs
     const results = ordered(answer.results);
     const chosen = results.find((other) => other.id === result) ?? results.findLast(({ state }) => state === 'running');
     const last = chosen ?? results.findLast(({ from }) => from);

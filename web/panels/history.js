@@ -20,7 +20,7 @@ export function historyPanel(store, { select, compare, favourite }) {
   const count = h('small');
   /** @type {Map<string, {row: HTMLElement, result: Result|null}>} */
   let rows = new Map();
-  let structure = '';
+  let structure = '', owner = '';
 
   const build = () => {
     const { results } = store.state;
@@ -98,8 +98,8 @@ export function historyPanel(store, { select, compare, favourite }) {
   store.on(['results', 'project'], ({ results, project }) => {
     const now = `${project?.id} ${results.map(({ id }) => id).join()}`;
     if (now !== structure || filter.value || only.getAttribute('aria-pressed') === 'true') {
-      if (!now.startsWith(structure.split(' ')[0])) rows = new Map();
-      structure = now;
+      if (owner !== project?.id) rows = new Map();
+      [structure, owner] = [now, project?.id ?? ''];
       build();
     } else for (const result of results) {
       const entry = rows.get(result.id);
