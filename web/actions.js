@@ -44,6 +44,7 @@ export class Actions {
     const last = chosen ?? results.findLast(({ from }) => from);
     this.store.set({
       project, results, selected: chosen?.id ?? '', layout: 'single', side: [], layers: [], region: { include: [], exclude: [], feather: 0 }, tool: 'orbit',
+      light: this.store.state.light.name.startsWith('result-') ? DEFAULT_LIGHT : this.store.state.light, // that of another project's result
       from: last?.from || this.store.state.from, to: chosen?.to ?? (last ? '' : this.store.state.to), settings: {},
     });
     this.remember();
