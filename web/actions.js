@@ -1,5 +1,5 @@
 // What a person can do: each action talks to the server and sets the state that follows from it.
-import { api, asNumber, asResult, fileUrl } from './core/api.js';
+import { api, asNumber, asResult } from './core/api.js';
 import { h } from './core/dom.js';
 import { editBody } from './panels/edit_form.js';
 import { DEFAULT_LIGHT, lightBody } from './panels/light_panel.js';
@@ -38,12 +38,13 @@ export class Actions {
   /** @param {string} id @param {string} [result] to choose */
   async openProject(id, result) {
     const answer = await api(`projects/${encodeURIComponent(id)}`);
-    const project = { ...answer, id: String(answer.id) };
+    const project = { ...answer, id: String(answer.id), model: answer.model?.url ? answer.model : null }; // none yet, of photographs
     const results = ordered(answer.results);
     const chosen = results.find((other) => other.id === result) ?? results.findLast(({ state }) => state === 'running');
-    const last = chosen ?? results.at(-1);
+    const last = chosen ?? results.findLast(({ from }) => from);
     this.store.set({
       project, results, selected: chosen?.id ?? '', layout: 'single', side: [], layers: [], region: { include: [], exclude: [], feather: 0 }, tool: 'orbit',
+      light: this.store.state.light.name.startsWith('result-') ? DEFAULT_LIGHT : this.store.state.light, // that of another project's result
       from: last?.from || this.store.state.from, to: chosen?.to ?? (last ? '' : this.store.state.to), settings: {},
     });
     this.remember();
@@ -146,7 +147,7 @@ export class Actions {
   select(id) {
     const { layout, results } = this.store.state;
     const result = results.find((other) => other.id === id);
-    if (result?.kind === 'relight' && result.files.includes('light.hdr')) this.store.set({ light: { ...DEFAULT_LIGHT, name: fileUrl(id, 'light.hdr'), backdrop: this.store.state.light.backdrop } });
+    if (result?.kind === 'relight' && result.files.includes('light.hdr')) this.store.set({ light: { ...DEFAULT_LIGHT, name: `result-${id}`, backdrop: this.store.state.light.backdrop } });
     this.store.set({ selected: id, ...(layout === 'side' || !result ? { layout: 'single', side: [] } : {}) });
     this.remember();
   }
@@ -172,8 +173,9 @@ export class Actions {
     }
   }
 
-  /** @param {Result} result @param {object} patch */
-  async patch(result, patch) {
+  /** @param {Result} shown which may be older than what is stored @param {object} patch */
+  async patch(shown, patch) {
+    const result = this.store.state.results.find(({ id }) => id === shown.id) ?? shown;
     this.arrived({ ...result, ...patch });
     try {
       await api(`results/${result.id}`, { method: 'PATCH', json: patch });

@@ -68,14 +68,14 @@ export const text = {
   },
   region: {
     everything: 'Everywhere', part: 'Click on the model', brush: 'Paint on the model', box: 'A box', words: 'By words', color: 'By colour',
-    partHint: 'Click on the model to choose its material, part or colour.', brushHint: 'Paint on the model. Hold Alt to erase.', boxHint: 'Drag the faces of the box.',
+    partHint: 'Click on the model to choose its material, part or colour.', brushHint: 'Paint on the model. Hold Alt to erase.', boxHint: 'Drag the faces of the box, or give its corners.', boxFrom: 'From', boxTo: 'To',
     radius: 'Brush', erase: 'Erase', clear: 'Clear', use: 'Use', feather: 'Soft edge', add: 'Add to the region', subtract: 'Leave out', remove: 'Remove', invert: 'Add or leave out',
     phrase: 'the handle', knownParts: 'Parts that the segmenter knows', named: 'Where people would call it', copy: 'Copy for the command line',
     share: (/** @type {number} */ share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} % of the surface`, measuring: 'Measuring the region …',
     atPoint: 'At this place', material: 'Material', node: 'Part', colorHere: 'This colour', sphere: 'Around here', auto: 'Where the sentences differ', includes: 'Region', excludes: 'without',
   },
   job: {
-    pause: 'Pause', resume: 'Resume', cancel: 'Cancel', retry: 'Run again', left: (/** @type {number} */ s) => `${duration(s)} left`, took: (/** @type {number} */ s) => `took ${duration(s)}`,
+    pause: 'Pause', resume: 'Resume', cancel: 'Cancel', retry: 'Run again', left: (/** @type {number} */ s) => `${duration(s)} left`, stageLeft: (/** @type {number} */ s) => `${duration(s)} left of this stage`, took: (/** @type {number} */ s) => `took ${duration(s)}`,
     direction: 'Length of the direction', waiting: (/** @type {number} */ ahead) => ahead ? `Waits for ${ahead} ${ahead === 1 ? 'other' : 'others'}` : 'Starts in a moment', failedTitle: 'The edit failed',
     iterations: (/** @type {number} */ done, /** @type {number} */ total) => `${done} of ${total}`,
     stages: /** @type {Record<string, string>} */ ({ load: 'Loading', fit: 'Reading the materials', optimize: 'Editing', edit: 'Editing', detail: 'Painting detail', bake: 'Writing textures', report: 'Pictures' }),
@@ -86,7 +86,7 @@ export const text = {
     other: 'This edit has a UV map of its own, so the page cannot blend it; “Save” can.', save: 'Save as .glb', reset: 'Reset', saving: 'Applying layers …', on: 'Layer shown',
   },
   light: {
-    presets: 'Light', own: 'Open an HDR …', rotation: 'Turn', exposure: 'Exposure', backdrop: 'Show the light behind the model', sun: 'Sun', sunHint: 'Drag the sun: the middle is overhead, the rim the horizon. The viewer looks from below.',
+    presets: 'Light', ofResult: 'of this result', own: 'Open an HDR …', rotation: 'Turn', exposure: 'Exposure', backdrop: 'Show the light behind the model', sun: 'Sun', sunHint: 'Drag the sun: the middle is overhead, the rim the horizon. The viewer looks from below.',
     noSun: 'As the light has it', hour: 'Hour', sky: 'Clear sky', words: 'In words', wordsHint: 'low in the west', tint: 'Tint', noTint: 'none', reset: 'Reset', download: 'Save this light as .hdr',
     render: 'Pictures in this light', find: 'Find a light by words', findHint: 'a mug at sunset, lit from the left', findStart: 'Find', compass: ['N', 'E', 'S', 'W'], sunAt: (/** @type {number} */ az, /** @type {number} */ el) => `${az}° · ${el}° high`,
   },
@@ -98,7 +98,7 @@ export const text = {
   },
   photos: {
     title: 'A model from photographs', lede: 'Choose the folder of photographs of one thing, taken from all around. With transforms.json (NeRF-synthetic) beside them, cameras are known.', choose: 'Choose a folder', count: (/** @type {number} */ n, /** @type {number} */ bytes) => `${n} photographs, ${size(bytes)}`,
-    cameras: (/** @type {number} */ n) => `${n} cameras, seen from above`, noCameras: 'No transforms.json among them: cameras are estimated where the program can, else an error says so.', start: 'Reconstruct', none: 'There is no photograph in that folder.', tooMany: 'At most 1 GB at once.', masks: (/** @type {number} */ n) => `${n} masks`,
+    cameras: (/** @type {number} */ n) => `${n} cameras, seen from above`, otherCameras: 'Cameras are read from the files among them.', noCameras: 'No transforms.json among them: cameras are estimated where the program can, else an error says so.', start: 'Reconstruct', none: 'There is no photograph in that folder.', tooMany: 'At most 1 GB at once.', masks: (/** @type {number} */ n) => `${n} masks`,
   },
   keys: {
     title: 'Keyboard', list: [

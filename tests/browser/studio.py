@@ -12,13 +12,18 @@ Needs what `scripts/setup.sh browser` fetches (CHROMIUM names another browser).
 import argparse
 import base64
 import json
+import pathlib
 import re
+import resource
+import shlex
+import shutil
+import statistics
 import struct
 import subprocess
 import tempfile
 import time
 
-from studio_page import MUG, Page, Server, check, difference, launch, sync_playwright
+from studio_page import MUG, PATIENCE, Page, Server, check, difference, launch, sync_playwright
 
 # Mean absolute difference of the model's pixels, of 255: the viewer's light is prefiltered at half the
 # size, its edges are multisampled.
@@ -159,7 +164,7 @@ def export(page, server, result):
 
 def pause_resume_cancel(page):
     """An edit is paused and goes on, another is cancelled and goes on after that."""
-    result = page.edit("a silver mug", iterations=400)
+    result = page.edit("a silver mug", iterations=150)
     page.wait_for(result, "running")
     page.until(f"(studio.store.state.results.find(({{ id }}) => id === '{result}').progress?.done ?? 0) > 0", "no progress")
     page.picture("running")
@@ -170,6 +175,19 @@ def pause_resume_cancel(page):
     page.tab.locator(".job button", has_text="Cancel").click()
     page.wait_for(result, "cancelled")
     return result
+
+
+def ended_on_the_command_line(page, item3d, server, result):
+    """What the studio began is ended by the command that it shows, and the studio knows it."""
+    project = json.loads(server.get(f"api/results/{result}"))
+    folder = f"{server.folder}/projects/{project['project']}"
+    command = [item3d, *shlex.split(project["command"])[1:], "--resume", "--quiet"]
+    done = subprocess.run(command, cwd=folder, stdout=subprocess.DEVNULL, timeout=10 * PATIENCE)
+    check(done.returncode == 0, f"{shlex.join(command)} ended with {done.returncode}")
+    page.tab.locator(".job button", has_text="Resume").click()
+    page.wait_for(result, "done")
+    seconds = json.loads(server.get(f"api/results/{result}"))["seconds"]
+    check(seconds == project["seconds"], "the studio ran an edit again that the command line had ended")
 
 
 def reload_in_the_middle(page, browser, server):
@@ -303,6 +321,49 @@ def frames(page):
     }""")
 
 
+def first_change(page):
+    """Seconds from Start, with the settings of the prior, until the picture is another; then cancels."""
+    page = page_of_source(page)
+    before = page.pixels()
+    page.tab.click("#tab-edit")
+    page.tab.fill("#from", "a red mug")
+    page.tab.fill("#to", "a golden mug")
+    page.tab.keyboard.press("Escape")
+    page.run("studio.store.set({ settings: {} })")
+    count = len(page.results())
+    begin = time.monotonic()
+    page.tab.click("#start")
+    page.until(f"studio.store.state.results.length > {count}", "no edit was begun")
+    result = page.results()[-1]["id"]
+    revision = 0
+    while True:
+        page.until(f"(studio.viewer.gallery.live.get('{result}')?.revision ?? 0) > {revision}", "no texture came", 10 * PATIENCE)
+        seconds = time.monotonic() - begin
+        revision = page.run(f"studio.viewer.gallery.live.get('{result}').revision")
+        if difference(before, page.pixels()) > 0.5:
+            break
+    page.tab.locator(".job button", has_text="Cancel").click()
+    page.wait_for(result, "cancelled")
+    return seconds
+
+
+def streaming_cost(item3d, folder, rounds=4):
+    """Share of processor time and of time that --live adds to an edit: medians of alternated runs."""
+    times = {"": [], "live": []}
+    for _ in range(rounds):
+        for live, taken in times.items():
+            shutil.rmtree(f"{folder}/cost", ignore_errors=True)
+            pathlib.Path(f"{folder}/cost/live").mkdir(parents=True)
+            before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+            subprocess.run([item3d, "edit", MUG, "--from", "a red mug", "--to", "a golden mug", "--iterations", "60", "--detail", "off",
+                            "-o", f"{folder}/cost/edit", "--quiet", *(["--live", f"{folder}/cost/live"] if live else [])],
+                           check=True, stdout=subprocess.DEVNULL)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            taken.append((after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, time.monotonic() - begin))
+    middle = {live: [statistics.median(column) for column in zip(*taken)] for live, taken in times.items()}
+    return [100 * (with_live / without - 1) for with_live, without in zip(middle["live"], middle[""])]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("item3d")
@@ -328,7 +389,7 @@ def main():
             wipe_and_layers(page, result)
             swaps_leave_nothing(page, result)
             export(page, server, result)
-            pause_resume_cancel(page)
+            ended_on_the_command_line(page, options.item3d, server, pause_resume_cancel(page))
             reload_in_the_middle(page, browser, server)
             network_cut(page)
             refused(server, browser)
@@ -337,6 +398,9 @@ def main():
             said.append(f"1,000 results listed {started:.2f} s after the address, longest frame of scrolling {longest:.0f} ms")
             server_killed(page, server, result)
         if options.measure:
+            said.append(f"first visible change {first_change(page):.1f} s after Start")
+            processor, clock = streaming_cost(options.item3d, folder)
+            said.append(f"--live costs {processor:.1f} % of processor time, {clock:.1f} % of time")
             milliseconds, where = frames(page)
             said.append(f"{milliseconds:.1f} ms a picture at 1280 x 720 on {where}")
         page.close()

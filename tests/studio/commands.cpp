@@ -53,7 +53,7 @@ TEST_F(StudioRequests, BecomeOptions) {
     const auto made = arguments({{"from", "--json"},
                                  {"to", "it's $HOME"},
                                  {"settings", {{"seed", 3}, {"keep", {"normal", "occlusion"}}}},
-                                 {"region", {"material=glaze", "mask=paint.png@glaze"}},
+                                 {"region", {"material=glaze", "mask=masks/paint.png@glaze"}},
                                  {"feather", 2.5}});
     EXPECT_EQ(made.front(), "edit");
     EXPECT_EQ(made[1], "source/mug.glb");
@@ -83,6 +83,11 @@ TEST_F(StudioRequests, AreRefusedWhereTheyCannotBeUnderstood) {
     EXPECT_NE(refusal({{"to", ""}}).find("missing"), std::string::npos);
     EXPECT_THROW(arguments({}, "relight"), InputError);
     EXPECT_THROW(arguments({}, "boil"), InputError);
+    EXPECT_THROW(arguments({{"light", "result-1"}}, "relight"), InputError) << "it has no light";
+    const auto lit = folders_->result(project_.id, 2);
+    std::filesystem::create_directories(lit);
+    write(lit / "light.hdr", "light");
+    EXPECT_TRUE(has(arguments({{"light", "result-2"}}, "relight"), "--light=results/2/light.hdr"));
     EXPECT_TRUE(has(arguments({{"hour", 17.5}}, "relight"), "--sky=17.5"));
     EXPECT_TRUE(has(arguments({{"sun", {90, 20}}}, "relight"), "--sun=90,20"));
 }

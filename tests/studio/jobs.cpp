@@ -140,6 +140,19 @@ TEST_F(StudioQueue, KnowsWhatTheCommandLineEnded) {
     EXPECT_EQ(studio_->result(slow).scores["detail_kept"], 0.5);
 }
 
+TEST_F(StudioQueue, RunsNothingAgainThatTheCommandLineHasEnded) {
+    const std::int64_t slow = add("a slow mug");
+    ASSERT_TRUE(shows_texture(slow));
+    studio_->jobs().pause(slow);
+    ASSERT_TRUE(reaches(slow, ResultState::paused));
+    const std::string lines = read(file(slow, "lines.txt"));
+    write(file(slow, "edit.json"), R"({"scores": {"detail_kept": 0.5}})");
+    studio_->jobs().resume(slow);
+    ASSERT_TRUE(reaches(slow, ResultState::done));
+    EXPECT_EQ(studio_->result(slow).scores["detail_kept"], 0.5);
+    EXPECT_EQ(read(file(slow, "lines.txt")), lines);
+}
+
 TEST_F(StudioQueue, ReconstructsPhotographs) {
     program("item3d-reconstruct", stand_in_for_edit);
     fs::create_directories(options_.folder / "incoming/photographs");

@@ -127,6 +127,26 @@ export function segments(label, choices, value, change) {
   return element;
 }
 
+/**
+ * Makes a group of buttons one stop of the Tab key; arrows go from one to the next.
+ * @param {HTMLElement} group
+ */
+export function oneStop(group) {
+  const buttons = /** @type {HTMLElement[]} */ ([...group.children]);
+  buttons.forEach((button, i) => { button.tabIndex = i ? -1 : 0; });
+  group.onkeydown = (event) => {
+    const at = buttons.indexOf(/** @type {HTMLElement} */ (event.target));
+    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    if (at < 0 || !step) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const next = buttons[(at + step + buttons.length) % buttons.length];
+    buttons[at].tabIndex = -1;
+    next.tabIndex = 0;
+    next.focus();
+  };
+}
+
 /** @param {string} text */
 export async function copyText(text) {
   try {

@@ -17,7 +17,7 @@
  * @property {number} [feather]
  * @property {string} command
  * @property {ResultState} state
- * @property {{stage: string, done: number, total: number, seconds: number, seconds_left: number}} [progress]
+ * @property {{stage: string, done: number, total: number, seconds: number, seconds_left: number, job_seconds_left?: number, share?: number}} [progress]  the last two of an edit: of all its stages
  * @property {string} message
  * @property {string} created
  * @property {number} seconds

@@ -1,5 +1,5 @@
 // The edit: what, where, how, and what it will take.
-import { h, fill, icon, segments } from '../core/dom.js';
+import { h, fill, icon, oneStop, segments } from '../core/dom.js';
 import { api, asNumber } from '../core/api.js';
 import { text } from '../text.js';
 import { Vocabulary, sentenceField } from './sentence.js';
@@ -62,6 +62,7 @@ export function editForm(store, { start, remember, tools }) {
       remember();
       store.set({ to: withLook(word, store.state.from || store.state.to, about.words) });
     } }, word.base_color && h('i.swatch', { style: `--c:color(srgb-linear ${word.base_color.join(' ')})` }), nameOf(word))));
+    oneStop(looks);
     from.set(store.state.from);
     to.set(store.state.to);
   });
@@ -70,10 +71,16 @@ export function editForm(store, { start, remember, tools }) {
     to.set(state.to);
     fill(problem);
   });
+  let project = '', basisId = '';
   store.on(['selected', 'results', 'project'], (state) => {
-    const parent = state.results.find(({ id }) => id === state.selected);
-    const usable = parent?.state === 'done' && parent.kind !== 'relight';
-    fill(basis, usable ? text.edit.startFrom(parent.name || parent.to) : text.edit.startSource);
+    const parent = parentOf(state);
+    fill(basis, parent ? text.edit.startFrom(parent.name || parent.to) : text.edit.startSource);
+    const id = parent?.id ?? '', same = project === state.project?.id;
+    if (same && id === basisId) return;
+    // What the model is called goes with the model, unless a person calls it something else.
+    const before = sentenceOf(state, basisId), now = sentenceOf(state, id);
+    [project, basisId] = [state.project?.id ?? '', id];
+    if (same && now && state.from === before) store.set({ from: now });
   });
   store.on(['settings'], (state) => quality.set(presetOf(state)));
 
@@ -100,12 +107,24 @@ export function editForm(store, { start, remember, tools }) {
 
 /** What an edit's request says. @param {State} state */
 export function editBody(state) {
-  const parent = state.results.find(({ id }) => id === state.selected);
   return {
     from: state.from.trim(), to: state.to.trim(), settings: state.settings,
     region: state.region.include, exclude: state.region.exclude, feather: state.region.feather,
-    parent: asNumber(parent && parent.state === 'done' && parent.kind !== 'relight' ? parent.id : null),
+    parent: asNumber(parentOf(state)?.id ?? null),
   };
+}
+
+/** The result that an edit begins with; undefined: the source. Another light leaves the model as it was. @param {State} state */
+function parentOf({ results, selected }) {
+  const result = results.find(({ id }) => id === selected);
+  const parent = result?.kind === 'relight' ? results.find(({ id }) => id === result.parent) : result;
+  return parent?.state === 'done' ? parent : undefined;
+}
+
+/** What a result shows, or the source: what its first edit called it. @param {State} state @param {string} id */
+function sentenceOf({ results }, id) {
+  const result = results.find((other) => other.id === id);
+  return result ? result.to : results.find(({ parent, from }) => parent === null && from)?.from ?? '';
 }
 
 /** @param {State} state */

@@ -4,6 +4,7 @@ import { h, fill, icon, iconButton } from '../core/dom.js';
 import { when, duration } from '../core/format.js';
 import { text } from '../text.js';
 import { thumbnail } from './thumbnail.js';
+import { shareOf } from './job_bar.js';
 
 /** @typedef {import('../core/types.js').Result} Result */
 
@@ -19,7 +20,7 @@ export function historyPanel(store, { select, compare, favourite }) {
   const count = h('small');
   /** @type {Map<string, {row: HTMLElement, result: Result|null}>} */
   let rows = new Map();
-  let structure = '';
+  let structure = '', owner = '';
 
   const build = () => {
     const { results } = store.state;
@@ -45,18 +46,19 @@ export function historyPanel(store, { select, compare, favourite }) {
     mark();
   };
 
-  const sourceRow = () => h('div.node.source', { role: 'treeitem', 'aria-level': 1, tabIndex: -1, 'data-id': '', onclick: () => select('') },
+  /** With a key held, it is put beside what is shown. */
+  const choose = (/** @type {string} */ id) => (/** @type {MouseEvent} */ event) => event.ctrlKey || event.metaKey || event.shiftKey ? compare(id) : select(id);
+  const sourceRow = () => h('div.node.source', { role: 'treeitem', 'aria-level': 1, tabIndex: -1, 'data-id': '', onclick: choose('') },
     h('span.thumb', {}, icon('box')), h('span.words', {}, h('b', {}, text.history.source), h('small', {}, store.state.project?.name ?? '')));
 
-  const makeRow = (/** @type {string} */ id) => h('div.node', { role: 'treeitem', tabIndex: -1, 'data-id': id,
-    onclick: (/** @type {MouseEvent} */ event) => event.ctrlKey || event.metaKey || event.shiftKey ? compare(id) : select(id) });
+  const makeRow = (/** @type {string} */ id) => h('div.node', { role: 'treeitem', tabIndex: -1, 'data-id': id, onclick: choose(id) });
 
   const update = (/** @type {{row: HTMLElement, result: Result|null}} */ entry, /** @type {Result} */ result) => {
     if (entry.result === result) return;
     const old = entry.result;
     entry.result = result;
     const busy = result.state === 'running' || result.state === 'paused';
-    const part = busy && result.progress?.total ? result.progress.done / result.progress.total : 0;
+    const part = busy ? shareOf(result.progress) : 0;
     entry.row.style.setProperty('--part', String(part));
     if (old && busy && old.state === result.state && old.thumbnail === result.thumbnail && old.favourite === result.favourite) return;
     entry.row.dataset.state = result.state;
@@ -96,8 +98,8 @@ export function historyPanel(store, { select, compare, favourite }) {
   store.on(['results', 'project'], ({ results, project }) => {
     const now = `${project?.id} ${results.map(({ id }) => id).join()}`;
     if (now !== structure || filter.value || only.getAttribute('aria-pressed') === 'true') {
-      if (!now.startsWith(structure.split(' ')[0])) rows = new Map();
-      structure = now;
+      if (owner !== project?.id) rows = new Map();
+      [structure, owner] = [now, project?.id ?? ''];
       build();
     } else for (const result of results) {
       const entry = rows.get(result.id);

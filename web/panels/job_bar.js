@@ -28,14 +28,14 @@ export function jobBar(store, { act, retry }) {
     if (!result || result.state === 'done') return;
     element.dataset.state = result.state;
     const { progress } = result;
-    const part = progress?.total ? progress.done / progress.total : 0;
+    const part = shareOf(progress);
     const stage = text.job.stages[progress?.stage ?? ''] ?? progress?.stage ?? '';
     fill(title, result.state === 'running' ? stage || text.states.running : result.state === 'failed' ? text.job.failedTitle : capital(text.states[result.state]));
     const ahead = results.filter((other) => other.state === 'running' || (other.state === 'waiting' && other.created < result.created)).length;
     fill(facts, result.state === 'waiting' ? text.job.waiting(ahead) : progress && result.state !== 'failed'
-      ? [progress.total ? text.job.iterations(progress.done, progress.total) : '', result.state === 'running' && progress.seconds_left > 0 ? text.job.left(progress.seconds_left) : duration(progress.seconds)].filter(Boolean).join(' · ') : '');
+      ? [progress.total ? text.job.iterations(progress.done, progress.total) : '', result.state === 'running' && leftOf(progress) || duration(progress.seconds)].filter(Boolean).join(' · ') : '');
     bar.hidden = !['running', 'paused', 'waiting'].includes(result.state);
-    if (result.state === 'running' && !progress?.total) bar.removeAttribute('value');
+    if (result.state === 'running' && !part) bar.removeAttribute('value');
     else bar.value = part;
     fill(message, result.state === 'failed' ? result.message : '');
     const key = `${result.id} ${result.state}`;
@@ -52,6 +52,16 @@ export function jobBar(store, { act, retry }) {
 
   element.direction = (/** @type {number[]} */ values) => fill(curve, sparkline(values, 120, 24));
   return element;
+}
+
+/** How much of the job is done, or where nobody knows that, of its stage. @param {Result['progress']} progress */
+export function shareOf(progress) {
+  return progress?.share ?? (progress?.total ? progress.done / progress.total : 0);
+}
+
+/** @param {NonNullable<Result['progress']>} progress */
+function leftOf({ job_seconds_left: job, seconds_left: stage }) {
+  return job ? text.job.left(job) : stage > 0 ? text.job.stageLeft(stage) : '';
 }
 
 /** @param {string} word */

@@ -16,7 +16,6 @@ export function viewerTurn(light) {
 
 /** The light's address; exposure is the viewer's own. @param {Light} light @param {number} width */
 export function lightUrl(light, width) {
-  if (light.name.includes('/')) return light.name; // a result's own light
   const query = new URLSearchParams({ width: String(width) });
   if (viewerTurn(light) !== light.rotation) query.set('rotate', String(light.rotation));
   if (light.hour !== null) query.set('hour', light.hour.toFixed(2));
@@ -91,7 +90,7 @@ export function lightPanel(store, { own, render, find }) {
 
 /** @param {string} name */
 function shortName(name) {
-  return name.split('/').at(-1)?.replace(/\.(hdr|exr)$/, '') ?? name;
+  return name.startsWith('result-') ? text.light.ofResult : name;
 }
 
 /**

@@ -5,7 +5,8 @@ import { size } from '../core/format.js';
 import { text } from '../text.js';
 
 const MOST_BYTES = 1e9;
-const PICTURE = /\.(jpe?g|png|webp|tiff?|exr)$/i;
+const PICTURE = /\.(jpe?g|png|webp|tiff?)$/i;
+const CAMERAS = /(^|\/)(transforms[^/]*\.json|poses_bounds\.npy|(cameras|images|points3D|frames|rigs)\.(bin|txt))$/;
 
 /** @param {(answer: any) => void} started */
 export function photographsDialog(started) {
@@ -20,24 +21,30 @@ export function photographsDialog(started) {
 
   const choose = async (/** @type {File[]} */ chosen) => {
     for (const image of grid.querySelectorAll('img')) URL.revokeObjectURL(image.src);
-    files = chosen.filter(({ name }) => PICTURE.test(name) || /^transforms.*\.json$/.test(name));
-    const inMasks = (/** @type {File} */ file) => /(^|\/)masks?\//.test(file.webkitRelativePath);
-    const pictures = files.filter((file) => PICTURE.test(file.name) && !inMasks(file));
-    const masks = files.filter(inMasks);
+    const transforms = chosen.filter(({ name }) => /^transforms.*\.json$/.test(name));
+    const frames = (await Promise.all(transforms.map((file) => file.text()))).map(framesOf);
+    const named = new Set(frames.flat().flatMap(({ file_path, mask_path }) => [file_path, mask_path]).filter(Boolean).map(plain));
+    const isPicture = (/** @type {File} */ file) => PICTURE.test(file.name);
+    const inMasks = (/** @type {File} */ file) => isPicture(file) && /(^|\/)masks?\//.test(placeOf(file));
+    // Of a dataset with cameras, what they saw alone: beside it may lie depths, ground truth and others.
+    const isSeen = (/** @type {File} */ file) => !named.size || named.has(plain(placeOf(file))) || named.has(plain(placeOf(file)).replace(PICTURE, ''));
+    const pictures = chosen.filter((file) => isPicture(file) && !inMasks(file) && isSeen(file));
+    const masks = chosen.filter(inMasks);
+    files = [...pictures, ...masks, ...chosen.filter((file) => CAMERAS.test(placeOf(file)))];
     const bytes = files.reduce((sum, file) => sum + file.size, 0);
     fill(problem, !pictures.length ? text.photos.none : bytes > MOST_BYTES ? text.photos.tooMany : '');
     fill(facts, [text.photos.count(pictures.length, bytes), masks.length ? text.photos.masks(masks.length) : ''].filter(Boolean).join(' · '));
-    fill(grid, ...pictures.slice(0, 48).map((file) => h('img', { src: URL.createObjectURL(file), alt: file.name, title: file.name, loading: 'lazy', decoding: 'async' })));
+    fill(grid, ...pictures.slice(0, 48).map((file) => h('img', { src: URL.createObjectURL(file), alt: file.name, title: placeOf(file), loading: 'lazy', decoding: 'async' })));
     start.disabled = !pictures.length || bytes > MOST_BYTES;
-    const transforms = files.find(({ name }) => /^transforms.*\.json$/.test(name));
-    const places = transforms ? camerasOf(await transforms.text()) : [];
+    const places = placesOf(frames.flat());
     cameras.hidden = false;
-    fill(cameras, places.length ? cameraMap(places) : null, h('figcaption', {}, places.length ? text.photos.cameras(places.length) : text.photos.noCameras));
+    fill(cameras, places.length ? cameraMap(places) : null, h('figcaption', {}, places.length ? text.photos.cameras(places.length)
+      : files.some((file) => !isPicture(file)) ? text.photos.otherCameras : text.photos.noCameras));
   };
   const send = async () => {
     start.disabled = true;
     const form = new FormData();
-    for (const file of files) form.append(PICTURE.test(file.name) ? 'photographs' : 'cameras', file, (file.webkitRelativePath || file.name).split('/').slice(-2).join('/'));
+    for (const file of files) form.append('photographs', file, placeOf(file));
     try {
       started(await api('photographs', { body: form }));
       dialog.close();
@@ -54,14 +61,32 @@ export function photographsDialog(started) {
   dialog.showModal();
 }
 
-/** Places and view directions of NeRF-synthetic cameras. @param {string} content */
-function camerasOf(content) {
+/** Where a file lies in the folder that was chosen. @param {File} file */
+function placeOf(file) {
+  return file.webkitRelativePath.split('/').slice(1).join('/') || file.name;
+}
+
+/** A path without "./" and with slashes. @param {string} path */
+function plain(path) {
+  return path.replaceAll('\\', '/').replace(/^(\.?\/)+/, '');
+}
+
+/** @param {string} content of a transforms.json @returns {any[]} */
+function framesOf(content) {
   try {
     const { frames } = JSON.parse(content);
-    return frames.map((/** @type {any} */ { transform_matrix: m }) => ({ x: m[0][3], z: m[2][3], toX: -m[0][2], toZ: -m[2][2] }));
+    return Array.isArray(frames) ? frames : [];
   } catch {
     return [];
   }
+}
+
+/** Places and view directions of cameras, seen along the axis that is nearest to their own up. @param {any[]} frames */
+function placesOf(frames) {
+  const poses = frames.map(({ transform_matrix: m }) => m).filter((m) => Array.isArray(m) && m.length > 2);
+  const up = [0, 1, 2].map((axis) => Math.abs(poses.reduce((sum, m) => sum + m[axis][1], 0)));
+  const [across, along] = [0, 1, 2].filter((axis) => axis !== up.indexOf(Math.max(...up)));
+  return poses.map((m) => ({ x: m[across][3], z: m[along][3], toX: -m[across][2], toZ: -m[along][2] }));
 }
 
 const SVG = 'http://www.w3.org/2000/svg';

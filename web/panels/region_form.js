@@ -53,7 +53,8 @@ export function regionForm(store, tools, remember) {
     h('div.row', {}, h('label.check', {}, h('input', { type: 'checkbox', onchange: (/** @type {any} */ event) => { tools.erases = event.target.checked; } }), text.region.erase),
       h('span.spring'), h('button', { type: 'button', onclick: () => tools.clearBrush() }, text.region.clear),
       h('button', { type: 'button', id: 'use-brush', onclick: () => tools.useBrush() }, text.region.use))) : null;
-  const boxRow = tools ? h('div.row.extra', { hidden: true }, h('span.spring'), h('button', { type: 'button', id: 'use-box', onclick: () => tools.useBox() }, text.region.use)) : null;
+  const boxRow = tools ? h('div.extra', { hidden: true }, boxFields(tools),
+    h('div.row', {}, h('span.spring'), h('button', { type: 'button', id: 'use-box', onclick: () => tools.useBox() }, text.region.use))) : null;
 
   /** @type {Record<string, HTMLElement|null>} */
   const rows = { words: wordsRow, color: colors, brush: brushRow, box: boxRow };
@@ -100,4 +101,20 @@ export function regionForm(store, tools, remember) {
   const element = h('section.where', {}, h('div.heading', {}, h('h2', {}, text.edit.where), bar), hint, wordsRow, colors, brushRow, boxRow, parts, chips, share, feather, copy);
   if (tools) tools.tell = (said) => fill(share, said);
   return element;
+}
+
+/** The box in numbers, for those who know them and for the keyboard. @param {import('./region_tools.js').RegionTools} tools */
+function boxFields(tools) {
+  const fields = [text.region.boxFrom, text.region.boxTo].flatMap((end) => ['X', 'Y', 'Z'].map((axis) =>
+    h('input', { type: 'number', step: 'any', 'aria-label': `${end} ${axis}`, onchange: () => change() })));
+  const change = () => {
+    const values = fields.map((field) => field.valueAsNumber);
+    if (values.every(Number.isFinite)) tools.setBox(values);
+  };
+  tools.boxChanged = (values) => values.forEach((value, i) => {
+    if (fields[i] !== document.activeElement) fields[i].value = String(value);
+    fields[i].step = String(Number((tools.size / 100).toPrecision(1)));
+  });
+  return h('div.box-fields', {}, h('span'), ...['X', 'Y', 'Z'].map((axis) => h('small', { 'aria-hidden': 'true' }, axis)),
+    h('span', {}, text.region.boxFrom), ...fields.slice(0, 3), h('span', {}, text.region.boxTo), ...fields.slice(3));
 }

@@ -24,7 +24,9 @@ export class RegionTools {
     this.tell = () => {};
     /** @type {Brush|null} */
     this.brush = null;
-    this.box = new BoxTool(stage, () => {});
+    /** @type {(values: number[]) => void} least x, y, z, then most */
+    this.boxChanged = () => {};
+    this.box = new BoxTool(stage, () => this.boxChanged(this.boxValues()));
     /** @type {Map<number, THREE.Texture>} */
     this.veil = new Map();
     this.menu = h('div.popover.point', { hidden: true, role: 'menu' });
@@ -144,9 +146,19 @@ export class RegionTools {
     }
   }
 
-  useBox() {
+  boxValues() {
     const { min, max } = this.box.box;
-    this.add(`box=${[...min.toArray(), ...max.toArray()].map((v) => Number(v.toPrecision(4))).join(',')}`);
+    return [...min.toArray(), ...max.toArray()].map((v) => Number(v.toPrecision(4)));
+  }
+
+  /** @param {number[]} values as boxValues gives them; of a pair the smaller one is the least */
+  setBox(values) {
+    const a = new THREE.Vector3(...values.slice(0, 3)), b = new THREE.Vector3(...values.slice(3));
+    this.box.show(new THREE.Box3(a.clone().min(b), a.max(b)));
+  }
+
+  useBox() {
+    this.add(`box=${this.boxValues().join(',')}`);
     this.store.set({ tool: 'orbit' });
   }
 

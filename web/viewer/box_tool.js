@@ -2,7 +2,7 @@
 import * as THREE from '../three.js';
 
 export class BoxTool {
-  /** @param {import('./stage.js').Stage} stage @param {(box: THREE.Box3) => void} change when a face was moved */
+  /** @param {import('./stage.js').Stage} stage @param {(box: THREE.Box3) => void} change when it is another box */
   constructor(stage, change) {
     this.stage = stage;
     this.change = change;
@@ -26,6 +26,7 @@ export class BoxTool {
     this.box.copy(box);
     this.stage.overlay.add(this.group);
     this.place();
+    this.change(this.box);
   }
 
   hide() {
@@ -71,10 +72,10 @@ export class BoxTool {
     const value = through.getComponent(axis) + t;
     end.setComponent(axis, this.dragged & 1 ? Math.max(value, other) : Math.min(value, other));
     this.place();
+    this.change(this.box);
   }
 
   up() {
-    if (this.dragged >= 0) this.change(this.box);
     this.dragged = -1;
   }
 }

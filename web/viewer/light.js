@@ -9,6 +9,7 @@ import { ROUGHNESS } from './prefilter.js';
  */
 
 export const LEVELS = ROUGHNESS.length;
+const SMALLEST = 2 ** (LEVELS - 1); // texels; the last level has one
 
 export class StageLight {
   constructor() {
@@ -37,13 +38,13 @@ export class StageLight {
     const response = await fetch(url, { signal });
     if (!response.ok) {
       const body = await response.json().catch(() => null);
-      throw new Error(body?.error ?? `${response.status} ${response.statusText}`);
+      throw Object.assign(new Error(body?.error ?? `${response.status} ${response.statusText}`), { hint: body?.hint });
     }
     const { data, width, height } = /** @type {{data: Float32Array, width: number, height: number}} */ (this.loader.parse(await response.arrayBuffer()));
     const { pixels, across } = fitted(data, width, height);
     const levels = await new Promise((resolve) => {
       this.waiting.set(request, resolve);
-      this.worker.postMessage({ id: request, pixels, width: across, size: across / 4 }, [pixels.buffer]);
+      this.worker.postMessage({ id: request, pixels, width: across, size: Math.max(across / 4, SMALLEST) }, [pixels.buffer]);
     });
     if (request !== this.request) return false;
     this.put('specular', levels.specular);

@@ -15,13 +15,13 @@ export const ROUGHNESS = [0, 0.1, 0.19, 0.36, 0.65, 1];
 /**
  * @param {Float32Array} pixels RGBA, linear; the centre looks towards -Z, the right quarter to +X
  * @param {number} width twice the height, a power of two
- * @param {number} size of the sharpest level
+ * @param {number} size of the sharpest level, a power of two from 32 on: its levels halve to the last
  * @returns {{specular: CubeLevel[], diffuse: CubeLevel}}
  */
 export function prefilter(pixels, width, size) {
   const pyramid = makePyramid(pixels, width);
   const specular = ROUGHNESS.map((roughness, level) => {
-    const edge = Math.max(size >> level, 4);
+    const edge = size >> level;
     return roughness === 0 ? mirror(pixels, width, edge) : convolve(pyramid, edge, ggxKernel(roughness), 1.5);
   });
   return { specular, diffuse: convolve(pyramid.slice(-2), 32, cosineKernel(), 0) };

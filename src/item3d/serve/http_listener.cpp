@@ -15,6 +15,9 @@
 namespace item3d {
 namespace {
 
+/// Connections that wait to be accepted; httplib's five lose those of a crowd.
+constexpr int most_waiting = 1024;
+
 /// Two programs that both ask for SO_REUSEPORT, which httplib does by itself, would share the port.
 void set_listener_options(socket_t socket) {
     const int yes = 1;
@@ -28,7 +31,11 @@ HttpListener::HttpListener(httplib::Server& server, const std::string& host, int
     server.new_task_queue = [threads] {
         return new httplib::ThreadPool(static_cast<std::size_t>(threads));
     };
-    server.set_socket_options(set_listener_options);
+    socket_t listening = -1;  // the last one that was tried
+    server.set_socket_options([&listening](socket_t socket) {
+        set_listener_options(socket);
+        listening = socket;
+    });
     server.set_tcp_nodelay(true);
     errno = 0;
     if (port == 0)
@@ -44,6 +51,8 @@ HttpListener::HttpListener(httplib::Server& server, const std::string& host, int
                                      errno != 0 ? std::strerror(errno) : "no such host"),
                          "name an address of this machine");
     }
+    ::listen(listening, most_waiting);
+    server.set_socket_options(set_listener_options);
     thread_ = std::thread([&server] { server.listen_after_bind(); });
     while (!server.is_running())
         std::this_thread::sleep_for(std::chrono::milliseconds(1));

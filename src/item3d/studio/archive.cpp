@@ -44,6 +44,11 @@ bool is_one_of(const fs::path& name, const std::array<const char*, N>& extension
     throw InputError(archive.filename().string(), problem, hint);
 }
 
+[[noreturn]] void refuse_size(const fs::path& archive, std::int64_t limit) {
+    refuse(archive, fmt::format("unpacks to more than {} MB", limit >> 20),
+           "make its textures smaller");
+}
+
 /// A path within a folder: none of its parts leads up or elsewhere, none has control characters.
 fs::path safe_path(const fs::path& archive, std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
@@ -83,9 +88,7 @@ std::int64_t unpack_entry(zip_t* archive, zip_uint64_t index, const fs::path& so
             if (got < 0) refuse(source, "is damaged: a file in it cannot be unpacked");
             if (got == 0) break;
             written += got;
-            if (written > longest)
-                refuse(source, fmt::format("unpacks to more than {} MB", limit >> 20),
-                       "make its textures smaller");
+            if (written > longest) refuse_size(source, limit);
             file.write(piece.data(), got);
         }
         file.close();
@@ -118,6 +121,8 @@ fs::path unpack_model(const fs::path& source, const fs::path& folder, const Arch
         if (!is_model && !is_one_of(path, other_extensions)) continue;
         if ((entry.valid & ZIP_STAT_ENCRYPTION_METHOD) && entry.encryption_method != ZIP_EM_NONE)
             refuse(source, "is encrypted", "pack it without a password");
+        if ((entry.valid & ZIP_STAT_SIZE) && entry.size > static_cast<zip_uint64_t>(left))
+            refuse_size(source, limits.bytes);
         const std::int64_t size =
             unpack_entry(archive.get(), i, source, folder / path, left, limits.bytes);
         left -= size;

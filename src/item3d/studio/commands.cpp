@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <string_view>
 
 namespace item3d {
 namespace {
@@ -65,6 +67,16 @@ std::string light_file_name(const std::string& name) {
     return fs::path(stored_name(name + ".hdr")).stem().string() + ".hdr";
 }
 
+std::optional<std::int64_t> result_of_light(const std::string& name) {
+    constexpr std::string_view prefix = "result-";
+    if (!name.starts_with(prefix)) return std::nullopt;
+    std::int64_t result = 0;
+    const char* const end = name.data() + name.size();
+    const auto parsed = std::from_chars(name.data() + prefix.size(), end, result);
+    if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
+    return result;
+}
+
 std::string model_path(const StudioFolders& folders, const StudioProject& project,
                        const StudioResult* parent) {
     if (!parent) return "source/" + project.file;
@@ -82,10 +94,14 @@ std::string shown_command(const StudioCommand& command) {
     return text;
 }
 
-/// A preset, or a light that was uploaded.
-std::string StudioCommands::light(const std::string& name) const {
+/// A preset, a result's own light, or one that was uploaded.
+std::string StudioCommands::light(const StudioProject& project, const std::string& name) const {
     const auto& presets = light_preset_names();
     if (std::find(presets.begin(), presets.end(), name) != presets.end()) return name;
+    if (const auto result = result_of_light(name)) {
+        const std::string made = result_folder_name(*result) + "/light.hdr";
+        if (fs::exists(folders_.project(project.id) / made)) return made;
+    }
     const std::string file = light_file_name(name);
     if (!fs::exists(folders_.root() / "lights" / file))
         throw InputError("light", "'" + name + "' is neither a preset nor an uploaded light");
@@ -112,7 +128,7 @@ void StudioCommands::add_settings(const StudioProject& project, const Json& give
         const std::string flag = row->at("flag");
         const std::string type = row->at("type");
         std::vector<std::string> texts = value_texts(name, value);
-        if (name == "light") texts[0] = light(texts[0]);
+        if (name == "light") texts[0] = light(project, texts[0]);
         if (type == "repeated_texts")
             for (const std::string& text : texts)
                 arguments.push_back(option(flag, text));
@@ -161,14 +177,15 @@ StudioCommands::Arguments StudioCommands::edit(const StudioProject& project,
     return arguments;
 }
 
-StudioCommands::Arguments StudioCommands::relight(const StudioProject&, const Json& request) const {
+StudioCommands::Arguments StudioCommands::relight(const StudioProject& project,
+                                                  const Json& request) const {
     Arguments arguments;
     const std::string from = text_of(request, "from"), to = text_of(request, "to");
     if (!to.empty()) arguments = {option("--from", from), option("--to", to)};
     for (const char* key : {"light", "from_light"})
         if (const std::string name = text_of(request, key); !name.empty() && name != "sky")
-            arguments.push_back(
-                option(std::string(key) == "light" ? "--light" : "--from-light", light(name)));
+            arguments.push_back(option(std::string(key) == "light" ? "--light" : "--from-light",
+                                       light(project, name)));
     const std::pair<const char*, const char*> options[] = {
         {"hour", "--sky"},          {"sun", "--sun"},           {"lit", "--lit"},
         {"rotate", "--rotate"},     {"tilt", "--tilt"},         {"tint", "--tint"},
@@ -187,7 +204,8 @@ StudioCommands::Arguments StudioCommands::relight(const StudioProject&, const Js
 StudioCommands::Arguments StudioCommands::reconstruct(const StudioProject& project,
                                                       const Json&) const {
     const fs::path photographs = folders_.project(project.id) / "photographs";
-    for (const char* name : {"transforms.json", "transforms_train.json", "poses_bounds.npy"})
+    for (const char* name : {"transforms.json", "transforms_train.json", "poses_bounds.npy",
+                             "sparse", "colmap/sparse"})
         if (fs::exists(photographs / name)) return {"photographs"};
     return {option("--from-images", "photographs")};
 }

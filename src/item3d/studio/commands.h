@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,7 +47,7 @@ class StudioCommands {
                       Arguments& arguments) const;
     void add_region(const StudioProject& project, const nlohmann::json& request,
                     Arguments& arguments) const;
-    std::string light(const std::string& name) const;
+    std::string light(const StudioProject& project, const std::string& name) const;
 
     const StudioFolders& folders_;
     nlohmann::json settings_;
@@ -56,6 +58,9 @@ std::string shown_command(const StudioCommand& command);
 
 /// The file of an uploaded light in the folder lights/.
 std::string light_file_name(const std::string& name);
+
+/// 7, of "result-7": the light that result 7 was made in, or found.
+std::optional<std::int64_t> result_of_light(const std::string& name);
 
 /// "source/mug.glb", or the parent's model, seen from the project's folder.
 std::string model_path(const StudioFolders& folders, const StudioProject& project,

@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// The demo edit of docs/benchmarks.md, on two cores.
-constexpr EditCost demo_cost{250, 64 * 64, 29.0, 16.6, 9.6, 0.86e9};
+constexpr EditCost demo_cost{250, 64 * 64, 29.0, 16.6, 2.0, 7.6, 0.86e9};
 constexpr int demo_threads = 2;
 
 double median(std::vector<double> values) {
@@ -56,6 +56,24 @@ bool paints_detail(const Json& request, const Json& settings, const Json& defaul
     });
 }
 
+struct EditSize {
+    bool detail = false;
+    double iterations = 0, pixels = 0;
+};
+
+EditSize size_of(const Json& request, const Json& settings, const Json& defaults) {
+    EditSize size;
+    size.detail = paints_detail(request, settings, defaults);
+    const double usual = number(Json::object(), defaults, "iterations", demo_cost.iterations);
+    const double before_detail = number(settings, defaults, "iterations_before_detail", 0);
+    size.iterations = settings.contains("iterations")
+                          ? number(settings, defaults, "iterations", usual)
+                          : (size.detail && before_detail > 0 ? before_detail : usual);
+    const double resolution = number(settings, defaults, "resolution", 64);
+    size.pixels = number(settings, defaults, "batch", 1) * resolution * resolution;
+    return size;
+}
+
 }  // namespace
 
 std::optional<EditCost> edit_cost(const Json& summary) {
@@ -68,7 +86,8 @@ std::optional<EditCost> edit_cost(const Json& summary) {
         cost.pixels = settings.at("batch").get<double>() * resolution * resolution;
         cost.optimize = seconds.at("optimize").get<double>();
         cost.detail = seconds.value("detail", 0.0);
-        cost.rest = seconds.at("total").get<double>() - cost.optimize - cost.detail;
+        cost.before = seconds.value("load", 0.0) + seconds.value("fit", 0.0);
+        cost.after = seconds.at("total").get<double>() - cost.before - cost.optimize - cost.detail;
         cost.memory = summary.at("peak_memory_bytes").get<double>();
         const bool is_whole = text(summary, "command", "").find(" --resume") == std::string::npos;
         if (!is_whole || cost.iterations <= 0 || cost.optimize <= 0) return std::nullopt;
@@ -78,41 +97,47 @@ std::optional<EditCost> edit_cost(const Json& summary) {
     }
 }
 
-Json estimate_edit(const Json& request, const Json& defaults, const std::vector<EditCost>& former,
-                   int threads) {
+EditPlanSeconds expected_seconds(const Json& request, const Json& defaults,
+                                 const std::vector<EditCost>& former, int threads) {
     const Json settings = request.value("settings", Json::object());
-    const bool detail = paints_detail(request, settings, defaults);
-    const double usual = number(Json::object(), defaults, "iterations", demo_cost.iterations);
-    const double before_detail = number(settings, defaults, "iterations_before_detail", 0);
-    const double iterations = settings.contains("iterations")
-                                  ? number(settings, defaults, "iterations", usual)
-                                  : (detail && before_detail > 0 ? before_detail : usual);
-    const double resolution = number(settings, defaults, "resolution", 64);
-    const double pixels = number(settings, defaults, "batch", 1) * resolution * resolution;
-
+    const EditSize size = size_of(request, settings, defaults);
     std::vector<EditCost> costs = former;
     double faster = 1;
     if (costs.empty()) {
         costs = {demo_cost};
         faster = static_cast<double>(std::max(1, threads)) / demo_threads;
     }
+    EditPlanSeconds plan;
+    plan.before = median_of(costs, [](const EditCost& cost) { return cost.before; }) / faster;
+    plan.after = median_of(costs, [](const EditCost& cost) { return cost.after; }) / faster;
     const double per_pixel = median_of(costs, [](const EditCost& cost) {
         return cost.optimize / (cost.iterations * cost.pixels);
     });
-    double seconds = per_pixel * iterations * pixels +
-                     median_of(costs, [](const EditCost& cost) { return cost.rest; });
-    if (detail) {
+    plan.optimize = per_pixel * size.iterations * size.pixels / faster;
+    if (size.detail) {
         std::vector<EditCost> detailed;
         std::copy_if(costs.begin(), costs.end(), std::back_inserter(detailed),
                      [](const EditCost& cost) { return cost.detail > 0; });
-        seconds += detailed.empty()
-                       ? demo_cost.detail
-                       : median_of(detailed, [](const EditCost& cost) { return cost.detail; });
+        plan.detail =
+            (detailed.empty()
+                 ? demo_cost.detail
+                 : median_of(detailed, [](const EditCost& cost) { return cost.detail; })) /
+            faster;
     }
-    return {{"seconds", std::round(10 * seconds / faster) / 10},
-            {"memory_bytes", median_of(costs, [](const EditCost& cost) { return cost.memory; })},
-            {"iterations", iterations},
-            {"detail", detail},
+    return plan;
+}
+
+Json estimate_edit(const Json& request, const Json& defaults, const std::vector<EditCost>& former,
+                   int threads) {
+    const EditSize size = size_of(request, request.value("settings", Json::object()), defaults);
+    const double seconds = expected_seconds(request, defaults, former, threads).total();
+    const double memory = former.empty()
+                              ? demo_cost.memory
+                              : median_of(former, [](const EditCost& cost) { return cost.memory; });
+    return {{"seconds", std::round(10 * seconds) / 10},
+            {"memory_bytes", memory},
+            {"iterations", size.iterations},
+            {"detail", size.detail},
             {"basis", former.empty() ? "the demo edit elsewhere" : "edits on this machine"}};
 }
 

@@ -14,19 +14,30 @@ struct EditCost {
     double pixels = 0;      ///< of each iteration: batch times resolution squared
     double optimize = 0;    ///< seconds
     double detail = 0;      ///< seconds of the detail stage; 0: none
-    double rest = 0;        ///< seconds of all else
+    double before = 0;      ///< seconds until the first iteration
+    double after = 0;       ///< seconds of textures and pictures
     double memory = 0;      ///< bytes
+};
+
+/// Seconds that the parts of an edit are expected to take.
+struct EditPlanSeconds {
+    double before = 0, optimize = 0, detail = 0, after = 0;
+
+    double total() const { return before + optimize + detail + after; }
 };
 
 /// Nothing where the summary lacks values, or is of a run that went on from a checkpoint and so
 /// does not have all of the time.
 std::optional<EditCost> edit_cost(const nlohmann::json& summary);
 
-/// "seconds", "memory_bytes" and "basis" ("edits on this machine", or "the demo edit elsewhere").
-///
 /// request: as the page sends it; defaults: the prior's settings. former: costs of edits on this
 /// machine, of which medians are taken; the seconds of an iteration follow its pixels. Without any,
 /// those of the demo edit on two cores, divided by threads. An edit that settles takes less.
+EditPlanSeconds expected_seconds(const nlohmann::json& request, const nlohmann::json& defaults,
+                                 const std::vector<EditCost>& former, int threads);
+
+/// "seconds" of the same, "memory_bytes", "iterations", "detail" and "basis" ("edits on this
+/// machine", or "the demo edit elsewhere").
 nlohmann::json estimate_edit(const nlohmann::json& request, const nlohmann::json& defaults,
                              const std::vector<EditCost>& former, int threads);
 

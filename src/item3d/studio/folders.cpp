@@ -6,6 +6,7 @@
 #include "item3d/serve/secret.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace item3d {
 namespace {
@@ -74,6 +75,22 @@ std::string shown_name(const std::string& given, const std::string& otherwise) {
     std::erase_if(name, [](unsigned char letter) { return letter < 32 || letter == 127; });
     name = std::string(trim(shortened(name, longest)));
     return name.empty() || name == "." || name == ".." ? otherwise : name;
+}
+
+fs::path stored_path(const std::string& given) {
+    constexpr std::size_t deepest = 4;
+    std::vector<std::string> parts(1);
+    for (const char letter : given)
+        if (letter == '/' || letter == '\\')
+            parts.emplace_back();
+        else
+            parts.back() += letter;
+    std::erase_if(
+        parts, [](const std::string& part) { return part.empty() || part == "." || part == ".."; });
+    fs::path path;
+    for (std::size_t i = parts.size() - std::min(parts.size(), deepest); i < parts.size(); ++i)
+        path /= stored_name(parts[i]);
+    return path.empty() ? fs::path("file") : path;
 }
 
 std::string stored_name(const std::string& given) {

@@ -46,5 +46,8 @@ std::string result_folder_name(std::int64_t result);
 std::string shown_name(const std::string& given, const std::string& otherwise);
 /// A file's name that is safe to write: letters, digits, "-", "_" and the extension in lower case.
 std::string stored_name(const std::string& given);
+/// The same of each part of a relative path; those that lead up or nowhere are left out, and of
+/// many the last four are kept.
+std::filesystem::path stored_path(const std::string& given);
 
 }  // namespace item3d

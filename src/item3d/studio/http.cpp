@@ -10,6 +10,7 @@
 #include <charconv>
 #include <fstream>
 #include <map>
+#include <utility>
 
 namespace item3d {
 namespace {
@@ -25,6 +26,30 @@ std::string refusal_of(Studio& studio, const HttpRequest& request) {
     if (refusal.empty() && !studio.access().knows_token(origin))
         refusal = "the token is missing or wrong; open the address that item3d studio printed";
     return refusal;
+}
+
+/// Status and text of what was thrown.
+std::pair<int, std::string> refusal_of_exception(const Studio& studio,
+                                                 std::exception_ptr exception) {
+    const auto say = [&](int status, const std::string& message) {
+        return std::pair{status, studio.folders().without_paths(message)};
+    };
+    try {
+        std::rethrow_exception(exception);
+    } catch (const ResourceError& error) {
+        return say(http_status::no_storage, error.what());
+    } catch (const Error& error) {
+        return say(http_status::bad_request, error.what());
+    } catch (const fs::filesystem_error& error) {
+        return say(error.code() == std::errc::no_space_on_device ? http_status::no_storage
+                                                                 : http_status::failed,
+                   error.code().message());
+    } catch (const Json::exception& error) {
+        return say(http_status::bad_request, "the request is not as it was expected");
+    } catch (const std::exception& error) {
+        warn(error.what());
+        return say(http_status::failed, error.what());
+    }
 }
 
 /// Calls the answer where the request may come; what it throws is answered.
@@ -142,8 +167,10 @@ void StudioRoutes::post_stream(const std::string& pattern, std::size_t longest,
         } else {
             try {
                 answer(request, response, reader);
-            } catch (...) {
-                reply_exception(studio, response, std::current_exception());
+            } catch (...) {  // perhaps in the middle of the body, of which no request follows
+                const auto [status, message] =
+                    refusal_of_exception(studio, std::current_exception());
+                refuse_and_close(response, status, message);
             }
         }
     });
@@ -185,25 +212,8 @@ void refuse_and_close(HttpResponse& response, int status, const std::string& mes
 }
 
 void reply_exception(const Studio& studio, HttpResponse& response, std::exception_ptr exception) {
-    const auto say = [&](int status, const std::string& message) {
-        reply_error(response, status, studio.folders().without_paths(message));
-    };
-    try {
-        std::rethrow_exception(exception);
-    } catch (const ResourceError& error) {
-        say(http_status::no_storage, error.what());
-    } catch (const Error& error) {
-        say(http_status::bad_request, error.what());
-    } catch (const fs::filesystem_error& error) {
-        say(error.code() == std::errc::no_space_on_device ? http_status::no_storage
-                                                          : http_status::failed,
-            error.code().message());
-    } catch (const Json::exception& error) {
-        say(http_status::bad_request, "the request is not as it was expected");
-    } catch (const std::exception& error) {
-        warn(error.what());
-        say(http_status::failed, error.what());
-    }
+    const auto [status, message] = refusal_of_exception(studio, exception);
+    reply_error(response, status, message);
 }
 
 std::int64_t number_of(const HttpRequest& request, std::size_t group) {

@@ -6,6 +6,7 @@
 #include "item3d/studio/live_folder.h"
 
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 namespace item3d {
@@ -47,6 +48,7 @@ struct StudioJobs::Running {
     StudioResult result;
     std::unique_ptr<ChildProgram> program;
     LiveFolder live;
+    JobClock clock;
     Clock::time_point begin = Clock::now();
     Clock::time_point told = {};
     Wish wish = Wish::none;
@@ -55,19 +57,32 @@ struct StudioJobs::Running {
     double seconds() const { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 };
 
+/// A stage's progress with that of the whole job.
+nlohmann::json StudioJobs::told_progress(Running& running, nlohmann::json progress) {
+    const double seconds = running.result.seconds + running.seconds();
+    progress["seconds"] = seconds;
+    if (const auto left = running.clock.seconds_left(progress, running.seconds())) {
+        progress["job_seconds_left"] = std::round(10 * *left) / 10;
+        progress["share"] = seconds / (seconds + *left);
+    }
+    return progress;
+}
+
 StudioJobs::StudioJobs(StudioStore& store, StudioEvents& events, const StudioFolders& folders,
-                       const StudioCommands& commands, std::function<void(StudioResult&)> ended)
+                       const StudioCommands& commands, std::function<void(StudioResult&)> ended,
+                       std::function<JobClock(const StudioResult&)> clock)
     : store_(store),
       events_(events),
       folders_(folders),
       commands_(commands),
-      ended_(std::move(ended)) {
+      ended_(std::move(ended)),
+      clock_(std::move(clock)) {
     for (StudioResult& result : store_.results_in(ResultState::running)) {
         result.state = ResultState::paused;
         store_.update_result(result);
     }
     for (StudioResult& result : store_.results_in(ResultState::paused))
-        if (fs::exists(folders_.result(result.project, result.id) / summary_name)) finish(result);
+        if (is_complete(result)) finish(result);
     thread_ = std::thread([this] { loop(); });
 }
 
@@ -83,6 +98,11 @@ StudioJobs::~StudioJobs() {
         changed_.notify_all();
     }
     thread_.join();
+}
+
+/// Whether an edit has its last file: the command line may have ended it.
+bool StudioJobs::is_complete(const StudioResult& result) const {
+    return fs::exists(folders_.result(result.project, result.id) / summary_name);
 }
 
 void StudioJobs::loop() {
@@ -102,6 +122,12 @@ void StudioJobs::loop() {
                 continue;
             }
             const std::vector<StudioResult> waiting = store_.results_in(ResultState::waiting);
+            if (!waiting.empty() && is_complete(waiting.front())) {
+                finish(waiting.front());
+                const std::lock_guard guard(mutex_);
+                may_begin_ = true;
+                continue;
+            }
             const std::lock_guard guard(mutex_);
             if (!waiting.empty() && !stopping_) begin(waiting.front());
         } catch (const std::exception& error) {
@@ -128,13 +154,14 @@ void StudioJobs::begin(StudioResult result) {
         auto running = std::make_unique<Running>();
         running->live = LiveFolder(folder / live_folder_name);
         running->live.clear();
+        running->clock = clock_(result);
+        result.state = ResultState::running;
+        result.message.clear();
+        store_.update_result(result);  // before it has begun: what runs may not be removed
         running->program = std::make_unique<ChildProgram>(
             arguments_of(folders_, command, result), folder / "log.txt",
             ChildSurroundings{folders_.project(result.project), "item3d"});
-        result.state = ResultState::running;
-        result.message.clear();
         running->result = result;
-        store_.update_result(result);
         running_ = std::move(running);
         events_.send("result", result_json(result), event_key(result.id));
     } catch (const std::exception& error) {
@@ -177,8 +204,7 @@ void StudioJobs::watch() {
     const auto progress = running_->live.new_progress();
     if (!progress) return;
     const std::lock_guard guard(mutex_);
-    running_->result.progress = *progress;
-    running_->result.progress["seconds"] = running_->result.seconds + running_->seconds();
+    running_->result.progress = told_progress(*running_, *progress);
     const StudioResult told = running_->result;
     if (auto result = store_.result(id)) {  // with what people wrote meanwhile
         result->progress = told.progress;

@@ -5,6 +5,7 @@
 #include "item3d/core/child_program.h"
 #include "item3d/studio/commands.h"
 #include "item3d/studio/events.h"
+#include "item3d/studio/job_clock.h"
 #include "item3d/studio/store.h"
 
 #include <condition_variable>
@@ -21,10 +22,11 @@ namespace item3d {
 class StudioJobs {
   public:
     /// Results that ran when an earlier server ended are paused, or done where the command line has
-    /// ended them since. ended: called by the queue's
-    /// thread with a result that is done, before that is told; what it throws makes it fail.
+    /// ended them since. ended: called by the queue's thread with a result that is done, before
+    /// that is told; what it throws makes it fail. clock: of a result that begins.
     StudioJobs(StudioStore& store, StudioEvents& events, const StudioFolders& folders,
-               const StudioCommands& commands, std::function<void(StudioResult&)> ended);
+               const StudioCommands& commands, std::function<void(StudioResult&)> ended,
+               std::function<JobClock(const StudioResult&)> clock);
     /// What runs is asked to end, and is paused.
     ~StudioJobs();
     StudioJobs(const StudioJobs&) = delete;
@@ -36,7 +38,8 @@ class StudioJobs {
     /// Asks what runs to keep what it has and end; what waits does not run until resume().
     void pause(std::int64_t id);
     void cancel(std::int64_t id);
-    /// What has ended without being done waits for its turn again and goes on where it was.
+    /// What has ended without being done waits for its turn again and goes on where it was; it is
+    /// done then where the command line has ended it since.
     void resume(std::int64_t id);
     /// Cancels it and removes it with its folder.
     void remove(std::int64_t id);
@@ -51,7 +54,9 @@ class StudioJobs {
     struct Running;
 
     void loop();
+    bool is_complete(const StudioResult& result) const;
     void begin(StudioResult result);
+    static nlohmann::json told_progress(Running& running, nlohmann::json progress);
     void watch();
     void end(int status);
     void finish(StudioResult result);
@@ -65,6 +70,7 @@ class StudioJobs {
     const StudioFolders& folders_;
     const StudioCommands& commands_;
     std::function<void(StudioResult&)> ended_;
+    std::function<JobClock(const StudioResult&)> clock_;
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;

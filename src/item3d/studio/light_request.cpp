@@ -8,7 +8,6 @@
 #include "item3d/lighting/presets/sky_hour.h"
 #include "item3d/lighting/words.h"
 #include "item3d/scene/model_view.h"
-#include "item3d/studio/commands.h"
 #include "item3d/studio/halved.h"
 
 #include <fmt/format.h>
@@ -94,7 +93,7 @@ std::optional<Vec3> requested_tint(const std::string& text) {
 }
 
 Image unchanged_light(const std::string& name, int width, const LightParameter& parameter,
-                      const fs::path& folder) {
+                      const fs::path& file) {
     constexpr float day = 24;
     if (name == "sky") {
         const float hour = light_number(parameter, "hour", day);
@@ -103,7 +102,6 @@ Image unchanged_light(const std::string& name, int width, const LightParameter& 
     const auto& presets = light_preset_names();
     if (std::find(presets.begin(), presets.end(), name) != presets.end())
         return make_light_preset(name, width / 2);
-    const fs::path file = folder / light_file_name(name);
     if (!fs::exists(file)) throw InputError("light", "there is none of this name");
     return halved(load_light(file.string()), width);
 }
@@ -111,7 +109,7 @@ Image unchanged_light(const std::string& name, int width, const LightParameter& 
 }  // namespace
 
 Image requested_light(const std::string& name, int width, const LightParameter& parameter,
-                      const fs::path& folder) {
+                      const fs::path& file) {
     constexpr float turns = 36000, stops = 30;
     LightChange change;
     change.rotation = light_number(parameter, "rotate", turns);
@@ -119,7 +117,7 @@ Image requested_light(const std::string& name, int width, const LightParameter& 
     change.exposure = light_number(parameter, "exposure", stops);
     change.sun = requested_sun(parameter);
     change.tint = requested_tint(parameter("tint"));
-    return change_light(unchanged_light(name, width, parameter, folder), change);
+    return change_light(unchanged_light(name, width, parameter, file), change);
 }
 
 }  // namespace item3d

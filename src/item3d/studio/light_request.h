@@ -14,10 +14,10 @@ namespace item3d {
 /// `item3d relight` has them.
 using LightParameter = std::function<std::string(const std::string& name)>;
 
-/// name: a preset, "sky", or a light of `folder`. width: of the equirectangular picture; uploaded
-/// lights are halved until they are no wider. Throws InputError for a light that there is not, and
-/// for values that cannot be understood.
+/// name: a preset, "sky", or another whose picture is in `file`. width: of the equirectangular
+/// picture; pictures are halved until they are no wider. Throws InputError for a light that there
+/// is not, and for values that cannot be understood.
 Image requested_light(const std::string& name, int width, const LightParameter& parameter,
-                      const std::filesystem::path& folder);
+                      const std::filesystem::path& file);
 
 }  // namespace item3d

@@ -49,7 +49,7 @@ struct StudioResult {
     std::string note;
     std::vector<std::string> files;  ///< that can be asked for, once it has ended
     std::string command;             ///< that makes it on the command line
-    nlohmann::json progress;         ///< while it runs: "stage", "done", "total", "seconds_left"
+    nlohmann::json progress;         ///< while it runs (docs/reference/studio_api.md)
 };
 
 nlohmann::json project_json(const StudioProject& project);

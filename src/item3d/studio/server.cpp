@@ -12,8 +12,9 @@
 namespace item3d {
 namespace {
 
-/// Event streams and uploads hold a thread each; browsers keep six connections a page.
-constexpr int server_threads = 64;
+/// Event streams, uploads and silent connections hold a thread each; browsers keep six connections
+/// a page.
+constexpr int server_threads = 256;
 constexpr std::size_t longest_body = std::size_t{1536} << 20;  ///< of the largest upload
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "item3d/io/save.h"
 #include "item3d/io/text.h"
 #include "item3d/studio/archive.h"
+#include "item3d/studio/edit_history.h"
 #include "item3d/studio/halved.h"
 
 #include <algorithm>
@@ -63,8 +64,10 @@ Studio::Studio(StudioOptions options)
       store_(options_.folder),
       access_(options_.access),
       commands_(folders_, read_catalogue(options_.page)),
-      jobs_(store_, events_, folders_, commands_,
-            [this](StudioResult& result) { take_result(result); }) {
+      jobs_(
+          store_, events_, folders_, commands_,
+          [this](StudioResult& result) { take_result(result); },
+          [this](const StudioResult& result) { return clock_of(result); }) {
     folders_.clear_incoming();
 }
 
@@ -127,6 +130,18 @@ StudioResult Studio::reconstruct(const fs::path& photographs, const std::string&
     result.project = id;
     result.kind = "reconstruct";
     return jobs_.add(result);
+}
+
+/// Others than edits have no plan: nobody knows what their stages take.
+JobClock Studio::clock_of(const StudioResult& result) {
+    if (result.kind != "edit") return {};
+    try {
+        const EditHistory history = read_edit_history(store_, folders_);
+        return JobClock(
+            expected_seconds(result.request, history.defaults, history.costs, history.threads));
+    } catch (const InputError&) {
+        return {};  // without a shipped prior
+    }
 }
 
 void Studio::take_result(StudioResult& result) {

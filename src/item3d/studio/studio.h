@@ -65,6 +65,7 @@ class Studio {
   private:
     /// Called by the queue with a result that is done.
     void take_result(StudioResult& result);
+    JobClock clock_of(const StudioResult& result);
     void read_model(std::int64_t project, const std::filesystem::path& model);
 
     StudioOptions options_;

@@ -2,12 +2,9 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
-#include "item3d/hub/find_prior.h"
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
-#include "item3d/lighting/presets/sky_hour.h"
-#include "item3d/studio/estimate.h"
-#include "item3d/studio/light_query.h"
+#include "item3d/studio/edit_history.h"
 #include "item3d/studio/light_request.h"
 
 #include <fmt/format.h>
@@ -15,7 +12,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <thread>
 
 namespace item3d {
 namespace {
@@ -25,6 +21,15 @@ using Json = nlohmann::json;
 
 constexpr auto longest_tool = std::chrono::seconds(120);
 constexpr const char* region_folder = "region";
+
+/// Of a light that is no preset.
+fs::path light_file(Studio& studio, const std::string& name) {
+    if (const auto id = result_of_light(name)) {
+        const StudioResult result = studio.result(*id);
+        return studio.folders().result(result.project, result.id) / "light.hdr";
+    }
+    return studio.folders().root() / "lights" / light_file_name(name);
+}
 
 /// Answers with a Radiance file. Presets as they are are kept, since all pages begin with one.
 void answer_light(Studio& studio, const HttpRequest& request, HttpResponse& response) {
@@ -45,7 +50,8 @@ void answer_light(Studio& studio, const HttpRequest& request, HttpResponse& resp
         return;
     }
     const Image light = requested_light(
-        name, width, [&](const std::string& key) { return request.get_param_value(key); }, folder);
+        name, width, [&](const std::string& key) { return request.get_param_value(key); },
+        light_file(studio, name));
     const fs::path file = is_kept ? kept : studio.folders().incoming(".hdr");
     fs::create_directories(file.parent_path());
     save_image(file, light, 32);
@@ -144,20 +150,6 @@ Json make_variants(Studio& studio, const StudioProject& project, const Json& bod
             {"command", shown_command(command)}};
 }
 
-/// Of the last edits that are done.
-std::vector<EditCost> former_costs(Studio& studio) {
-    constexpr std::size_t most = 10;
-    std::vector<EditCost> costs;
-    std::vector<StudioResult> done = studio.store().results_in(ResultState::done);
-    for (auto result = done.rbegin(); result != done.rend() && costs.size() < most; ++result) {
-        const fs::path file = studio.folders().result(result->project, result->id) / "edit.json";
-        if (result->kind != "edit" || !fs::exists(file)) continue;
-        if (const auto cost = edit_cost(Json::parse(read_text(file), nullptr, false)))
-            costs.push_back(*cost);
-    }
-    return costs;
-}
-
 void add_preview_routes(StudioRoutes& routes) {
     Studio& studio = routes.studio;
     const auto revision = std::make_shared<std::atomic<int>>(0);
@@ -202,11 +194,9 @@ void add_tool_routes(StudioRoutes& routes) {
     routes.post(R"(/api/projects/(\d+)/estimate)",
                 [&studio](const HttpRequest& request, HttpResponse& response, const Json& body) {
                     studio.project(number_of(request, 1));
-                    const Json prior = Json::parse(read_text(find_prior("") / "prior.json"));
-                    const auto threads = static_cast<int>(std::thread::hardware_concurrency());
-                    reply_json(response,
-                               estimate_edit(body, prior.value("defaults", Json::object()),
-                                             former_costs(studio), threads));
+                    const EditHistory history = read_edit_history(studio.store(), studio.folders());
+                    reply_json(response, estimate_edit(body, history.defaults, history.costs,
+                                                       history.threads));
                 });
     routes.get(R"(/api/lights/([A-Za-z0-9_-]+)\.hdr)",
                [&studio](const HttpRequest& request, HttpResponse& response) {

@@ -7,12 +7,13 @@
 #include "item3d/io/save.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/serve/secret.h"
+#include "item3d/studio/bounded_file.h"
+#include "item3d/studio/photograph_upload.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 
 namespace item3d {
 namespace {
@@ -24,7 +25,6 @@ constexpr std::size_t megabyte = 1 << 20;
 constexpr std::size_t longest_model = 512 * megabyte;
 constexpr std::size_t longest_picture = 64 * megabyte;
 constexpr std::size_t longest_photographs = 1536 * megabyte;
-constexpr std::size_t most_photographs = 1000;
 
 /// A file or folder of incoming/ that goes with this object.
 class Incoming {
@@ -40,27 +40,6 @@ class Incoming {
 
   private:
     fs::path path_;
-};
-
-/// Writes pieces to a file; throws where the disk is full or more than `longest` bytes come.
-class BoundedFile {
-  public:
-    BoundedFile(const fs::path& path, std::size_t longest)
-        : file_(path, std::ios::binary), left_(longest) {}
-    void add(const char* data, std::size_t size) {
-        if (size > left_) throw InputError("upload", "is larger than what is taken");
-        left_ -= size;
-        file_.write(data, static_cast<std::streamsize>(size));
-        if (!file_) throw ResourceError("upload: the disk is full; free some space");
-    }
-    void close() {
-        file_.close();
-        if (!file_) throw ResourceError("upload: the disk is full; free some space");
-    }
-
-  private:
-    std::ofstream file_;
-    std::size_t left_;
 };
 
 /// What a reader's callback throws comes out behind the reader, which is not made for exceptions.
@@ -118,9 +97,10 @@ void answer_mask(Studio& studio, const HttpRequest& request, HttpResponse& respo
     fs::create_directories(folder);
     fs::rename(incoming.path(), folder / name);
     const std::string material = request.get_param_value("material");
-    reply_json(response, {{"name", name},
-                          {"selector", "mask=" + name + (material.empty() ? "" : "@" + material)},
-                          {"url", fmt::format("api/projects/{}/masks/{}", project.id, name)}});
+    reply_json(response,
+               {{"name", name},
+                {"selector", "mask=masks/" + name + (material.empty() ? "" : "@" + material)},
+                {"url", fmt::format("api/projects/{}/masks/{}", project.id, name)}});
 }
 
 /// Kept as Radiance, whatever it came as.
@@ -132,7 +112,8 @@ void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& 
         throw InputError(given.string(), "is no light", "choose an .hdr, .exr, .png or .jpg file");
     const auto& presets = light_preset_names();
     std::string name = given.stem().string();
-    if (name == "sky" || std::find(presets.begin(), presets.end(), name) != presets.end())
+    if (name == "sky" || result_of_light(name) ||
+        std::find(presets.begin(), presets.end(), name) != presets.end())
         name = "own_" + name;
     const Incoming incoming(studio.folders().incoming(given.extension().string()));
     save_upload(reader, incoming.path(), longest_picture);
@@ -143,49 +124,12 @@ void answer_own_light(Studio& studio, const HttpRequest& request, HttpResponse& 
     reply_json(response, {{"name", name}});
 }
 
-/// Parts named "masks" go into masks/, all others beside each other.
-class PhotographUpload {
-  public:
-    explicit PhotographUpload(fs::path folder) : folder_(std::move(folder)) {
-        fs::create_directories(folder_);
-    }
-    void begin(const httplib::MultipartFormData& part) {
-        close();
-        if (part.filename.empty()) return;
-        if (++count_ > most_photographs)
-            throw InputError("photographs", fmt::format("are more than {}", most_photographs));
-        const std::string name = stored_name(part.filename);
-        constexpr std::array kinds = {".png", ".jpg",  ".jpeg", ".webp",
-                                      ".tif", ".tiff", ".json", ".npy"};
-        const std::string extension = fs::path(name).extension();
-        if (std::find(kinds.begin(), kinds.end(), extension) == kinds.end())
-            throw InputError(shown_name(part.filename, "file"), "is no photograph",
-                             "choose JPEG, PNG, WebP or TIFF pictures");
-        const fs::path inside = part.name == "masks" ? folder_ / "masks" : folder_;
-        fs::create_directories(inside);
-        file_ = std::make_unique<BoundedFile>(inside / name, longest_photographs);
-    }
-    void add(const char* data, std::size_t size) {
-        if (file_) file_->add(data, size);
-    }
-    void close() {
-        if (file_) file_->close();
-        file_.reset();
-    }
-    std::size_t count() const { return count_; }
-
-  private:
-    fs::path folder_;
-    std::unique_ptr<BoundedFile> file_;
-    std::size_t count_ = 0;
-};
-
 void answer_photographs(Studio& studio, const HttpRequest& request, HttpResponse& response,
                         const httplib::ContentReader& reader) {
     if (!request.is_multipart_form_data())
         throw InputError("photographs", "a form with files was expected");
     const Incoming incoming(studio.folders().incoming(""));
-    PhotographUpload upload(incoming.path());
+    PhotographUpload upload(incoming.path(), longest_photographs);
     std::exception_ptr problem;
     const auto guarded = [&](const auto& step) {
         try {
@@ -198,14 +142,14 @@ void answer_photographs(Studio& studio, const HttpRequest& request, HttpResponse
     };
     const bool whole = reader(
         [&](const httplib::MultipartFormData& part) {
-            return guarded([&] { upload.begin(part); });
+            return guarded([&] { upload.begin(part.name, part.filename); });
         },
         [&](const char* data, std::size_t size) {
             return guarded([&] { upload.add(data, size); });
         });
     if (problem) std::rethrow_exception(problem);
     if (!whole) throw InputError("photographs", "were cut off", "send them again");
-    upload.close();
+    upload.end();
     constexpr std::size_t fewest = 3;
     if (upload.count() < fewest)
         throw InputError("photographs", "are too few", "choose 20 or more");

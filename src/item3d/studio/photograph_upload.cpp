@@ -1,0 +1,81 @@
+#include "item3d/studio/photograph_upload.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+#include "item3d/core/replace_file.h"
+#include "item3d/studio/folders.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace item3d {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::size_t most_photographs = 1000;
+constexpr std::array kinds = {".png",  ".jpg",  ".jpeg", ".webp", ".tif",
+                              ".tiff", ".json", ".npy",  ".bin",  ".txt"};
+
+/// Frames name files as they were called.
+void follow_names(const fs::path& file) {
+    Json transforms = Json::parse(read_text(file), nullptr, false);
+    if (!transforms.is_object() || !transforms.contains("frames") ||
+        !transforms["frames"].is_array())
+        return;  // the program that reads it says what is wrong
+    for (Json& frame : transforms["frames"])
+        for (const char* key : {"file_path", "mask_path"})
+            if (frame.is_object() && frame.contains(key) && frame[key].is_string())
+                frame[key] = stored_path(frame[key].get<std::string>()).string();
+    replace_file(file, transforms.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace
+
+PhotographUpload::PhotographUpload(fs::path folder, std::size_t longest)
+    : folder_(std::move(folder)), left_(longest) {
+    fs::create_directories(folder_);
+}
+
+void PhotographUpload::begin(const std::string& field, const std::string& given) {
+    close();
+    if (given.empty()) return;
+    if (++count_ > most_photographs)
+        throw InputError("photographs", fmt::format("are more than {}", most_photographs));
+    const fs::path name = stored_path(given);
+    if (std::find(kinds.begin(), kinds.end(), name.extension()) == kinds.end())
+        throw InputError(shown_name(given, "file"), "is no photograph",
+                         "choose JPEG, PNG, WebP or TIFF pictures");
+    const bool is_mask = field == "masks" && *name.begin() != "masks";
+    const fs::path file = (is_mask ? folder_ / "masks" : folder_) / name;
+    if (fs::exists(file))
+        throw InputError(shown_name(given, "file"), "has the name of another photograph",
+                         "give each a name of letters, digits, - and _");
+    fs::create_directories(file.parent_path());
+    file_ = std::make_unique<BoundedFile>(file, left_);
+}
+
+void PhotographUpload::add(const char* data, std::size_t size) {
+    if (!file_) return;
+    file_->add(data, size);
+    left_ -= size;
+}
+
+void PhotographUpload::close() {
+    if (file_) file_->close();
+    file_.reset();
+}
+
+void PhotographUpload::end() {
+    close();
+    for (const auto& entry : fs::directory_iterator(folder_))
+        if (entry.path().filename().string().starts_with("transforms") &&
+            entry.path().extension() == ".json")
+            follow_names(entry.path());
+}
+
+}  // namespace item3d
