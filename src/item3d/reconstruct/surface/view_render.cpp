@@ -74,7 +74,7 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
     shaded = result.material;
     if (options.one_material) {
         shaded.base_color = shaded.base_color.mean(0, true).expand_as(shaded.base_color);
-        shaded.orm = shaded.orm.detach().mean(0, true).expand_as(shaded.orm);
+        shaded.orm = shaded.orm.mean(0, true).expand_as(shaded.orm);
     }
     if (options.base_color_factor.defined())
         shaded.base_color = shaded.base_color * options.base_color_factor;
