@@ -61,7 +61,7 @@ class Job:
         """Reads a job's record. Throws Item3dError where there is none."""
         try:
             record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
-            if record.get("format") != FORMAT:
+            if not isinstance(record, dict) or record.get("format") != FORMAT:
                 raise ValueError(f"not a {FORMAT}")
         except (OSError, ValueError) as error:
             raise Item3dError(f"{folder / RECORD}: cannot be read ({error}); start the edit again") from error

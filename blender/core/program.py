@@ -38,7 +38,9 @@ def candidates(extension: Path) -> Iterator[Path]:
     if importlib.util.find_spec("item3d_program") is not None:
         import item3d_program  # type: ignore[import-not-found]
 
-        yield Path(item3d_program.program())
+        path = Path(item3d_program.program())
+        _make_executable(path)
+        yield path
     on_path = shutil.which("item3d")
     if on_path:
         yield Path(on_path)
@@ -62,6 +64,18 @@ def find(preference: str, extension: Path) -> Program:
         if path.is_file():
             return check(path)
     raise Item3dError(f"item3d: the program was not found; {HOW_TO_GET_IT}")
+
+
+def _make_executable(program: Path) -> None:
+    """Gives a wheel's programs and loader the right to run, which Blender does not when it unpacks one."""
+    if not program.is_file() or os.access(program, os.X_OK):
+        return
+    for path in program.parents[1].rglob("*"):
+        if path.is_file():
+            with open(path, "rb") as file:
+                begin = file.read(4)
+            if begin == b"\x7fELF" or begin[:2] == b"#!":
+                path.chmod(path.stat().st_mode | 0o111)
 
 
 def check(path: Path) -> Program:

@@ -28,8 +28,18 @@ class Shape:
     @property
     def goes_back(self) -> bool:
         """Whether slots of the source show the result. If not, the result becomes objects of its own."""
-        editable = self.source.library is None and (self.uv is None or self.source.data.library is None)
-        return self.own and editable and self.source.type == "MESH"
+        return not self.obstacle
+
+    @property
+    def obstacle(self) -> str:
+        """Why no slot of the source can show the result; empty: one can."""
+        if self.source.type != "MESH":
+            return "it is no mesh"
+        if not self.own:
+            return "its modifiers make another mesh"
+        if self.source.library is not None or (self.uv is not None and self.source.data.library is not None):
+            return "it is linked from another file"
+        return ""
 
 
 def collect(scratch: Scratch, chosen: list[bpy.types.Object], region: regions.Region) -> list[Shape]:
@@ -78,24 +88,35 @@ def _empty(region: regions.Region) -> str:
 
 
 def _evaluate(scratch: Scratch, chosen: list[bpy.types.Object]) -> list[Shape]:
+    """Evaluated meshes of objects and of all that they instance, with where each stands."""
     graph = scratch.context.evaluated_depsgraph_get()
-    shapes: dict[tuple[str, int], Shape] = {}
+    places: dict[tuple[bpy.types.Object, str], list[Matrix]] = {}
+    generated: dict[str, bpy.types.Mesh] = {}
     for instance in graph.object_instances:
-        thing = instance.object
-        owner = instance.parent if instance.is_instance else thing
-        if owner is None or owner.original not in chosen or thing.type not in WITH_FACES:
+        owner = instance.parent if instance.is_instance else instance.object
+        source = instance.object.original
+        if owner is None or owner.original not in chosen or source.type not in WITH_FACES:
             continue
-        source = thing.original
-        own = not instance.is_instance or thing.data == source.evaluated_get(graph).data
-        key = (source.name_full, thing.data.as_pointer() if thing.data else 0)
-        if key not in shapes:
-            mesh = bpy.data.meshes.new_from_object(thing, preserve_all_data_layers=True, depsgraph=graph)
-            if mesh is None:
-                continue
-            shapes[key] = Shape(source, own, scratch.keep(mesh))
-        if len(shapes[key].matrices) < MOST_INSTANCES:
-            shapes[key].matrices.append(instance.matrix_world.copy())
-    return list(shapes.values())
+        # Geometry nodes instance meshes that are no object's; a curve is listed beside the mesh that it becomes.
+        name = ""
+        if instance.is_instance and instance.object.type == "MESH" and source.type == "MESH":
+            data = instance.object.data
+            if data != source.evaluated_get(graph).data:
+                name = data.name_full
+                if name not in generated:
+                    generated[name] = scratch.keep(data.copy())
+        matrices = places.setdefault((source, name), [])
+        matrix = instance.matrix_world.copy()
+        if len(matrices) < MOST_INSTANCES and (not matrices or matrices[-1] != matrix):
+            matrices.append(matrix)
+    shapes = []
+    for (source, name), matrices in places.items():
+        mesh = generated.get(name)
+        if mesh is None:
+            evaluated = source.evaluated_get(graph)
+            mesh = scratch.keep(bpy.data.meshes.new_from_object(evaluated, preserve_all_data_layers=True, depsgraph=graph))
+        shapes.append(Shape(source, not name, mesh, matrices))
+    return shapes
 
 
 def _prepare(scratch: Scratch, shape: Shape) -> None:

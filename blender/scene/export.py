@@ -143,7 +143,7 @@ def _notes(shapes: list[Shape], glb: Glb, owners: dict[str, dict[str, Any]]) -> 
             notes.append(f"{source}: its nodes were exported as a plain colour; bake them to a picture to keep them")
     for shape in shapes:
         if not shape.goes_back:
-            notes.append(f"{shape.source.name}: its modifiers make the mesh; the result comes as an object of its own")
+            notes.append(f"{shape.source.name}: {shape.obstacle}; the result comes as an object of its own")
         if len(shape.matrices) >= MOST_INSTANCES:
             notes.append(f"{shape.source.name}: the first {MOST_INSTANCES} instances are shown to item3d")
     return list(dict.fromkeys(notes))

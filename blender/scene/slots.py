@@ -41,6 +41,7 @@ def revert(material: bpy.types.Material) -> list[str]:
             slot.link = "DATA"
             if thing.data.users == 1:
                 thing.data.materials.pop(index=index)
+                thing.data = thing.data  # counts the slots again
         changed.append(name)
     material[UNDO] = "[]"
     return changed

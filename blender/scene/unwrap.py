@@ -31,7 +31,7 @@ def set_uv(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> bpy.types.Mes
 def overlaps(mesh: bpy.types.Mesh) -> bool:
     """Whether different places of a mesh lie on the same texels of its active UV map, or beside the picture.
 
-    Looks at points of each triangle: a texel is shared where triangles without a common corner own it.
+    Neighbours share edges alone, on which no centre of a texel counts.
     """
     if not mesh.uv_layers:
         return True
@@ -49,29 +49,27 @@ def overlaps(mesh: bpy.types.Mesh) -> bool:
     areas = np.abs(edge_a[:, 0] * edge_b[:, 1] - edge_a[:, 1] * edge_b[:, 0]) / 2
     if areas.sum() <= 0 or areas.sum() > 1 + MOST_SHARED:
         return True
-    return _shared_part(corners, areas) > MOST_SHARED
+    return _shared_part(corners) > MOST_SHARED
 
 
-def _shared_part(corners: np.ndarray, areas: np.ndarray) -> float:
-    """Part of the covered texels on which points of two triangles lie that do not touch in UV space."""
-    random = np.random.default_rng(0)
-    count = int(min(400_000, max(20_000, 4 * _GRID * _GRID * areas.sum())))
-    triangle = random.choice(len(areas), size=count, p=areas / areas.sum())
-    a, b = random.random((2, count))
-    flip = a + b > 1
-    a[flip], b[flip] = 1 - a[flip], 1 - b[flip]
-    chosen = corners[triangle]
-    points = chosen[:, 0] + a[:, None] * (chosen[:, 1] - chosen[:, 0]) + b[:, None] * (chosen[:, 2] - chosen[:, 0])
-    texels = np.clip((points * _GRID).astype(np.int64), 0, _GRID - 1)
-    at = texels[:, 1] * _GRID + texels[:, 0]
-    order = np.argsort(at, kind="stable")
-    at, triangle = at[order], triangle[order]
-    same = (at[1:] == at[:-1]) & (triangle[1:] != triangle[:-1])
-    first, second = corners[triangle[:-1][same]], corners[triangle[1:][same]]
-    # Neighbours share a corner, or come within a texel of one another.
-    gap = np.abs(first[:, :, None, :] - second[:, None, :, :]).max(-1).reshape(len(first), 9).min(1)
-    shared = np.unique(at[1:][same][gap > 1.0 / _GRID])
-    return len(shared) / max(1, len(np.unique(at)))
+def _shared_part(corners: np.ndarray) -> float:
+    """Part of the covered texels whose centres lie within more than one triangle. corners: [T, 3, 2]."""
+    corners = corners.astype(np.float64) * _GRID - 0.5  # so that centres are whole numbers
+    low = np.ceil(corners.min(1)).astype(np.int64)
+    size = np.maximum(np.floor(corners.max(1)).astype(np.int64) - low + 1, 0)
+    counts = size[:, 0] * size[:, 1]
+    triangle = np.repeat(np.arange(len(corners)), counts)
+    within = np.arange(len(triangle)) - np.repeat(np.cumsum(counts) - counts, counts)
+    x = low[triangle, 0] + within % size[triangle, 0]
+    y = low[triangle, 1] + within // size[triangle, 0]
+    sides = []
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        a, b = corners[triangle, first], corners[triangle, second]
+        sides.append((b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (b[:, 1] - a[:, 1]) * (x - a[:, 0]))
+    side = np.stack(sides)
+    inside = (side > 1e-6).all(0) | (side < -1e-6).all(0)
+    owners = np.bincount((y * _GRID + x)[inside].clip(0), minlength=1)
+    return float((owners > 1).sum() / max(1, (owners > 0).sum()))
 
 
 def unwrap(scratch: Scratch, mesh: bpy.types.Mesh, name: str) -> np.ndarray:

@@ -11,9 +11,9 @@ from ..core.job import Job
 from . import slots
 from .apply import note_settings
 
-# An equirectangular picture of item3d has the north (glTF's -Z, Blender's +Y) in its centre, one of
-# Blender -X: a quarter of a turn.
-TURN = math.pi / 2
+# The centre of an equirectangular picture is item3d's north (glTF's -Z, Blender's +Y) and Blender's +X:
+# a quarter of a turn.
+TURN = -math.pi / 2
 
 
 def apply_light(job: Job, scene: bpy.types.Scene) -> bpy.types.World:

@@ -32,7 +32,7 @@ def object_mode(context: bpy.types.Context) -> Iterator[None]:
 def chosen_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The selected objects, the active one first."""
     layer = context.view_layer
-    chosen = [thing for thing in layer.objects if thing.select_get(view_layer=layer)]
+    chosen = [thing for thing in layer.objects if thing is not None and thing.select_get(view_layer=layer)]
     active = layer.objects.active
     return sorted(chosen, key=lambda thing: thing != active)
 
