@@ -73,7 +73,7 @@ def make_scene():
 def aim():
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
-    scene.cycles.samples, scene.cycles.device, scene.cycles.use_denoising = 48, "CPU", True
+    scene.cycles.samples, scene.cycles.device, scene.cycles.use_denoising = 32, "CPU", True
     scene.view_settings.view_transform = "Standard"
     scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
     camera = scene.camera

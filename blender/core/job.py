@@ -2,23 +2,20 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import signal
-import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from . import process
 from .errors import Item3dError
 from .program import Program
 
 RECORD = "job.json"
 FORMAT = "item3d blender job 1"
 SECONDS_TO_STOP = 15
-# Processes that this Blender started, by their job's folder.
-_children: dict[str, subprocess.Popen[bytes]] = {}
 
 
 class Job:
@@ -85,18 +82,9 @@ class Job:
         """Starts the process in a session of its own, so that closing Blender does not end it."""
         (self.folder / "live").mkdir(exist_ok=True)
         try:
-            with open(self.folder / "stdout.json", "wb") as out, open(self.folder / "stderr.txt", "ab") as err:
-                child = subprocess.Popen(
-                    [str(program.path), *arguments],
-                    stdin=subprocess.DEVNULL,
-                    stdout=out,
-                    stderr=err,
-                    cwd=self.folder,
-                    start_new_session=True,
-                )
+            number = process.start([str(program.path), *arguments], self.folder)
         except OSError as error:
             raise Item3dError(f"{program.path}: cannot be started, {error.strerror}; check the program") from error
-        _children[str(self.folder)] = child
         self._asked_to_stop = 0.0
         self.record |= {
             "state": "running",
@@ -104,8 +92,8 @@ class Job:
             "program": str(program.path),
             "program_version": program.version,
             "arguments": arguments,
-            "process": child.pid,
-            "began": _began(child.pid),
+            "process": number,
+            "began": process.beginning(number),
         }
         self.save()
 
@@ -122,7 +110,7 @@ class Job:
             if self._asked_to_stop and time.monotonic() - self._asked_to_stop > SECONDS_TO_STOP:
                 self._kill()
             return self.state
-        if self.has_result() and code in (0, -1000):
+        if self.has_result() and code in (0, process.UNKNOWN):
             self._end("done", "")
         elif self.record.get("cancelling"):
             self._end("cancelled", "cancelled")
@@ -154,7 +142,7 @@ class Job:
         """Deletes the folder, ending the process first."""
         if self.state == "running":
             self._kill()
-        _children.pop(str(self.folder), None)
+        process.forget(self.folder)
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def has_result(self) -> bool:
@@ -194,33 +182,20 @@ class Job:
         errors = [line for line in self._said() if "error: " in line]
         if errors:
             return errors[-1].removeprefix("item3d: error: ")
-        if code < 0 and code != -1000:
+        if code < 0 and code != process.UNKNOWN:
             name = signal.Signals(-code).name
             return f"item3d was ended by {name}; continue it, or see {self.folder / 'stderr.txt'}"
         said = self._said()
         return f"item3d left no result ({said[-1] if said else 'it said nothing'}); see {self.folder / 'stderr.txt'}"
 
     def _exit_code(self) -> int | None:
-        """None while it runs; -1000 where another Blender started it, so that nobody knows."""
-        child = _children.get(str(self.folder))
-        if child is not None:
-            return child.poll()
-        process, began = self.record.get("process", 0), self.record.get("began", "")
-        return None if process and _is_alive(process) and _began(process) == began else -1000
+        return process.exit_code(self.folder, self.record.get("process", 0), self.record.get("began", ""))
 
     def _signal(self, number: int) -> None:
-        if self._exit_code() is not None:
-            return
-        try:
-            os.kill(self.record["process"], number)
-        except OSError:
-            pass
+        process.end(self.folder, self.record.get("process", 0), self.record.get("began", ""), number)
 
     def _kill(self) -> None:
         self._signal(signal.SIGKILL)
-        child = _children.get(str(self.folder))
-        if child is not None:
-            child.wait()
 
     def _end(self, state: str, message: str) -> None:
         self.record |= {"state": state, "message": message}
@@ -238,22 +213,3 @@ def jobs_in(parent: Path) -> Iterator[Job]:
                 yield Job.load(folder)
             except Item3dError:
                 continue
-
-
-def _is_alive(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True
-
-
-def _began(process: int) -> str:
-    """Tells a process from a later one of the same number, where /proc does."""
-    try:
-        stat = Path(f"/proc/{process}/stat").read_text(encoding="utf-8", errors="replace")
-        return stat.rpartition(")")[2].split()[19]
-    except (OSError, IndexError):
-        return ""

@@ -8,7 +8,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..core.errors import Item3dError
-from . import nodes, region as regions, unwrap
+from . import region as regions, trees, unwrap
 from .scratch import Scratch
 
 WITH_FACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
@@ -141,7 +141,7 @@ def _misses_uv(shape: Shape) -> bool:
     base = shape.source.data if shape.own and shape.source.type == "MESH" else shape.mesh
     if not base.uv_layers:
         return True
-    if any(nodes.has_images(material) for material in shape.mesh.materials):
+    if any(trees.has_images(material) for material in shape.mesh.materials):
         return False
     return unwrap.overlaps(base)
 

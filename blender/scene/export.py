@@ -10,7 +10,7 @@ from mathutils import Matrix
 
 from ..core.errors import Item3dError
 from ..core.glb import Glb
-from . import nodes
+from . import trees
 from .collect import MOST_INSTANCES, Shape, collect
 from .region import Region
 from .scratch import Scratch
@@ -63,7 +63,7 @@ def _own_materials(scratch: Scratch, shapes: list[Shape]) -> dict[str, dict[str,
             material = source
             if material is None:
                 material = scratch.keep(bpy.data.materials.new(shape.source.name))
-            elif users[material.name_full] > 1 and not nodes.has_images(material):
+            elif users[material.name_full] > 1 and not trees.has_images(material):
                 material = scratch.keep(material.copy())
                 material.name = f"{source.name} {shape.source.name}"
             shape.mesh.materials[index] = material
@@ -139,7 +139,7 @@ def _notes(shapes: list[Shape], glb: Glb, owners: dict[str, dict[str, Any]]) -> 
     notes = []
     for material in glb.materials():
         source = owners.get(material.get("name", ""), {}).get("source", "")
-        if nodes.is_procedural(bpy.data.materials.get(source), material):
+        if trees.is_procedural(bpy.data.materials.get(source), material):
             notes.append(f"{source}: its nodes were exported as a plain colour; bake them to a picture to keep them")
     for shape in shapes:
         if not shape.goes_back:

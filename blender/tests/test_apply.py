@@ -10,7 +10,8 @@ from .fake_item3d import GOLD
 from .support import MUG, BlenderTest, cube, monkey, painted, shown, textured
 from item3d_blender.core.glb import Glb, TextureUse
 from item3d_blender.scene import slots
-from item3d_blender.scene.nodes import MaterialBuilder, blender_transform, principled_of
+from item3d_blender.scene.nodes import MaterialBuilder
+from item3d_blender.scene.trees import blender_transform, principled_of
 
 
 def rgba(socket: bpy.types.NodeSocket) -> list[float]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from .support import MUG, PROGRAM, BlenderTest, cube, monkey, painted, shown, textured
 from item3d_blender.core.job import Job
-from item3d_blender.scene.nodes import principled_of
+from item3d_blender.scene.trees import principled_of
 
 
 @unittest.skipUnless(PROGRAM, "ITEM3D_PROGRAM names no program")

@@ -6,7 +6,7 @@ import textwrap
 import bpy
 
 from ..core.job import Job
-from ..core.program import HOW_TO_GET_IT, Program
+from ..core.program import HOW_TO_GET_IT
 from ..core.words import unknown
 from . import preferences, session
 
