@@ -24,6 +24,7 @@ _vocabulary = Vocabulary()
 _token = secrets.token_hex(8)  # of the file that is open
 _program: Program | str | None = None  # or why there is none; None: nobody has looked yet
 _looking: threading.Thread | None = None
+_wanted = ""  # the preference that was looked for
 
 
 def own_folder() -> Path:
@@ -88,7 +89,11 @@ def poll() -> float | None:
     context = bpy.context
     for job in list(_jobs.values()):
         before = job.state
-        state = job.update()
+        try:
+            state = job.update()
+        except OSError as error:  # a full disk, say: the record is kept in memory
+            print(f"item3d: {job.folder}: {error}")
+            state = job.state
         if not _is_ours(job):
             continue
         if state == "running":
@@ -171,9 +176,10 @@ def words(context: bpy.types.Context, prior: str) -> list[str]:
 
 def program_state(context: bpy.types.Context) -> Program | str | None:
     """The program, or why there is none, or None while a thread still looks: panels must not wait."""
-    global _looking
-    if _looking is None:
-        wanted = preferences.preferences(context).program
+    global _looking, _wanted, _program
+    wanted = preferences.preferences(context).program
+    if _looking is None or wanted != _wanted:
+        _program, _wanted = None, wanted
         _looking = threading.Thread(target=_look, args=(wanted,), daemon=True)
         _looking.start()
     return _program
@@ -187,10 +193,13 @@ def look_again() -> None:
 
 def _look(wanted: str) -> None:
     global _program
+    found: Program | str
     try:
-        _program = preferences.find(wanted, preferences.EXTENSION)
+        found = preferences.find(wanted, preferences.EXTENSION)
     except Item3dError as error:
-        _program = str(error)
+        found = str(error)
+    if wanted == _wanted:
+        _program = found
 
 
 def _redraw(context: bpy.types.Context) -> None:
