@@ -40,6 +40,13 @@ def option(arguments, name, default=""):
     return default
 
 
+def replace(path, content):
+    """Replaces a file as a whole, as the program does: nobody reads half a picture."""
+    temporary = path.with_suffix(".tmp")
+    temporary.write_bytes(content)
+    temporary.replace(path)
+
+
 def write_model(source, out, wanted):
     data = source.read_bytes()
     length = struct.unpack_from("<I", data, 12)[0]
@@ -61,11 +68,13 @@ def go_on(arguments, out, stops):
     interrupted = []
     signal.signal(signal.SIGINT, (lambda *_: interrupted.append(True)) if stops else signal.SIG_IGN)
     for revision in range(1, 600):
-        progress.write_text(json.dumps({"stage": "edit", "done": revision, "total": 600, "seconds_left": 60.0}))
-        (live / "0_base_color.png").write_bytes(png(4, 4, (revision % 256, 100, 50)))
-        (live / "0_orm.png").write_bytes(png(4, 4, (255, 80, 255)))
+        told = {"stage": "edit", "done": revision, "total": 600, "seconds_left": 60.0}
+        replace(progress, json.dumps(told).encode())
+        replace(live / "0_base_color.png", png(4, 4, (revision % 256, 100, 50)))
+        replace(live / "0_orm.png", png(4, 4, (255, 80, 255)))
         textures = [{"material": 0, "slot": slot, "file": f"0_{slot}.png"} for slot in ("base_color", "orm")]
-        (live / "textures.json").write_text(json.dumps({"revision": revision, "textures": textures, "direction": []}))
+        shown = {"revision": revision, "textures": textures, "direction": []}
+        replace(live / "textures.json", json.dumps(shown).encode())
         time.sleep(0.1)
         if interrupted:
             (out / "checkpoint.safetensors").write_bytes(b"state")
