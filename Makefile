@@ -5,6 +5,8 @@
 # make test-slurm a batch on a Slurm of two nodes, started on this machine (needs slurm-wlm and munge)
 # make check      the tests that run no whole edits, on a built tree
 # make test-browser   the whole of item3d studio in Chromium (make test has a short run of it)
+# make test-blender   the extension for Blender, in the Blenders of scripts/blender.txt (fetches up to 900 MB)
+# make blender-extension   the extension as one zip, in build/packages
 # make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
 # make format     format all sources
@@ -20,7 +22,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo studio test-browser check-format check-layers test-loaders test-build test test-slurm check cuda \
+.PHONY: setup configure build demo studio test-browser check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check cuda \
     bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
@@ -75,6 +77,15 @@ test-browser:
 	@cmake --preset release --log-level=WARNING
 	@$(BUILD) --target item3d item3d-edit item3d-studio
 	@tests/browser/studio.py build/item3d --all
+
+test-blender:
+	@scripts/setup.sh blender
+	@cmake --preset release --log-level=WARNING
+	@$(BUILD) --target item3d item3d-edit
+	@scripts/test_blender.sh build/item3d
+
+blender-extension:
+	@scripts/blender_extension.py build/packages
 
 cuda:
 	@scripts/setup.sh cuda

@@ -3,9 +3,10 @@
 # downloads of scripts/wheels.txt, unpacked into .deps/. Does nothing when all is there; goes on
 # where an interrupted run stopped. Works as root and as a user who may use sudo.
 #
-# usage: scripts/setup.sh [cuda] [browser]
+# usage: scripts/setup.sh [cuda] [browser] [blender]
 #   cuda     the CUDA compiler too, for `make cuda` and `make test`
 #   browser  Chromium and Playwright too, for `make test` (50 MB, and 100 MB of Debian packages)
+#   blender  Blender as a module of Python too, for `make test-blender` (400 MB to 900 MB, by the Pythons that there are)
 #
 #   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
 #   ITEM3D_NO_BROWSER=1       leave the browser out: its tests do not run
@@ -153,7 +154,7 @@ wheel_options=(--only-binary=:all: --implementation cp --python-version 3.11 --a
 # unless .deps/NAME came from the same pins by the same UNPACK.
 component() {
     local name=$1 pins=$2 unpack=$3 wanted temporary
-    wanted=$({ grep -hE "^($pins)==" scripts/wheels.txt scripts/browser.txt; declare -f "$unpack"; } | sha256sum | cut -d ' ' -f 1)
+    wanted=$({ grep -hE "^($pins)==" scripts/wheels.txt scripts/browser.txt scripts/blender.txt; declare -f "$unpack"; } | sha256sum | cut -d ' ' -f 1)
     [[ -f $deps/$name/.pins && $(<"$deps/$name/.pins") == "$wanted" ]] && return
     temporary=$deps/$name.unpacking
     rm -rf "$temporary"
@@ -252,6 +253,26 @@ unpack_browser() {
         fail "downloading Playwright failed: $(grep -i error "$deps/pip.log" | tail -n 1) (all of it: .deps/pip.log; ITEM3D_NO_BROWSER=1 leaves it out)"
 }
 
+# Each version in a folder of its own, for the Python that scripts/blender.txt names behind it.
+unpack_blender() {
+    local into=$1 pin version python found=
+    while read -r pin; do
+        python=${pin##*# }
+        pin=${pin%% #*}
+        version=${pin%% *}
+        "$python" -m pip --version >/dev/null 2>&1 || continue
+        say "downloading ${version} for $python"
+        { echo "$pin"; grep '^numpy==' scripts/blender.txt; } >"$into/pins.txt"
+        "$python" -m pip install --require-hashes --no-deps --only-binary=:all: --no-cache-dir --no-compile \
+            --retries 5 --timeout 60 --progress-bar off -q --disable-pip-version-check \
+            --root-user-action=ignore --target "$into/${version##*==}" -r "$into/pins.txt" >"$deps/pip.log" 2>&1 ||
+            fail "downloading $version failed: $(grep -i error "$deps/pip.log" | tail -n 1) (all of it: .deps/pip.log)"
+        echo "$python" >"$into/${version##*==}/python"
+        found=1
+    done < <(grep '^bpy==' scripts/blender.txt)
+    [[ $found ]] || fail "no Blender of scripts/blender.txt runs here: it wants python3.11 or python3.13 with pip"
+}
+
 mkdir -p "$deps" || fail "cannot write to $root"
 exec 9>"$deps/lock"
 flock 9 # a second `make` waits here and then finds all done
@@ -269,6 +290,9 @@ component basis_universal basis-universal-sys unpack_basis_universal
 component three three unpack_three
 if wants browser && [[ $(uname -m) == x86_64 ]]; then
     component browser 'playwright|greenlet' unpack_browser
+fi
+if wants blender && [[ $(uname -m) == x86_64 ]]; then
+    component blender 'bpy|numpy' unpack_blender
 fi
 if wants cuda; then
     component cuda 'nvidia-cuda-nvcc|nvidia-cuda-crt|nvidia-nvvm|nvidia-cuda-runtime|nvidia-nvtx' \
