@@ -138,6 +138,9 @@ def mipmaps(texture: torch.Tensor, *, max_level: int | None = None,
     return levels
 
 
+_make_mipmaps = mipmaps  # `texture` has a parameter of that name
+
+
 def _coarser(fine: torch.Tensor) -> torch.Tensor:
     height, width = fine.shape[1:3]
     if height % 2 == 0 and width % 2 == 0:
@@ -191,7 +194,7 @@ def texture(texture: torch.Tensor, uv: torch.Tensor, *, derivatives: torch.Tenso
         raise ValueError("texture: filter 'anisotropic' needs derivatives, no level_bias, and boundary "
                          "'wrap' or 'clamp'")
     if mipmaps is None:
-        mipmaps = globals()['mipmaps'](texture, max_level=max_level, cube=cube)
+        mipmaps = _make_mipmaps(texture, max_level=max_level, cube=cube)
     for level, tensor in enumerate(mipmaps, 1):
         check('texture', f'mipmaps[{level - 1}]', tensor, torch.float32,
               (texture.shape[0], *([6] if cube else []), max(1, texture.shape[-3] >> level),
