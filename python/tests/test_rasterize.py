@@ -32,6 +32,15 @@ def test_triangles_that_cross_the_near_plane_are_cut_there():
     assert (raster.covered[0].numpy() == expected).all() and 0 < expected.sum() < 32 * 32 // 2
 
 
+def test_vertices_behind_the_eye_that_the_near_plane_does_not_cut():
+    """z is the same everywhere, as no camera has it: what is seen reaches to where w is z."""
+    positions = torch.tensor([[[-0.2, -1, 0.5, -0.25], [3, -2.7, 0.5, 3], [-3, 3.1, 0.5, 3]]])
+    triangles = torch.tensor([[0, 1, 2]], dtype=torch.int32)
+    expected = reference.raster(positions[0], triangles, 32, 32)[2] >= 0
+    raster = item3d.rasterize(positions, triangles, (32, 32))
+    assert 50 < expected.sum() < 32 * 32 and (raster.covered[0].numpy() == expected).all()
+
+
 def test_the_far_plane_cuts_by_z_and_not_by_w():
     positions = torch.tensor([[[-1.0, -1, 1.5, 1], [3, -1, 1.5, 1], [-1, 3, 1.5, 1]]])
     triangles = torch.tensor([[0, 1, 2]], dtype=torch.int32)

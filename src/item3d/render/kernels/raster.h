@@ -81,7 +81,7 @@ ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std
     const float* v[3];
     float near_distance[3];
     int in_front = 0;
-    bool finite = true;
+    bool finite = true, unusual = false;
     BoxBuilder builder;
     for (int i = 0; i < 3; ++i) {
         v[i] = clip + 4 * static_cast<std::int64_t>(corners[i]);
@@ -94,9 +94,14 @@ ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std
             const float inverse_w = 1.0f / v[i][3];
             builder.add(v[i][0] * inverse_w, v[i][1] * inverse_w);
         }
+        unusual = unusual || (near_distance[i] >= 0 && !(v[i][3] > 0));
     }
     PixelBox box;
-    if (finite && in_front > 0) {
+    if (finite && in_front > 0 && unusual) {
+        // A vertex behind the eye that the near plane does not cut, as no camera has it.
+        box.x1 = static_cast<std::int16_t>(p.width);
+        box.y1 = static_cast<std::int16_t>(p.height);
+    } else if (finite && in_front > 0) {
         for (int i = 0; in_front < 3 && i < 3; ++i) {
             const int j = i == 2 ? 0 : i + 1;
             if ((near_distance[i] >= 0) != (near_distance[j] >= 0)) {
