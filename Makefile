@@ -7,6 +7,8 @@
 # make test-browser   the whole of item3d studio in Chromium (make test has a short run of it)
 # make test-blender   the extension for Blender, in the Blenders of scripts/blender.txt (fetches up to 900 MB)
 # make blender-extension   the extension as one zip, in build/packages
+# make test-python    build the Python package and run its tests (fetches PyTorch for Python, 3 GB)
+# make wheel      the Python package as a wheel, into build/wheels
 # make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
 # make format     format all sources
@@ -22,7 +24,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo studio test-browser check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check cuda \
+.PHONY: setup configure build demo studio test-browser test-python wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check cuda \
     bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
@@ -86,6 +88,22 @@ test-blender:
 
 blender-extension:
 	@scripts/blender_extension.py build/packages
+
+# Where PyTorch, pytest and scikit-build-core lie, for python3.
+PYTHON_SITE ?= $(CURDIR)/.deps/python
+PYTHON_PACKAGE := $(CURDIR)/build/python-package
+
+test-python:
+	@$(if $(filter $(CURDIR)/.deps/python,$(PYTHON_SITE)),scripts/setup.sh python)
+	@rm -rf $(PYTHON_PACKAGE)
+	@PYTHONPATH=$(PYTHON_SITE) python3 -m pip install -q --no-build-isolation --no-deps --no-index \
+	    --disable-pip-version-check --root-user-action=ignore --target $(PYTHON_PACKAGE) .
+	@PYTHONPATH=$(PYTHON_PACKAGE):$(PYTHON_SITE) $(if $(wildcard build/item3d),ITEM3D_PROGRAM=$(CURDIR)/build/item3d) \
+	    python3 -m pytest -q -p no:cacheprovider python/tests
+
+wheel: setup
+	@python3 -m pip wheel -q --no-deps --disable-pip-version-check -w build/wheels .
+	@ls build/wheels/item3d-*.whl
 
 cuda:
 	@scripts/setup.sh cuda

@@ -2,7 +2,7 @@
 # Formats all C++ and CUDA sources, or with --check lists those that are not formatted and fails.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-mapfile -t files < <(find apps bench src tests tools -type f \
+mapfile -t files < <(find apps bench python src tests tools -type f \
     \( -name '*.cpp' -o -name '*.h' -o -name '*.cu' -o -name '*.cuh' \) | sort)
 if [[ ${1:-} != --check ]]; then
     clang-format -i "${files[@]}"

@@ -43,7 +43,7 @@ def room_of(path, layers):
 
 
 def code_files():
-    for folder in ("src", "apps", "bench", "tests", "tools"):
+    for folder in ("src", "apps", "bench", "python", "tests", "tools"):
         for path in sorted((ROOT / folder).rglob("*")):
             if path.suffix in (".h", ".cpp", ".cu"):
                 yield path

@@ -3,10 +3,11 @@
 # downloads of scripts/wheels.txt, unpacked into .deps/. Does nothing when all is there; goes on
 # where an interrupted run stopped. Works as root and as a user who may use sudo.
 #
-# usage: scripts/setup.sh [cuda] [browser] [blender]
+# usage: scripts/setup.sh [cuda] [browser] [blender] [python]
 #   cuda     the CUDA compiler too, for `make cuda` and `make test`
 #   browser  Chromium and Playwright too, for `make test` (50 MB, and 100 MB of Debian packages)
 #   blender  Blender as a module of Python too, for `make test-blender` (400 MB to 900 MB, by the Pythons that there are)
+#   python   PyTorch for Python too, for `make test-python` (3 GB, 5 GB unpacked)
 #
 #   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
 #   ITEM3D_NO_BROWSER=1       leave the browser out: its tests do not run
@@ -150,11 +151,13 @@ wheel_options=(--only-binary=:all: --implementation cp --python-version 3.11 --a
     --platform manylinux_2_28_x86_64 --platform manylinux_2_25_x86_64
     --platform manylinux2014_x86_64)
 
-# component NAME PINS UNPACK: runs UNPACK in an empty folder and renames that folder to .deps/NAME,
-# unless .deps/NAME came from the same pins by the same UNPACK.
+# component NAME PINS UNPACK [FILE]: runs UNPACK in an empty folder and renames that folder to
+# .deps/NAME, unless .deps/NAME came from the same pins (of FILE) by the same UNPACK.
 component() {
     local name=$1 pins=$2 unpack=$3 wanted temporary
-    wanted=$({ grep -hE "^($pins)==" scripts/wheels.txt scripts/browser.txt scripts/blender.txt; declare -f "$unpack"; } | sha256sum | cut -d ' ' -f 1)
+    local files=(scripts/wheels.txt scripts/browser.txt)
+    (($# < 4)) || files=("$4")
+    wanted=$({ grep -hE "^($pins)==" "${files[@]}"; declare -f "$unpack"; } | sha256sum | cut -d ' ' -f 1)
     [[ -f $deps/$name/.pins && $(<"$deps/$name/.pins") == "$wanted" ]] && return
     temporary=$deps/$name.unpacking
     rm -rf "$temporary"
@@ -273,6 +276,16 @@ unpack_blender() {
     [[ $found ]] || fail "no Blender of scripts/blender.txt runs here: it wants python3.11 or python3.13 with pip"
 }
 
+# The same, for `make test-python`.
+unpack_python() {
+    local into=$1
+    say "downloading $(grep -o '^torch==[^ ]*' scripts/python.txt) for Python"
+    "$(find_pip)" -m pip install --require-hashes --only-binary=:all: --no-cache-dir --no-compile \
+        --retries 5 --timeout 60 --progress-bar off -q --disable-pip-version-check \
+        --root-user-action=ignore --target "$into" -r scripts/python.txt >"$deps/pip.log" 2>&1 ||
+        fail "downloading PyTorch for Python failed: $(grep -i error "$deps/pip.log" | tail -n 1) (all of it: .deps/pip.log)"
+}
+
 mkdir -p "$deps" || fail "cannot write to $root"
 exec 9>"$deps/lock"
 flock 9 # a second `make` waits here and then finds all done
@@ -292,7 +305,10 @@ if wants browser && [[ $(uname -m) == x86_64 ]]; then
     component browser 'playwright|greenlet' unpack_browser
 fi
 if wants blender && [[ $(uname -m) == x86_64 ]]; then
-    component blender 'bpy|numpy' unpack_blender
+    component blender 'bpy|numpy' unpack_blender scripts/blender.txt
+fi
+if wants python; then
+    component python '.*' unpack_python scripts/python.txt
 fi
 if wants cuda; then
     component cuda 'nvidia-cuda-nvcc|nvidia-cuda-crt|nvidia-nvvm|nvidia-cuda-runtime|nvidia-nvtx' \

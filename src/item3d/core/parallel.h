@@ -1,13 +1,48 @@
 // One way to launch per-pixel and per-texel kernels on the CPU's threads.
 #pragma once
 
+#if !defined(ITEM3D_OTHER_THREADS)
 #include <omp.h>
+#endif
 
 #include <algorithm>
 #include <cstdint>
 #include <exception>
 
 namespace item3d {
+
+#if defined(ITEM3D_OTHER_THREADS)
+
+/// Threads of a host that has some of its own (the Python package runs on PyTorch's).
+int thread_count();
+/// Calls run(f, block) for every block in [0, blocks), in any order, on those threads.
+void run_on_threads(std::int64_t blocks, const void* f,
+                    void (*run)(const void* f, std::int64_t block));
+
+template <typename F>
+void parallel_for(const char*, std::int64_t count, const F& f, std::int64_t grain = 256) {
+    const std::int64_t blocks = (count + grain - 1) / grain;
+    const auto run = [&f, count, grain](std::int64_t block) {
+        const std::int64_t end = std::min(count, (block + 1) * grain);
+        for (std::int64_t i = block * grain; i < end; ++i)
+            f(i);
+    };
+    if (blocks <= 1) {
+        if (blocks == 1) run(0);
+        return;
+    }
+    using Run = decltype(run);
+    run_on_threads(blocks, &run, [](const void* own, std::int64_t block) {
+        (*static_cast<const Run*>(own))(block);
+    });
+}
+
+#else
+
+/// Threads that a loop of this thread may use.
+inline int thread_count() {
+    return omp_get_max_threads();
+}
 
 /// Calls f(i) for every i in [0, count), in any order, on the threads that OpenMP gives this
 /// thread (omp_get_max_threads). `name` is what a profiler shows. f must not throw: kernels
@@ -41,5 +76,7 @@ class OneThread {
   private:
     int before_;
 };
+
+#endif
 
 }  // namespace item3d

@@ -1,8 +1,8 @@
 #include "item3d/render/antialias.h"
 
 #include "item3d/core/error.h"
-#include "item3d/core/parallel.h"
 #include "item3d/render/checks.h"
+#include "item3d/render/crossings.h"
 #include "item3d/render/cuda/module.h"
 #include "item3d/render/kernels/antialias.h"
 #include "item3d/render/topology.h"
@@ -37,23 +37,7 @@ AntialiasParameters antialias_parameters(const AntialiasInput& input,
 
 /// All crossings in the order of their pixels, as bytes.
 at::Tensor find_crossings(const AntialiasParameters& p, std::int64_t views) {
-    const std::int64_t rows = views * p.height;
-    std::vector<std::vector<Crossing>> by_row(static_cast<std::size_t>(rows));
-    parallel_for(
-        "find_crossings", rows,
-        [&](std::int64_t row) {
-            Crossing crossing;
-            std::vector<Crossing>& found = by_row[static_cast<std::size_t>(row)];
-            for (int x = 0; x < p.width; ++x) {
-                const std::int64_t pixel = row * p.width + x;
-                if (x + 1 < p.width && kernels::find_crossing(p, pixel, false, crossing))
-                    found.push_back(crossing);
-                if (row % p.height + 1 < p.height &&
-                    kernels::find_crossing(p, pixel, true, crossing))
-                    found.push_back(crossing);
-            }
-        },
-        std::max(1, 16384 / p.width));
+    const std::vector<std::vector<Crossing>> by_row = list_crossings(p, views);
     std::size_t count = 0;
     for (const auto& row : by_row)
         count += row.size();
@@ -131,10 +115,7 @@ struct Antialias : torch::autograd::Function<Antialias> {
         const float* in = image.const_data_ptr<float>();
         float* out = result.data_ptr<float>();
         for_each_crossing(crossings, [&](const Crossing& crossing) {
-            const kernels::Blend blend = kernels::blend_of(crossing);
-            for (std::int64_t c = 0; c < channels; ++c)
-                out[blend.pixel * channels + c] += blend.weight * (in[blend.other * channels + c] -
-                                                                   in[blend.pixel * channels + c]);
+            kernels::blend_crossing(crossing, in, channels, out);
         });
         context->save_for_backward({image, positions_clip, input.triangles, input.neighbours,
                                     input.triangle, input.depth, crossings});
@@ -160,17 +141,8 @@ struct Antialias : torch::autograd::Function<Antialias> {
             clip_gradient.values = by_clip.data_ptr<float>();
         }
         for_each_crossing(saved[6], [&](const Crossing& crossing) {
-            const kernels::Blend blend = kernels::blend_of(crossing);
-            float by_distance = 0;
-            for (std::int64_t c = 0; c < channels; ++c) {
-                const float g = by_out[blend.pixel * channels + c];
-                by_in[blend.pixel * channels + c] -= blend.weight * g;
-                by_in[blend.other * channels + c] += blend.weight * g;
-                by_distance += g * (in[crossing.foreground * channels + c] -
-                                    in[crossing.background * channels + c]);
-            }
-            if (clip_gradient.wanted())
-                kernels::crossing_backward(p, crossing, by_distance, clip_gradient);
+            kernels::blend_crossing_backward(p, crossing, in, by_out, channels, by_in,
+                                             clip_gradient);
         });
         return {by_image, by_clip, at::Tensor()};
     }

@@ -22,6 +22,8 @@ struct AntialiasParameters {
     std::int64_t vertices;           ///< V
     int width;
     int height;
+    /// Triangles that are looked at between two centres; 1, as in the paper: the nearer one alone.
+    int most_steps = 256;
 };
 
 /// One blended pixel pair.
@@ -82,7 +84,6 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
     crossing.direction = near_here ? 1 : -1;
 
     constexpr float tolerance = 1.0f / 16;
-    constexpr int most_steps = 256;
     const std::int64_t view = pixel / (static_cast<std::int64_t>(p.width) * p.height);
     const float* clip = p.positions_clip + 4 * view * p.vertices;
     const PairFrame frame(p, crossing);
@@ -91,7 +92,7 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
     int entered = -1;                 // the corner that faces the edge through which the walk came
     std::int32_t edge[2] = {-1, -1};  // that edge's ends
     PairCoordinates edge_at[2] = {};
-    for (int step = 0; step < most_steps; ++step) {
+    for (int step = 0; step < p.most_steps; ++step) {
         const std::int32_t* corners = p.triangles + 3 * t;
         const float* v[3];
         PairCoordinates at[3];
@@ -190,6 +191,35 @@ ITEM3D_HOST_DEVICE inline void crossing_backward(const AntialiasParameters& p,
         clip_gradient.add(row + 3,
                           -(by_x * x_scale * clip[0] + by_y * y_scale * clip[1]) * inverse);
     }
+}
+
+/// Adds what a crossing changes to a copy of the image [N, H, W, C]. Crossings are to be blended in
+/// the order of their pixels, by one thread.
+inline void blend_crossing(const Crossing& crossing, const float* image, std::int64_t channels,
+                           float* blended) {
+    const Blend blend = blend_of(crossing);
+    const float* own = image + blend.pixel * channels;
+    const float* other = image + blend.other * channels;
+    for (std::int64_t c = 0; c < channels; ++c)
+        blended[blend.pixel * channels + c] += blend.weight * (other[c] - own[c]);
+}
+
+/// Moves a crossing's share of image_gradient, a copy of `gradient` [N, H, W, C], between its
+/// pixels, and adds the gradient by the edge's ends where clip_gradient is wanted.
+inline void blend_crossing_backward(const AntialiasParameters& p, const Crossing& crossing,
+                                    const float* image, const float* gradient,
+                                    std::int64_t channels, float* image_gradient,
+                                    const Accumulator& clip_gradient) {
+    const Blend blend = blend_of(crossing);
+    float by_distance = 0;
+    for (std::int64_t c = 0; c < channels; ++c) {
+        const float g = gradient[blend.pixel * channels + c];
+        image_gradient[blend.pixel * channels + c] -= blend.weight * g;
+        image_gradient[blend.other * channels + c] += blend.weight * g;
+        by_distance += g * (image[crossing.foreground * channels + c] -
+                            image[crossing.background * channels + c]);
+    }
+    if (clip_gradient.wanted()) crossing_backward(p, crossing, by_distance, clip_gradient);
 }
 
 /// For threads that own a pixel each and gather, instead of going over a list of crossings.

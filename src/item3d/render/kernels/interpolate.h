@@ -4,6 +4,7 @@
 #include "item3d/core/accumulate.h"
 #include "item3d/core/host_device.h"
 #include "item3d/core/math.h"
+#include "item3d/render/kernels/barycentrics.h"
 
 #include <cmath>
 #include <cstdint>
@@ -135,9 +136,8 @@ ITEM3D_HOST_DEVICE inline void interpolate_forward(const InterpolateParameters& 
     }
 }
 
-/// Adds one pixel's gradients. The weights b_i = e_i / (e_0 + e_1 + e_2), with the edge functions
-/// e_0 = q . (p_1 x p_2) and so on over clip-space (x, y, w) and the pixel q = (x, y, 1), move with
-/// the vertices. On the CPU not safe for concurrent calls that share vertices.
+/// Adds one pixel's gradients; the weights move with the vertices. On the CPU not safe for
+/// concurrent calls that share vertices.
 ITEM3D_HOST_DEVICE inline void interpolate_backward(const InterpolateParameters& p,
                                                     std::int64_t index) {
     const std::int64_t pixel = p.pixel[index];
@@ -156,31 +156,15 @@ ITEM3D_HOST_DEVICE inline void interpolate_backward(const InterpolateParameters&
     }
     if (!p.clip_gradient.wanted()) return;
 
-    using DVec3 = glm::dvec3;
     const std::int64_t per_view = static_cast<std::int64_t>(p.width) * p.height;
     const std::int64_t view = pixel / per_view;
     const int y = static_cast<int>(pixel % per_view / p.width);
     const int x = static_cast<int>(pixel % p.width);
-    const DVec3 q((x + 0.5) * 2.0 / p.width - 1.0, 1.0 - (y + 0.5) * 2.0 / p.height, 1.0);
-    DVec3 v[3];
-    for (int k = 0; k < 3; ++k) {
-        const float* clip =
-            p.positions_clip + 4 * (view * p.vertices + static_cast<std::int64_t>(corners[k]));
-        v[k] = DVec3(clip[0], clip[1], clip[3]);
-    }
-    const DVec3 edges(glm::dot(q, glm::cross(v[1], v[2])), glm::dot(q, glm::cross(v[2], v[0])),
-                      glm::dot(q, glm::cross(v[0], v[1])));
-    const double sum = edges.x + edges.y + edges.z;
-    if (sum == 0) return;
-    const double mean = weight_gradient[0] * weights[0] + weight_gradient[1] * weights[1] +
-                        weight_gradient[2] * weights[2];
-    DVec3 position_gradient[3] = {DVec3(0), DVec3(0), DVec3(0)};
-    for (int k = 0; k < 3; ++k) {
-        const double edge_gradient = (weight_gradient[k] - mean) / sum;
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        position_gradient[i] += edge_gradient * glm::cross(v[j], q);
-        position_gradient[j] += edge_gradient * glm::cross(q, v[i]);
-    }
+    DVec3 position_gradient[3];
+    if (!weights_backward(ClipTriangle(p.positions_clip + 4 * view * p.vertices, corners),
+                          pixel_centre(x, y, p.width, p.height), weights, weight_gradient, nullptr,
+                          p.width, p.height, position_gradient))
+        return;
     for (int k = 0; k < 3; ++k) {
         const std::int64_t row = 4 * (view * p.vertices + static_cast<std::int64_t>(corners[k]));
         p.clip_gradient.add(row, static_cast<float>(position_gradient[k].x));

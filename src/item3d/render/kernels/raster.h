@@ -19,6 +19,12 @@ struct PixelBox {
     std::int16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
+/// What makes one fragment nearer than another.
+enum class DepthOrder : int {
+    w,         ///< a smaller w: depth is w, and nothing is too far away
+    z_over_w,  ///< a smaller z/w, OpenGL's: depth is z/w, and what z >= w is clipped
+};
+
 struct RasterParameters {
     const float* positions_clip;    ///< [N, V, 4]
     const std::int32_t* triangles;  ///< [T, 3]
@@ -28,9 +34,10 @@ struct RasterParameters {
     int width;
     int height;
     float* barycentrics;     ///< [N, H, W, 2]
-    float* depth;            ///< [N, H, W]; 1/w while rasterizing, 0: none
+    float* depth;            ///< [N, H, W]; nearness while rasterizing, 0: none
     std::int32_t* triangle;  ///< [N, H, W], -1: none
-    const float* behind;     ///< [N, H, W] z-depth that fragments must pass; null: none
+    const float* behind;     ///< [N, H, W] depth that fragments must pass; null: none
+    DepthOrder order = DepthOrder::w;
 };
 
 /// Accumulates the pixel box of points in normalized device coordinates.
@@ -74,7 +81,7 @@ ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std
     const float* v[3];
     float near_distance[3];
     int in_front = 0;
-    bool finite = true;
+    bool finite = true, unusual = false;
     BoxBuilder builder;
     for (int i = 0; i < 3; ++i) {
         v[i] = clip + 4 * static_cast<std::int64_t>(corners[i]);
@@ -87,9 +94,14 @@ ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std
             const float inverse_w = 1.0f / v[i][3];
             builder.add(v[i][0] * inverse_w, v[i][1] * inverse_w);
         }
+        unusual = unusual || (near_distance[i] >= 0 && !(v[i][3] > 0));
     }
     PixelBox box;
-    if (finite && in_front > 0) {
+    if (finite && in_front > 0 && unusual) {
+        // A vertex behind the eye that the near plane does not cut, as no camera has it.
+        box.x1 = static_cast<std::int16_t>(p.width);
+        box.y1 = static_cast<std::int16_t>(p.height);
+    } else if (finite && in_front > 0) {
         for (int i = 0; in_front < 3 && i < 3; ++i) {
             const int j = i == 2 ? 0 : i + 1;
             if ((near_distance[i] >= 0) != (near_distance[j] >= 0)) {
@@ -140,7 +152,8 @@ struct TriangleEdges {
 };
 
 /// Calls visit(pixel, nearness, e, sum) for the pixels in rows [row_begin, row_end) whose centre
-/// lies in one triangle of one view; nearness: 1/w, e, sum: the three edge functions and their sum.
+/// lies in one triangle of one view; nearness: 1/w, or 1 - z/w by DepthOrder::z_over_w; e, sum: the
+/// three edge functions and their sum.
 template <typename Visit>
 ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std::int64_t view,
                                                  std::int64_t t, int row_begin, int row_end,
@@ -158,18 +171,20 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
     TriangleEdges edges;
     if (!edges.set(v[0], v[1], v[2])) return;
 
-    double near_distance[3];
+    const bool by_z = p.order == DepthOrder::z_over_w;
+    double near_distance[3], far_distance[3];
     bool crosses_near = false;
     float least_w = v[0][3], largest_w = v[0][3];
     for (int i = 0; i < 3; ++i) {
         near_distance[i] = static_cast<double>(v[i][2]) + v[i][3];
+        far_distance[i] = static_cast<double>(v[i][3]) - v[i][2];
         crosses_near = crosses_near || near_distance[i] < 0 || v[i][3] <= 0;
         least_w = v[i][3] < least_w ? v[i][3] : least_w;
         largest_w = v[i][3] > largest_w ? v[i][3] : largest_w;
     }
 
     // Divisions wait for the first fragment: most of a million triangles have none.
-    double inverse_determinant = 0, low_inverse = 0, high_inverse = 0;
+    double inverse_determinant = 0, low_nearness = 0, high_nearness = 0;
     const double step_x = 2.0 / p.width, step_y = 2.0 / p.height;
     const bool wide = box.x1 - box.x0 > 8;
     for (int y = y0; y < y1; ++y) {
@@ -208,26 +223,44 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
             if (!(sum > 0)) continue;
             if (inverse_determinant == 0) {
                 inverse_determinant = 1.0 / edges.determinant;
-                low_inverse = 1.0 / largest_w;
-                high_inverse = 1.0 / least_w;
+                low_nearness = 1.0 / largest_w;
+                high_nearness = 1.0 / least_w;
+                if (by_z) {
+                    low_nearness = high_nearness = far_distance[0] / v[0][3];
+                    for (int i = 1; i < 3; ++i) {
+                        const double nearness = far_distance[i] / v[i][3];
+                        low_nearness = nearness < low_nearness ? nearness : low_nearness;
+                        high_nearness = nearness > high_nearness ? nearness : high_nearness;
+                    }
+                }
             }
-            double inverse_w = sum * inverse_determinant;
+            double nearness =
+                (by_z ? e[0] * far_distance[0] + e[1] * far_distance[1] + e[2] * far_distance[2]
+                      : sum) *
+                inverse_determinant;
             if (crosses_near) {
                 if (e[0] * near_distance[0] + e[1] * near_distance[1] + e[2] * near_distance[2] < 0)
                     continue;
             } else {
                 // Slivers: rounding must not push them in front of everything else.
-                inverse_w = inverse_w < low_inverse ? low_inverse : inverse_w;
-                inverse_w = inverse_w > high_inverse ? high_inverse : inverse_w;
+                nearness = nearness < low_nearness ? low_nearness : nearness;
+                nearness = nearness > high_nearness ? high_nearness : nearness;
             }
-            visit(row_pixel + x, static_cast<float>(inverse_w), e, sum);
+            visit(row_pixel + x, static_cast<float>(nearness), e, sum);
         }
     }
+}
+
+/// The depth of a fragment or pixel that something is seen at.
+ITEM3D_HOST_DEVICE inline float depth_of(const RasterParameters& p, float nearness) {
+    return p.order == DepthOrder::z_over_w ? 1.0f - nearness : 1.0f / nearness;
 }
 
 /// Whether a fragment may be seen at a pixel.
 ITEM3D_HOST_DEVICE inline bool passes_behind(const RasterParameters& p, std::int64_t pixel,
                                              float nearness) {
+    if (p.order == DepthOrder::z_over_w)
+        return p.behind == nullptr || depth_of(p, nearness) > p.behind[pixel];
     // The margin keeps a fragment from being found again behind itself.
     return p.behind == nullptr || !(nearness * p.behind[pixel] > 1 - 1e-6f);
 }
@@ -237,7 +270,7 @@ ITEM3D_HOST_DEVICE inline bool passes_behind(const RasterParameters& p, std::int
 ITEM3D_HOST_DEVICE inline bool hidden_in_one_pixel(const RasterParameters& p, std::int64_t view,
                                                    std::int64_t t) {
     const PixelBox box = p.boxes[view * p.triangle_count + t];
-    if (box.x1 - box.x0 != 1 || box.y1 - box.y0 != 1) return false;
+    if (box.x1 - box.x0 != 1 || box.y1 - box.y0 != 1 || p.order != DepthOrder::w) return false;
     const float nearness = p.depth[(view * p.height + box.y0) * p.width + box.x0];
     if (!(nearness > 0)) return false;
     const float* clip = p.positions_clip + 4 * p.vertices * view;
@@ -264,16 +297,16 @@ ITEM3D_HOST_DEVICE inline void rasterize_triangle(const RasterParameters& p, std
                       });
 }
 
-/// Turns the 1/w that rasterize_triangle left into z-depth.
+/// Turns the nearness that rasterize_triangle left into depth.
 ITEM3D_HOST_DEVICE inline void finish_depth(const RasterParameters& p, std::int64_t pixel) {
-    if (p.depth[pixel] > 0) p.depth[pixel] = 1.0f / p.depth[pixel];
+    if (p.depth[pixel] > 0) p.depth[pixel] = depth_of(p, p.depth[pixel]);
 }
 
 /// For threads that draw triangles in any order: the nearest fragment of each pixel, and at equal
 /// depth that of the first triangle, is the largest key.
 struct KeyedRasterParameters {
     RasterParameters raster;
-    unsigned long long* keys;  ///< [N, H, W], zeros: bits of 1/w, then of ~triangle
+    unsigned long long* keys;  ///< [N, H, W], zeros: bits of nearness, then of ~triangle
     std::int64_t views;        ///< N
     std::int64_t bands;        ///< of rows; a thread draws a triangle into one of them
 };
@@ -325,7 +358,7 @@ ITEM3D_HOST_DEVICE inline void resolve_key(const KeyedRasterParameters& keyed, s
     for (int i = 0; i < 3; ++i)
         e[i] = edges.a[i] * ndc_x + (edges.b[i] * ndc_y + edges.c[i]);
     const double sum = e[0] + e[1] + e[2];
-    p.depth[pixel] = 1.0f / std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32));
+    p.depth[pixel] = depth_of(p, std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32)));
     p.triangle[pixel] = t;
     p.barycentrics[2 * pixel] = static_cast<float>(e[0] / sum);
     p.barycentrics[2 * pixel + 1] = static_cast<float>(e[1] / sum);

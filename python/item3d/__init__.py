@@ -1,0 +1,22 @@
+"""item3d from Python: differentiable rendering on the CPU, and the program's commands.
+
+    import item3d
+    raster = item3d.rasterize(positions, triangles, (512, 512))
+    image = item3d.antialias(item3d.interpolate(colors, raster, triangles), raster, positions, triangles)
+    result = item3d.edit('mug.glb', 'a red mug', 'a golden mug', output='golden')
+
+item3d.nvdiffrast has the functions of nvdiffrast.torch. docs/python.md has examples. Needs PyTorch 2.10 or newer.
+"""
+from . import _library  # first: says in a line when PyTorch is too old
+from .operations import Raster, antialias, interpolate, mipmaps, rasterize, texture, topology
+from .program import (Error, InputError, InternalError, Interrupted, Job, ProgramMissing, Progress,
+                      ResourceError, UsageError, caption, edit, find_program, reconstruct, relight, score,
+                      start_edit, start_reconstruct, start_relight)
+from .settings import CaptionSettings, EditSettings, ReconstructSettings, RelightSettings, ScoreSettings
+
+__version__ = '0.1.0'
+__all__ = ['CaptionSettings', 'EditSettings', 'Error', 'InputError', 'InternalError', 'Interrupted', 'Job',
+           'ProgramMissing', 'Progress', 'Raster', 'ReconstructSettings', 'RelightSettings', 'ResourceError',
+           'ScoreSettings', 'UsageError', 'antialias', 'caption', 'edit', 'find_program', 'interpolate',
+           'mipmaps', 'rasterize', 'reconstruct', 'relight', 'score', 'start_edit', 'start_reconstruct',
+           'start_relight', 'texture', 'topology']

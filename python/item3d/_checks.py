@@ -1,0 +1,55 @@
+"""Checks of arguments: one line that names the argument, what was wanted and what was found."""
+from __future__ import annotations
+
+import torch
+
+
+def _shape(wanted) -> str:
+    return '[' + ', '.join('*' if size is None else str(size) for size in wanted) + ']'
+
+
+def check(operation: str, name: str, tensor, dtype: torch.dtype, *shapes) -> None:
+    """Raises TypeError for what is no tensor of `dtype`, and ValueError for one that is not on the CPU, not
+    dense, or has none of the shapes (None in one: any size)."""
+    if not isinstance(tensor, torch.Tensor):
+        raise TypeError(f'{operation}: {name} must be a tensor, found {type(tensor).__name__}')
+    if tensor.dtype is not dtype:
+        raise TypeError(f'{operation}: {name} must be {str(dtype)[6:]}, found {str(tensor.dtype)[6:]} '
+                        f'(tensor.to({dtype}))')
+    if tensor.device.type != 'cpu':
+        raise ValueError(f'{operation}: {name} must be on the CPU, found {tensor.device} '
+                         f'(this version of item3d computes on the CPU alone: tensor.cpu())')
+    if tensor.layout is not torch.strided:
+        raise ValueError(f'{operation}: {name} must be dense, found {tensor.layout}')
+    found = tensor.shape
+    for wanted in shapes:
+        if len(wanted) == len(found) and all(
+                w is None or w == f for w, f in zip(wanted, found)):
+            return
+    raise ValueError(f'{operation}: {name} must be of shape ' +
+                     ' or '.join(map(_shape, shapes)) + f', found {list(found)}')
+
+
+def check_size(operation: str, name: str, size) -> tuple[int, int]:
+    """Returns (height, width), or raises."""
+    if isinstance(size, torch.Tensor):
+        size = size.tolist()
+    try:
+        height, width = size
+        height, width = int(height), int(width)
+    except (TypeError, ValueError):
+        raise TypeError(
+            f'{operation}: {name} must be two whole numbers, (height, width), found {size!r}'
+        ) from None
+    if not (1 <= height <= 16384 and 1 <= width <= 16384):
+        raise ValueError(f'{operation}: {name} must be in [1, 16384], found {height} x {width}')
+    return height, width
+
+
+def choice(operation: str, name: str, value, choices: dict):
+    """Returns choices[value], or raises ValueError with the choices."""
+    try:
+        return choices[value]
+    except (KeyError, TypeError):
+        raise ValueError(f'{operation}: {name} must be one of {", ".join(map(repr, choices))}, '
+                         f'found {value!r}') from None

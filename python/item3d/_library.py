@@ -1,0 +1,100 @@
+"""The operators of `_operators.so`, and the shapes of their results for torch.compile. Not public."""
+from __future__ import annotations
+
+import os
+import re
+
+import torch
+
+_OLDEST = (2, 10)
+
+
+def _load() -> None:
+    match = re.match(r'(\d+)\.(\d+)', torch.__version__)
+    if match is None or (int(match[1]), int(match[2])) < _OLDEST:
+        raise ImportError(
+            f'item3d needs PyTorch {_OLDEST[0]}.{_OLDEST[1]} or newer, found {torch.__version__}: '
+            f"pip install 'torch>={_OLDEST[0]}.{_OLDEST[1]}'")
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), '_operators.so')
+    if not os.path.exists(path):
+        raise ImportError(
+            f'{path} is missing: item3d is installed by "pip install .", not used from its sources')
+    torch.ops.load_library(path)
+
+
+_load()
+ops = torch.ops.item3d
+
+
+# Shapes of results. ------------------------------------------------------------------------------
+
+def _picture(like: torch.Tensor, channels) -> torch.Tensor:
+    return like.new_empty([like.shape[0], like.shape[1], like.shape[2], channels])
+
+
+@torch.library.register_fake('item3d::rasterize')
+def _(positions, triangles, ranges, behind, height, width, by_w, bottom_up, slopes, finite):
+    views = positions.shape[0] if ranges is None else ranges.shape[0]
+    return (positions.new_empty([views, height, width, 4]),
+            positions.new_empty([views, height, width, 4 if slopes else 0]))
+
+
+@torch.library.register_fake('item3d::rasterize_backward')
+def _(positions, triangles, raster, raster_gradient, slope_gradient, bottom_up):
+    return positions.new_empty(positions.shape)
+
+
+@torch.library.register_fake('item3d::interpolate')
+def _(attributes, raster, triangles, slopes, sloped):
+    return (_picture(raster, attributes.shape[-1]),
+            _picture(raster, 0 if slopes is None else 2 * len(sloped)))
+
+
+@torch.library.register_fake('item3d::interpolate_backward')
+def _(attributes, raster, triangles, slopes, sloped, value_gradient, value_slope_gradient,
+      attributes_wanted):
+    return (attributes.new_empty(attributes.shape if attributes_wanted else [0]),
+            raster.new_empty(raster.shape),
+            raster.new_empty([0] if slopes is None else slopes.shape))
+
+
+@torch.library.register_fake('item3d::texture')
+def _(texture, mips, uv, slopes, bias, filter, boundary):
+    return _picture(uv, texture.shape[-1])
+
+
+@torch.library.register_fake('item3d::texture_backward')
+def _(texture, mips, uv, slopes, bias, filter, boundary, gradient, texels_wanted, others_wanted):
+    def like(tensor):
+        return uv.new_empty(tensor.shape if others_wanted and tensor is not None else [0])
+    texels = texture.numel() + sum(level.numel() for level in mips)
+    return uv.new_empty([texels if texels_wanted else 0]), like(uv), like(slopes), like(bias)
+
+
+@torch.library.register_fake('item3d::halve')
+def _(texture):
+    return texture.new_empty(
+        [texture.shape[0], texture.shape[1] // 2, texture.shape[2] // 2, texture.shape[3]])
+
+
+@torch.library.register_fake('item3d::halve_backward')
+def _(gradient):
+    return gradient.new_empty(
+        [gradient.shape[0], 2 * gradient.shape[1], 2 * gradient.shape[2], gradient.shape[3]])
+
+
+@torch.library.register_fake('item3d::neighbours')
+def _(triangles, positions):
+    return triangles.new_empty(triangles.shape)
+
+
+@torch.library.register_fake('item3d::antialias')
+def _(image, raster, positions, triangles, neighbours, most_steps, bottom_up):
+    return image.new_empty(image.shape)
+
+
+@torch.library.register_fake('item3d::antialias_backward')
+def _(image, raster, positions, triangles, neighbours, gradient, most_steps, bottom_up,
+      positions_wanted):
+    return (image.new_empty(image.shape),
+            positions.new_empty(positions.shape if positions_wanted else [0]))

@@ -1,0 +1,313 @@
+"""The program's commands, each as a process of its own: no second LibTorch in this one, and a crash stays outside.
+
+    result = item3d.edit('mug.glb', 'a red mug', 'a golden mug', output='golden')
+
+blocks; `start_edit` returns a `Job`, to be iterated for progress and stopped at any time:
+
+    with item3d.start_edit('mug.glb', 'a red mug', 'a golden mug', output='golden') as job:
+        for progress in job:
+            print(progress.stage, progress.done, progress.total)
+    print(job.result()['files'])
+"""
+from __future__ import annotations
+
+import dataclasses
+import json
+import logging
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+from typing import Any, Iterator, Sequence
+
+from .settings import CaptionSettings, EditSettings, ReconstructSettings, RelightSettings, ScoreSettings
+
+_log = logging.getLogger('item3d')
+
+
+class Error(RuntimeError):
+    """A command failed. str(error) is its line without "item3d: error:", `code` its exit code."""
+
+    def __init__(self, message: str, code: int):
+        super().__init__(message)
+        self.code = code
+
+
+class UsageError(Error):
+    """Options that the command does not have, or that exclude each other (code 2)."""
+
+
+class InputError(Error):
+    """A missing or broken file, an unwritable folder, a value out of range (code 3)."""
+
+
+class ResourceError(Error):
+    """Disk, memory or a device is missing or spent (code 4)."""
+
+
+class Interrupted(Error):
+    """The command was stopped, its checkpoint written (code 130)."""
+
+
+class InternalError(Error):
+    """A bug of item3d, or the process was killed (all other codes)."""
+
+
+class ProgramMissing(Error):
+    """No program was found, or it cannot be started."""
+
+
+_ERRORS = {2: UsageError, 3: InputError, 4: ResourceError, 130: Interrupted}
+
+
+@dataclasses.dataclass(frozen=True)
+class Progress:
+    """How far a command is."""
+
+    stage: str
+    """'load', 'fit', 'edit', 'paint', 'detail', 'bake', 'report', ..."""
+    done: int
+    total: int
+    """Steps of the stage; 0: nobody knows."""
+    seconds_left: float | None
+    """Of the stage; None: nobody knows."""
+
+
+def find_program() -> str:
+    """Returns the program's path: the environment's ITEM3D_PROGRAM, that of the package item3d-program, the one on
+    PATH, or the one that was built beside these sources. Raises ProgramMissing."""
+    named = os.environ.get('ITEM3D_PROGRAM')
+    if named:
+        if not os.access(named, os.X_OK):
+            raise ProgramMissing(f'ITEM3D_PROGRAM={named} cannot be executed', 127)
+        return named
+    try:
+        import item3d_program
+        return item3d_program.program()
+    except ImportError:
+        pass
+    found = shutil.which('item3d')
+    if found:
+        return found
+    built = os.path.abspath(os.path.join(os.path.dirname(__file__), '..', '..', 'build', 'item3d'))
+    if os.access(built, os.X_OK):
+        return built
+    raise ProgramMissing('no item3d program was found: install item3d-program, put item3d on PATH, or set '
+                         'ITEM3D_PROGRAM to it', 127)
+
+
+def _options(settings) -> list[str]:
+    """A dataclass of settings as options; None is left out, True is a flag, a sequence comes one by one."""
+    result = []
+    for field in dataclasses.fields(settings):
+        value = getattr(settings, field.name)
+        name = '--' + field.metadata.get('option', field.name.replace('_', '-'))
+        if value is None or value is False:
+            continue
+        if value is True:
+            result.append(name)
+        elif isinstance(value, (list, tuple)) and field.metadata.get('joined'):
+            result += [name, ','.join(map(str, value))]
+        elif isinstance(value, (list, tuple)):
+            for one in value:
+                result += [name, str(one)]
+        else:
+            result += [name, str(value)]
+    return result
+
+
+class Job:
+    """A command that runs. Iterating yields its progress, as often as it changes, and ends with the command; it
+    raises what result() raises. Leaving a `with` block stops the command if it still runs."""
+
+    def __init__(self, arguments: Sequence[str], program: str | None = None):
+        """arguments: of the program, without --json and --progress-file."""
+        self._folder = tempfile.mkdtemp(prefix='item3d-')
+        self._progress_file = os.path.join(self._folder, 'progress.json')
+        self._lines: list[str] = []
+        self._stdout = ''
+        self._removed = False
+        self.command = [program or find_program(), *map(os.fspath, arguments), '--json', '--progress-file',
+                        self._progress_file]
+        _log.debug('%s', ' '.join(self.command))
+        try:
+            # A group of its own: Ctrl-C reaches it through stop(), which waits for its checkpoint.
+            self._process = subprocess.Popen(
+                self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                text=True, encoding='utf-8', errors='replace', start_new_session=True)
+        except OSError as error:
+            self._remove()
+            raise ProgramMissing(f'{self.command[0]} cannot be started: {error.strerror}', 127) from None
+        self._readers = [threading.Thread(target=self._read_messages, daemon=True),
+                         threading.Thread(target=self._read_result, daemon=True)]
+        for reader in self._readers:
+            reader.start()
+
+    def _read_messages(self) -> None:
+        for line in self._process.stderr:
+            line = line.rstrip('\r\n')
+            self._lines.append(line)
+            level = logging.WARNING if ': warning: ' in line else logging.INFO
+            _log.log(level, '%s', line)
+
+    def _read_result(self) -> None:
+        self._stdout = self._process.stdout.read()
+
+    def _remove(self) -> None:
+        if not self._removed:
+            shutil.rmtree(self._folder, ignore_errors=True)
+            self._removed = True
+
+    @property
+    def running(self) -> bool:
+        return self._process.poll() is None
+
+    def progress(self) -> Progress | None:
+        """Returns how far the command is, or None before it has said so."""
+        try:
+            with open(self._progress_file, encoding='utf-8') as file:
+                read = json.load(file)
+            return Progress(str(read['stage']), int(read['done']), int(read['total']), read['seconds_left'])
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+
+    def __iter__(self) -> Iterator[Progress]:
+        last = None
+        while True:
+            running = self.running
+            now = self.progress()
+            if now is not None and now != last:
+                last = now
+                yield now
+            if not running:
+                break
+            try:
+                self._process.wait(0.2)
+            except subprocess.TimeoutExpired:
+                pass
+        self.result()
+
+    def stop(self, timeout: float = 60) -> None:
+        """Asks the command to stop, which writes its checkpoint, and waits. After `timeout` seconds it is killed.
+        Does nothing to one that has ended."""
+        if self.running:
+            self._signal(signal.SIGTERM)
+            try:
+                self._process.wait(timeout)
+            except subprocess.TimeoutExpired:
+                self._signal(signal.SIGKILL)
+                self._process.wait()
+        self._end()
+
+    def _signal(self, number: int) -> None:
+        try:
+            os.killpg(self._process.pid, number)
+        except ProcessLookupError:
+            pass
+
+    def _end(self) -> None:
+        for reader in self._readers:
+            reader.join()
+        self._remove()
+
+    def result(self) -> dict[str, Any]:
+        """Waits for the command and returns what it prints as JSON. Raises UsageError, InputError, ResourceError,
+        Interrupted or InternalError."""
+        try:
+            code = self._process.wait()
+        except KeyboardInterrupt:
+            self.stop()
+            raise
+        self._end()
+        if code == 0:
+            try:
+                return json.loads(self._stdout)
+            except ValueError:
+                raise InternalError(f'{self.command[0]} printed no JSON: is it item3d, and not too old?',
+                                    1) from None
+        marked = [line.split('error: ', 1)[1] for line in self._lines if 'error: ' in line]
+        if code < 0:
+            message = f'{self.command[1]} was killed by signal {-code}'
+        elif marked:
+            message = marked[-1]
+        elif code == 130:
+            message = f'{self.command[1]} was stopped'
+        else:
+            message = '\n'.join(self._lines[-3:]) or f'{self.command[1]} ended with code {code}'
+        raise _ERRORS.get(code, InternalError)(message, code)
+
+    def __enter__(self) -> Job:
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.stop()
+
+
+def _settings(kind, settings, changes):
+    settings = kind() if settings is None else settings
+    if not isinstance(settings, kind):
+        raise TypeError(f'settings must be {kind.__name__}, found {type(settings).__name__}')
+    try:
+        return dataclasses.replace(settings, **changes)
+    except TypeError:
+        names = {field.name for field in dataclasses.fields(kind)}
+        unknown = sorted(set(changes) - names)
+        raise TypeError(f'{kind.__name__} has no {", ".join(unknown)}; it has {", ".join(sorted(names))}') from None
+
+
+def start_edit(model, source: str, target: str, *, output, settings: EditSettings | None = None,
+               **changes) -> Job:
+    """Starts `item3d edit`: of the model, as `source` describes it, to what `target` describes. Settings that are
+    not given are the program's; `changes` are single ones of them."""
+    settings = _settings(EditSettings, settings, changes)
+    return Job(['edit', model, '--from', source, '--to', target, '-o', output, *_options(settings)])
+
+
+def edit(model, source: str, target: str, *, output, settings: EditSettings | None = None,
+         **changes) -> dict[str, Any]:
+    """Edits a model and returns what `item3d edit --json` prints. Arguments as of start_edit()."""
+    return _finished(start_edit(model, source, target, output=output, settings=settings, **changes))
+
+
+def start_relight(model, *, output, settings: RelightSettings | None = None, **changes) -> Job:
+    """Starts `item3d relight`."""
+    settings = _settings(RelightSettings, settings, changes)
+    return Job(['relight', model, '-o', output, *_options(settings)])
+
+
+def relight(model, *, output, settings: RelightSettings | None = None, **changes) -> dict[str, Any]:
+    """Shows a model under another light and returns what `item3d relight --json` prints."""
+    return _finished(start_relight(model, output=output, settings=settings, **changes))
+
+
+def start_reconstruct(dataset=None, *, output, settings: ReconstructSettings | None = None, **changes) -> Job:
+    """Starts `item3d reconstruct` of a dataset's folder, or of from_images=FOLDER."""
+    settings = _settings(ReconstructSettings, settings, changes)
+    given = [] if dataset is None else [dataset]
+    return Job(['reconstruct', *given, '-o', output, *_options(settings)])
+
+
+def reconstruct(dataset=None, *, output, settings: ReconstructSettings | None = None,
+                **changes) -> dict[str, Any]:
+    """Makes a model of photographs and returns what `item3d reconstruct --json` prints."""
+    return _finished(start_reconstruct(dataset, output=output, settings=settings, **changes))
+
+
+def score(before, after, source: str, target: str, *, settings: ScoreSettings | None = None,
+          **changes) -> dict[str, Any]:
+    """Measures by CLIP how well an edit follows its sentences, as `item3d score --json` prints it."""
+    settings = _settings(ScoreSettings, settings, changes)
+    return _finished(Job(['score', before, after, '--from', source, '--to', target, *_options(settings)]))
+
+
+def caption(path, *, settings: CaptionSettings | None = None, **changes) -> dict[str, Any]:
+    """Describes a picture or a model, as `item3d caption --json` prints it."""
+    settings = _settings(CaptionSettings, settings, changes)
+    return _finished(Job(['caption', path, *_options(settings)]))
+
+
+def _finished(job: Job) -> dict[str, Any]:
+    with job:
+        return job.result()

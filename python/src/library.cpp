@@ -1,0 +1,53 @@
+// The operators' schemas. Python gives them their shapes under torch.compile and their gradients
+// (item3d/_operators.py). Bools of flags come in the order of the functions' parameters.
+#include "python/src/antialias.h"
+#include "python/src/interpolate.h"
+#include "python/src/rasterize.h"
+#include "python/src/texture.h"
+
+STABLE_TORCH_LIBRARY(item3d, m) {
+    m.def(
+        "rasterize(Tensor positions, Tensor triangles, Tensor? ranges, Tensor? behind, int height, "
+        "int width, bool by_w, bool bottom_up, bool slopes, bool finite) -> (Tensor, Tensor)");
+    m.def(
+        "rasterize_backward(Tensor positions, Tensor triangles, Tensor raster, "
+        "Tensor raster_gradient, Tensor? slope_gradient, bool bottom_up) -> Tensor");
+    m.def(
+        "interpolate(Tensor attributes, Tensor raster, Tensor triangles, Tensor? slopes, "
+        "int[] sloped) -> (Tensor, Tensor)");
+    m.def(
+        "interpolate_backward(Tensor attributes, Tensor raster, Tensor triangles, Tensor? slopes, "
+        "int[] sloped, Tensor value_gradient, Tensor value_slope_gradient, "
+        "bool attributes_wanted) -> (Tensor, Tensor, Tensor)");
+    m.def(
+        "texture(Tensor texture, Tensor[] mips, Tensor uv, Tensor? slopes, Tensor? bias, "
+        "int filter, int boundary) -> Tensor");
+    m.def(
+        "texture_backward(Tensor texture, Tensor[] mips, Tensor uv, Tensor? slopes, Tensor? bias, "
+        "int filter, int boundary, Tensor gradient, bool texels_wanted, bool others_wanted) "
+        "-> (Tensor, Tensor, Tensor, Tensor)");
+    m.def("halve(Tensor texture) -> Tensor");
+    m.def("halve_backward(Tensor gradient) -> Tensor");
+    m.def("neighbours(Tensor triangles, Tensor? positions) -> Tensor");
+    m.def(
+        "antialias(Tensor image, Tensor raster, Tensor positions, Tensor triangles, "
+        "Tensor neighbours, int most_steps, bool bottom_up) -> Tensor");
+    m.def(
+        "antialias_backward(Tensor image, Tensor raster, Tensor positions, Tensor triangles, "
+        "Tensor neighbours, Tensor gradient, int most_steps, bool bottom_up, "
+        "bool positions_wanted) -> (Tensor, Tensor)");
+}
+
+STABLE_TORCH_LIBRARY_IMPL(item3d, CPU, m) {
+    m.impl("rasterize", TORCH_BOX(&item3d::python::rasterize));
+    m.impl("rasterize_backward", TORCH_BOX(&item3d::python::rasterize_backward));
+    m.impl("interpolate", TORCH_BOX(&item3d::python::interpolate));
+    m.impl("interpolate_backward", TORCH_BOX(&item3d::python::interpolate_backward));
+    m.impl("texture", TORCH_BOX(&item3d::python::texture));
+    m.impl("texture_backward", TORCH_BOX(&item3d::python::texture_backward));
+    m.impl("halve", TORCH_BOX(&item3d::python::halve));
+    m.impl("halve_backward", TORCH_BOX(&item3d::python::halve_backward));
+    m.impl("neighbours", TORCH_BOX(&item3d::python::neighbours));
+    m.impl("antialias", TORCH_BOX(&item3d::python::antialias));
+    m.impl("antialias_backward", TORCH_BOX(&item3d::python::antialias_backward));
+}

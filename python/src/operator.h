@@ -1,0 +1,76 @@
+// What the operators share: checks of their tensors, new tensors, sums to which many pixels
+// contribute. Tensors are LibTorch's stable ones, so that one library serves many versions of it.
+#pragma once
+
+#include "item3d/core/accumulate.h"
+#include "item3d/core/parallel.h"
+
+#include <torch/csrc/stable/library.h>
+#include <torch/csrc/stable/ops.h>
+#include <torch/csrc/stable/tensor.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace item3d::python {
+
+using torch::headeronly::ScalarType;
+using torch::stable::Tensor;
+using Sizes = std::vector<std::int64_t>;
+
+/// Throws std::runtime_error, "operation: message", which Python sees as RuntimeError.
+[[noreturn]] void fail(const char* operation, const std::string& message);
+
+/// Returns the tensor, made contiguous. Throws as fail() unless it is on the CPU, of `type` and of
+/// `sizes`, where -1 stands for any.
+Tensor checked(const char* operation, const char* name, const Tensor& tensor, ScalarType type,
+               const Sizes& sizes);
+
+/// Throws as fail() unless all indices of triangles [T, 3] are in [0, vertices).
+void check_indices(const char* operation, const Tensor& triangles, std::int64_t vertices);
+
+/// float32 on the CPU, not initialised.
+Tensor new_tensor(const Sizes& sizes, ScalarType type = ScalarType::Float);
+Tensor new_zeros(const Sizes& sizes);
+
+inline const float* floats(const Tensor& tensor) {
+    return static_cast<const float*>(tensor.const_data_ptr());
+}
+inline const std::int32_t* integers(const Tensor& tensor) {
+    return static_cast<const std::int32_t*>(tensor.const_data_ptr());
+}
+inline float* mutable_floats(const Tensor& tensor) {
+    return static_cast<float*>(tensor.mutable_data_ptr());
+}
+
+/// Positions whose y points down, for rows that go up: a copy of [.., 4]; empty where rows go down.
+std::vector<float> upside_down(const Tensor& positions, bool bottom_up);
+
+/// Turns a gradient by such positions into one by the positions themselves.
+void turn_gradient(float* gradient, std::int64_t count, bool bottom_up);
+
+/// Adds add(i, sums) over i in [0, count) to out, which has `elements` zeros. Work is cut into
+/// pieces by sizes alone, which are added in order: the same bytes for any number of threads.
+template <typename Add>
+void sum_pixels(std::int64_t count, std::int64_t elements, float* out, const Add& add) {
+    constexpr std::int64_t most_pieces = 8;
+    const std::int64_t pieces = count < 16384 || elements > 2 * count ? 1 : most_pieces;
+    std::vector<float> buffers(static_cast<std::size_t>((pieces - 1) * elements));
+    parallel_for(
+        "sum_pixels", pieces,
+        [&](std::int64_t piece) {
+            Accumulator sums;
+            sums.values = piece == 0 ? out : buffers.data() + (piece - 1) * elements;
+            for (std::int64_t i = count * piece / pieces; i < count * (piece + 1) / pieces; ++i)
+                add(i, sums);
+        },
+        1);
+    for (std::int64_t piece = 1; piece < pieces; ++piece)
+        for (std::int64_t i = 0; i < elements; ++i)
+            out[i] += buffers[static_cast<std::size_t>((piece - 1) * elements + i)];
+}
+
+}  // namespace item3d::python

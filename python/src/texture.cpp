@@ -1,0 +1,217 @@
+#include "python/src/texture.h"
+
+#include "item3d/render/kernels/mipmap.h"
+
+#include <algorithm>
+
+namespace item3d::python {
+namespace {
+
+constexpr std::int64_t anisotropic = 4;
+
+/// The tensors that forward and backward have in common, and what kernels read of them.
+struct Inputs {
+    std::vector<Tensor> levels;
+    Tensor uv, slopes, bias;
+    std::int64_t views, height, width, pixels, texels = 0;
+    bool program;
+    kernels::MipmapParameters p{};
+    std::vector<float> footprint;
+
+    Inputs(const char* operation, const Lookup& in)
+        : uv(checked(operation, "uv", in.uv, ScalarType::Float,
+                     {-1, -1, -1, in.boundary == 3 ? 3 : 2})),
+          views(uv.size(0)),
+          height(uv.size(1)),
+          width(uv.size(2)),
+          pixels(views * height * width),
+          program(in.filter == anisotropic) {
+        if (in.filter < 0 || in.filter > 4 || in.boundary < 0 || in.boundary > 3 ||
+            (program && in.boundary > 1))
+            fail(operation, "unknown filter or boundary, or anisotropic with 'zero' or 'cube'");
+        p.filter = static_cast<kernels::MipmapFilter>(program ? 1 : in.filter);
+        p.boundary = static_cast<kernels::MipmapBoundary>(in.boundary);
+        p.pixels_per_view = std::max<std::int64_t>(1, height * width);
+        p.uv = floats(uv);
+        add_levels(operation, in);
+        const Sizes per_pixel{views, height, width, p.is_cube() ? 6 : 4};
+        if (in.slopes) {
+            slopes = checked(operation, "uv derivatives", *in.slopes, ScalarType::Float, per_pixel);
+            p.slopes = floats(slopes);
+        }
+        if (in.bias) {
+            bias = checked(operation, "level bias", *in.bias, ScalarType::Float,
+                           {views, height, width});
+            p.bias = floats(bias);
+        }
+        if (program && in.slopes) {
+            footprint.resize(static_cast<std::size_t>(4 * pixels));
+            for (std::int64_t i = 0; i < pixels; ++i)
+                for (int k = 0; k < 4; ++k)
+                    footprint[static_cast<std::size_t>(4 * i + k)] =
+                        p.slopes[4 * i + (k == 1 ? 2 : (k == 2 ? 1 : k))];
+        }
+    }
+
+    /// The program's own lookup in the texture of one view.
+    kernels::TextureParameters program_lookup(std::int64_t view) const {
+        kernels::TextureParameters t{};
+        for (int level = 0; level < p.level_count; ++level) {
+            t.levels[level] = p.levels[level];
+            const std::int64_t offset = p.shared ? 0 : view * p.texels(level) * p.channels;
+            t.levels[level].texels += offset;
+            t.levels[level].first += offset;
+        }
+        t.level_count = p.level_count;
+        t.channels = p.channels;
+        t.uv = p.uv;
+        t.footprint = footprint.empty() ? nullptr : footprint.data();
+        t.wrap_u = t.wrap_v = p.boundary == kernels::MipmapBoundary::wrap
+                                  ? kernels::TextureWrap::repeat
+                                  : kernels::TextureWrap::clamp_to_edge;
+        return t;
+    }
+
+  private:
+    void add_levels(const char* operation, const Lookup& in) {
+        const bool cube = p.is_cube();
+        const Sizes any = cube ? Sizes{-1, 6, -1, -1, -1} : Sizes{-1, -1, -1, -1};
+        if (in.mips.size() + 1 > kernels::max_texture_levels)
+            fail(operation, "at most 16 levels, found " + std::to_string(in.mips.size() + 1));
+        levels.push_back(checked(operation, "texture", in.texture, ScalarType::Float, any));
+        const std::int64_t axis = cube ? 2 : 1, batch = levels[0].size(0);
+        if (batch != 1 && batch != views)
+            fail(operation, "texture must be one for all views or one for each of the " +
+                                std::to_string(views) + ", found " + std::to_string(batch));
+        p.shared = batch == 1;
+        p.channels = static_cast<int>(levels[0].size(axis + 2));
+        for (std::size_t i = 0; i <= in.mips.size(); ++i) {
+            std::int64_t rows = levels[0].size(axis), columns = levels[0].size(axis + 1);
+            if (i == 0 && (rows < 1 || columns < 1 || (cube && rows != columns)))
+                fail(operation, "texture must have texels, and those of a cube be square");
+            if (i > 0) {
+                rows = std::max<std::int64_t>(1, levels[i - 1].size(axis) / 2);
+                columns = std::max<std::int64_t>(1, levels[i - 1].size(axis + 1) / 2);
+                levels.push_back(checked(operation, ("level " + std::to_string(i)).c_str(),
+                                         in.mips[i - 1], ScalarType::Float,
+                                         cube ? Sizes{batch, 6, rows, columns, p.channels}
+                                              : Sizes{batch, rows, columns, p.channels}));
+            }
+            p.levels[i] = {floats(levels[i]), static_cast<int>(rows), static_cast<int>(columns),
+                           texels};
+            texels += levels[i].numel();
+        }
+        p.level_count = static_cast<int>(levels.size());
+    }
+};
+
+}  // namespace
+
+Tensor texture(const Tensor& texture, const std::vector<Tensor>& mips, const Tensor& uv,
+               const std::optional<Tensor>& slopes, const std::optional<Tensor>& bias,
+               std::int64_t filter, std::int64_t boundary) {
+    const Inputs in("texture", {texture, mips, uv, slopes, bias, filter, boundary});
+    kernels::MipmapParameters p = in.p;
+    const Tensor result = new_tensor({in.views, in.height, in.width, p.channels});
+    p.values = mutable_floats(result);
+    if (!in.program) {
+        parallel_for(
+            "texture", in.pixels, [&](std::int64_t pixel) { kernels::mipmap_forward(p, pixel); },
+            4096);
+        return result;
+    }
+    for (std::int64_t view = 0; view < in.views; ++view) {
+        const kernels::TextureParameters t = in.program_lookup(view);
+        const std::int64_t first = view * p.pixels_per_view;
+        parallel_for(
+            "texture", in.height * in.width,
+            [&](std::int64_t i) { kernels::texture_forward(t, first + i, p.values); }, 4096);
+    }
+    return result;
+}
+
+std::tuple<Tensor, Tensor, Tensor, Tensor> texture_backward(
+    const Tensor& texture, const std::vector<Tensor>& mips, const Tensor& uv,
+    const std::optional<Tensor>& slopes, const std::optional<Tensor>& bias, std::int64_t filter,
+    std::int64_t boundary, const Tensor& gradient_, bool texels_wanted, bool others_wanted) {
+    constexpr const char* operation = "texture backward";
+    const Inputs in(operation, {texture, mips, uv, slopes, bias, filter, boundary});
+    kernels::MipmapParameters p = in.p;
+    const Tensor gradient = checked(operation, "gradient", gradient_, ScalarType::Float,
+                                    {in.views, in.height, in.width, p.channels});
+    p.value_gradient = floats(gradient);
+    const auto like = [&](bool wanted, const Tensor& tensor) {
+        if (!wanted) return new_tensor({0});
+        const auto found = tensor.sizes();
+        return new_zeros(Sizes(found.begin(), found.end()));
+    };
+    const Tensor by_texels = texels_wanted ? new_zeros({in.texels}) : new_tensor({0});
+    const Tensor by_uv = like(others_wanted, in.uv);
+    const Tensor by_slopes = like(others_wanted && slopes, in.slopes);
+    const Tensor by_bias = like(others_wanted && bias, in.bias);
+    if (others_wanted) {
+        p.uv_gradient = mutable_floats(by_uv);
+        if (slopes) p.slope_gradient = mutable_floats(by_slopes);
+        if (bias) p.bias_gradient = mutable_floats(by_bias);
+    }
+    std::vector<kernels::TextureParameters> program;
+    for (std::int64_t view = 0; in.program && view < in.views; ++view)
+        program.push_back(in.program_lookup(view));
+    const auto visit = [&](std::int64_t pixel, const Accumulator& sums) {
+        if (!in.program) {
+            kernels::mipmap_backward(p, pixel, sums);
+            return;
+        }
+        const kernels::TextureParameters& t =
+            program[static_cast<std::size_t>(pixel / p.pixels_per_view)];
+        if (sums.wanted()) kernels::texture_backward(t, pixel, p.value_gradient, sums);
+        if (others_wanted) kernels::texture_uv_backward(t, pixel, p.value_gradient, p.uv_gradient);
+    };
+    if (texels_wanted)
+        sum_pixels(in.pixels, in.texels, mutable_floats(by_texels), visit);
+    else
+        parallel_for(
+            operation, in.pixels, [&](std::int64_t pixel) { visit(pixel, {}); }, 4096);
+    return {by_texels, by_uv, by_slopes, by_bias};
+}
+
+Tensor halve(const Tensor& texture_) {
+    constexpr const char* operation = "halve";
+    const Tensor texture =
+        checked(operation, "texture", texture_, ScalarType::Float, {-1, -1, -1, -1});
+    const std::int64_t maps = texture.size(0), height = texture.size(1), width = texture.size(2);
+    if (height % 2 != 0 || width % 2 != 0)
+        fail(operation, "texture must have even sides, found " + std::to_string(height) + " x " +
+                            std::to_string(width));
+    const Tensor result = new_tensor({maps, height / 2, width / 2, texture.size(3)});
+    const std::int64_t count = height / 2 * (width / 2), channels = texture.size(3);
+    for (std::int64_t map = 0; map < maps; ++map) {
+        const kernels::HalveParameters p{floats(texture) + 4 * map * count * channels,
+                                         static_cast<int>(width), static_cast<int>(channels),
+                                         mutable_floats(result) + map * count * channels};
+        parallel_for(
+            operation, count, [&](std::int64_t i) { kernels::halve_texture(p, i); }, 16384);
+    }
+    return result;
+}
+
+Tensor halve_backward(const Tensor& gradient_) {
+    constexpr const char* operation = "halve backward";
+    const Tensor gradient =
+        checked(operation, "gradient", gradient_, ScalarType::Float, {-1, -1, -1, -1});
+    const std::int64_t maps = gradient.size(0), height = gradient.size(1);
+    const std::int64_t width = gradient.size(2), channels = gradient.size(3);
+    const std::int64_t count = height * width;
+    const Tensor result = new_tensor({maps, 2 * height, 2 * width, channels});
+    for (std::int64_t map = 0; map < maps; ++map) {
+        const kernels::HalveParameters p{floats(gradient) + map * count * channels,
+                                         static_cast<int>(2 * width), static_cast<int>(channels),
+                                         mutable_floats(result) + 4 * map * count * channels};
+        parallel_for(
+            operation, count, [&](std::int64_t i) { kernels::halve_texture_backward(p, i); },
+            16384);
+    }
+    return result;
+}
+
+}  // namespace item3d::python

@@ -1,0 +1,194 @@
+// Rasters of four floats a pixel, as published renderers exchange them: the weights of a triangle's
+// vertices 0 and 1, depth, and the triangle's index + 1 (0: nothing). Attributes and gradients by
+// pixel, without a list of those that are covered.
+#pragma once
+
+#include "item3d/core/accumulate.h"
+#include "item3d/core/host_device.h"
+#include "item3d/render/kernels/barycentrics.h"
+
+#include <cstdint>
+
+namespace item3d::kernels {
+
+/// The largest number of triangles whose index + 1 is a float without rounding.
+inline constexpr std::int64_t most_float_triangles = (1 << 24) - 1;
+
+/// Index of the triangle at a pixel of a raster [.., 4], or -1.
+ITEM3D_HOST_DEVICE inline std::int64_t triangle_at(const float* raster, std::int64_t pixel) {
+    const float id = raster[4 * pixel + 3];
+    return id >= 1 && id <= static_cast<float>(most_float_triangles)
+               ? static_cast<std::int64_t>(id) - 1
+               : -1;
+}
+
+/// Where a pixel of N pictures lies.
+struct PixelPlace {
+    std::int64_t view;
+    int x, y;
+
+    ITEM3D_HOST_DEVICE PixelPlace(std::int64_t pixel, int width, int height) {
+        const std::int64_t per_view = static_cast<std::int64_t>(width) * height;
+        view = pixel / per_view;
+        y = static_cast<int>(pixel % per_view / width);
+        x = static_cast<int>(pixel % width);
+    }
+};
+
+struct RasterSlopeParameters {
+    const float* positions_clip;    ///< [N, V, 4], or [V, 4]
+    std::int64_t view_stride;       ///< from one view's positions to the next one's: 4 V, or 0
+    const std::int32_t* triangles;  ///< [T, 3]
+    const float* raster;            ///< [N, H, W, 4]
+    int width;
+    int height;
+    float* slopes;  ///< [N, H, W, 4] db0/dx, db0/dy, db1/dx, db1/dy; a pixel down: +y
+    const float* raster_gradient;  ///< [N, H, W, 4]
+    const float* slope_gradient;   ///< [N, H, W, 4], or null
+};
+
+ITEM3D_HOST_DEVICE inline void raster_slopes(const RasterSlopeParameters& p, std::int64_t pixel) {
+    float* out = p.slopes + 4 * pixel;
+    const std::int64_t t = triangle_at(p.raster, pixel);
+    if (t < 0) {
+        out[0] = out[1] = out[2] = out[3] = 0;
+        return;
+    }
+    const PixelPlace place(pixel, p.width, p.height);
+    const ClipTriangle triangle(p.positions_clip + p.view_stride * place.view, p.triangles + 3 * t);
+    const WeightSlopes slopes =
+        weight_slopes(triangle, pixel_centre(place.x, place.y, p.width, p.height),
+                      p.raster + 4 * pixel, p.width, p.height);
+    for (int k = 0; k < 2; ++k) {
+        out[2 * k] = static_cast<float>(slopes.by_x[k]);
+        out[2 * k + 1] = static_cast<float>(slopes.by_y[k]);
+    }
+}
+
+/// Adds one pixel's gradients by the clip-space vertices. Depth and index have none.
+ITEM3D_HOST_DEVICE inline void raster_backward(const RasterSlopeParameters& p, std::int64_t pixel,
+                                               const Accumulator& clip_gradient) {
+    const std::int64_t t = triangle_at(p.raster, pixel);
+    if (t < 0) return;
+    const float* gradient = p.raster_gradient + 4 * pixel;
+    const double by_weight[3] = {gradient[0], gradient[1], 0};
+    WeightSlopes by_slope{};
+    bool slopes = false;
+    for (int k = 0; p.slope_gradient != nullptr && k < 2; ++k) {
+        by_slope.by_x[k] = p.slope_gradient[4 * pixel + 2 * k];
+        by_slope.by_y[k] = p.slope_gradient[4 * pixel + 2 * k + 1];
+        slopes = slopes || by_slope.by_x[k] != 0 || by_slope.by_y[k] != 0;
+    }
+    if (by_weight[0] == 0 && by_weight[1] == 0 && !slopes) return;
+    const float b0 = p.raster[4 * pixel], b1 = p.raster[4 * pixel + 1];
+    const float weights[3] = {b0, b1, 1.0f - b0 - b1};
+    const PixelPlace place(pixel, p.width, p.height);
+    const std::int32_t* corners = p.triangles + 3 * t;
+    DVec3 by_vertex[3];
+    if (!weights_backward(ClipTriangle(p.positions_clip + p.view_stride * place.view, corners),
+                          pixel_centre(place.x, place.y, p.width, p.height), weights, by_weight,
+                          slopes ? &by_slope : nullptr, p.width, p.height, by_vertex))
+        return;
+    for (int k = 0; k < 3; ++k) {
+        const std::int64_t row =
+            p.view_stride * place.view + 4 * static_cast<std::int64_t>(corners[k]);
+        clip_gradient.add(row, static_cast<float>(by_vertex[k].x));
+        clip_gradient.add(row + 1, static_cast<float>(by_vertex[k].y));
+        clip_gradient.add(row + 3, static_cast<float>(by_vertex[k].z));
+    }
+}
+
+struct PixelAttributeParameters {
+    const float* attributes;            ///< [N, V, A], or [V, A]
+    std::int64_t view_stride;           ///< V A, or 0
+    std::int64_t pixels_per_view;       ///< H W
+    int channels;                       ///< A
+    const std::int32_t* triangles;      ///< [T, 3]
+    const float* raster;                ///< [N, H, W, 4]
+    const float* slopes;                ///< [N, H, W, 4] of raster_slopes(), or null
+    const std::int64_t* sloped;         ///< [D] channels whose slopes are wanted
+    int sloped_count;                   ///< D, 0 without slopes
+    float* values;                      ///< [N, H, W, A]
+    float* value_slopes;                ///< [N, H, W, 2 D] by x and y, channel after channel
+    const float* value_gradient;        ///< [N, H, W, A]
+    const float* value_slope_gradient;  ///< [N, H, W, 2 D]
+    float* raster_gradient;             ///< [N, H, W, 4], or null
+    float* slope_gradient;              ///< [N, H, W, 4], or null
+};
+
+ITEM3D_HOST_DEVICE inline void pixel_attributes(const PixelAttributeParameters& p,
+                                                std::int64_t pixel) {
+    float* out = p.values + p.channels * pixel;
+    float* out_slopes = p.value_slopes + 2 * p.sloped_count * pixel;
+    const std::int64_t t = triangle_at(p.raster, pixel);
+    if (t < 0) {
+        for (int c = 0; c < p.channels; ++c)
+            out[c] = 0;
+        for (int c = 0; c < 2 * p.sloped_count; ++c)
+            out_slopes[c] = 0;
+        return;
+    }
+    const float b0 = p.raster[4 * pixel], b1 = p.raster[4 * pixel + 1];
+    const float weights[3] = {b0, b1, 1.0f - b0 - b1};
+    const float* corner[3];
+    for (int k = 0; k < 3; ++k)
+        corner[k] = p.attributes + p.view_stride * (pixel / p.pixels_per_view) +
+                    p.channels * static_cast<std::int64_t>(p.triangles[3 * t + k]);
+    for (int c = 0; c < p.channels; ++c)
+        out[c] = weights[0] * corner[0][c] + weights[1] * corner[1][c] + weights[2] * corner[2][c];
+    for (int i = 0; i < p.sloped_count; ++i) {
+        const std::int64_t c = p.sloped[i];
+        const float* slopes = p.slopes + 4 * pixel;
+        const float first = corner[0][c] - corner[2][c], second = corner[1][c] - corner[2][c];
+        out_slopes[2 * i] = slopes[0] * first + slopes[2] * second;
+        out_slopes[2 * i + 1] = slopes[1] * first + slopes[3] * second;
+    }
+}
+
+/// Writes the gradients by raster and slopes of one pixel, and adds those by attributes.
+ITEM3D_HOST_DEVICE inline void pixel_attributes_backward(const PixelAttributeParameters& p,
+                                                         std::int64_t pixel,
+                                                         const Accumulator& attribute_gradient) {
+    float by_raster[4] = {0, 0, 0, 0}, by_slopes[4] = {0, 0, 0, 0};
+    const std::int64_t t = triangle_at(p.raster, pixel);
+    if (t >= 0) {
+        const float b0 = p.raster[4 * pixel], b1 = p.raster[4 * pixel + 1];
+        const float weights[3] = {b0, b1, 1.0f - b0 - b1};
+        const float* gradient = p.value_gradient + p.channels * pixel;
+        std::int64_t row[3];
+        for (int k = 0; k < 3; ++k)
+            row[k] = p.view_stride * (pixel / p.pixels_per_view) +
+                     p.channels * static_cast<std::int64_t>(p.triangles[3 * t + k]);
+        for (int c = 0; c < p.channels; ++c) {
+            const float last = p.attributes[row[2] + c];
+            by_raster[0] += gradient[c] * (p.attributes[row[0] + c] - last);
+            by_raster[1] += gradient[c] * (p.attributes[row[1] + c] - last);
+            for (int k = 0; attribute_gradient.wanted() && k < 3; ++k)
+                attribute_gradient.add(row[k] + c, weights[k] * gradient[c]);
+        }
+        for (int i = 0; i < p.sloped_count; ++i) {
+            const std::int64_t c = p.sloped[i];
+            const float* slopes = p.slopes + 4 * pixel;
+            const float* g = p.value_slope_gradient + 2 * (p.sloped_count * pixel + i);
+            const float last = p.attributes[row[2] + c];
+            const float first = p.attributes[row[0] + c] - last;
+            const float second = p.attributes[row[1] + c] - last;
+            by_slopes[0] += g[0] * first;
+            by_slopes[1] += g[1] * first;
+            by_slopes[2] += g[0] * second;
+            by_slopes[3] += g[1] * second;
+            if (!attribute_gradient.wanted()) continue;
+            const float by_first = g[0] * slopes[0] + g[1] * slopes[1];
+            const float by_second = g[0] * slopes[2] + g[1] * slopes[3];
+            attribute_gradient.add(row[0] + c, by_first);
+            attribute_gradient.add(row[1] + c, by_second);
+            attribute_gradient.add(row[2] + c, -by_first - by_second);
+        }
+    }
+    for (int c = 0; c < 4; ++c) {
+        if (p.raster_gradient != nullptr) p.raster_gradient[4 * pixel + c] = by_raster[c];
+        if (p.slope_gradient != nullptr) p.slope_gradient[4 * pixel + c] = by_slopes[c];
+    }
+}
+
+}  // namespace item3d::kernels
