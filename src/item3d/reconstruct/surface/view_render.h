@@ -42,10 +42,10 @@ struct ViewRenderOptions {
     /// What surfaces throw at each other; null: nothing. One ray of each lobe, drawn by `seed`.
     const IndirectLight* indirect = nullptr;
     std::uint64_t seed = 0;
-    bool normal_map = false;  ///< use the field's tangent-space normals
+    bool normal_map = false;    ///< use the field's tangent-space normals
     bool one_material = false;  ///< the view's mean everywhere: only the light can explain shading
-    RigidMotion motion = {};  ///< of the object in front of the camera; undefined tensors: none
-    at::Tensor gain = {};     ///< [3], of all radiance; undefined: 1
+    RigidMotion motion = {};    ///< of the object in front of the camera; undefined tensors: none
+    at::Tensor gain = {};       ///< [3], of all radiance; undefined: 1
     at::Tensor base_color_factor = {};  ///< [3], where it meets the light; undefined: 1
 };
 
