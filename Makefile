@@ -102,7 +102,9 @@ test-python:
 	    python3 -m pytest -q -p no:cacheprovider python/tests
 
 wheel: setup
-	@python3 -m pip wheel -q --no-deps --disable-pip-version-check -w build/wheels .
+	@$(if $(filter $(CURDIR)/.deps/python,$(PYTHON_SITE)),scripts/setup.sh python)
+	@PYTHONPATH=$(PYTHON_SITE) python3 -m pip wheel -q --no-build-isolation --no-deps --no-index \
+	    --disable-pip-version-check -w build/wheels .
 	@ls build/wheels/item3d-*.whl
 
 cuda:
