@@ -8,7 +8,7 @@ ITEM3D_PROGRAM=$(realpath "${1:?usage: scripts/test_blender.sh ITEM3D [TEST...]}
 export ITEM3D_PROGRAM PYTHONDONTWRITEBYTECODE=1
 shift
 failed=()
-for folder in .deps/blender/*/; do
+for folder in "$PWD"/.deps/blender/*/; do
     [[ -f $folder/python ]] || { echo "no Blender in .deps/blender; run: scripts/setup.sh blender" >&2; exit 1; }
     version=$(basename "$folder")
     echo "Blender $version, $(<"$folder/python")"
