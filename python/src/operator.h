@@ -1,4 +1,4 @@
-// What the operators share: checks of their tensors, new tensors, sums to which many pixels
+// The operators' common parts: checks of their tensors, new tensors, sums to which many pixels
 // contribute. Tensors are LibTorch's stable ones, so that one library serves many versions of it.
 #pragma once
 

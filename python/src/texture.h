@@ -5,7 +5,7 @@
 
 namespace item3d::python {
 
-/// What the lookups of a texture have in common.
+/// Parameters that all lookups of a texture have.
 ///
 /// texture: [N or 1, H, W, C], cubes [N or 1, 6, H, H, C]; mips: levels 1, 2, ... of the same form;
 /// uv: [N, h, w, 2], cubes [N, h, w, 3]; slopes: [N, h, w, 4 or 6] by x and y, coordinate after

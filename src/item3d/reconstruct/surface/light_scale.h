@@ -1,4 +1,4 @@
-// What photographs leave open: how bright the light is, and what colour it has as a whole.
+// The brightness and the tint of the light as a whole, which photographs leave open.
 #pragma once
 
 #include "item3d/reconstruct/surface/trainable_light.h"
@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// Of a surface that does not mirror, photographs tell the product of light and base colour alone.
+/// Photographs of a surface that does not mirror tell the product of light and base colour alone.
 /// TrainableLight::log_scale() is that one direction of the optimisation: the radiance's factor, a
 /// channel, of which the base colour has the reciprocal. Highlights tell it, since a dielectric
 /// mirrors 4 % whatever its colour; where there are none, light_scale_loss() decides.

@@ -218,7 +218,8 @@ at::Tensor ViewCorrections::gains() const {
     // fault.
     const at::Tensor square = beside.square();
     beside = beside * square / (square + (spread_weight * gain_spread_).square()).clamp_min(1e-12f);
-    const at::Tensor apart = exif_gains_ + beside;
+    at::Tensor apart = exif_gains_ + beside;
+    apart = apart - std::get<0>(apart.median(0));
     // One view in which something shines is no drift.
     if (apart.abs().median().item<double>() < unsure_gain) return at::ones_like(log_gains_);
     return apart.exp();
