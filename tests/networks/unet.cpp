@@ -45,6 +45,21 @@ TEST(UNet, ReproducesTheReference) {
     golden.expect("time_embedding", unet->time_embedding(sinusoids));
 }
 
+/// The library's own casts to bfloat16 on the CPU, as long as it lives.
+class Autocast {
+  public:
+    Autocast() {
+        at::autocast::set_autocast_enabled(at::kCPU, true);
+        at::autocast::set_autocast_dtype(at::kCPU, at::kBFloat16);
+    }
+    ~Autocast() {
+        at::autocast::clear_cache();
+        at::autocast::set_autocast_enabled(at::kCPU, false);
+    }
+    Autocast(const Autocast&) = delete;
+    Autocast& operator=(const Autocast&) = delete;
+};
+
 TEST(UNet, GivesTheSameInEveryLayoutAndNearlySoInBfloat16) {
     const at::NoGradGuard no_grad;
     const Golden golden("unet_depth");
@@ -54,11 +69,10 @@ TEST(UNet, GivesTheSameInEveryLayoutAndNearlySoInBfloat16) {
     golden.expect("sample_0",
                   unet(sample.contiguous(at::MemoryFormat::ChannelsLast), timesteps, context));
 
-    at::autocast::set_autocast_enabled(at::kCPU, true);
-    at::autocast::set_autocast_dtype(at::kCPU, at::kBFloat16);
-    const at::Tensor automatic = unet(sample, timesteps, context);
-    at::autocast::clear_cache();
-    at::autocast::set_autocast_enabled(at::kCPU, false);
+    const at::Tensor automatic = [&] {
+        const Autocast autocast;
+        return unet(sample, timesteps, context);
+    }();
     EXPECT_EQ(automatic.scalar_type(), at::kBFloat16);
 
     const UNet2DCondition half = load_unet(fixture("unet_depth"), at::kCPU, at::kBFloat16);
