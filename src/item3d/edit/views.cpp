@@ -98,16 +98,13 @@ const EnvironmentLight& LightRig::studio() {
     return *studio_;
 }
 
-EnvironmentLight LightRig::pick(std::uint64_t seed, std::int64_t iteration) {
+ViewLight LightRig::pick(std::uint64_t seed, std::int64_t iteration) {
     Random random = iteration_random(seed, IndexedStream::lights, iteration);
-    EnvironmentLight light =
+    const EnvironmentLight& light =
         at(static_cast<std::size_t>(random.index(static_cast<std::int64_t>(lights_.size()))));
-    if (exposure_range_ == 0) return light;
-    const double factor = std::exp2(random.uniform(-exposure_range_, exposure_range_));
-    light.diffuse = light.diffuse * factor;
-    for (at::Tensor& level : light.specular)
-        level = level * factor;
-    return light;
+    if (exposure_range_ == 0) return {light};
+    const double stops = random.uniform(-exposure_range_, exposure_range_);
+    return {light, static_cast<float>(std::exp2(stops))};
 }
 
 }  // namespace item3d

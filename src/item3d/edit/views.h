@@ -25,6 +25,12 @@ std::vector<Camera> sample_cameras(const BoundingSphere& sphere, int count, std:
 at::Tensor sample_backgrounds(const std::string& background, int count, std::uint64_t seed,
                               std::int64_t iteration);
 
+/// A light of an iteration.
+struct ViewLight {
+    const EnvironmentLight& light;
+    float exposure = 1;  ///< factor of its radiance
+};
+
 /// The lights of an edit, each prefiltered when it is first wanted. Shading that stays the same in
 /// every picture could be painted into the base colour; a light that moves cannot. variation:
 ///   off     the light as it is, always;
@@ -35,7 +41,7 @@ class LightRig {
   public:
     /// light: preset or file. Throws InputError.
     LightRig(const std::string& light, LightAugment variation, int cube_size, at::Device device);
-    EnvironmentLight pick(std::uint64_t seed, std::int64_t iteration);
+    ViewLight pick(std::uint64_t seed, std::int64_t iteration);
     /// The light as it was given, for pictures.
     const EnvironmentLight& front() { return at(0); }
     const Image& image() const { return *sources_.front().image; }

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/field/cuda/module.h"
+#include "item3d/tensors/sparse_rows.h"
 
 #include <cmath>
 #include <type_traits>
@@ -23,18 +24,6 @@ at::Tensor rates_on(std::vector<AdamRates>& rates, at::Device device) {
     return at::from_blob(rates.data(),
                          {static_cast<std::int64_t>(rates.size() * sizeof(AdamRates))}, at::kByte)
         .to(device);
-}
-
-/// Whether a sparse gradient's rows are unique and in rising order. Not looked at on devices: those
-/// are sorted again when in doubt.
-bool rows_rise(const at::Tensor& indices) {
-    if (!indices.is_cpu()) return false;
-    if (indices.size(0) != 1 || !indices.is_contiguous()) return false;
-    const std::int64_t* index = indices.data_ptr<std::int64_t>();
-    for (std::int64_t i = 1; i < indices.size(1); ++i) {
-        if (index[i] <= index[i - 1]) return false;
-    }
-    return true;
 }
 
 }  // namespace
@@ -96,9 +85,7 @@ void Adam::step() {
             std::int64_t rows = slot.parameter.size(0);
             at::Tensor row_index;  // undefined: all rows
             if (gradient.is_sparse()) {
-                // Accumulation drops the mark that says "coalesced", so the rows themselves are
-                // looked at.
-                if (!rows_rise(gradient._indices())) gradient = gradient.coalesce();
+                gradient = coalesce_rows(gradient);
                 row_index = gradient._indices().select(0, 0).contiguous();
                 gradient = gradient._values();
                 rows = row_index.size(0);

@@ -3,7 +3,6 @@
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
 #include "item3d/field/adam.h"
-#include "item3d/processes/gradients.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/srgb.h"
 
@@ -95,7 +94,6 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
     if (options.show_progress) progress.emplace("fit", steps);
     const float steepest = field->options().ranges.normal_slope;
     const at::Tensor weights = column_weights().to(field->table().device());
-    const Share share = options.processes.share(options.batch);
     Examples drawn;
     for (int step = 0; step < steps; ++step) {
         // Many at once: to draw few takes as long.
@@ -104,14 +102,11 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
         if (place == 0)
             drawn = draw_examples(sampler, space, materials, steepest,
                                   std::min(steps_drawn, steps - step), options.batch, random);
-        const auto own = [&](const at::Tensor& points) {
-            return points[place].narrow(0, share.first, share.count);
-        };
-        const at::Tensor difference = field->encoded(own(drawn.positions)) - own(drawn.values);
+        const at::Tensor difference =
+            field->encoded(drawn.positions[place]) - drawn.values[place];
         adam.zero_grad();
         (difference.square() * weights).sum().div(double(options.batch)).backward();
         if (step < alone) field->table().mutable_grad() = at::Tensor();
-        sum_gradients(options.processes, adam.parameters());
         // A cosine from the full rate to a hundredth: the last steps average out the batches'
         // noise.
         const double part = static_cast<double>(std::max(0, step - alone)) / options.steps;
@@ -120,8 +115,7 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
         adam.options("network").learning_rate = options.network_learning_rate * decay;
         adam.step();
         if (progress) progress->update(step + 1);
-        if (options.processes.any(interrupted()))
-            throw Interrupted("interrupted while the neural texture was fitted");
+        if (interrupted()) throw Interrupted("interrupted while the neural texture was fitted");
     }
     adam.zero_grad();
     progress.reset();

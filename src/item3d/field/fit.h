@@ -3,7 +3,6 @@
 
 #include "item3d/field/neural_texture.h"
 #include "item3d/field/surface_points.h"
-#include "item3d/processes/process_group.h"
 #include "item3d/render/textured_materials.h"
 
 namespace item3d {
@@ -15,7 +14,6 @@ struct FitOptions {
     double network_learning_rate = 0.01;
     std::uint64_t seed = 0;
     bool show_progress = true;
-    ProcessGroup processes = {};  ///< that share out each step's points and end with one field
 };
 
 struct FitResult {

@@ -43,12 +43,12 @@ PromptPair RelativeDirection::predict(const NoisedLatents& start, std::int64_t i
     if (!learned_source_) return predict_pair(*pipeline_, start, target_text_, source());
     const NoisedLatents rows = learned_source_->rows(*pipeline_, start, iteration);
     const std::int64_t views = start.noisy.size(0), sources = rows.noisy.size(0);
-    // One line of rows for the processes: the source's, then the target's.
-    const Share own = start.processes.share(sources + views);
-    const Share of_source{std::min(own.first, sources),
-                          std::max<std::int64_t>(0, std::min(own.end(), sources) - own.first)};
-    const Share of_target{std::max<std::int64_t>(0, own.first - sources),
-                          own.count - of_source.count};
+    // Rows of the source cost their gradient as well, so both are shared out. A remainder of the
+    // source's rows is with the last processes, the target's with the first.
+    const ProcessGroup& processes = start.processes;
+    const Share of_source = processes.share(sources);
+    const Share of_target =
+        share_of(processes.size() - 1 - processes.rank(), processes.size(), views);
     const at::Tensor source = learned_source_->predict_and_follow(*pipeline_, rows, of_source);
 
     const at::NoGradGuard no_grad;
@@ -57,13 +57,13 @@ PromptPair RelativeDirection::predict(const NoisedLatents& start, std::int64_t i
         const NoisedLatents mine = narrow_rows(start, of_target);
         target = pipeline_->predict_noise(mine.noisy, mine.timesteps, target_text_, mine.condition);
     }
-    if (!start.processes.several()) return {target, source.narrow(0, 0, views)};
+    if (!processes.several()) return {target, source.narrow(0, 0, views)};
     at::Tensor both = at::zeros_like(at::cat({start.noisy, start.noisy}));
     const std::int64_t shown =
         std::clamp<std::int64_t>(views - of_source.first, 0, of_source.count);
     if (shown > 0) both.narrow(0, of_source.first, shown).copy_(source.narrow(0, 0, shown));
     if (of_target.count > 0) both.narrow(0, views + of_target.first, of_target.count).copy_(target);
-    start.processes.sum(both);
+    processes.sum(both);
     return {both.narrow(0, views, views), both.narrow(0, 0, views)};
 }
 

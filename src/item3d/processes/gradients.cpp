@@ -1,5 +1,7 @@
 #include "item3d/processes/gradients.h"
 
+#include "item3d/tensors/sparse_rows.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -13,9 +15,8 @@ struct SparseRows {
 };
 
 SparseRows rows_of(const at::Tensor& gradient) {
-    const at::Tensor coalesced = gradient.coalesce();
-    const at::Tensor index = coalesced.indices().select(0, 0).to(at::kCPU, at::kInt).contiguous();
-    const at::Tensor values = coalesced.values().cpu().contiguous();
+    const at::Tensor index = gradient.indices().select(0, 0).to(at::kCPU, at::kInt).contiguous();
+    const at::Tensor values = gradient.values().cpu().contiguous();
     const auto* first = index.const_data_ptr<std::int32_t>();
     const auto* value = values.const_data_ptr<float>();
     return {{first, first + index.numel()}, {value, value + values.numel()}};
@@ -23,28 +24,33 @@ SparseRows rows_of(const at::Tensor& gradient) {
 
 SparseRows merged(const SparseRows& a, const SparseRows& b, std::size_t width) {
     SparseRows sum;
-    sum.index.reserve(a.index.size() + b.index.size());
-    sum.values.reserve(a.values.size() + b.values.size());
-    std::size_t i = 0, j = 0;
-    const auto append = [&](const SparseRows& from, std::size_t row) {
-        sum.index.push_back(from.index[row]);
-        const auto first = from.values.begin() + static_cast<std::ptrdiff_t>(row * width);
-        sum.values.insert(sum.values.end(), first, first + static_cast<std::ptrdiff_t>(width));
+    sum.index.resize(a.index.size() + b.index.size());
+    sum.values.resize(sum.index.size() * width);
+    std::size_t i = 0, j = 0, rows = 0;
+    const auto take = [&](const SparseRows& from, std::size_t row) {
+        sum.index[rows] = from.index[row];
+        std::copy_n(from.values.data() + row * width, width, sum.values.data() + rows * width);
+        ++rows;
     };
-    while (i < a.index.size() || j < b.index.size()) {
-        const bool has_a = i < a.index.size(), has_b = j < b.index.size();
-        if (has_a && (!has_b || a.index[i] < b.index[j])) {
-            append(a, i++);
-        } else if (has_b && (!has_a || b.index[j] < a.index[i])) {
-            append(b, j++);
+    while (i < a.index.size() && j < b.index.size()) {
+        if (a.index[i] < b.index[j]) {
+            take(a, i++);
+        } else if (b.index[j] < a.index[i]) {
+            take(b, j++);
         } else {
-            append(a, i++);
-            float* value = sum.values.data() + sum.values.size() - width;
+            float* value = sum.values.data() + rows * width;
+            take(a, i++);
             for (std::size_t k = 0; k < width; ++k)
                 value[k] += b.values[j * width + k];
             ++j;
         }
     }
+    while (i < a.index.size())
+        take(a, i++);
+    while (j < b.index.size())
+        take(b, j++);
+    sum.index.resize(rows);
+    sum.values.resize(rows * width);
     return sum;
 }
 
@@ -117,7 +123,7 @@ void sum_gradients(const ProcessGroup& processes, const std::vector<at::Tensor>&
         at::Tensor parameter = parameters[i];
         at::Tensor& gradient = parameter.mutable_grad();
         if (!gradient.defined()) continue;
-        if (gradient.is_sparse()) gradient = gradient.coalesce();
+        if (gradient.is_sparse()) gradient = coalesce_rows(gradient);
         kinds[static_cast<std::int64_t>(i)] = gradient.is_sparse() ? gradient._nnz() : -1;
     }
     const std::vector<at::Tensor> all = processes.gather(kinds);

@@ -56,14 +56,37 @@ std::unique_ptr<LightModel> begin_light(const EditScene& scene, const EditPlan& 
     return make_light_model(scene.lights->image(), options);
 }
 
+/// By process 0, which hands the field on: to exchange a step's gradients takes longer than the step.
+void fit_by_first(const EditRequest& request, const EditScene& scene, NeuralTexture& field) {
+    const ProcessGroup& processes = request.processes;
+    FitOptions options;
+    options.steps = request.plan.fit_steps;
+    options.seed = request.plan.seed;
+    bool stopped = false;
+    if (processes.first()) {
+        try {
+            fit_to_materials(field, scene.geometry, *scene.space, *scene.textured, options);
+        } catch (const Interrupted&) {
+            if (!processes.several()) throw;
+            stopped = true;
+        }
+    }
+    if (!processes.several()) return;
+    if (processes.any(stopped || interrupted()))
+        throw Interrupted("interrupted while the neural texture was fitted");
+    NamedTensors fitted;
+    for (const auto& [name, tensor] : field->named_parameters())
+        fitted.emplace_back(name, tensor.detach().cpu());
+    fitted = processes.broadcast(fitted);
+    const at::NoGradGuard no_grad;
+    std::size_t next = 0;
+    for (const auto& [name, tensor] : field->named_parameters())
+        at::Tensor(tensor).copy_(fitted[next++].second);
+}
+
 /// Makes the field look like the input, with metallic and roughness where the edit starts.
 void fit_field(const EditRequest& request, const EditScene& scene, EditState& state) {
-    const EditPlan& plan = request.plan;
-    FitOptions options;
-    options.steps = plan.fit_steps;
-    options.seed = plan.seed;
-    options.processes = request.processes;
-    fit_to_materials(state.field, scene.geometry, *scene.space, *scene.textured, options);
+    fit_by_first(request, scene, state.field);
     state.fitted = snapshot(state.field);
     const auto begin_at = [&](OrmChannel channel, std::optional<float> mean) {
         if (mean) shift_mean(state.field, scene.geometry, *scene.space, channel, *mean);

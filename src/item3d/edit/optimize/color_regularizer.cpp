@@ -2,6 +2,7 @@
 
 #include "item3d/core/random.h"
 #include "item3d/field/surface_points.h"
+#include "item3d/processes/shared_rows.h"
 #include "item3d/tensors/tensor.h"
 
 namespace item3d {
@@ -78,27 +79,29 @@ ColorRegularizer::ColorRegularizer(const EditScene& scene, const EditPlan& plan,
     holds_metallic_ = scene.start.channels.metallic;
 }
 
-void ColorRegularizer::backward(EditState& state) const {
+void ColorRegularizer::backward(const ProcessGroup& processes, EditState& state) const {
     if (weight_ == 0) return;
     const std::int64_t draw = state.iteration % draws;
-    const at::Tensor before = fitted_[draw];
-    const at::Tensor now = state.field->encoded(positions_[draw]);
+    const Share share = processes.share(points);
+    const at::Tensor own =
+        state.field->encoded(positions_[draw].narrow(0, share.first, share.count));
     at::Tensor gradient;
     {
         const at::NoGradGuard no_grad;
+        const at::Tensor before = fitted_[draw];
+        const at::Tensor now = gather_rows(processes, own.detach(), share.first, points);
         const Departures found =
             departures((now - before) * channels_, before.narrow(1, 0, 3), blotch);
         gradient = found.values * found.weights * (weight_ / points);
         const auto hold = [&](std::int64_t output, float value) {
-            gradient.select(1, output).copy_((now.detach().select(1, output) - value) *
-                                             (weight_ / points));
+            gradient.select(1, output).copy_((now.select(1, output) - value) * (weight_ / points));
         };
         if (metal_roughness_) {
             hold(roughness_output, *metal_roughness_);
             if (holds_metallic_) hold(metallic_output, 1);
         }
     }
-    now.backward(gradient);
+    own.backward(gradient.narrow(0, share.first, share.count));
 }
 
 }  // namespace item3d

@@ -3,6 +3,7 @@
 
 #include "item3d/edit/scene.h"
 #include "item3d/edit/state.h"
+#include "item3d/processes/process_group.h"
 #include "item3d/tensors/tensor.h"
 
 #include <optional>
@@ -21,8 +22,9 @@ class ColorRegularizer {
     /// detail.
     ColorRegularizer(const EditScene& scene, const EditPlan& plan, const EditState& state);
 
-    /// Adds its gradient to the field's. A function of the field and the iteration alone.
-    void backward(EditState& state) const;
+    /// Adds the gradient of this process's share of the points to the field's. A function of the field
+    /// and the iteration alone.
+    void backward(const ProcessGroup& processes, EditState& state) const;
 
   private:
     float weight_ = 0;

@@ -149,11 +149,10 @@ void backward(const EditRequest& request, const EditScene& scene,
         // Points of the others' pictures may be this process's.
         pictures.images.backward(at::zeros_like(pictures.images));
     }
+    color_regularizer.backward(processes, state);
     // Once for all: by a process that has no picture, if there is one.
-    if (processes.rank() + 1 == processes.size()) {
-        color_regularizer.backward(state);
-        if (state.light) state.light->regularization().backward();
-    }
+    if (state.light && processes.rank() + 1 == processes.size())
+        state.light->regularization().backward();
     sum_gradients(processes, state.optimizer.parameters());
 }
 

@@ -26,6 +26,12 @@ at::Tensor offsets(const at::Tensor& positions, const EditScene& scene, const Ed
     return options.spread * pixel * directions.to(positions.device());
 }
 
+/// How bright the light is does not change what a surface emits.
+MaterialSample without_emission(MaterialSample material) {
+    material.emissive = at::Tensor();
+    return material;
+}
+
 }  // namespace
 
 ViewShare share_views(const ProcessGroup& processes, int total) {
@@ -48,8 +54,8 @@ GBuffer rasterize_views(const EditScene& scene, const EditPlan& plan,
 EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture& field,
                      const GBuffer& gbuffer, const ViewOptions& options) {
     const auto& [raster, surface, shape, own] = gbuffer;
-    const EnvironmentLight light =
-        options.light ? *options.light : scene.lights->pick(plan.seed, options.iteration);
+    const ViewLight light = options.light ? ViewLight{*options.light}
+                                          : scene.lights->pick(plan.seed, options.iteration);
     EditView view;
     view.points = options.processes.share(surface.count());
     const auto [first, count] = view.points;
@@ -60,7 +66,8 @@ EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture
             shaded.position +
             offsets(surface.position, scene, plan, options).narrow(0, first, count);
     view.material = scene.source->sample(view.surface, field, narrow(own, view.points));
-    at::Tensor radiance = shade(shaded, view.material, light);
+    at::Tensor radiance =
+        light.exposure * shade(shaded, without_emission(view.material), light.light);
     if (view.material.emissive.defined()) radiance = radiance + view.material.emissive;
     radiance = gather_rows(options.processes, radiance, first, surface.count());
 
