@@ -2,10 +2,13 @@
 # A batch on a Slurm of two nodes, which this script starts on this machine and ends again: a node is
 # drained, a worker killed and another one pre-empted in the middle; every job must be done once,
 # with the bytes of an undisturbed run. `make test-slurm`; needs a built tree.
+# usage: scripts/slurm_test.sh BUILD [JOBS]
+# With more jobs than 12, a worker is killed or requeued every few seconds until all are done.
 set -u
 cd "$(dirname "$0")/.."
 source scripts/slurm_cluster.sh
 item3d=$PWD/${1:-build}/item3d
+jobs=${2:-12}
 export SOURCE_DATE_EPOCH=0  # results have the date of their edit in them
 
 missing=$(slurm_missing)
@@ -54,11 +57,11 @@ requeued=$!
 # Jobs of a few seconds; every fourth goes on from the one before it.
 printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' >"$folder/square.obj"
 echo 'f 1 2 3 4' >>"$folder/square.obj"
-settings=(--with iterations=6 --with texture-size=64 --with picture-size=32 --with light-augment=off
+settings=(--with iterations=10 --with texture-size=64 --with picture-size=32 --with light-augment=off
     --with detail=off)
 {
     echo "name,model,from,to,seed,after"
-    for i in $(seq 12); do
+    for i in $(seq "$jobs"); do
         if [ $((i % 4)) = 0 ]; then
             echo "job$i,,a red square,a blue square,$i,job$((i - 1))"
         else
@@ -90,6 +93,17 @@ scontrol update NodeName=two State=RESUME
 task=$(worker_on one)
 [ -n "$task" ] && scontrol requeue "$task"
 
+disturbances=0
+while [ "$jobs" -gt 12 ] && ! done_at_least "$jobs"; do
+    sleep $((2 + RANDOM % 4))
+    case $((RANDOM % 2)) in
+        0) worker=$(pgrep -f "batch work $folder/out" | shuf -n 1) && kill -KILL "$worker" ;;
+        1) task=$(squeue --noheader --array --states=RUNNING --format=%i | shuf -n 1) &&
+            [ -n "$task" ] && scontrol requeue "$task" ;;
+    esac && disturbances=$((disturbances + 1))
+    [ -n "$(squeue --noheader)" ] || fail "no worker is left with $(done_jobs) of $jobs jobs done"
+done
+
 no_jobs_left() { [ -z "$(squeue --noheader)" ]; }
 for i in $(seq 600); do
     no_jobs_left && break
@@ -97,7 +111,7 @@ for i in $(seq 600); do
 done
 no_jobs_left || fail "jobs are still queued: $(squeue --noheader)"
 
-[ "$(done_jobs)" = 12 ] || fail "$(done_jobs) of 12 jobs are done"
+[ "$(done_jobs)" = "$jobs" ] || fail "$(done_jobs) of $jobs jobs are done"
 [ -s "$folder/out/slurm/summary.log" ] || fail "no summary"
 cd "$folder/alone/runs" || fail "no reference"
 compared=0
@@ -105,5 +119,7 @@ for model in */*/result/model.glb; do
     cmp "$model" "$folder/out/runs/$model" || fail "another result: $model"
     compared=$((compared + 1))
 done
-[ "$compared" = 12 ] || fail "$compared results compared"
-echo "test-slurm: 12 jobs done once, $(cat "$folder"/out/slurm/*.log | grep -c '^task ') starts of 3 workers, all bytes as undisturbed"
+[ "$compared" = "$jobs" ] || fail "$compared results compared"
+starts=$(cat "$folder"/out/slurm/*.log | grep -c '^task ')
+echo "test-slurm: $jobs jobs done once, $starts starts of 3 workers, $disturbances more kills and requeues," \
+    "all bytes as undisturbed"

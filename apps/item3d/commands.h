@@ -31,6 +31,7 @@ inline constexpr std::array commands = {
     CommandEntry{"study", "study",
                  "Ask people what they think of edits, and analyze what they say"},
     CommandEntry{"studio", "studio", "Edit models on a page in the browser"},
+    CommandEntry{"mcp", "studio", "Serve agents over the Model Context Protocol"},
     CommandEntry{"prior", "train", "Train, fetch and inspect priors"},
     CommandEntry{"bench", "bench", "Measure how fast this machine is"},
 };

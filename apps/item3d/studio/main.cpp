@@ -1,4 +1,4 @@
-// item3d-studio: edits on a page in the browser.
+// item3d-studio: edits on a page in the browser, and for agents.
 #include "apps/item3d/program.h"
 #include "apps/item3d/studio/commands.h"
 
@@ -9,7 +9,8 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     item3d::end_program(item3d::guarded([&] {
-        return item3d::parse_and_run(argc, argv,
-                                     {item3d::add_studio_command, item3d::add_read_model_command});
+        return item3d::parse_and_run(
+            argc, argv,
+            {item3d::add_studio_command, item3d::add_mcp_command, item3d::add_read_model_command});
     }));
 }

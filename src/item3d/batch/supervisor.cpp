@@ -52,6 +52,16 @@ struct LocalWorker {
     bool has_ended = false;
 };
 
+/// Numbers of the cores that this process may use; none where the system does not tell.
+std::vector<int> usable_core_numbers() {
+    std::vector<int> numbers;
+    cpu_set_t cores;
+    if (::sched_getaffinity(0, sizeof(cores), &cores) != 0) return numbers;
+    for (int core = 0; core < CPU_SETSIZE; ++core)
+        if (CPU_ISSET(core, &cores)) numbers.push_back(core);
+    return numbers;
+}
+
 class Supervisor {
   public:
     Supervisor(const BatchFolder& folder, const SupervisorOptions& options)
@@ -137,8 +147,18 @@ class Supervisor {
         std::vector<std::string> command = options_.command;
         command.insert(command.end(),
                        {"--index", std::to_string(index), "--threads", std::to_string(threads_)});
-        worker.program = std::make_unique<ChildProgram>(command, worker.log);
+        worker.program = std::make_unique<ChildProgram>(command, worker.log,
+                                                        ChildSurroundings{{}, {}, cores_of(index)});
         worker.begin = Clock::now();
+    }
+
+    /// Cores of its own, where there are enough: one that is moved between them finds cold caches.
+    std::vector<int> cores_of(std::size_t index) const {
+        const std::vector<int> all = usable_core_numbers();
+        const auto threads = static_cast<std::size_t>(threads_);
+        if (threads * workers_.size() > all.size()) return {};
+        const auto first = all.begin() + static_cast<std::ptrdiff_t>(index * threads);
+        return {first, first + threads_};
     }
 
     void reap(LocalWorker& worker, int status) {

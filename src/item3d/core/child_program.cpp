@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,8 +26,10 @@ namespace fs = std::filesystem;
 /// The new process becomes the program. Only calls that are safe in a signal handler may stand
 /// between fork() and exec(): other threads may have held any lock.
 [[noreturn]] void become(const char* program, char* const* arguments, const char* output,
-                         const char* folder, pid_t parent) {
+                         const char* folder, const cpu_set_t& cores, pid_t parent) {
     ::setpgid(0, 0);
+    // Where that is refused, it runs on all of them.
+    if (CPU_COUNT(&cores) > 0) ::sched_setaffinity(0, sizeof(cores), &cores);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const int in = ::open("/dev/null", O_RDONLY);
     const int out = ::open(output, O_WRONLY | O_CREAT | O_APPEND, 0644);
@@ -73,12 +76,16 @@ ChildProgram::ChildProgram(const std::vector<std::string>& arguments, const fs::
     for (std::string& copy : copies)
         pointers.push_back(copy.data());
     pointers.push_back(nullptr);
+    cpu_set_t cores;
+    CPU_ZERO(&cores);
+    for (const int core : surroundings.cores)
+        CPU_SET(core, &cores);
     const pid_t parent = ::getpid();
     id_ = ::fork();
     if (id_ < 0) throw ResourceError(arguments[0] + ": cannot be started: " + std::strerror(errno));
     if (id_ == 0)
         become(arguments[0].c_str(), pointers.data(), output.c_str(), surroundings.folder.c_str(),
-               parent);
+               cores, parent);
     ::setpgid(id_, id_);  // both do it: the group must be there before either goes on
 }
 

@@ -17,6 +17,7 @@ std::filesystem::path program_in_path(const std::string& name);
 struct ChildSurroundings {
     std::filesystem::path folder;  ///< its working directory; empty: this program's
     std::string name;              ///< that it finds itself called by; empty: its path
+    std::vector<int> cores = {};   ///< that it may run on; empty: those of this program
 };
 
 /// "error: ..." of the last line of its log in which a program of ours says what went wrong;

@@ -102,8 +102,7 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
         if (place == 0)
             drawn = draw_examples(sampler, space, materials, steepest,
                                   std::min(steps_drawn, steps - step), options.batch, random);
-        const at::Tensor difference =
-            field->encoded(drawn.positions[place]) - drawn.values[place];
+        const at::Tensor difference = field->encoded(drawn.positions[place]) - drawn.values[place];
         adam.zero_grad();
         (difference.square() * weights).sum().div(double(options.batch)).backward();
         if (step < alone) field->table().mutable_grad() = at::Tensor();

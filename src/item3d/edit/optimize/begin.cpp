@@ -56,7 +56,8 @@ std::unique_ptr<LightModel> begin_light(const EditScene& scene, const EditPlan& 
     return make_light_model(scene.lights->image(), options);
 }
 
-/// By process 0, which hands the field on: to exchange a step's gradients takes longer than the step.
+/// By process 0, which hands the field on: to exchange a step's gradients takes longer than the
+/// step.
 void fit_by_first(const EditRequest& request, const EditScene& scene, NeuralTexture& field) {
     const ProcessGroup& processes = request.processes;
     FitOptions options;

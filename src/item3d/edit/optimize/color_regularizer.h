@@ -22,8 +22,8 @@ class ColorRegularizer {
     /// detail.
     ColorRegularizer(const EditScene& scene, const EditPlan& plan, const EditState& state);
 
-    /// Adds the gradient of this process's share of the points to the field's. A function of the field
-    /// and the iteration alone.
+    /// Adds the gradient of this process's share of the points to the field's. A function of the
+    /// field and the iteration alone.
     void backward(const ProcessGroup& processes, EditState& state) const;
 
   private:

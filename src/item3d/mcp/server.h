@@ -1,0 +1,24 @@
+// A server of the Model Context Protocol (modelcontextprotocol.io) on standard input and output:
+// agents call commands of item3d as tools.
+#pragma once
+
+#include "item3d/mcp/allowed_folders.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+namespace item3d {
+
+struct McpOptions {
+    std::filesystem::path launcher;  ///< item3d
+    std::filesystem::path scratch;   ///< a folder for what runs, removed at the end
+    nlohmann::json settings;         ///< web/settings.json
+};
+
+/// Answers until standard input ends or the process is interrupted; a tool that still runs then is
+/// asked to end. One tool runs at a time, the others wait. Throws ResourceError when standard
+/// output cannot be written.
+void serve_mcp(const AllowedFolders& folders, const McpOptions& options);
+
+}  // namespace item3d

@@ -1,0 +1,41 @@
+// What an agent may ask for: commands of item3d as tools with typed arguments.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace item3d {
+
+enum class ArgumentKind {
+    text,
+    number,
+    integer,
+    boolean,
+    file,       ///< inside the allowed folders
+    folder,     ///< a result of another tool, there too
+    light,      ///< a preset's name, or a file
+    selectors,  ///< of a region, some of which name a file
+    texts,
+    folders,
+    settings,  ///< an object of further options of item3d edit by their names
+};
+
+struct ToolArgument {
+    std::string_view name;  ///< the option's, with _ for -
+    ArgumentKind kind;
+    std::string_view description;
+    bool is_required = false;
+    bool is_positional = false;
+};
+
+struct Tool {
+    std::string_view name, title, description;
+    std::string_view command;  ///< of item3d
+    std::vector<ToolArgument> arguments;
+    /// Files of the result's folder: shown as pictures, and linked to. Empty for a command that
+    /// writes none.
+    std::vector<std::string_view> pictures, files;
+    bool writes() const { return !pictures.empty(); }
+};
+
+}  // namespace item3d

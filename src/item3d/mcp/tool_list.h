@@ -1,0 +1,10 @@
+// The tools that agents are offered.
+#pragma once
+
+#include "item3d/mcp/tool.h"
+
+namespace item3d {
+
+const std::vector<Tool>& tools();
+
+}  // namespace item3d
