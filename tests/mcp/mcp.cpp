@@ -72,6 +72,7 @@ class McpTools : public testing::Test {
     fs::path root_;
     std::optional<AllowedFolders> folders_;
     const json settings_ = {{{"name", "guidance"}, {"flag", "--guidance"}},
+                            {{"name", "lora"}, {"flag", "--lora"}, {"path", true}},
                             {{"name", "controlnet"}, {"flag", "--controlnet"}, {"path", true}}};
 };
 
@@ -89,6 +90,11 @@ TEST_F(McpTools, BecomeCommandLines) {
                   "--region=mask=" + models + "/mask.png@a", "--iterations=12", "--guidance=dds",
                   "--output=" + (root_ / "out/edit-mug-1").string(), "--", models + "/mug.glb"}));
     EXPECT_TRUE(fs::is_directory(root_ / "out/edit-mug-1"));
+    const json lora = {{"lora", {"mask.png:0.5"}}};
+    EXPECT_EQ(
+        command("edit", {{"model", "mug.glb"}, {"from", "a"}, {"to", "b"}, {"settings", lora}})
+            .arguments[3],
+        "--lora=" + models + "/mask.png:0.5");
     const ToolCommand variants =
         command("variants", {{"model", "mug.glb"}, {"edits", {"edit-mug-1"}}});
     EXPECT_EQ(variants.arguments.back(), (root_ / "out/edit-mug-1").string());

@@ -130,6 +130,16 @@ class CommandBuilder {
         return all + "@" + place;
     }
 
+    /// Of paths, FILE:SCALE and FILE:TOKEN are taken as well.
+    std::string setting(const std::string& name, const std::string& text, bool is_path) const {
+        if (name == "light") return light(text);
+        if (name == "region" || name == "exclude") return selector(text);
+        if (!is_path) return text;
+        const bool has_more = name == "lora" || name == "embedding";
+        const std::size_t end = std::min(has_more ? text.rfind(':') : text.npos, text.size());
+        return folders_.existing(text.substr(0, end), name).string() + text.substr(end);
+    }
+
     void add_settings(const json& given) {
         for (const auto& [name, value] : given.items()) {
             const auto row =
@@ -142,11 +152,7 @@ class CommandBuilder {
             for (const json& each : value.is_array() ? value : json::array({value})) {
                 if (each.is_structured() || each.is_null())
                     throw InputError("settings." + name, "cannot be " + each.dump());
-                const std::string text = text_of(each);
-                add_option(option, is_path           ? folders_.existing(text, name).string()
-                                   : name == "light" ? light(text)
-                                   : name == "region" || name == "exclude" ? selector(text)
-                                                                           : text);
+                add_option(option, setting(name, text_of(each), is_path));
             }
         }
     }
