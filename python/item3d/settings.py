@@ -144,6 +144,8 @@ class ReconstructSettings:
     relit_light: str | list[str] | None = None
     relit_exposure: float | None = None
     truth: str | None = None
+    provenance: str | None = None
+    sign_key: str | None = None
     seed: int | None = None
     threads: int | None = None
     device: str | None = None

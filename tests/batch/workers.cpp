@@ -273,17 +273,5 @@ TEST_F(Workers, TheGalleryHasFailuresAndEscapesWhatPeopleWrote) {
     EXPECT_EQ(page.find("http"), std::string::npos) << "nothing is fetched";
 }
 
-TEST(BatchFolders, OfSomethingElseAreRefused) {
-    const fs::path folder =
-        fs::temp_directory_path() / ("item3d_other_" + std::to_string(::getpid()));
-    fs::create_directories(folder);
-    write_atomically(folder / "photo.png", std::string_view("x"));
-    EXPECT_THROW(BatchFolder::create(folder), InputError);
-    EXPECT_THROW(BatchFolder::open(folder), InputError);
-    write_atomically(folder / "batch.json", std::string_view(R"({"format": "item3d batch 9"})"));
-    EXPECT_THROW(BatchFolder::create(folder), InputError);
-    fs::remove_all(folder);
-}
-
 }  // namespace
 }  // namespace item3d

@@ -53,6 +53,22 @@ TEST(Claim, IsReadFromXmpAndJsonLdAsItWasWritten) {
     EXPECT_FALSE(read_json_ld(packet).source_type.empty());
 }
 
+TEST(Claim, AReconstructionIsACaptureUntilItIsEdited) {
+    EditClaim capture;
+    capture.photographs = "98";
+    capture.source_type = "http://cv.iptc.org/newscodes/digitalsourcetype/computationalCapture";
+    const std::string packet = xmp_with_claim("", make_claim({capture}, {}));
+    const PacketFacts facts = read_xmp(packet);
+    EXPECT_EQ(facts.source_type, capture.source_type);
+    EXPECT_EQ(edits_of(facts.claim), std::vector{capture});
+    EXPECT_EQ(packet.find("AISystem"), std::string::npos);
+    EXPECT_EQ(packet.find("rainedAlgorithmic"), std::string::npos);
+    const std::string edited = xmp_with_claim(packet, make_claim({capture, golden_edit()}, {}));
+    EXPECT_TRUE(read_xmp(edited).source_type.ends_with("/compositeWithTrainedAlgorithmicMedia"));
+    EXPECT_NE(edited.find("AISystemUsed"), std::string::npos);
+    EXPECT_EQ(edits_of(read_xmp(edited).claim).size(), 2u);
+}
+
 TEST(Claim, HoldsAnySentence) {
     EditClaim edit;
     edit.from = "\xff\xfe mug\r\n\x01 \xef\xbf\xbf";

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string_view>
 #include <vector>
 
@@ -60,8 +61,12 @@ Bytes small_webp() {
                          34));
 }
 
+Bytes small_ktx2() {
+    return read_bytes(std::filesystem::path(ITEM3D_TEST_DATA) / "scene/images/etc1s.ktx2");
+}
+
 TEST(ImagePacket, IsPutAndFoundAndLeavesTheHash) {
-    for (const Bytes& image : {small_png(), small_jpeg(), small_webp()}) {
+    for (const Bytes& image : {small_png(), small_jpeg(), small_webp(), small_ktx2()}) {
         SCOPED_TRACE(static_cast<int>(packet_container(image)));
         ASSERT_NE(packet_container(image), PacketContainer::none);
         EXPECT_FALSE(find_packet(image));
@@ -114,7 +119,7 @@ TEST(ImagePacket, CompressedOnesOfOthersAreRead) {
 TEST(ImagePacket, DamagedFilesAreReadWithoutHarm) {
     for (const Bytes& image :
          {with_packet(small_png(), "packet"), with_packet(small_jpeg(), "packet"),
-          with_packet(small_webp(), "packet")}) {
+          with_packet(small_webp(), "packet"), with_packet(small_ktx2(), "packet")}) {
         for (std::size_t size = 0; size < image.size(); ++size) {
             const Bytes cut(image.begin(), image.begin() + static_cast<std::ptrdiff_t>(size));
             find_packet(cut);

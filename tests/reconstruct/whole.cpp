@@ -1,6 +1,7 @@
 // Whole reconstructions of small pictures that our own renderer drew.
 #include "item3d/core/error.h"
 #include "item3d/io/load.h"
+#include "item3d/io/read_provenance.h"
 #include "item3d/lighting/environment.h"
 #include "item3d/reconstruct/outputs/scores.h"
 #include "item3d/reconstruct/outputs/stage_preview.h"
@@ -15,6 +16,7 @@
 #include "tests/support/reconstruct.h"
 
 #include <cmath>
+#include <cstdlib>
 
 namespace item3d {
 namespace {
@@ -151,6 +153,7 @@ ReconstructRequest short_request(const fs::path& dataset, const std::string& out
 
 TEST(Reconstruct, ResumesToTheSameBytesInEitherStageAndBetween) {
     const fs::path dataset = sphere_dataset("resume", 6, 2, 32);
+    setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
     const ReconstructRequest whole = short_request(dataset, "resume_whole");
     const nlohmann::json summary = reconstruct(whole);
 
@@ -168,6 +171,8 @@ TEST(Reconstruct, ResumesToTheSameBytesInEitherStageAndBetween) {
         }
         EXPECT_FALSE(fs::exists(parts.output / "model.glb"));
         parts.resume = true;
+        // Dates are of the begin.
+        setenv("SOURCE_DATE_EPOCH", "1800000000", 1);
     }
     parts.stop_after = 0;
     const nlohmann::json resumed = reconstruct(parts);
@@ -194,6 +199,7 @@ TEST(Reconstruct, ResumesToTheSameBytesInEitherStageAndBetween) {
 
 TEST(Reconstruct, ResumesWithAGivenMesh) {
     const fs::path dataset = sphere_dataset("resume_mesh", 6, 2, 32);
+    setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
     ReconstructRequest whole = short_request(dataset, "resume_mesh_whole");
     whole.mesh = dataset / "sphere.glb";
     whole.move_vertices = false;
@@ -207,6 +213,30 @@ TEST(Reconstruct, ResumesWithAGivenMesh) {
     parts.resume = true;
     reconstruct(parts);
     EXPECT_EQ(read_bytes(whole.output / "model.glb"), read_bytes(parts.output / "model.glb"));
+}
+
+TEST(Reconstruct, AModelSaysWhatItWasComputedFrom) {
+    const fs::path dataset = sphere_dataset("claim", 6, 2, 32);
+    ReconstructRequest request = short_request(dataset, "claim_out");
+    request.mesh = dataset / "sphere.glb";
+    request.move_vertices = request.refine.shadows = false;
+    setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
+    reconstruct(request);
+    const FileProvenance provenance = read_provenance(request.output / "model.glb");
+    EXPECT_TRUE(provenance.is_unchanged());
+    EXPECT_EQ(provenance.images.size(), 3u);
+    const std::vector<EditClaim> edits = edits_of(provenance.facts.claim);
+    ASSERT_EQ(edits.size(), 1u);
+    EXPECT_TRUE(is_reconstruction(edits[0]));
+    EXPECT_EQ(edits[0].photographs, "6");
+    EXPECT_EQ(edits[0].input, dataset.filename().string());
+    EXPECT_EQ(edits[0].date, "2023-11-14T22:13:20Z");
+    // The layout is one of rendered pictures.
+    EXPECT_EQ(provenance.facts.source_type, "");
+    request.output = testing::fresh_folder("claim_off");
+    request.says_provenance = false;
+    reconstruct(request);
+    EXPECT_FALSE(read_provenance(request.output / "model.glb").has_claim());
 }
 
 TEST(Reconstruct, TexturesAreAsFineAsThePhotographs) {

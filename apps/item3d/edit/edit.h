@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/item3d/command.h"
-#include "apps/item3d/edit/sign_key_option.h"
+#include "apps/item3d/sign_key_option.h"
 #include "item3d/edit/request.h"
 #include "item3d/edit/session.h"
 

@@ -2,7 +2,7 @@
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/commands.h"
 #include "apps/item3d/edit/model_options.h"
-#include "apps/item3d/edit/sign_key_option.h"
+#include "apps/item3d/sign_key_option.h"
 #include "item3d/core/format.h"
 #include "item3d/edit/outputs/rebake_layer.h"
 #include "item3d/layers/layered_model.h"

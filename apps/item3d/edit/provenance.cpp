@@ -16,11 +16,6 @@ struct ProvenanceCommand : CommonOptions {
     std::filesystem::path public_key;
 };
 
-/// Exit codes of this command alone (docs/provenance.md).
-constexpr auto altered = static_cast<ExitCode>(5);
-constexpr auto other_signer = static_cast<ExitCode>(6);
-constexpr auto not_signed = static_cast<ExitCode>(7);
-
 /// State of a file since it was signed, for the exit code.
 class Mismatch : public Error {
   public:
@@ -39,7 +34,10 @@ std::string words_for(ContentState state) {
 }
 
 void print_edit(const EditClaim& edit) {
-    print_line("edit", fmt::format("\"{}\" -> \"{}\"", edit.from, edit.to));
+    if (is_reconstruction(edit))
+        print_line("computed from", edit.photographs + " photographs");
+    else
+        print_line("edit", fmt::format("\"{}\" -> \"{}\"", edit.from, edit.to));
     print_line("  look", edit.variant);
     print_line("  strength", edit.strength);
     print_line("  method", edit.method);
@@ -102,11 +100,11 @@ void judge(const ProvenanceCommand& options, const FileProvenance& provenance,
         throw Mismatch(code, options.file, problem);
     };
     if (!key.empty() && provenance.signature == SignatureState::none)
-        fail(not_signed, "is not signed");
+        fail(ExitCode::not_signed, "is not signed");
     if (provenance.has_claim() && !provenance.is_unchanged())
-        fail(altered, "was altered since it was written");
+        fail(ExitCode::altered, "was altered since it was written");
     if (!key.empty() && public_key_of(provenance.facts.claim) != key)
-        fail(other_signer, "is signed by another key");
+        fail(ExitCode::other_signer, "is signed by another key");
 }
 
 void run_provenance(const ProvenanceCommand& options) {
@@ -130,7 +128,8 @@ void run_provenance(const ProvenanceCommand& options) {
 void add_provenance_command(CLI::App& app) {
     auto options = std::make_shared<ProvenanceCommand>();
     CLI::App* command = add_command(app, "provenance", *options);
-    command->add_option("FILE", options->file, "A .glb, .gltf, PNG, JPEG or WebP")->required();
+    command->add_option("FILE", options->file, "A .glb, .gltf, PNG, JPEG, WebP or KTX2")
+        ->required();
     command->add_option("--public-key", options->public_key,
                         "Ed25519 public key in PEM (openssl pkey -pubout): says whether the file "
                         "is signed by it");

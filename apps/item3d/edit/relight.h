@@ -4,7 +4,7 @@
 #include "apps/item3d/command.h"
 #include "apps/item3d/edit/light_options.h"
 #include "apps/item3d/edit/relight_words.h"
-#include "apps/item3d/edit/sign_key_option.h"
+#include "apps/item3d/sign_key_option.h"
 #include "item3d/edit/session.h"
 
 #include <CLI/CLI.hpp>

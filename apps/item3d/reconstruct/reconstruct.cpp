@@ -3,6 +3,7 @@
 
 #include "apps/item3d/command.h"
 #include "apps/item3d/reconstruct/commands.h"
+#include "apps/item3d/sign_key_option.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/metrics/color.h"
@@ -26,6 +27,8 @@ struct ReconstructCommand : CommonOptions {
     bool no_shadows = false;
     std::string poses = "auto";
     bool keep_exposure = false;
+    std::string provenance = "on";
+    SignKeyOption sign_key;
     int cells = 96;
     std::uint64_t seed = 0;
     std::vector<std::filesystem::path> relit;
@@ -60,6 +63,8 @@ ReconstructRequest make_request(const ReconstructCommand& options) {
     request.shape.cells = {options.cells / 2, options.cells};
     request.shape.seed = request.refine.seed = options.seed;
     request.relit = relit_views(options);
+    request.says_provenance = options.provenance == "on";
+    request.sign_key = options.sign_key.load();
     request.command = command_line();
     return request;
 }
@@ -75,6 +80,8 @@ void take_found_poses(const ReconstructCommand& options, ReconstructRequest& req
 }
 
 void run_reconstruct(const ReconstructCommand& options) {
+    if (options.provenance == "off" && !options.sign_key.path.empty())
+        throw UsageError("--provenance off writes nothing that --sign-key could sign");
     ReconstructRequest request = make_request(options);
     if (options.from_images.empty() == request.dataset.empty())
         throw UsageError("name a DATASET, or photographs without poses by --from-images FOLDER");
@@ -191,6 +198,13 @@ void add_reconstruct_command(CLI::App& app) {
     command->add_option("--reference", request.reference,
                         "The true mesh, to measure a distance to");
     add_comparisons(*command, *options);
+    command
+        ->add_option("--provenance", options->provenance,
+                     "on: model and textures say, as XMP, that they were computed from photographs "
+                     "(docs/provenance.md); off: nothing")
+        ->check(CLI::IsMember({"on", "off"}))
+        ->capture_default_str();
+    add_sign_key(*command, options->sign_key);
     command->add_option("--seed", options->seed)->capture_default_str();
     command->callback([options] {
         start_command(*options);

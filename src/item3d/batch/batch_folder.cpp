@@ -32,6 +32,26 @@ void check_mark(const fs::path& folder) {
                          "choose another folder");
 }
 
+/// Whether a folder holds no more than one that is being made, or whose making was interrupted:
+/// folders that are empty, and what stands for a file that is not yet there.
+bool is_half_made(const fs::path& folder) {
+    std::error_code code;
+    for (const auto& entry : fs::directory_iterator(folder, code)) {
+        const std::string name = entry.path().filename().string();
+        const bool is_own = name == "jobs" || name == "workers" || name == "runs";
+        const bool is_temporary = name.starts_with(".write-test-") || name.starts_with("batch.tmp");
+        if (!is_temporary && !(is_own && fs::is_empty(entry.path(), code))) return false;
+    }
+    return !code;
+}
+
+bool is_marked(const fs::path& folder) {
+    std::error_code code;
+    if (!fs::exists(folder / mark_name, code)) return false;
+    check_mark(folder);
+    return true;
+}
+
 int number_of(const fs::path& file) {
     return static_cast<int>(std::strtol(file.filename().c_str(), nullptr, 10));
 }
@@ -44,15 +64,15 @@ std::string random_suffix() {
 }
 
 bool BatchFolder::is_begun(const fs::path& path) {
+    if (is_marked(path)) return true;
     std::error_code code;
-    if (fs::exists(path / mark_name, code)) {
-        check_mark(path);
-        return true;
-    }
-    if (fs::exists(path, code) && !(fs::is_directory(path, code) && fs::is_empty(path, code)))
+    if (!fs::exists(path, code) || (fs::is_directory(path, code) && is_half_made(path)))
+        return false;
+    // Another process may have made it since.
+    if (!is_marked(path))
         throw InputError(path.string(), "holds something else than a batch",
                          "choose a new folder, or that of a batch");
-    return false;
+    return true;
 }
 
 BatchFolder BatchFolder::create(const fs::path& path) {

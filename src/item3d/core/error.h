@@ -14,6 +14,10 @@ enum class ExitCode {
     usage = 2,
     bad_input = 3,
     no_resource = 4,
+    // Of item3d provenance alone.
+    altered = 5,
+    other_signer = 6,
+    not_signed = 7,
     interrupted = 130
 };
 

@@ -88,7 +88,7 @@ FileProvenance read_provenance(const std::filesystem::path& path) {
         provenance = of_image(bytes);
     else
         throw InputError(path.string(), "is neither a glTF nor an image",
-                         "name a .glb, .gltf, PNG, JPEG or WebP");
+                         "name a .glb, .gltf, PNG, JPEG, WebP or KTX2");
     provenance.signature = signature_state(provenance.facts.claim);
     return provenance;
 }

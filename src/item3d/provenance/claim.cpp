@@ -22,6 +22,8 @@ constexpr std::pair<const char*, std::string EditClaim::*> edit_members[] = {
     {"version", &EditClaim::version},
     {"strength", &EditClaim::strength},
     {"variant", &EditClaim::variant},
+    {"photographs", &EditClaim::photographs},
+    {"source_type", &EditClaim::source_type},
 };
 
 constexpr std::pair<const char*, std::string ImageClaim::*> image_members[] = {
@@ -74,6 +76,10 @@ std::vector<T> list_of(const json& claim, const char* key) {
 }
 
 }  // namespace
+
+bool is_reconstruction(const EditClaim& edit) {
+    return !edit.photographs.empty();
+}
 
 void to_json(json& out, const EditClaim& edit) {
     write_members(out, edit, edit_members);

@@ -1,5 +1,5 @@
-// What item3d says of a model or an image that it edited: by which sentences, with which prior, of
-// which input, and the hashes of what it wrote.
+// What item3d says of a model or an image that it edited or reconstructed: by which sentences, with
+// which prior, of which input, and the hashes of what it wrote.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// One edit by sentences. Empty members are not written.
+/// One edit by sentences, or a reconstruction from photographs. Empty members are not written.
 struct EditClaim {
     std::string from, to;             ///< the sentences
     std::string method;               ///< as "item3d, rdl"
@@ -19,9 +19,14 @@ struct EditClaim {
     std::string version;              ///< of the item3d that made it
     std::string strength;             ///< of a layer: "0.5", or "1:roughness,metallic"
     std::string variant;              ///< name of the look in a file of several
+    std::string photographs;          ///< of a reconstruction: how many it was computed from
+    std::string source_type;          ///< of a reconstruction: the IPTC's code for the result
 
     bool operator==(const EditClaim&) const = default;
 };
+
+/// Whether it is a reconstruction, which no generative model takes part in.
+bool is_reconstruction(const EditClaim& edit);
 
 void to_json(nlohmann::json& json, const EditClaim& edit);
 /// Takes text alone; what is missing or something else becomes empty.

@@ -2,6 +2,7 @@
 
 #include "item3d/core/digest.h"
 #include "item3d/core/error.h"
+#include "item3d/provenance/ktx2_packet.h"
 #include "item3d/provenance/xmp.h"
 
 #include <webp/mux.h>
@@ -111,6 +112,7 @@ Pieces pieces_of(Span image) {
             return jpeg_pieces(image);
         case PacketContainer::webp:
             return webp_pieces(image);
+        case PacketContainer::ktx2:
         case PacketContainer::none:
             break;
     }
@@ -214,11 +216,12 @@ PacketContainer packet_container(Span image) {
     if (begins_with(image, "\xff\xd8\xff")) return PacketContainer::jpeg;
     if (image.size() >= 12 && begins_with(image, "RIFF") && begins_with(image.subspan(8), "WEBP"))
         return PacketContainer::webp;
-    return PacketContainer::none;
+    return is_ktx2(image) ? PacketContainer::ktx2 : PacketContainer::none;
 }
 
 std::optional<std::string> find_packet(Span image) {
     const PacketContainer container = packet_container(image);
+    if (container == PacketContainer::ktx2) return find_ktx2_packet(image);
     for (const Piece& piece : pieces_of(image)) {
         if (!piece.is_packet) continue;
         if (container == PacketContainer::png) return png_packet(piece.bytes);
@@ -232,6 +235,10 @@ std::optional<std::string> find_packet(Span image) {
 Bytes with_packet(Span image, const std::string& packet) {
     const PacketContainer container = packet_container(image);
     if (container == PacketContainer::webp) return webp_with_packet(image, packet);
+    if (container == PacketContainer::ktx2) {
+        Bytes written = ktx2_with_packet(image, packet);
+        return written.empty() ? Bytes(image.begin(), image.end()) : written;
+    }
     const Pieces pieces = pieces_of(image);
     const bool is_too_large =
         container == PacketContainer::jpeg && packet.size() > largest_jpeg_packet;
@@ -241,6 +248,8 @@ Bytes with_packet(Span image, const std::string& packet) {
 }
 
 std::string image_sha256(Span image) {
+    if (const Bytes ktx2 = ktx2_with_packet(image, std::nullopt); !ktx2.empty())
+        return sha256(ktx2);
     const Pieces pieces = pieces_of(image);
     if (pieces.empty()) return sha256(image);
     Digest digest(DigestKind::sha256, image.size());

@@ -26,8 +26,9 @@ struct PacketProperty {
     std::string value;  ///< empty: the property goes
 };
 
-/// Of IPTC Photo Metadata 2025.1 (DigitalSourceType, AISystemUsed, AISystemVersionUsed,
-/// AIPromptInformation) and XMP (ModifyDate). They take the place of a source's.
+/// Standard properties of IPTC Photo Metadata 2025.1 (DigitalSourceType, AISystemUsed,
+/// AISystemVersionUsed, AIPromptInformation) and XMP (ModifyDate). They take the place of a
+/// source's. A reconstruction has no AI properties.
 std::vector<PacketProperty> properties_of(const nlohmann::json& claim);
 
 }  // namespace item3d

@@ -13,8 +13,12 @@ inline constexpr std::string_view rights = "http://ns.adobe.com/xap/1.0/rights/"
 inline constexpr std::string_view iptc = "http://iptc.org/std/Iptc4xmpExt/2008-02-29/";
 inline constexpr std::string_view item3d = "urn:item3d:provenance:1#";
 
-/// The IPTC's code for media that were edited by a generative model.
+/// The IPTC's codes (NewsCodes, digitalsourcetype) for media that were edited by a generative
+/// model,
 inline constexpr std::string_view edited_by_model =
     "http://cv.iptc.org/newscodes/digitalsourcetype/compositeWithTrainedAlgorithmicMedia";
+/// and for those merged from several frames of a camera without one.
+inline constexpr std::string_view computational_capture =
+    "http://cv.iptc.org/newscodes/digitalsourcetype/computationalCapture";
 
 }  // namespace item3d::xmp

@@ -12,6 +12,7 @@
 #include "item3d/reconstruct/dataset/check_views.h"
 #include "item3d/reconstruct/dataset/photograph.h"
 #include "item3d/reconstruct/outputs/outputs.h"
+#include "item3d/reconstruct/outputs/reconstruction_claim.h"
 #include "item3d/reconstruct/outputs/report.h"
 #include "item3d/reconstruct/shape/align_poses.h"
 #include "item3d/reconstruct/stage_runner.h"
@@ -228,6 +229,8 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     result.times.end_stage("load");
 
     StageRunner runner(request, dataset);
+    // Before what takes long: the pictures may be gone in the end.
+    const Provenance provenance = provenance_of(request, dataset, runner.begun());
     ViewCorrections corrections(dataset.train, dataset.centre, dataset.radius, request.corrections);
     note_blurred_views(result, corrections);
     if (request.corrections.exposure) note_exposures(dataset.train);
@@ -245,7 +248,7 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     result.times.end_stage("refine");
 
     result.model = bake_and_save(request.output / "model.glb", mesh.apply(start.model),
-                                 start.appearance, request, result.texture_size);
+                                 start.appearance, request, result.texture_size, provenance);
     result.light = start.appearance.light.to_image();
     save_image(request.output / "light.hdr", result.light, 32);
     result.times.end_stage("bake");

@@ -3,6 +3,7 @@
 //   scores.
 #pragma once
 
+#include "item3d/provenance/signing.h"
 #include "item3d/reconstruct/dataset/dataset.h"
 #include "item3d/reconstruct/shape/find_shape.h"
 #include "item3d/reconstruct/surface/refine.h"
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,8 @@ struct ReconstructRequest {
     std::vector<RelitViews> relit;
     /// Pictures of the materials of test views, see compare_materials(); empty: none.
     std::filesystem::path truth;
+    bool says_provenance = true;                 ///< see provenance_of()
+    std::shared_ptr<const SigningKey> sign_key;  ///< null: what is said is not signed
     bool resume = false;
     /// Stop as an interrupt would when this many iterations of both stages are done; 0: run to the
     /// end.

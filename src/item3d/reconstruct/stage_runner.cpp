@@ -1,5 +1,6 @@
 #include "item3d/reconstruct/stage_runner.h"
 
+#include "item3d/core/date.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/core/stage_times.h"
@@ -69,6 +70,7 @@ std::string stage_prefix(const Stage& stage) {
 StageRunner::StageRunner(const ReconstructRequest& request, const Dataset& dataset)
     : request_(request),
       identity_(identity_of(request, dataset)),
+      begun_(utc_date()),
       preview_(request.output / "preview.png", dataset),
       checkpointed_(Clock::now()),
       previewed_(checkpointed_) {
@@ -84,6 +86,7 @@ StageRunner::StageRunner(const ReconstructRequest& request, const Dataset& datas
                             "belongs to other photographs, or to these read with "
                             "other options"},
                            {"mesh", "belongs to another --mesh"}});
+    begun_ = checkpoint->identity.value("begun", begun_);
     reader_.emplace(path.string(), checkpoint->tensors);
     note(fmt::format("resuming after iteration {} of {}", checkpoint->iteration,
                      total_iterations()));
@@ -123,6 +126,7 @@ void StageRunner::load(Stage& stage) {
 
 void StageRunner::save(const Stage& stage) const {
     Checkpoint checkpoint{identity_, behind_ + stage.iteration(), shape_};
+    checkpoint.identity["begun"] = begun_;
     for (const auto& [name, tensor] : stage.state())
         checkpoint.tensors.emplace_back(stage_prefix(stage) + name, tensor);
     save_checkpoint(checkpoint_path(request_), checkpoint);

@@ -18,6 +18,9 @@ class StageRunner {
     /// InputError when it is broken, or of other photographs or settings.
     StageRunner(const ReconstructRequest& request, const Dataset& dataset);
 
+    /// When the reconstruction began, which an interrupted one keeps: utc_date().
+    const std::string& begun() const { return begun_; }
+
     /// The shape that the interrupted run had found already, if it had.
     std::optional<FoundShape> found_shape() const;
     /// From now on part of every checkpoint.
@@ -38,6 +41,7 @@ class StageRunner {
 
     const ReconstructRequest& request_;
     nlohmann::json identity_;
+    std::string begun_;
     std::optional<CheckpointReader> reader_;  ///< of an interrupted run
     NamedTensors shape_;                      ///< of keep()
     int behind_ = 0;                          ///< iterations of the stages before

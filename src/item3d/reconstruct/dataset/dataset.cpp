@@ -241,6 +241,7 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
         view.name = from.name;
         view.image = std::move(loaded.image);
         view.exposure = loaded.exposure;
+        view.file = from.picture;
         // Where one angle stands for all pictures, they must have one size.
         if (from.lens.width == 0) {
             if (width == 0) {

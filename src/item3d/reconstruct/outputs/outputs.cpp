@@ -31,7 +31,8 @@ nlohmann::json score_json(const std::vector<ScoredView>& views) {
 }  // namespace
 
 Model bake_and_save(const std::filesystem::path& file, const Model& model, Appearance& appearance,
-                    const ReconstructRequest& request, int texture_size) {
+                    const ReconstructRequest& request, int texture_size,
+                    const Provenance& provenance) {
     const at::NoGradGuard no_gradient;
     Model neutral = model;
     set_constant_material(neutral, appearance.field->options().ranges);
@@ -50,7 +51,7 @@ Model bake_and_save(const std::filesystem::path& file, const Model& model, Appea
                         .normal = request.refine.normal_map};
     const ModelEdit edit =
         bake({neutral, geometry, materials, space, atlas}, fitted, appearance.field, options);
-    save_model(file, neutral, edit);
+    save_model(file, neutral, edit, provenance);
     Model written = load_model(file);
     move_origin(written, glm::dvec3(0.0));  // the dataset's cameras see it
     return written;

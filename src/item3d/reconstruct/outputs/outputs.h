@@ -2,6 +2,7 @@
 #pragma once
 
 #include "item3d/core/stage_times.h"
+#include "item3d/provenance/provenance.h"
 #include "item3d/reconstruct/outputs/scores.h"
 #include "item3d/reconstruct/outputs/truth.h"
 #include "item3d/reconstruct/reconstruct.h"
@@ -14,7 +15,8 @@ namespace item3d {
 /// Bakes the field into the model's UV map, writes model.glb and reads it back: scores and pictures
 /// are of what was written.
 Model bake_and_save(const std::filesystem::path& file, const Model& model, Appearance& appearance,
-                    const ReconstructRequest& request, int texture_size);
+                    const ReconstructRequest& request, int texture_size,
+                    const Provenance& provenance);
 
 /// Of one of RelitViews.
 struct RelitScores {
