@@ -23,7 +23,10 @@ import subprocess
 import tempfile
 import time
 
+from studio_history import long_history
+from studio_keyboard import by_keyboard_alone
 from studio_page import MUG, PATIENCE, Page, Server, check, difference, launch, sync_playwright
+from studio_proxy import behind_a_proxy
 
 # Mean absolute difference of the model's pixels, of 255: the viewer's light is prefiltered at half the
 # size, its edges are multisampled.
@@ -246,38 +249,6 @@ def refused(server, browser):
     page.close()
 
 
-def long_history(browser, server):
-    """A thousand results: the page starts, and the list scrolls."""
-    project = json.loads(server.get("api/projects?limit=1"))[0]["id"]
-    answer = json.loads(server.get(f"api/projects/{project}"))
-    pattern = next(one for one in answer["results"] if one["state"] == "done")
-    answer["results"] = [{**pattern, "id": 10000 + i, "parent": 10000 + i // 2 if i % 3 == 0 and i > 3 else None,
-                          "thumbnail": ""} for i in range(1000)]
-    context = browser.new_context(viewport={"width": 1280, "height": 720})
-    context.route(f"**/api/projects/{project}", lambda route: route.fulfill(json=answer))
-    tab = context.new_page()
-    begin = time.monotonic()
-    tab.goto(server.address, timeout=120000)
-    while tab.evaluate("document.querySelectorAll('.node').length") < 1001 and time.monotonic() - begin < 60:
-        time.sleep(0.05)
-    seconds = time.monotonic() - begin
-    check(tab.evaluate("document.querySelectorAll('.node').length") == 1001, "not all results are listed")
-    longest = tab.evaluate("""async () => {
-      const list = document.querySelector('.tree');
-      let last = performance.now(), longest = 0;
-      for (let i = 0; i < 40; ++i) {
-        list.scrollTop = i / 39 * list.scrollHeight;
-        await new Promise(requestAnimationFrame);
-        const now = performance.now();
-        longest = Math.max(longest, now - last);
-        last = now;
-      }
-      return longest;
-    }""")
-    context.close()
-    return seconds, longest
-
-
 def other_screens(browser, server, playwright):
     """Nothing is wider than a phone or a page at 200 %; without WebGL there are pictures."""
     for name, options in {"phone": dict(viewport={"width": 390, "height": 844}, device_scale_factor=2, is_mobile=True, has_touch=True),
@@ -386,6 +357,7 @@ def main():
             said.append(f"under noon by {looks_like_render(page_of_source(page), options.item3d, folder, 'noon'):.2f}")
             page.run(f"studio.store.set({{ selected: '{result}' }})")
             page.until("studio.viewer.stage.host.dataset.shown.endsWith('done')", "the result is not shown again")
+            said.append(f"{by_keyboard_alone(browser, server)} stops of the focus")
             wipe_and_layers(page, result)
             swaps_leave_nothing(page, result)
             export(page, server, result)
@@ -394,8 +366,9 @@ def main():
             network_cut(page)
             refused(server, browser)
             other_screens(browser, server, playwright)
-            started, longest = long_history(browser, server)
-            said.append(f"1,000 results listed {started:.2f} s after the address, longest frame of scrolling {longest:.0f} ms")
+            behind_a_proxy(options.item3d, browser, folder)
+            started, scrolled = long_history(options.item3d, browser, server, folder)
+            said.append(f"1,000 results listed {started:.2f} s after the server's start, frames of scrolling {scrolled['mean']:.0f} ms, the longest {scrolled['longest']:.0f} ms")
             server_killed(page, server, result)
         if options.measure:
             said.append(f"first visible change {first_change(page):.1f} s after Start")
