@@ -4,8 +4,9 @@ import math
 import pathlib
 import struct
 import subprocess
+import time
 
-from studio_page import MUG, PATIENCE, check, difference
+from studio_page import MUG, PATIENCE, Page, Server, check, difference
 
 VIEWS, SIZE, ANGLE = 16, 96, 0.6
 
@@ -78,3 +79,18 @@ def light_by_words(page, words):
     page.picture("light_by_words")
     page.tab.click("#tab-edit")
     return result
+
+
+def from_photographs(item3d, browser, folder):
+    """Seconds from the choice of the folder until the model is open; then it is edited."""
+    server = Server(item3d, f"{folder}/photographed")
+    page = Page(browser, server.address, shows="document.querySelector('.empty') !== null && !document.querySelector('.empty').hidden")
+    pictures = photographs(item3d, f"{folder}/photographs")
+    began = time.monotonic()
+    reconstruct(page, pictures)
+    seconds = time.monotonic() - began
+    result = page.edit("a golden mug")
+    page.wait_for(result, "done")
+    page.close()
+    server.end()
+    return seconds

@@ -1,4 +1,5 @@
 """The page behind a proxy that gives it a path, as another server gives it to a team: a password, an edit, its events."""
+import contextlib
 import http.client
 import http.server
 import socket
@@ -67,7 +68,8 @@ class Proxy:
     def cut(self):
         """Breaks the streams of events."""
         for stream in list(self.streams):
-            stream.shutdown(socket.SHUT_RDWR)
+            with contextlib.suppress(OSError):  # of a page that was closed
+                stream.shutdown(socket.SHUT_RDWR)
 
     def end(self):
         self.server.shutdown()
@@ -101,6 +103,7 @@ def behind_a_proxy(item3d, browser, folder):
     cookies = context.cookies()
     check([cookie["path"] for cookie in cookies] == [PREFIX.rstrip("/")], f"the cookie is not of the prefix alone: {cookies}")
     tab.close()
+    proxy.last_ids.clear()
 
     page = Page(browser, server.address, context=context)
     page.until("studio.store.state.project !== null && studio.viewer.stage.shown.length === 1", "the model does not come through the proxy")
