@@ -57,11 +57,11 @@ def link(path, to):
 
 
 def main_thread(page):
-    """Seconds that the page's own thread has worked."""
+    """Seconds of processor time that the page's own thread has taken."""
     if not hasattr(page, "session"):
         page.session = page.context.new_cdp_session(page.tab)
         page.session.send("Performance.enable")
-    return next(metric["value"] for metric in page.session.send("Performance.getMetrics")["metrics"] if metric["name"] == "TaskDuration")
+    return next(metric["value"] for metric in page.session.send("Performance.getMetrics")["metrics"] if metric["name"] == "ThreadTime")
 
 
 def long_history(item3d, browser, server, folder):

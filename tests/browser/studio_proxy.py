@@ -33,6 +33,7 @@ class Proxy:
 
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
         self.server.daemon_threads = True
+        self.server.handle_error = lambda *_: None  # a browser that leaves in the middle
         self.address = f"http://127.0.0.1:{self.server.server_port}{PREFIX}"
         threading.Thread(target=self.server.serve_forever, daemon=True).start()
 
