@@ -5,12 +5,12 @@
 #
 # usage: scripts/setup.sh [cuda] [browser] [blender] [python]
 #   cuda     the CUDA compiler too, for `make cuda` and `make test`
-#   browser  Chromium and Playwright too, for `make test` (50 MB, and 100 MB of Debian packages)
+#   browser  Chromium, Playwright and TypeScript too, for `make test` (60 MB, and 100 MB of Debian packages)
 #   blender  Blender as a module of Python too, for `make test-blender` (400 MB to 900 MB, by the Pythons that there are)
 #   python   PyTorch for Python too, for `make test-python` (3 GB, 5 GB unpacked)
 #
 #   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
-#   ITEM3D_NO_BROWSER=1       leave the browser out: its tests do not run
+#   ITEM3D_NO_BROWSER=1       leave these out: the page's tests do not run
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
@@ -142,7 +142,7 @@ download_crate() {
 }
 download_npm() {
     local file
-    file=$1-$(version_of "$1").tgz
+    file=${1##*/}-$(version_of "$1").tgz
     download_file "$1" "https://registry.npmjs.org/$1/-/$file" "$file"
 }
 
@@ -246,6 +246,25 @@ unpack_three() {
     sed -i "s|from 'three'|from '../../three.module.min.js'|" "$into"/addons/*/*.js
 }
 
+# The types of three.js lie as unpack_three lays its modules.
+unpack_typescript() {
+    local into=$1 archive
+    download_npm @typescript/typescript-linux-x64
+    say "unpacking $(basename "$archive")"
+    tar -xzf "$archive" -C "$into" --strip-components=1 --no-same-owner package/LICENSE package/lib ||
+        fail "unpacking $archive failed; is the disk full?"
+    download_npm @types/three
+    say "unpacking $(basename "$archive")"
+    mkdir "$into/three"
+    tar -xzf "$archive" -C "$into/three" --strip-components=1 --no-same-owner \
+        --wildcards '*/LICENSE' '*/build/three.module.min.d.ts' '*/src/*' '*/examples/jsm/loaders/*' '*/examples/jsm/controls/*' '*/examples/jsm/utils/*' ||
+        fail "unpacking $archive failed; is the disk full?"
+    mv "$into/three/build/three.module.min.d.ts" "$into/three/examples/jsm" "$into/three"
+    mv "$into/three/jsm" "$into/three/addons"
+    rmdir "$into/three/build" "$into/three/examples"
+    sed -i 's|"../src/|"./src/|' "$into/three/three.module.min.d.ts"
+}
+
 # For the Python that runs the tests.
 unpack_browser() {
     local into=$1
@@ -303,6 +322,7 @@ component basis_universal basis-universal-sys unpack_basis_universal
 component three three unpack_three
 if wants browser && [[ $(uname -m) == x86_64 ]]; then
     component browser 'playwright|greenlet' unpack_browser
+    component typescript '@typescript/typescript-linux-x64|@types/three' unpack_typescript
 fi
 if wants blender && [[ $(uname -m) == x86_64 ]]; then
     component blender 'bpy|numpy' unpack_blender scripts/blender.txt

@@ -110,9 +110,9 @@ export class Actions {
 
   /** @param {Result} result to run again as it was */
   async retry(result) {
+    if (result.kind !== 'edit') return this.act(result, 'resume');
     try {
-      const { from, to, settings, region, exclude, feather, parent } = result;
-      const again = asResult(await api(`projects/${result.project}/edits`, { json: { from, to, settings, region, exclude, feather, parent: asNumber(parent) } }));
+      const again = asResult(await api(`projects/${result.project}/edits`, { json: { ...result.request, parent: asNumber(result.parent) } }));
       this.begun(again);
     } catch (error) {
       failed(error);
@@ -139,6 +139,8 @@ export class Actions {
     const { results, project } = this.store.state;
     if (result.project !== project?.id) return;
     const at = results.findIndex(({ id }) => id === result.id);
+    const ended = result.state === 'done' && results[at]?.state !== 'done';
+    if (ended && result.id === this.store.state.selected) this.lightOf(result);
     this.store.set({ results: at < 0 ? [...results, result] : results.with(at, result) });
     if (result.kind === 'reconstruct' && result.state === 'done' && !project.model) this.openProject(project.id, result.id).catch(failed); // it has a model now
   }
@@ -147,9 +149,14 @@ export class Actions {
   select(id) {
     const { layout, results } = this.store.state;
     const result = results.find((other) => other.id === id);
-    if (result?.kind === 'relight' && result.files.includes('light.hdr')) this.store.set({ light: { ...DEFAULT_LIGHT, name: `result-${id}`, backdrop: this.store.state.light.backdrop } });
+    if (result) this.lightOf(result);
     this.store.set({ selected: id, ...(layout === 'side' || !result ? { layout: 'single', side: [] } : {}) });
     this.remember();
+  }
+
+  /** Shows the light of a result that is one. @param {Result} result */
+  lightOf({ id, kind, files }) {
+    if (kind === 'relight' && files.includes('light.hdr')) this.store.set({ light: { ...DEFAULT_LIGHT, name: `result-${id}`, backdrop: this.store.state.light.backdrop } });
   }
 
   /** Puts a result beside what is shown, or takes it away again. @param {string} id */
@@ -207,8 +214,8 @@ export class Actions {
 
   /** @param {Result} result */
   reuse(result) {
-    const parent = result.parent ?? '';
-    this.store.set({ from: result.from, to: result.to, settings: result.settings ?? {}, selected: parent, layout: 'single', tab: 'edit' });
+    const { region = [], exclude = [], feather = 0 } = result.request;
+    this.store.set({ from: result.from, to: result.to, settings: result.settings ?? {}, region: { include: region, exclude, feather }, selected: result.parent ?? '', layout: 'single', tab: 'edit' });
   }
 
   async saveLayers() {

@@ -1,5 +1,5 @@
 // The studio: puts the page together and lets its parts act on the server.
-import { h, fill, iconButton, icon } from './core/dom.js';
+import { h, fill, iconButton, icon, oneStop } from './core/dom.js';
 import { api, listen } from './core/api.js';
 import { Store, History } from './core/store.js';
 import { applyTheme, switchTheme } from './core/appearance.js';
@@ -14,6 +14,7 @@ import { failed, keysDialog, projectMenu, toast } from './panels/dialogs.js';
 import { paneLabels, viewerBar } from './panels/viewer_bar.js';
 import { RegionTools } from './panels/region_tools.js';
 import { showPictures } from './viewer/pictures.js';
+import { showReconstruction } from './viewer/reconstruction.js';
 import { hasWebGL } from './viewer/stage.js';
 import { Viewer } from './viewer/viewer.js';
 import { text } from './text.js';
@@ -54,13 +55,17 @@ const panels = {
 };
 const tabs = h('div.tabs', { role: 'tablist' }, ...Object.entries(text.tabs).map(([name, label]) =>
   h('button', { type: 'button', role: 'tab', id: `tab-${name}`, 'data-tab': name, 'aria-controls': `panel-${name}`, onclick: () => store.set({ tab: /** @type {any} */ (name) }) }, label)));
+oneStop(tabs, (button) => button.click());
 for (const [name, panel] of Object.entries(panels)) {
   panel.id = `panel-${name}`;
   panel.setAttribute('role', 'tabpanel');
   panel.setAttribute('aria-labelledby', `tab-${name}`);
 }
 store.on(['tab'], ({ tab }) => {
-  for (const button of tabs.children) button.setAttribute('aria-selected', String(button.dataset.tab === tab));
+  for (const button of tabs.children) {
+    button.setAttribute('aria-selected', String(button.dataset.tab === tab));
+    button.tabIndex = button.dataset.tab === tab ? 0 : -1;
+  }
   for (const [name, panel] of Object.entries(panels)) panel.hidden = name !== tab;
   if (tab !== 'edit') store.set({ tool: 'orbit' });
   tools?.showVeil();
@@ -75,8 +80,13 @@ const picture = async () => {
 };
 const facts = h('div.facts');
 const undoButton = iconButton('undo', text.undo, () => undo.undo()), redoButton = iconButton('redo', text.redo, () => undo.redo());
+const toEdit = (/** @type {Event} */ event) => { // the address goes on naming the project
+  event.preventDefault();
+  store.set({ tab: 'edit' });
+  requestAnimationFrame(() => document.getElementById('from')?.focus());
+};
 const bar = h('header.top', {},
-  h('a.skip', { href: '#from' }, text.skip),
+  h('a.skip', { href: '#from', onclick: toEdit }, text.skip),
   h('span.brand', {}, h('img', { src: 'app/icon.svg', alt: '', width: 18, height: 18 }), text.title),
   projectMenu(store, { open: (id) => actions.openProject(id).catch(failed), upload, photographs, demo: actions.demo }),
   iconButton('open', text.open, upload, { id: 'open' }), iconButton('camera', text.photographs, photographs, { id: 'photographs' }),
@@ -92,6 +102,7 @@ document.body.append(h('div.app', {}, bar, historyPanel(store, { select: actions
   h('aside.inspector', { 'aria-label': text.edit.what }, tabs, ...Object.values(panels))), file);
 if (viewer) paneLabels(viewer.stage);
 else showPictures(host, store);
+showReconstruction(host, store);
 
 store.on(['project'], ({ project }) => {
   document.title = project ? `${project.name} · ${text.title}` : text.title;

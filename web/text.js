@@ -99,6 +99,7 @@ export const text = {
   photos: {
     title: 'A model from photographs', lede: 'Choose the folder of photographs of one thing, taken from all around. With transforms.json (NeRF-synthetic) beside them, cameras are known.', choose: 'Choose a folder', count: (/** @type {number} */ n, /** @type {number} */ bytes) => `${n} photographs, ${size(bytes)}`,
     cameras: (/** @type {number} */ n) => `${n} cameras, seen from above`, otherCameras: 'Cameras are read from the files among them.', noCameras: 'No transforms.json among them: cameras are estimated where the program can, else an error says so.', start: 'Reconstruct', none: 'There is no photograph in that folder.', tooMany: 'At most 1 GB at once.', masks: (/** @type {number} */ n) => `${n} masks`,
+    preview: 'Photographs, the model so far, and its base colour. It opens here when it is done.',
   },
   keys: {
     title: 'Keyboard', list: [

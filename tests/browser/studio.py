@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """The studio in Chromium, headless, on software GL.
 
-usage: tests/browser/studio.py ITEM3D [--all] [--measure]
+usage: tests/browser/studio.py ITEM3D [--all] [--measure] [--photographs]
 
 Without --all: the demo is opened, looks like `item3d render`, a region is clicked, a short edit runs to
-its end and changes the picture. --all goes through the rest of the page. --measure prints times. Pictures
+its end and changes the picture; another is done by the keyboard alone, another behind a proxy. --all goes
+through the rest of the page, --photographs through a reconstruction (minutes). --measure prints times. Pictures
 of the pages go to the folder that STUDIO_PICTURES names.
 
 Needs what `scripts/setup.sh browser` fetches (CHROMIUM names another browser).
@@ -23,7 +24,11 @@ import subprocess
 import tempfile
 import time
 
+from studio_history import long_history
+from studio_keyboard import by_keyboard_alone
 from studio_page import MUG, PATIENCE, Page, Server, check, difference, launch, sync_playwright
+from studio_photographs import from_photographs, light_by_words
+from studio_proxy import behind_a_proxy
 
 # Mean absolute difference of the model's pixels, of 255: the viewer's light is prefiltered at half the
 # size, its edges are multisampled.
@@ -83,6 +88,21 @@ def click_region(page):
     page.tab.keyboard.press("2")
     page.until("studio.viewer.stage.shared.view.value === 1", "the key of the base colour does nothing")
     page.tab.keyboard.press("1")
+
+
+def region_by_words(page):
+    """Words find a part of the model, and the page says how much of it."""
+    page.tab.click(".tools [data-value=words]")
+    page.tab.fill("input[aria-label='By words']", "the handle")
+    page.tab.keyboard.press("Enter")
+    page.until("document.querySelector('.where .command code').textContent === \"--region 'words=the handle'\"", "the words are not written out")
+    page.until("/^[\\d.]+ % of the surface/.test(document.querySelector('.share').textContent)", "the words find nothing")
+    share = page.run("parseFloat(document.querySelector('.share').textContent)")
+    check(5 < share < 50, f"the handle is {share} % of the mug")
+    page.picture("region_words")
+    page.tab.click(".selectors [aria-label^='Remove']")
+    page.until("studio.store.state.region.include.length === 0", "a region cannot be taken away")
+    page.tab.click(".tools [data-value=words]")
 
 
 def weigh(page):
@@ -246,38 +266,6 @@ def refused(server, browser):
     page.close()
 
 
-def long_history(browser, server):
-    """A thousand results: the page starts, and the list scrolls."""
-    project = json.loads(server.get("api/projects?limit=1"))[0]["id"]
-    answer = json.loads(server.get(f"api/projects/{project}"))
-    pattern = next(one for one in answer["results"] if one["state"] == "done")
-    answer["results"] = [{**pattern, "id": 10000 + i, "parent": 10000 + i // 2 if i % 3 == 0 and i > 3 else None,
-                          "thumbnail": ""} for i in range(1000)]
-    context = browser.new_context(viewport={"width": 1280, "height": 720})
-    context.route(f"**/api/projects/{project}", lambda route: route.fulfill(json=answer))
-    tab = context.new_page()
-    begin = time.monotonic()
-    tab.goto(server.address, timeout=120000)
-    while tab.evaluate("document.querySelectorAll('.node').length") < 1001 and time.monotonic() - begin < 60:
-        time.sleep(0.05)
-    seconds = time.monotonic() - begin
-    check(tab.evaluate("document.querySelectorAll('.node').length") == 1001, "not all results are listed")
-    longest = tab.evaluate("""async () => {
-      const list = document.querySelector('.tree');
-      let last = performance.now(), longest = 0;
-      for (let i = 0; i < 40; ++i) {
-        list.scrollTop = i / 39 * list.scrollHeight;
-        await new Promise(requestAnimationFrame);
-        const now = performance.now();
-        longest = Math.max(longest, now - last);
-        last = now;
-      }
-      return longest;
-    }""")
-    context.close()
-    return seconds, longest
-
-
 def other_screens(browser, server, playwright):
     """Nothing is wider than a phone or a page at 200 %; without WebGL there are pictures."""
     for name, options in {"phone": dict(viewport={"width": 390, "height": 844}, device_scale_factor=2, is_mobile=True, has_touch=True),
@@ -369,6 +357,7 @@ def main():
     parser.add_argument("item3d")
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--measure", action="store_true")
+    parser.add_argument("--photographs", action="store_true")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         began = time.monotonic()
@@ -382,21 +371,28 @@ def main():
         click_region(page)
         result, seconds = edit_to_its_end(page)
         said.append(f"a short edit took {seconds:.1f} s")
+        said.append(f"{by_keyboard_alone(browser, server)} stops of the focus")
+        behind_a_proxy(options.item3d, browser, folder)
         if options.all:
+            region_by_words(page_of_source(page))
             said.append(f"under noon by {looks_like_render(page_of_source(page), options.item3d, folder, 'noon'):.2f}")
             page.run(f"studio.store.set({{ selected: '{result}' }})")
             page.until("studio.viewer.stage.host.dataset.shown.endsWith('done')", "the result is not shown again")
             wipe_and_layers(page, result)
             swaps_leave_nothing(page, result)
             export(page, server, result)
+            light_by_words(page, "a mug at sunset, lit from the left")
             ended_on_the_command_line(page, options.item3d, server, pause_resume_cancel(page))
             reload_in_the_middle(page, browser, server)
             network_cut(page)
             refused(server, browser)
             other_screens(browser, server, playwright)
-            started, longest = long_history(browser, server)
-            said.append(f"1,000 results listed {started:.2f} s after the address, longest frame of scrolling {longest:.0f} ms")
+            started, scrolled = long_history(options.item3d, browser, server, folder)
+            said.append(f"1,000 results listed {started:.2f} s after the server's start, "
+                        f"a frame of scrolling {scrolled['page']:.1f} ms of the page's thread, {scrolled['mean']:.0f} ms until it is shown, the longest {scrolled['longest']:.0f} ms")
             server_killed(page, server, result)
+        if options.photographs:
+            said.append(f"photographs {from_photographs(options.item3d, browser, folder):.0f} s")
         if options.measure:
             said.append(f"first visible change {first_change(page):.1f} s after Start")
             processor, clock = streaming_cost(options.item3d, folder)

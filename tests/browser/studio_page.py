@@ -47,7 +47,7 @@ class Server:
         else:
             sys.exit(f"studio.py: the server ended: {said}")
         self.port = int(re.search(r":(\d+)/", self.address).group(1))
-        self.token = re.search(r"token=(\w+)", self.address).group(1)
+        self.token = (re.search(r"token=(\w+)", self.address) or ["", ""])[1]  # none with a password
         self.base = self.address.split("?")[0]
 
     def kill(self):
@@ -69,19 +69,21 @@ class Server:
 class Page:
     """A tab with the studio in it."""
 
-    def __init__(self, browser, address, **options):
+    SHOWN = "document.querySelector('.stage').dataset.shown !== undefined"
+
+    def __init__(self, browser, address, context=None, shows=SHOWN, **options):
         options.setdefault("viewport", {"width": 1280, "height": 720})
-        self.context = browser.new_context(**options)
+        self.context = context or browser.new_context(**options)
         self.tab = self.context.new_page()
         self.tab.set_default_timeout(PATIENCE * 1000)
         self.errors = []
         self.tab.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.open(address)
+        self.open(address, shows)
 
-    def open(self, address):
+    def open(self, address, shows=SHOWN):
         begin = time.monotonic()
         self.tab.goto(address, timeout=PATIENCE * 1000)
-        self.until("document.querySelector('.stage').dataset.shown !== undefined", "the model was not shown")
+        self.until(shows, "the page does not show what it should")
         self.seconds = time.monotonic() - begin
 
     def run(self, expression, argument=None):

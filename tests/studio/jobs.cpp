@@ -162,6 +162,14 @@ TEST_F(StudioQueue, ReconstructsPhotographs) {
     EXPECT_EQ(studio_->result(made.id).state, ResultState::failed) << "the stand-in makes no model";
     EXPECT_EQ(studio_->project(made.project).name, "Photographs");
     EXPECT_NE(made.command.find("item3d reconstruct --from-images=photographs"), std::string::npos);
+
+    const fs::path folder = studio_->folders().result(made.project, made.id);
+    fs::remove(folder / "edit.json");  // of the stand-in; a reconstruction leaves none
+    write(folder / "checkpoint.safetensors", "kept\n");
+    studio_->jobs().resume(made.id);
+    ASSERT_TRUE(wait_until([&] { return has_ended(studio_->result(made.id).state); }));
+    EXPECT_NE(read(folder / "lines.txt").find("--resume"), std::string::npos)
+        << "it began again from nothing";
 }
 
 }  // namespace

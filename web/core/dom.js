@@ -21,9 +21,23 @@ export function h(tag, props = {}, ...children) {
   return element;
 }
 
-/** @param {Element} element @param {...(Node|string|null|false|undefined)} children */
+/**
+ * Replaces what an element has. The focus stays: where it was, else on what has the same name, else on the first that can have it.
+ * @param {Element} element @param {...(Node|string|null|false|undefined)} children
+ */
 export function fill(element, ...children) {
+  const focused = /** @type {HTMLElement|null} */ (document.activeElement);
+  const held = focused !== null && focused !== element && element.contains(focused);
   element.replaceChildren(...children.filter((child) => child).map((child) => /** @type {Node|string} */ (child)));
+  if (!held) return;
+  const others = /** @type {HTMLElement[]} */ ([...element.querySelectorAll('a[href], button, input, select, textarea, [tabindex], [contenteditable]')]);
+  const next = element.contains(focused) ? focused : others.find((other) => nameOf(other) === nameOf(focused)) ?? others[0];
+  next?.focus({ preventScroll: true });
+}
+
+/** @param {HTMLElement} element */
+function nameOf(element) {
+  return `${element.tagName} ${element.id || element.getAttribute('aria-label') || element.textContent}`;
 }
 
 /**
@@ -129,21 +143,22 @@ export function segments(label, choices, value, change) {
 
 /**
  * Makes a group of buttons one stop of the Tab key; arrows go from one to the next.
- * @param {HTMLElement} group
+ * @param {HTMLElement} group @param {(button: HTMLElement) => void} [reached]
  */
-export function oneStop(group) {
+export function oneStop(group, reached) {
   const buttons = /** @type {HTMLElement[]} */ ([...group.children]);
   buttons.forEach((button, i) => { button.tabIndex = i ? -1 : 0; });
   group.onkeydown = (event) => {
     const at = buttons.indexOf(/** @type {HTMLElement} */ (event.target));
-    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-    if (at < 0 || !step) return;
+    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1, Home: -at, End: -at - 1 }[event.key];
+    if (at < 0 || step === undefined) return;
     event.preventDefault();
     event.stopPropagation();
     const next = buttons[(at + step + buttons.length) % buttons.length];
     buttons[at].tabIndex = -1;
     next.tabIndex = 0;
     next.focus();
+    reached?.(next);
   };
 }
 

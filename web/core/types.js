@@ -13,8 +13,7 @@
  * @property {string} [name]
  * @property {Record<string, any>} settings
  * @property {string[]} region
- * @property {string[]} [exclude]
- * @property {number} [feather]
+ * @property {{region?: string[], exclude?: string[], feather?: number} & Record<string, any>} request  as the page sent it
  * @property {string} command
  * @property {ResultState} state
  * @property {{stage: string, done: number, total: number, seconds: number, seconds_left: number, job_seconds_left?: number, share?: number}} [progress]  the last two of an edit: of all its stages

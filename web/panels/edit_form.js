@@ -41,17 +41,18 @@ export function editForm(store, { start, remember, tools }) {
   const problem = h('p.problem', { role: 'alert' });
 
   const begin = async () => {
+    if (button.ariaDisabled === 'true') return;
     const wrong = problemOf(store.state);
     fill(problem, wrong);
     if (wrong) return;
-    button.disabled = true;
+    button.ariaDisabled = 'true'; // a button that is disabled would lose the focus
     try {
       await start();
     } catch (error) {
       const { message, hint } = /** @type {any} */ (error);
       fill(problem, message, hint && h('small', {}, hint));
     } finally {
-      button.disabled = false;
+      button.ariaDisabled = null;
     }
   };
 

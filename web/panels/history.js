@@ -1,5 +1,5 @@
-// The history: results as a tree, edits of an edit below it. Rows are made once and changed in place;
-// what is out of sight is neither laid out nor drawn, so that thousands scroll smoothly.
+// The history: results as a tree, edits of an edit below it. Only rows in sight, and some above and
+// below them, are in the page: thousands scroll as a dozen does.
 import { h, fill, icon, iconButton } from '../core/dom.js';
 import { when, duration } from '../core/format.js';
 import { text } from '../text.js';
@@ -7,6 +7,11 @@ import { thumbnail } from './thumbnail.js';
 import { shareOf } from './job_bar.js';
 
 /** @typedef {import('../core/types.js').Result} Result */
+/** @typedef {{result: Result, depth: number, place: number, siblings: number}} Branch */
+/** @typedef {{row: HTMLElement, result: Result|null}} Entry */
+
+const ROW = 52; // pixels, as in layout.css
+const BEYOND = 12; // rows above and below those in sight
 
 /**
  * @param {import('../core/store.js').Store} store
@@ -16,10 +21,16 @@ export function historyPanel(store, { select, compare, favourite }) {
   const filter = h('input', { type: 'search', placeholder: text.history.filter, 'aria-label': text.history.filter, oninput: () => build() });
   const only = h('button.icon', { type: 'button', title: text.history.favourites, 'aria-label': text.history.favourites, 'aria-pressed': 'false',
     onclick: () => { only.setAttribute('aria-pressed', String(only.getAttribute('aria-pressed') !== 'true')); build(); } }, icon('star'));
-  const list = h('div.tree', { role: 'tree', 'aria-label': text.history.title, onkeydown: (/** @type {KeyboardEvent} */ event) => move(event) });
+  const inner = h('div.rows');
+  const hint = h('p.hint');
+  const list = h('div.tree', { role: 'tree', 'aria-label': text.history.title, onscroll: () => attach(), onkeydown: (/** @type {KeyboardEvent} */ event) => move(event) }, inner, hint);
   const count = h('small');
-  /** @type {Map<string, {row: HTMLElement, result: Result|null}>} */
+  /** @type {Map<string, Entry>} rows that were made, in the page or not */
   let rows = new Map();
+  /** @type {string[]} what is listed, from the top; '': the source */
+  let order = [''];
+  /** @type {Map<string, Branch & {at: number}>} */
+  let branches = new Map();
   let structure = '', owner = '';
 
   const build = () => {
@@ -28,22 +39,40 @@ export function historyPanel(store, { select, compare, favourite }) {
     const fits = (/** @type {Result} */ result) =>
       (only.getAttribute('aria-pressed') !== 'true' || result.favourite) &&
       words.every((/** @type {string} */ word) => `${result.to} ${result.name ?? ''} ${result.note}`.toLowerCase().includes(word));
-    const shown = results.filter(fits);
-    const ordered = asTree(shown);
-    const kept = rows;
-    rows = new Map();
-    const source = kept.get('') ?? { row: sourceRow(), result: null };
-    rows.set('', source);
-    for (const { result, depth } of ordered) {
-      const entry = kept.get(result.id) ?? { row: makeRow(result.id), result: null };
-      entry.row.style.setProperty('--depth', String(Math.min(depth, 8)));
-      entry.row.setAttribute('aria-level', String(depth + 2));
-      rows.set(result.id, entry);
-      update(entry, result);
-    }
-    fill(list, ...[...rows.values()].map(({ row }) => row), !ordered.length && h('p.hint', {}, results.length ? text.history.noMatch : text.history.none));
+    const ordered = asTree(results.filter(fits));
+    order = ['', ...ordered.map(({ result }) => result.id)];
+    branches = new Map(ordered.map((branch, i) => [branch.result.id, { ...branch, at: i + 1 }]));
+    for (const id of rows.keys()) if (id && !branches.has(id)) rows.delete(id);
+    inner.style.height = `${order.length * ROW}px`;
+    fill(hint, ordered.length ? '' : results.length ? text.history.noMatch : text.history.none);
     count.textContent = results.length ? text.history.count(results.length) : '';
+    attach();
+  };
+
+  /** Puts rows that are in sight into the page, with the chosen one, which Tab reaches, and the one that has the focus. */
+  const attach = () => {
+    const first = Math.floor(list.scrollTop / ROW) - BEYOND, last = Math.ceil((list.scrollTop + list.clientHeight) / ROW) + BEYOND;
+    const focused = /** @type {HTMLElement|null|undefined} */ (document.activeElement?.closest('.node'));
+    const kept = new Set(['', store.state.selected, focused?.dataset.id]);
+    const wanted = order.filter((id, at) => (at >= first && at < last) || kept.has(id)).map(rowOf);
+    const staying = new Set(wanted);
+    for (const row of [...inner.children]) if (!staying.has(row)) row.remove();
+    wanted.forEach((row, i) => { if (inner.children[i] !== row) inner.insertBefore(row, inner.children[i] ?? null); });
     mark();
+  };
+
+  const rowOf = (/** @type {string} */ id) => {
+    const entry = rows.get(id) ?? { row: id ? makeRow(id) : sourceRow(), result: null };
+    rows.set(id, entry);
+    const branch = branches.get(id);
+    if (!branch) return entry.row;
+    entry.row.style.setProperty('--depth', String(Math.min(branch.depth, 8)));
+    entry.row.style.top = `${branch.at * ROW}px`;
+    entry.row.ariaLevel = String(branch.depth + 2);
+    entry.row.ariaPosInSet = String(branch.place);
+    entry.row.ariaSetSize = String(branch.siblings);
+    update(entry, branch.result);
+    return entry.row;
   };
 
   /** With a key held, it is put beside what is shown. */
@@ -53,7 +82,7 @@ export function historyPanel(store, { select, compare, favourite }) {
 
   const makeRow = (/** @type {string} */ id) => h('div.node', { role: 'treeitem', tabIndex: -1, 'data-id': id, onclick: choose(id) });
 
-  const update = (/** @type {{row: HTMLElement, result: Result|null}} */ entry, /** @type {Result} */ result) => {
+  const update = (/** @type {Entry} */ entry, /** @type {Result} */ result) => {
     if (entry.result === result) return;
     const old = entry.result;
     entry.result = result;
@@ -81,16 +110,17 @@ export function historyPanel(store, { select, compare, favourite }) {
   };
 
   const move = (/** @type {KeyboardEvent} */ event) => {
-    const items = [...rows.keys()];
-    const at = items.indexOf(/** @type {HTMLElement} */ (document.activeElement)?.dataset?.id ?? store.state.selected);
+    const at = order.indexOf(/** @type {HTMLElement} */ (document.activeElement)?.dataset?.id ?? store.state.selected);
     /** @type {Record<string, number>} */
-    const steps = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: items.length - 1, PageDown: at + 10, PageUp: at - 10 };
+    const steps = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: order.length - 1, PageDown: at + 10, PageUp: at - 10 };
     if (event.key in steps) {
-      const id = items[Math.min(Math.max(steps[event.key], 0), items.length - 1)];
-      rows.get(id)?.row.focus();
-      select(id);
-    } else if (event.key === 'Enter' && (event.ctrlKey || event.metaKey)) compare(items[at]);
-    else if (event.key === 'Enter' || event.key === ' ') select(items[at]);
+      const next = Math.min(Math.max(steps[event.key], 0), order.length - 1);
+      list.scrollTop = Math.min(Math.max(list.scrollTop, (next + 1) * ROW - list.clientHeight), next * ROW);
+      attach();
+      rows.get(order[next])?.row.focus();
+      select(order[next]);
+    } else if (event.key === 'Enter' && (event.ctrlKey || event.metaKey)) compare(order[at]);
+    else if (event.key === 'Enter' || event.key === ' ') select(order[at]);
     else return;
     event.preventDefault();
   };
@@ -102,11 +132,14 @@ export function historyPanel(store, { select, compare, favourite }) {
       [structure, owner] = [now, project?.id ?? ''];
       build();
     } else for (const result of results) {
-      const entry = rows.get(result.id);
+      const entry = rows.get(result.id), branch = branches.get(result.id);
+      if (branch) branch.result = result;
       if (entry) update(entry, result);
     }
   });
-  store.on(['selected', 'side', 'layout'], mark);
+  store.on(['selected'], attach);
+  store.on(['side', 'layout'], mark);
+  new ResizeObserver(attach).observe(list);
   return h('nav.history', { 'aria-label': text.history.title }, h('div.heading', {}, h('h2', {}, text.history.title), count, only), filter, list);
 }
 
@@ -128,13 +161,15 @@ export function asTree(results) {
     if (!children.has(parent)) children.set(parent, []);
     children.get(parent)?.unshift(result);
   }
-  /** @type {{result: Result, depth: number}[]} */
+  const below = (/** @type {string} */ id, /** @type {number} */ depth) =>
+    (children.get(id) ?? []).map((result, i, all) => ({ result, depth, place: i + 1, siblings: all.length })).reverse();
+  /** @type {Branch[]} */
   const ordered = [];
-  const stack = (children.get('') ?? []).map((result) => ({ result, depth: 0 })).reverse();
+  const stack = below('', 0);
   while (stack.length) {
-    const next = /** @type {{result: Result, depth: number}} */ (stack.pop());
+    const next = /** @type {Branch} */ (stack.pop());
     ordered.push(next);
-    for (const child of [...(children.get(next.result.id) ?? [])].reverse()) stack.push({ result: child, depth: next.depth + 1 });
+    stack.push(...below(next.result.id, next.depth + 1));
   }
   return ordered;
 }

@@ -1,7 +1,6 @@
 // A model from photographs: choose a folder, look at what is in it, start.
 import { h, fill, icon } from '../core/dom.js';
 import { api } from '../core/api.js';
-import { size } from '../core/format.js';
 import { text } from '../text.js';
 
 const MOST_BYTES = 1e9;

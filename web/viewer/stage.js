@@ -14,6 +14,7 @@ import { VIEWS } from './views.js';
  */
 
 const SLOW_FRAME = 40; // ms; above, moving pictures are drawn coarser
+const AFTER_SCROLL = 200; // ms
 
 export class Stage extends EventTarget {
   /** @param {HTMLElement} host */
@@ -54,6 +55,10 @@ export class Stage extends EventTarget {
     this.pending = false;
     this.moving = false;
     this.settle = 0;
+    this.scrolled = -Infinity;
+    this.later = 0;
+    // Scrolling a list waits for a picture that the processor draws.
+    if (this.software) document.addEventListener('scroll', () => { this.scrolled = performance.now(); }, { capture: true, passive: true });
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
   }
@@ -162,6 +167,12 @@ export class Stage extends EventTarget {
 
   /** @param {boolean} [moving] whether it is one of many pictures, which may be coarser */
   invalidate(moving = false) {
+    const wait = this.scrolled + AFTER_SCROLL - performance.now();
+    if (wait > 0 && !moving) {
+      clearTimeout(this.later);
+      this.later = window.setTimeout(() => this.invalidate(), wait);
+      return;
+    }
     this.moving = this.moving || moving;
     if (this.pending) return;
     this.pending = true;

@@ -34,11 +34,9 @@ std::vector<std::string> arguments_of(const StudioFolders& folders, const Studio
     arguments.insert(arguments.end(), command.arguments.begin(), command.arguments.end());
     const std::string live = result_folder_name(result.id) + "/" + live_folder_name;
     arguments.insert(arguments.end(), {"--progress-file", live + "/" + progress_file_name});
-    if (result.kind == "edit") {
-        arguments.insert(arguments.end(), {"--live", live});
-        if (fs::exists(folders.result(result.project, result.id) / checkpoint_name))
-            arguments.emplace_back("--resume");
-    }
+    if (result.kind == "edit") arguments.insert(arguments.end(), {"--live", live});
+    if (fs::exists(folders.result(result.project, result.id) / checkpoint_name))
+        arguments.emplace_back("--resume");
     return arguments;
 }
 
