@@ -21,7 +21,7 @@ struct Photograph {
     Image image;
     /// Of its exposure as EXIF has it, up to a factor that all share; 0: not said.
     double exposure = 0;
-    std::filesystem::path file;  ///< that it was read from
+    std::filesystem::path file = {};  ///< that it was read from
 };
 
 struct Dataset {
