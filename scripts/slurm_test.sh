@@ -70,7 +70,7 @@ settings=(--with iterations=10 --with texture-size=64 --with picture-size=32 --w
     done
 } >"$folder/jobs.csv"
 
-"$item3d" batch "$folder/jobs.csv" -o "$folder/alone" "${settings[@]}" --threads 1 --quiet ||
+"$item3d" batch "$folder/jobs.csv" -o "$folder/alone" "${settings[@]}" --workers 2 --threads 1 --quiet ||
     fail "the undisturbed batch"
 "$item3d" batch "$folder/jobs.csv" -o "$folder/out" "${settings[@]}" --slurm --workers 3 --threads 1 \
     --sbatch-option --time=0:30:00 || fail "the submission"
