@@ -52,8 +52,10 @@ std::vector<Camera> cameras_around(const Model& model, int count) {
     const Mat4 turn = glm::translate(Mat4(1), centre) *
                       glm::rotate(Mat4(1), default_azimuth, Vec3(0, 1, 0)) *
                       glm::translate(Mat4(1), -centre);
-    for (Camera& camera : cameras)
+    for (Camera& camera : cameras) {
         camera.camera_to_world = turn * camera.camera_to_world;
+        fit_depth_range(camera, bounds);  // a corner may have come nearer
+    }
     return cameras;
 }
 

@@ -12,6 +12,13 @@ std::string column_named(std::string name, const JobCommand& command, const std:
     if (command.options.contains(name) ||
         std::find(job_columns.begin(), job_columns.end(), name) != job_columns.end())
         return name;
+    if (name == "output" || name == "threads" || name == "resume")
+        throw InputError(
+            subject, "the column '" + name + "' is the batch's own",
+            "leave it out: each job gets a folder, threads and its checkpoint by itself");
+    if (name.find(';') != std::string::npos)
+        throw InputError(subject, "there is no column '" + name + "'",
+                         "separate columns by commas, not by semicolons");
     std::vector<std::string> known = job_columns;
     for (const auto& [option, kind] : command.options)
         known.push_back(option);

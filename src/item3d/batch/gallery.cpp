@@ -31,11 +31,28 @@ json file_of(const BatchFolder& folder, const std::string& within, const std::st
     return within + "/" + name;
 }
 
+/// "seed 1, light sunset": options of a job beside its sentences, which tell it from its
+/// neighbours.
+std::string options_text(const BatchJob& job) {
+    std::string text;
+    for (std::size_t i = 0; i < job.arguments.size(); ++i) {
+        const std::string& name = job.arguments[i];
+        if (!name.starts_with("--")) continue;
+        const bool has_value =
+            i + 1 < job.arguments.size() && !job.arguments[i + 1].starts_with("--");
+        if (name == "--from" || name == "--to") continue;
+        text += (text.empty() ? "" : ", ") + name.substr(2);
+        if (has_value) text += " " + job.arguments[i + 1];
+    }
+    return text;
+}
+
 json card_of(const BatchFolder& folder, const BatchEntry& entry, bool inside) {
     const BatchJob& job = entry.job;
     json card = {{"title", job.name.empty() ? fs::path(job.model).filename().string() : job.name},
                  {"from", job.from},
                  {"to", job.to},
+                 {"options", options_text(job)},
                  {"state", state_name(entry.state)},
                  {"attempts", entry.last.attempt},
                  {"seconds", entry.last.seconds}};

@@ -101,6 +101,7 @@ const card = job => {
   }
   add(box, "h2", job.title);
   if (job.to) add(box, "p", job.from + " \u2192 " + job.to);
+  if (job.options) add(box, "p", job.options, "soft");
   if (job.message) add(box, "p", job.message, "message");
   const list = add(box, "dl");
   const row = (name, value) => { add(list, "dt", name, "soft"); add(list, "dd", value); };
@@ -118,7 +119,7 @@ const value = (job, name) => (job.scores || {})[name];
 const show = () => {
   const parts = words.value.toLowerCase().split(/\s+/).filter(Boolean);
   shown = jobs.filter(job => (!state.value || job.state === state.value) && parts.every(part =>
-    [job.title, job.from, job.to, job.message].some(text => (text || "").toLowerCase().includes(part))));
+    [job.title, job.from, job.to, job.options, job.message].some(text => (text || "").toLowerCase().includes(part))));
   const name = order.value.slice(1);
   if (order.value === "") shown.sort((a, b) => rank[a.state] - rank[b.state]);
   else if (order.value === "seconds") shown.sort((a, b) => b.seconds - a.seconds);
