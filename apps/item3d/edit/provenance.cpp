@@ -72,8 +72,10 @@ void print_text(const FileProvenance& provenance, bool is_by_given_key, bool has
     for (const EditClaim& edit : edits_of(facts.claim))
         print_edit(edit);
     for (const CheckedImage& checked : provenance.images)
-        print_line("image", fmt::format("{} {}: {}", checked.image.image, checked.image.name,
-                                        words_for(checked.state)));
+        print_line("image", (checked.image.image.empty()
+                                 ? ""
+                                 : checked.image.image + " " + checked.image.name + ": ") +
+                                words_for(checked.state));
     if (facts.claim.contains("document_sha256"))
         print_line("all else", words_for(provenance.document));
     const std::string key = public_key_of(facts.claim);

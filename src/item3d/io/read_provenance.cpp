@@ -104,9 +104,10 @@ nlohmann::json provenance_json(const FileProvenance& provenance) {
                        {"generator", provenance.generator},
                        {"problem", facts.problem},
                        {"images", nlohmann::json::array()},
-                       {"document", word_of(provenance.document)},
                        {"signature", word_of(provenance.signature)},
                        {"unchanged", provenance.has_claim() && provenance.is_unchanged()}};
+    // Of a picture there is none.
+    if (facts.claim.contains("document_sha256")) out["document"] = word_of(provenance.document);
     for (const CheckedImage& checked : provenance.images) {
         nlohmann::json image = checked.image;
         image["state"] = word_of(checked.state);
