@@ -1,4 +1,4 @@
-// What a model has besides its looks stays in a file of several.
+// Skins, colours and all else of a model stay in a file of several looks.
 #include "tests/support/merged_variants.h"
 
 namespace item3d {

@@ -54,6 +54,22 @@ TEST(Camera, OrbitsFromPlusZTowardsPlusX) {
     }
 }
 
+TEST(Camera, TurntableKeepsTheBoxBetweenItsPlanesFromAnyAzimuth) {
+    const std::array<Vec3, 2> bounds{Vec3(-0.65f, 0, -0.5f), Vec3(0.65f, 0.7f, 0.5f)};
+    for (const float first : {0.0f, 0.7f})
+        for (const Camera& camera : turntable(bounds, 6, 0.3f, 0.6f, first))
+            for (int corner = 0; corner < 8; ++corner) {
+                const Vec3 point(bounds[corner & 1].x, bounds[corner >> 1 & 1].y,
+                                 bounds[corner >> 2].z);
+                const float depth = -(camera.world_to_camera() * Vec4(point, 1)).z;
+                EXPECT_GT(depth, camera.near_plane) << camera.name;
+                EXPECT_LT(depth, camera.far_plane) << camera.name;
+            }
+    const Camera turned = turntable(bounds, 1, 0.3f, 0.6f, 0.7f)[0];
+    const Vec3 towards = Vec3(turned.camera_to_world[2]);
+    EXPECT_NEAR(std::atan2(towards.x, towards.z), 0.7f, 1e-5f);
+}
+
 TEST(Camera, TurntableKeepsTheBoundingSphereInView) {
     const std::array<Vec3, 2> bounds{Vec3(-1, 0, 2), Vec3(3, 5, 4)};
     const Vec3 centre(1, 2.5f, 3);

@@ -43,22 +43,6 @@ namespace fs = std::filesystem;
 
 const Vec3 turntable_ground{0.898f, 0.890f, 0.871f};
 
-/// Cameras around the model, of which the first sees it as `item3d render` does, from where left
-/// and right are told.
-std::vector<Camera> cameras_around(const Model& model, int count) {
-    std::vector<Camera> cameras = picture_cameras(model, count);
-    const auto bounds = model.bounds();
-    const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
-    const Mat4 turn = glm::translate(Mat4(1), centre) *
-                      glm::rotate(Mat4(1), default_azimuth, Vec3(0, 1, 0)) *
-                      glm::translate(Mat4(1), -centre);
-    for (Camera& camera : cameras) {
-        camera.camera_to_world = turn * camera.camera_to_world;
-        fit_depth_range(camera, bounds);  // a corner may have come nearer
-    }
-    return cameras;
-}
-
 /// Draws a model in one light, with the shadows that it throws upon itself.
 class LitPainter {
   public:
@@ -81,7 +65,8 @@ class LitPainter {
         options.height = pixels;
         options.occlusion = occlusion_;
         std::vector<Image> pictures;
-        for (const Camera& camera : cameras_around(model_, count)) {
+        // The first sees the model as `item3d render` does, from where left and right are told.
+        for (const Camera& camera : picture_cameras(model_, count, default_azimuth)) {
             const at::Tensor picture = render(geometry_, materials_, light_, {camera}, options);
             pictures.push_back(to_display(to_image(picture[0].cpu())));
         }

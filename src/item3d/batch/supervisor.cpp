@@ -152,11 +152,12 @@ class Supervisor {
         worker.begin = Clock::now();
     }
 
-    /// Cores of its own, where there are enough: one that is moved between them finds cold caches.
+    /// Cores of its own, where the batch takes all of them: a worker that is moved between cores
+    /// finds cold caches. With fewer, two batches would meet on the same ones.
     std::vector<int> cores_of(std::size_t index) const {
         const std::vector<int> all = usable_core_numbers();
         const auto threads = static_cast<std::size_t>(threads_);
-        if (threads * workers_.size() > all.size()) return {};
+        if (threads * workers_.size() != all.size()) return {};
         const auto first = all.begin() + static_cast<std::ptrdiff_t>(index * threads);
         return {first, first + threads_};
     }
@@ -220,9 +221,8 @@ class Supervisor {
 }  // namespace
 
 int usable_cores() {
-    cpu_set_t cores;
-    if (::sched_getaffinity(0, sizeof(cores), &cores) == 0) return CPU_COUNT(&cores);
-    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const std::size_t told = usable_core_numbers().size();
+    return static_cast<int>(told > 0 ? told : std::max(1u, std::thread::hardware_concurrency()));
 }
 
 void supervise(const BatchFolder& folder, const SupervisorOptions& options) {

@@ -106,7 +106,7 @@ nlohmann::json provenance_json(const FileProvenance& provenance) {
                        {"images", nlohmann::json::array()},
                        {"signature", word_of(provenance.signature)},
                        {"unchanged", provenance.has_claim() && provenance.is_unchanged()}};
-    // Of a picture there is none.
+    // A picture has none.
     if (facts.claim.contains("document_sha256")) out["document"] = word_of(provenance.document);
     for (const CheckedImage& checked : provenance.images) {
         nlohmann::json image = checked.image;

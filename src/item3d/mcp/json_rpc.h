@@ -23,8 +23,7 @@ struct RpcRequest {
     bool wants_answer() const { return !id.is_null(); }
 };
 
-/// What a line says: a request, or the error to answer with. Neither: an answer to a question, and
-/// none was asked.
+/// A request, or the error to answer with. Neither: the line was an answer, and nothing was asked.
 struct RpcLine {
     std::optional<RpcRequest> request;
     std::optional<nlohmann::json> error;

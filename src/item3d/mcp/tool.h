@@ -1,4 +1,4 @@
-// What an agent may ask for: commands of item3d as tools with typed arguments.
+// Tools for agents: commands of item3d with typed arguments.
 #pragma once
 
 #include <string_view>
@@ -10,11 +10,10 @@ enum class ArgumentKind {
     text,
     number,
     integer,
-    boolean,
-    file,       ///< inside the allowed folders
-    folder,     ///< a result of another tool, there too
-    light,      ///< a preset's name, or a file
-    selectors,  ///< of a region, some of which name a file
+    file,        ///< inside the allowed folders
+    checkpoint,  ///< a result of this tool that was cancelled, and goes on in its folder
+    light,       ///< a preset's name, or a file
+    selectors,   ///< of a region, some of which name a file
     texts,
     folders,
     settings,  ///< an object of further options of item3d edit by their names
@@ -26,6 +25,7 @@ struct ToolArgument {
     std::string_view description;
     bool is_required = false;
     bool is_positional = false;
+    std::string_view fallback = {};  ///< passed where it is not given; empty: nothing
 };
 
 struct Tool {

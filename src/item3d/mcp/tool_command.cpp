@@ -1,9 +1,9 @@
 #include "item3d/mcp/tool_command.h"
 
 #include "item3d/core/error.h"
+#include "item3d/lighting/environment.h"
 
 #include <algorithm>
-#include <array>
 
 namespace item3d {
 namespace {
@@ -23,8 +23,6 @@ std::string_view json_type(ArgumentKind kind) {
             return "number";
         case ArgumentKind::integer:
             return "integer";
-        case ArgumentKind::boolean:
-            return "boolean";
         case ArgumentKind::settings:
             return "object";
         case ArgumentKind::selectors:
@@ -33,7 +31,7 @@ std::string_view json_type(ArgumentKind kind) {
             return "array";
         case ArgumentKind::text:
         case ArgumentKind::file:
-        case ArgumentKind::folder:
+        case ArgumentKind::checkpoint:
         case ArgumentKind::light:
             return "string";
     }
@@ -43,7 +41,6 @@ std::string_view json_type(ArgumentKind kind) {
 bool is_of_type(const json& value, std::string_view type) {
     if (type == "number") return value.is_number();
     if (type == "integer") return value.is_number_integer();
-    if (type == "boolean") return value.is_boolean();
     if (type == "object") return value.is_object();
     if (type == "string") return value.is_string();
     return value.is_array() && std::all_of(value.begin(), value.end(),
@@ -93,7 +90,7 @@ class CommandBuilder {
             throw InputError(name, "has a zero character in it");
         switch (kind) {
             case ArgumentKind::file:
-            case ArgumentKind::folder:
+            case ArgumentKind::checkpoint:
             case ArgumentKind::folders:
                 return folders_.existing(text, name).string();
             case ArgumentKind::light:
@@ -106,8 +103,7 @@ class CommandBuilder {
     }
 
     std::string light(const std::string& text) const {
-        constexpr std::array<std::string_view, 5> presets{"studio", "noon", "sunset", "overcast",
-                                                          "night"};
+        const std::vector<std::string>& presets = light_preset_names();
         if (std::find(presets.begin(), presets.end(), text) != presets.end()) return text;
         return folders_.existing(text, "light").string();
     }
@@ -130,7 +126,7 @@ class CommandBuilder {
         return all + "@" + place;
     }
 
-    /// Of paths, FILE:SCALE and FILE:TOKEN are taken as well.
+    /// FILE:SCALE of a LoRA and FILE:TOKEN of an embedding are taken as well.
     std::string setting(const std::string& name, const std::string& text, bool is_path) const {
         if (name == "light") return light(text);
         if (name == "region" || name == "exclude") return selector(text);
@@ -196,9 +192,11 @@ ToolCommand command_of(const Tool& tool, const json& given, const AllowedFolders
             if (argument.is_required)
                 throw InputError(std::string(argument.name),
                                  "is missing: " + std::string(argument.description));
-        } else if (argument.name == "resume") {
-            command.result = folders.existing(text_of(*value), "resume");
-            builder.add_option("resume", "true");
+            if (!argument.fallback.empty())
+                builder.add_option(option_name(argument.name), std::string(argument.fallback));
+        } else if (argument.kind == ArgumentKind::checkpoint) {
+            command.result = folders.existing(text_of(*value), std::string(argument.name));
+            builder.add_option(option_name(argument.name), "true");
         } else {
             builder.add(argument, *value);
         }
@@ -211,7 +209,6 @@ ToolCommand command_of(const Tool& tool, const json& given, const AllowedFolders
         builder.add_option(
             "output", (is_file ? command.result / tool.files.front() : command.result).string());
     }
-    if (tool.name == "render" && !given.contains("views")) builder.add_option("views", "4");
     command.arguments = builder.arguments(tool.command);
     return command;
 }

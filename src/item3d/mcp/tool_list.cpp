@@ -51,7 +51,8 @@ std::vector<Tool> make_tools() {
          "Draws pictures of a model from around it.",
          "render",
          {model_argument(),
-          {"views", Kind::integer, "Pictures around the model, 1 to 8 (4)"},
+          {"views", Kind::integer, "Pictures around the model (4); the first four are shown", false,
+           false, "4"},
           light_argument(),
           {"exposure", Kind::number, "Stops by which the light is brighter"},
           {"size", Kind::text, "WIDTHxHEIGHT in pixels (512x512)"},
@@ -87,7 +88,7 @@ std::vector<Tool> make_tools() {
           {"iterations", Kind::integer, "Steps at most; the prior's own number without it"},
           {"seed", Kind::integer, "Another seed, another result"},
           light_argument(),
-          {"resume", Kind::folder,
+          {"resume", Kind::checkpoint,
            "The folder of an edit that was cancelled, with the same other "
            "arguments: goes on from its checkpoint"},
           {"settings", Kind::settings, "Further options of `item3d edit` by their names"}},

@@ -1,4 +1,4 @@
-// What item3d says of a model or an image that it edited or reconstructed: by which sentences, with
+// The claim of a model or an image that item3d edited or reconstructed: by which sentences, with
 // which prior, of which input, and the hashes of what it wrote.
 #pragma once
 

@@ -17,7 +17,7 @@ constexpr std::array<std::uint8_t, 12> identifier = {0xab, 'K',  'T',  'X',  ' '
                                                      '0',  0xbb, '\r', '\n', 0x1a, '\n'};
 constexpr std::size_t level_count_at = 40, scheme_at = 44, index_at = 48, levels_at = 80;
 constexpr std::size_t level_entry_size = 24;
-/// Of a level's texel blocks, in the basic block of a descriptor.
+/// Place of a texel block's bytes in the basic block of a descriptor.
 constexpr std::size_t block_size_at = 20;
 constexpr std::uint32_t most_levels = 32;
 
@@ -145,7 +145,7 @@ Bytes pairs_with_packet(const std::vector<Pair>& pairs, const std::optional<std:
     return out;
 }
 
-/// Of levels that are not compressed once more.
+/// Bytes at whose multiples levels begin; anywhere where they are compressed once more.
 std::size_t level_alignment(Span image, Span descriptor) {
     if (number_at<std::uint32_t>(image, scheme_at) != 0) return 1;
     const std::size_t block =

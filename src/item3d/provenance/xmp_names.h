@@ -13,11 +13,10 @@ inline constexpr std::string_view rights = "http://ns.adobe.com/xap/1.0/rights/"
 inline constexpr std::string_view iptc = "http://iptc.org/std/Iptc4xmpExt/2008-02-29/";
 inline constexpr std::string_view item3d = "urn:item3d:provenance:1#";
 
-/// The IPTC's codes (NewsCodes, digitalsourcetype) for media that were edited by a generative
-/// model,
+/// The IPTC's code (NewsCodes, digitalsourcetype) of media that a generative model edited.
 inline constexpr std::string_view edited_by_model =
     "http://cv.iptc.org/newscodes/digitalsourcetype/compositeWithTrainedAlgorithmicMedia";
-/// and for those merged from several frames of a camera without one.
+/// Its code of media that were merged from several frames of a camera without one.
 inline constexpr std::string_view computational_capture =
     "http://cv.iptc.org/newscodes/digitalsourcetype/computationalCapture";
 

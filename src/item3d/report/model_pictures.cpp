@@ -22,8 +22,8 @@ at::Tensor to_planes(const at::Tensor& linear) {
 
 }  // namespace
 
-std::vector<Camera> picture_cameras(const Model& model, int count) {
-    return turntable(model.bounds(), count, elevation, field_of_view);
+std::vector<Camera> picture_cameras(const Model& model, int count, float first_azimuth) {
+    return turntable(model.bounds(), count, elevation, field_of_view, first_azimuth);
 }
 
 ModelDrawing::ModelDrawing(const Model& model, EnvironmentLight light)

@@ -11,7 +11,7 @@
 namespace item3d {
 
 /// `count` cameras around the model, a little above it.
-std::vector<Camera> picture_cameras(const Model& model, int count);
+std::vector<Camera> picture_cameras(const Model& model, int count, float first_azimuth = 0);
 
 /// Texels along the edge of a light's cube that pictures of `pixels` x `pixels` are drawn with.
 int light_texels(int pixels);

@@ -117,13 +117,14 @@ Camera orbit_camera(Vec3 target, float distance, float azimuth, float elevation,
 }
 
 std::vector<Camera> turntable(std::array<Vec3, 2> bounds, int count, float elevation,
-                              float field_of_view_x) {
+                              float field_of_view_x, float first_azimuth) {
     const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
     const float radius = std::max(0.5f * glm::length(bounds[1] - bounds[0]), 1e-6f);
     const float distance = 1.02f * radius / std::sin(field_of_view_x / 2);
     std::vector<Camera> cameras;
     for (int i = 0; i < count; ++i) {
-        const float azimuth = 2 * pi * static_cast<float>(i) / static_cast<float>(count);
+        const float azimuth =
+            first_azimuth + 2 * pi * static_cast<float>(i) / static_cast<float>(count);
         cameras.push_back(orbit_camera(centre, distance, azimuth, elevation, field_of_view_x));
         cameras.back().name = fmt::format("view_{:03}", i);
         fit_depth_range(cameras.back(), bounds);

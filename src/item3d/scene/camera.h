@@ -30,9 +30,10 @@ struct Camera {
 Camera orbit_camera(Vec3 target, float distance, float azimuth, float elevation,
                     float field_of_view_x);
 
-/// `count` cameras around the box, far enough that all of its bounding sphere is in a square view.
+/// `count` cameras around the box from `first_azimuth` on, far enough that all of its bounding
+/// sphere is in a square view.
 std::vector<Camera> turntable(std::array<Vec3, 2> bounds, int count, float elevation,
-                              float field_of_view_x);
+                              float field_of_view_x, float first_azimuth = 0);
 
 /// The camera from `azimuth` and `elevation` (radians) that shows all points as large as it can, in
 /// the middle, with a twelfth of the picture free on each side. aspect: width / height; the shorter

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 /// Codes, by their ends, of what was sampled from real life.
 constexpr std::array<std::string_view, 5> captures = {"/digitalCapture", "/computationalCapture",
                                                       "/negativeFilm", "/positiveFilm", "/print"};
-/// Of what a generative model made or edited.
+/// Codes of media that a generative model made or edited.
 constexpr std::array<std::string_view, 2> generated = {"/trainedAlgorithmicMedia",
                                                        "/compositeWithTrainedAlgorithmicMedia"};
 

@@ -1,4 +1,4 @@
-// What a reconstructed model says of itself.
+// The claim of a reconstructed model.
 #pragma once
 
 #include "item3d/provenance/provenance.h"
