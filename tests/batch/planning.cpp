@@ -181,8 +181,8 @@ TEST_F(Planning, WhatIsWrongIsNamed) {
     expect_refused("a.csv", "model,from,to,iteratons\n" + row + "1\n", "did you mean 'iterations'");
     expect_refused("a.csv", "model,from,to,output\n" + row + "out\n", "is the batch's own");
     expect_refused("a.csv", "model;from;to\nm.glb;a mug;a cup\n", "separate columns by commas");
-    expect_refused("a.csv", "model,from,to,sead\n" + row + "1\n", "row 1: there is no column");
-    expect_refused("a.csv", "model,from,to,seed\n" + row + "wrong\n", "row 1: --seed: wrong");
+    expect_refused("a.csv", "model,from,to,sead\n" + row + "1\n", "row 2: there is no column");
+    expect_refused("a.csv", "model,from,to,seed\n" + row + "wrong\n", "row 2: --seed: wrong");
     expect_refused("a.csv", "model,from,to,seed\n" + row + "1,2\n", "5 fields, the header 4");
     expect_refused("a.csv", "model,from,to\nred-mug.glb,a,\n", "has no 'to'");
     expect_refused("a.csv", "from,to\na,b\n", "names no model");

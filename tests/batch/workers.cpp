@@ -1,6 +1,7 @@
 #include "item3d/batch/batch_view.h"
 #include "item3d/batch/claim.h"
 #include "item3d/batch/gallery.h"
+#include "item3d/batch/remove_jobs.h"
 #include "item3d/batch/results_table.h"
 #include "item3d/batch/retry.h"
 #include "item3d/batch/status.h"
@@ -8,6 +9,7 @@
 #include "item3d/core/csv.h"
 #include "item3d/core/disk_full.h"
 #include "item3d/core/files.h"
+#include "item3d/core/progress.h"
 #include "tests/batch/folder.h"
 
 #include <gtest/gtest.h>
@@ -233,6 +235,42 @@ TEST_F(Workers, JobsThatAreAddedMeanwhileAreDoneAndReplacedOnesAreNot) {
     run_worker(batch(), fast(), leave_model);
     EXPECT_EQ(status().done, 3u);
     EXPECT_EQ(entry("b").state, JobState::done);
+}
+
+TEST_F(Workers, JobsThatAreRemovedAreNotDoneUntilTheyAreAskedForAgain) {
+    batch().add_jobs({job("a"), job("b"), job("c", "b"), job("d")});
+    EXPECT_THROW(remove_jobs(batch(), {"a", "bb"}), InputError);
+    EXPECT_THROW(remove_jobs(batch(), {"b"}), InputError) << "c comes after it";
+    EXPECT_EQ(remove_jobs(batch(), {"b", "c", batch().folder_of(job("a")).filename().string()}),
+              3u);
+    run_worker(batch(), fast(), leave_model);
+    EXPECT_EQ(status().done, 1u);
+    EXPECT_EQ(view_->open_count(), 0u);
+    batch().add_jobs({job("a")});
+    EXPECT_EQ(status().waiting, 1u);
+    run_worker(batch(), fast(), leave_model);
+    EXPECT_EQ(status().done, 2u);
+    EXPECT_EQ(entry("a").state, JobState::done);
+}
+
+TEST_F(Workers, WarningsOfAllAttemptsAreKeptWithTheJob) {
+    batch().add_jobs({job("warned"), job("silent")});
+    int run = 0;
+    run_worker(batch(), fast(), [&](const ClaimedJob& claimed) {
+        if (claimed.job.id == "silent") return leave_model(claimed);
+        warn("the UV map overlaps");
+        if (++run == 1) throw ResourceError("out of memory");
+        warn("a texture is small");
+        return leave_model(claimed);
+    });
+    const std::vector<std::string> both{"the UV map overlaps", "a texture is small"};
+    const BatchStatus end = status();
+    EXPECT_EQ(entry("warned").last.warnings, both);
+    EXPECT_TRUE(entry("silent").last.warnings.empty());
+    ASSERT_EQ(end.warned.size(), 1u);
+    EXPECT_EQ(status_json(end, *view_)["warned"][0]["warnings"], nlohmann::json(both));
+    EXPECT_NE(gallery_html(batch(), *view_).find("a texture is small"), std::string::npos);
+    EXPECT_NE(results_csv(*view_).find("a texture is small"), std::string::npos);
 }
 
 TEST_F(Workers, AResultThatNoJournalTellsOfIsFound) {

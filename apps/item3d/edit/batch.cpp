@@ -5,6 +5,7 @@
 #include "apps/item3d/edit/commands.h"
 #include "item3d/batch/gallery.h"
 #include "item3d/batch/plan_jobs.h"
+#include "item3d/batch/remove_jobs.h"
 #include "item3d/batch/results_table.h"
 #include "item3d/batch/retry.h"
 #include "item3d/batch/slurm/slurm_submit.h"
@@ -14,6 +15,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/names.h"
 #include "item3d/core/program.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/seeds.h"
@@ -60,6 +62,7 @@ struct WorkCommand : CommonOptions {
 
 struct StatusCommand : CommonOptions {
     fs::path folder;
+    std::vector<std::string> jobs;  ///< of remove
     bool watch = false;
     bool variants = false;
 };
@@ -133,7 +136,7 @@ BatchFolder add_jobs(const fs::path& output, const std::vector<JobRow>& rows) {
     }
     folder.add_jobs(added);
     note(fmt::format(
-        "{} jobs were added{}{}", added.size(),
+        "{} added{}{}", counted(added.size(), "job"),
         known > 0 ? fmt::format(", {} are there already", known) : "",
         replaced > 0 ? fmt::format(", {} take the place of earlier ones", replaced) : ""));
     return folder;
@@ -155,7 +158,7 @@ void conclude(const BatchFolder& folder, bool json) {
         fmt::print("{}\n", (folder.path() / "index.html").string());
     if (status.failed > 0)
         throw InputError(folder.path().string(),
-                         fmt::format("{} of {} jobs failed", status.failed, status.jobs),
+                         fmt::format("{} of {} failed", status.failed, counted(status.jobs, "job")),
                          "index.html shows them first, and `item3d batch retry` tries them again");
 }
 
@@ -229,7 +232,7 @@ void run_work(const WorkCommand& command) {
                     {"released", counts.released},
                     {"lost", counts.lost}});
     else
-        note(fmt::format("{} jobs done, {} failed, {} released, {} lost", counts.done,
+        note(fmt::format("{} done, {} failed, {} released, {} lost", counted(counts.done, "job"),
                          counts.failed, counts.released, counts.lost));
 }
 
@@ -271,7 +274,15 @@ void run_retry(const StatusCommand& command) {
     if (command.json)
         print_json({{"waiting", count}});
     else
-        note(fmt::format("{} jobs that failed wait again", count));
+        note(fmt::format("{} that failed: to be tried again", counted(count, "job")));
+}
+
+void run_remove(const StatusCommand& command) {
+    const std::size_t count = remove_jobs(BatchFolder::open(command.folder), command.jobs);
+    if (command.json)
+        print_json({{"removed", count}});
+    else
+        note(fmt::format("{} taken out; what was written stays", counted(count, "job")));
 }
 
 std::shared_ptr<StatusCommand> add_folder_command(CLI::App& batch, const std::string& name,
@@ -285,6 +296,12 @@ std::shared_ptr<StatusCommand> add_folder_command(CLI::App& batch, const std::st
             "--variants", options->variants,
             "Write variants/MODEL.glb as well: all edits of a model that are done, as "
             "looks of one file");
+    if (name == "remove")
+        command
+            ->add_option("JOB", options->jobs,
+                         "Name, folder or place (\"jobs.csv: row 3\") of a job, as status and "
+                         "results.csv say them")
+            ->required();
     if (name == "status")
         command->add_flag("--watch", options->watch,
                           "Again every two seconds, until all jobs are done or failed");
@@ -369,6 +386,7 @@ void add_batch_command(CLI::App& app) {
     add_folder_command(*command, "report", "Write a batch's index.html and results.csv",
                        run_report);
     add_folder_command(*command, "retry", "Let the jobs that failed wait again", run_retry);
+    add_folder_command(*command, "remove", "Take jobs out of a batch", run_remove);
     command->callback([command, options] {
         if (!command->get_subcommands().empty()) return;
         start_command(*options);

@@ -6,6 +6,7 @@
 #include "item3d/core/format.h"
 #include "item3d/core/progress.h"
 
+#include <algorithm>
 #include <chrono>
 #include <system_error>
 
@@ -57,6 +58,16 @@ AttemptEnd release(const Claim& claim, JobEvent event, Stop stop, const std::str
     return {std::move(event), !is_released, stop, reason};
 }
 
+void keep_warnings(JobEvent& event, const std::vector<std::string>& lines) {
+    constexpr std::size_t most = 20;
+    auto& kept = event.warnings;
+    for (const std::string& line : lines) {
+        const std::string text = one_line(line);
+        if (kept.size() < most && std::find(kept.begin(), kept.end(), text) == kept.end())
+            kept.push_back(text);
+    }
+}
+
 json run_or_begin_anew(const ClaimedJob& job, const Claim& claim, const JobRunner& run) {
     try {
         return run(job);
@@ -100,7 +111,10 @@ JobEvent read_event(const fs::path& folder) {
 
 JobEvent begin_event(const BatchJob& job, const Claim& claim, const std::string& worker) {
     JobEvent event = read_event(claim.folder());
-    if (event.state == JobState::failed) event.errors = event.deaths = 0;  // to be tried anew
+    if (event.state == JobState::failed) {  // to be tried anew
+        event.errors = event.deaths = 0;
+        event.warnings.clear();
+    }
     event.job = job.id;
     event.state = JobState::waiting;
     event.worker = worker;
@@ -113,9 +127,11 @@ JobEvent begin_event(const BatchJob& job, const Claim& claim, const std::string&
 AttemptEnd run_attempt(const BatchJob& job, const fs::path& model, const Claim& claim,
                        JobEvent event, const AttemptLimits& limits, const JobRunner& run) {
     const auto begin = std::chrono::steady_clock::now();
-    const auto count_seconds = [&] {
+    const CollectedWarnings warnings;
+    const auto take_stock = [&] {
         event.seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        keep_warnings(event, warnings.lines());
     };
     try {
         if (claim.attempt() > 1) write_event(claim, event);  // before this one can die as well
@@ -130,10 +146,10 @@ AttemptEnd run_attempt(const BatchJob& job, const fs::path& model, const Claim& 
         note(fmt::format("{}: {}{}", title_of(job), job.folder,
                          resume ? ", from its checkpoint" : ""));
         event.outcome = run_or_begin_anew({job, model, claim.folder(), resume}, claim, run);
-        count_seconds();
+        take_stock();
         return publish(claim, event, JobState::done);
     } catch (const std::exception& error) {
-        count_seconds();
+        take_stock();
         event.outcome = nullptr;
         return after_error(claim, std::move(event), error, limits);
     }

@@ -99,10 +99,22 @@ BatchFolder BatchFolder::open(const fs::path& path) {
 }
 
 void BatchFolder::add_jobs(const std::vector<BatchJob>& added) const {
-    if (added.empty()) return;
     std::string lines;
     for (const BatchJob& job : added)
         lines += json(job).dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+    add_lines(lines);
+}
+
+void BatchFolder::remove_jobs(const std::vector<std::string>& keys) const {
+    std::string lines;
+    for (const std::string& key : keys)
+        lines +=
+            json{{removed_key, key}}.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+    add_lines(lines);
+}
+
+void BatchFolder::add_lines(const std::string& lines) const {
+    if (lines.empty()) return;
     int last = 0;
     for (const auto& entry : fs::directory_iterator(jobs()))
         last = std::max(last, number_of(entry.path()));

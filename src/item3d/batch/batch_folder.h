@@ -1,7 +1,7 @@
 // The folder of a batch: its mark, its jobs, what workers say, and a folder for each job.
 //
 //     batch.json                     marks the folder
-//     jobs/000001-3f9a.jsonl         jobs, a line each; a file for each time that jobs were added
+//     jobs/000001-3f9a.jsonl         jobs, a line each, or {"removed": KEY}; a file for each change
 //     workers/WORKER.json            heartbeat of a worker
 //     workers/WORKER.jsonl           its journal: a line for each job that it finished or released
 //     runs/AB/MODEL-SENTENCE-ID/     a job (claim.h)
@@ -34,13 +34,20 @@ class BatchFolder {
     /// Adds a file of jobs, whole or not at all. Several programs may add jobs at the same time.
     void add_jobs(const std::vector<BatchJob>& jobs) const;
 
+    /// Adds a file of lines that take jobs out again, by their keys.
+    void remove_jobs(const std::vector<std::string>& keys) const;
+
     /// Whether less than a megabyte is left for new files.
     bool is_full() const;
 
   private:
     explicit BatchFolder(std::filesystem::path path) : path_(std::move(path)) {}
+    void add_lines(const std::string& lines) const;
     std::filesystem::path path_;
 };
+
+/// Member of a line among jobs that takes one out: {"removed": KEY}.
+inline constexpr const char* removed_key = "removed";
 
 /// Four hexadecimal digits that no other process of the batch is likely to draw as well.
 std::string random_suffix();

@@ -18,7 +18,12 @@ BatchView::News BatchView::refresh() {
     for (const std::string& line : jobs_.new_lines()) {
         BatchJob job;
         try {
-            json::parse(line).get_to(job);
+            const json value = json::parse(line);
+            if (const auto key = value.find(removed_key); key != value.end()) {
+                remove(key->get<std::string>());
+                continue;
+            }
+            value.get_to(job);
         } catch (const json::exception&) {
             throw InputError(folder_.jobs().string(), "holds a line that is no job",
                              "begin the batch anew in another folder");
@@ -61,6 +66,13 @@ std::optional<std::size_t> BatchView::add(BatchJob job) {
     return entries_[index].askers == 1 ? std::optional(index) : std::nullopt;
 }
 
+void BatchView::remove(const std::string& key) {
+    const auto found = by_key_.find(key);
+    if (found == by_key_.end()) return;
+    count(found->second, -1);
+    by_key_.erase(found);
+}
+
 void BatchView::count(std::size_t index, int askers) {
     BatchEntry& entry = entries_[index];
     const bool was_open = entry.is_current() && !entry.is_finished();
@@ -91,6 +103,13 @@ std::optional<std::size_t> BatchView::find(const std::string& id) const {
 std::optional<std::size_t> BatchView::find_key(const std::string& key) const {
     const auto found = by_key_.find(key);
     return found == by_key_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<std::string> BatchView::keys_of(std::size_t index) const {
+    std::vector<std::string> keys;
+    for (const auto& [key, job] : by_key_)
+        if (job == index) keys.push_back(key);
+    return keys;
 }
 
 std::vector<std::size_t> BatchView::begun() const {

@@ -18,7 +18,7 @@ struct BatchEntry {
     JobState state = JobState::waiting;
     /// The last line of a journal about it; `job` is empty where there was none.
     JobEvent last;
-    int askers = 0;  ///< keys that mean it; 0: jobs that were asked later took its place
+    int askers = 0;  ///< keys that mean it; 0: it was removed, or a later job took its place
 
     bool is_current() const { return askers > 0; }
     bool is_finished() const { return state != JobState::waiting; }
@@ -45,6 +45,8 @@ class BatchView {
     std::optional<std::size_t> find(const std::string& id) const;
     /// The job of a key, as it is now.
     std::optional<std::size_t> find_key(const std::string& key) const;
+    /// All keys that mean a job now.
+    std::vector<std::string> keys_of(std::size_t index) const;
     /// Current jobs that are neither done nor failed.
     std::size_t open_count() const { return open_; }
 
@@ -54,6 +56,7 @@ class BatchView {
 
   private:
     std::optional<std::size_t> add(BatchJob job);
+    void remove(const std::string& key);
     void count(std::size_t index, int askers);
     bool take(const JobEvent& event);
 

@@ -57,6 +57,7 @@ json card_of(const BatchFolder& folder, const BatchEntry& entry, bool inside) {
                  {"attempts", entry.last.attempt},
                  {"seconds", entry.last.seconds}};
     if (!entry.last.message.empty()) card["message"] = entry.last.message;
+    if (!entry.last.warnings.empty()) card["warnings"] = entry.last.warnings;
     if (job.name.empty() && job.model.empty()) card["title"] = job.place;
     if (entry.state != JobState::done) return card;
     const std::string within = job.folder + "/result";

@@ -103,6 +103,7 @@ const card = job => {
   if (job.to) add(box, "p", job.from + " \u2192 " + job.to);
   if (job.options) add(box, "p", job.options, "soft");
   if (job.message) add(box, "p", job.message, "message");
+  for (const warning of job.warnings || []) add(box, "p", "warning: " + warning, "soft");
   const list = add(box, "dl");
   const row = (name, value) => { add(list, "dt", name, "soft"); add(list, "dd", value); };
   for (const name in job.scores || {}) row(name, job.scores[name].toFixed(3));
@@ -119,7 +120,7 @@ const value = (job, name) => (job.scores || {})[name];
 const show = () => {
   const parts = words.value.toLowerCase().split(/\s+/).filter(Boolean);
   shown = jobs.filter(job => (!state.value || job.state === state.value) && parts.every(part =>
-    [job.title, job.from, job.to, job.options, job.message].some(text => (text || "").toLowerCase().includes(part))));
+    [job.title, job.from, job.to, job.options, job.message, ...(job.warnings || [])].some(text => (text || "").toLowerCase().includes(part))));
   const name = order.value.slice(1);
   if (order.value === "") shown.sort((a, b) => rank[a.state] - rank[b.state]);
   else if (order.value === "seconds") shown.sort((a, b) => b.seconds - a.seconds);

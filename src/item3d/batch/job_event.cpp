@@ -11,6 +11,7 @@ void to_json(nlohmann::json& value, const JobEvent& event) {
              {"attempt", event.attempt}, {"errors", event.errors}, {"deaths", event.deaths},
              {"seconds", event.seconds}};
     if (!event.message.empty()) value["message"] = event.message;
+    if (!event.warnings.empty()) value["warnings"] = event.warnings;
     if (!event.outcome.is_null()) value["outcome"] = event.outcome;
 }
 
@@ -23,6 +24,7 @@ void from_json(const nlohmann::json& value, JobEvent& event) {
     value.at("deaths").get_to(event.deaths);
     value.at("seconds").get_to(event.seconds);
     event.message = value.value("message", std::string());
+    event.warnings = value.value("warnings", std::vector<std::string>());
     event.outcome = value.value("outcome", nlohmann::json());
 }
 

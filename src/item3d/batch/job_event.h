@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -13,11 +14,12 @@ struct JobEvent {
     std::string job;  ///< id
     JobState state = JobState::waiting;
     std::string worker;
-    int attempt = 0;         ///< the how manieth start this was
-    int errors = 0;          ///< attempts that ended with an error
-    int deaths = 0;          ///< attempts whose worker ended without a word
-    double seconds = 0;      ///< of the last attempt
-    std::string message;     ///< of the last error
+    int attempt = 0;                    ///< the how manieth start this was
+    int errors = 0;                     ///< attempts that ended with an error
+    int deaths = 0;                     ///< attempts whose worker ended without a word
+    double seconds = 0;                 ///< of the last attempt
+    std::string message;                ///< of the last error
+    std::vector<std::string> warnings;  ///< of all attempts, each once
     nlohmann::json outcome;  ///< what the run says of itself: scores, seconds by stage; may be null
 };
 

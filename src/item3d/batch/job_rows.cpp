@@ -89,20 +89,23 @@ std::vector<Axis> axes_of(const std::vector<std::string>& values) {
 std::vector<JobRow> read_job_rows(const fs::path& file) {
     const std::string text = read_text(file);
     std::vector<JobRow> rows;
-    const auto add = [&](const json& entries) {
+    const auto add = [&](const json& entries, std::size_t first) {
         for (const json& entry : entries)
             rows.push_back(
-                row_of(entry, file, fmt::format("{}: row {}", file.string(), rows.size() + 1)));
+                row_of(entry, file, fmt::format("{}: row {}", file.string(), first + rows.size())));
     };
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (file.extension() == ".csv") {
         const CsvRows table = parse_csv(text, file.string());
-        if (!table.empty()) add(csv_objects(table, file.string() + ": row"));
+        // As a spreadsheet numbers them: the header is the first.
+        constexpr std::size_t below_header = 2;
+        if (!table.empty())
+            add(csv_objects(table, file.string() + ": row", below_header), below_header);
     } else if (first != std::string::npos && text[first] == '[') {
         const json list = json::parse(text, nullptr, false);
         if (list.is_discarded())
             throw InputError(file.string(), "is no JSON", "a list of jobs is expected");
-        add(list);
+        add(list, 1);
     } else {
         rows = rows_of_lines(text, file);
     }

@@ -42,9 +42,9 @@ std::string results_csv(const BatchView& view) {
     for (const BatchEntry& entry : view.entries())
         for (const auto& [name, value] : numbers_of(scores_of(entry), "scores"))
             names.insert(name);
-    std::vector<std::string> header = {"name",     "model",   "from",    "to",
-                                       "command",  "state",   "message", "folder",
-                                       "attempts", "seconds", "worker",  "options"};
+    std::vector<std::string> header = {"name",   "model",   "from",    "to",       "command",
+                                       "state",  "message", "folder",  "attempts", "seconds",
+                                       "worker", "options", "warnings"};
     header.insert(header.end(), names.begin(), names.end());
     std::string text = csv_line(header);
     for (const BatchEntry& entry : view.entries()) {
@@ -64,7 +64,8 @@ std::string results_csv(const BatchView& view) {
                                          std::to_string(entry.last.attempt),
                                          fmt::format("{:.1f}", entry.last.seconds),
                                          entry.last.worker,
-                                         quoted_options(job)};
+                                         quoted_options(job),
+                                         fmt::format("{}", fmt::join(entry.last.warnings, "\n"))};
         const auto numbers = numbers_of(scores_of(entry), "scores");
         for (const std::string& name : names)
             line.push_back(numbers.contains(name) ? numbers.at(name) : "");

@@ -5,6 +5,7 @@
 #include "item3d/batch/process_mark.h"
 #include "item3d/batch/worker_watch.h"
 #include "item3d/core/format.h"
+#include "item3d/core/names.h"
 #include "item3d/core/progress.h"
 
 namespace item3d {
@@ -51,7 +52,9 @@ BatchStatus status_of(const BatchFolder& folder, BatchView& view) {
         const BatchEntry& entry = view.entry(i);
         if (!entry.is_current()) continue;
         ++status.jobs;
-        if (entry.last.attempt > 1) ++status.retried;
+        const int ends = entry.last.errors + entry.last.deaths;
+        if (ends > (entry.state == JobState::failed ? 1 : 0)) ++status.retried;
+        if (!entry.last.warnings.empty()) status.warned.push_back(i);
         status.seconds += entry.last.seconds;
         if (entry.state == JobState::done) ++status.done;
         if (entry.state == JobState::failed) {
@@ -64,7 +67,7 @@ BatchStatus status_of(const BatchFolder& folder, BatchView& view) {
 }
 
 json status_json(const BatchStatus& status, const BatchView& view) {
-    json running = json::array(), failures = json::array();
+    json running = json::array(), failures = json::array(), warned = json::array();
     for (const RunningJob& job : status.running)
         running.push_back({{"job", title_of(view.entry(job.index).job)},
                            {"folder", view.entry(job.index).job.folder},
@@ -72,6 +75,10 @@ json status_json(const BatchStatus& status, const BatchView& view) {
                            {"attempt", job.attempt},
                            {"beat", job.beat},
                            {"worker_has_ended", job.has_ended}});
+    for (const std::size_t index : status.warned)
+        warned.push_back({{"job", title_of(view.entry(index).job)},
+                          {"folder", view.entry(index).job.folder},
+                          {"warnings", view.entry(index).last.warnings}});
     for (const std::size_t index : status.failures)
         failures.push_back({{"job", title_of(view.entry(index).job)},
                             {"folder", view.entry(index).job.folder},
@@ -79,16 +86,15 @@ json status_json(const BatchStatus& status, const BatchView& view) {
                             {"message", view.entry(index).last.message}});
     return {{"jobs", status.jobs},         {"waiting", status.waiting}, {"running", running},
             {"done", status.done},         {"failed", failures},        {"retried", status.retried},
-            {"released", status.released}, {"seconds", status.seconds}};
+            {"released", status.released}, {"seconds", status.seconds}, {"warned", warned}};
 }
 
 std::string status_text(const BatchStatus& status, const BatchView& view,
                         std::size_t max_failures) {
     std::string text = fmt::format(
-        "{} jobs: {} done, {} failed, {} running, {} waiting ({} of them released); {} took more "
-        "than one attempt\n",
-        status.jobs, status.done, status.failed, status.running.size(), status.waiting,
-        status.released, status.retried);
+        "{}: {} done, {} failed, {} running, {} waiting ({} of them released); {} tried again\n",
+        counted(status.jobs, "job"), status.done, status.failed, status.running.size(),
+        status.waiting, status.released, status.retried);
     const std::size_t ended = status.done + status.failed;
     if (ended > 0)
         text +=
@@ -106,6 +112,9 @@ std::string status_text(const BatchStatus& status, const BatchView& view,
     if (status.failures.size() > max_failures)
         text += fmt::format("... and {} more; --json lists all\n",
                             status.failures.size() - max_failures);
+    if (!status.warned.empty())
+        text += fmt::format("{} with warnings; --json and index.html have them\n",
+                            counted(status.warned.size(), "job"));
     return text;
 }
 

@@ -20,11 +20,12 @@ struct RunningJob {
 
 struct BatchStatus {
     std::size_t jobs = 0, waiting = 0, done = 0, failed = 0;
-    std::size_t retried = 0;   ///< of all, those that took more than one attempt
+    std::size_t retried = 0;   ///< jobs begun again after an error or the death of a worker
     std::size_t released = 0;  ///< of the waiting, those that were begun
     double seconds = 0;        ///< of the attempts that ended, together
     std::vector<RunningJob> running;
-    std::vector<std::size_t> failures;  ///< indices in the view, in the order of jobs
+    /// Indices in the view, in the order of jobs.
+    std::vector<std::size_t> failures, warned;
 };
 
 /// Looks at what the journals tell, and into the folders of jobs that were begun and of which they

@@ -92,7 +92,7 @@ class Supervisor {
         }
         wait_for_the_last();
         view_.refresh();
-        progress.update(static_cast<std::int64_t>(total() - view_.open_count()));
+        show(progress);
     }
 
   private:
@@ -112,7 +112,16 @@ class Supervisor {
             if (entry.last.outcome.is_object())
                 largest_ = std::max(largest_, entry.last.outcome.value("peak_memory_bytes", 0.0));
         }
-        progress.update(static_cast<std::int64_t>(total() - view_.open_count()));
+        show(progress);
+    }
+
+    void show(Progress& progress) const {
+        const auto failed = std::count_if(
+            view_.entries().begin(), view_.entries().end(), [](const BatchEntry& entry) {
+                return entry.is_current() && entry.state == JobState::failed;
+            });
+        progress.update(static_cast<std::int64_t>(total() - view_.open_count()),
+                        failed > 0 ? fmt::format("{} failed", failed) : "");
     }
 
     /// False where no worker runs and none will.

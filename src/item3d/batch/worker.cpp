@@ -9,6 +9,7 @@
 #include "item3d/core/disk_full.h"
 #include "item3d/core/error.h"
 #include "item3d/core/format.h"
+#include "item3d/core/names.h"
 #include "item3d/core/progress.h"
 #include "item3d/core/version.h"
 
@@ -75,8 +76,8 @@ class Worker {
     const BatchJob& job_at(std::size_t index) const { return view_.entry(index).job; }
 
     std::string summary() const {
-        return fmt::format("{} jobs done, {} failed, {} released by this worker", counts_.done,
-                           counts_.failed, counts_.released);
+        return fmt::format("{} done, {} failed, {} released by this worker",
+                           counted(counts_.done, "job"), counts_.failed, counts_.released);
     }
 
     DiskFull disk_full(const std::string& reason) const {

@@ -39,12 +39,12 @@ CsvRows parse_csv(const std::string& text, const std::string& subject) {
     return rows;
 }
 
-nlohmann::json csv_objects(const CsvRows& rows, const std::string& subject) {
+nlohmann::json csv_objects(const CsvRows& rows, const std::string& subject, std::size_t first) {
     nlohmann::json objects = nlohmann::json::array();
     for (std::size_t i = 1; i < rows.size(); ++i) {
         if (rows[i].size() > rows[0].size())
             throw InputError(
-                fmt::format("{} {}", subject, i),
+                fmt::format("{} {}", subject, first + i - 1),
                 fmt::format("has {} fields, the header {}", rows[i].size(), rows[0].size()),
                 "quote what has a comma");
         nlohmann::json object = nlohmann::json::object();

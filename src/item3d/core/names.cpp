@@ -40,6 +40,10 @@ std::string slug(const std::string& text) {
     return result.empty() ? "case" : result;
 }
 
+std::string counted(std::size_t count, const std::string& noun) {
+    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 std::string nearest_name(const std::string& name, const std::vector<std::string>& known) {
     return *std::min_element(known.begin(), known.end(),
                              [&](const std::string& a, const std::string& b) {

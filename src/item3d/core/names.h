@@ -1,4 +1,4 @@
-// Names: of files made of sentences, and the one that somebody meant.
+// Names: of files made of sentences, of counted things, and the one that somebody meant.
 #pragma once
 
 #include <string>
@@ -8,6 +8,9 @@ namespace item3d {
 
 /// Lower-case letters and digits, at most 40, words joined by dashes; "case" where there are none.
 std::string slug(const std::string& text);
+
+/// "1 job", "3 jobs": a count with a noun whose plural ends in s.
+std::string counted(std::size_t count, const std::string& noun);
 
 /// The one of `known`, which is not empty, that takes the fewest insertions, deletions and
 /// replacements of letters (Levenshtein) to become `name`.

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 
@@ -14,6 +15,20 @@ namespace {
 
 // Process-wide by nature: there is one stderr.
 Verbosity current_verbosity = Verbosity::normal;
+std::atomic<CollectedWarnings*> current_warnings = nullptr;
+
+struct Pace {
+    std::string text;  ///< "4.2/s", or "28 s each"
+    double left = -1;  ///< seconds; negative while no step is done
+};
+
+/// steps were done in `seconds`, `idle` seconds ago.
+Pace pace_of(std::int64_t steps, std::int64_t to_do, double seconds, double idle) {
+    if (steps <= 0 || seconds <= 0) return {};
+    const double each = seconds / static_cast<double>(steps);
+    return {each > 2 ? format_duration(each) + " each" : fmt::format("{:.1f}/s", 1 / each),
+            std::max(0.0, each * static_cast<double>(to_do) - idle)};
+}
 
 }  // namespace
 
@@ -30,6 +45,23 @@ void note(const std::string& message) {
 
 void warn(const std::string& message) {
     fmt::print(stderr, "warning: {}\n", message);
+    if (CollectedWarnings* collected = current_warnings) collected->add(message);
+}
+
+CollectedWarnings::CollectedWarnings() : outer_(current_warnings.exchange(this)) {}
+
+CollectedWarnings::~CollectedWarnings() {
+    current_warnings = outer_;
+}
+
+std::vector<std::string> CollectedWarnings::lines() const {
+    const std::lock_guard guard(mutex_);
+    return lines_;
+}
+
+void CollectedWarnings::add(const std::string& message) {
+    const std::lock_guard guard(mutex_);
+    if (std::find(lines_.begin(), lines_.end(), message) == lines_.end()) lines_.push_back(message);
 }
 
 std::string format_duration(double seconds) {
@@ -45,6 +77,7 @@ Progress::Progress(std::string label, std::int64_t total, std::int64_t done)
       first_(done),
       done_(done),
       start_(Clock::now()),
+      stepped_(start_),
       shown_(start_),
       terminal_(::isatty(STDERR_FILENO) != 0) {}
 
@@ -53,9 +86,10 @@ Progress::~Progress() {
 }
 
 void Progress::update(std::int64_t done, const std::string& detail) {
+    const auto now = Clock::now();
+    if (done != done_) stepped_ = now;
     done_ = done;
     detail_ = detail;
-    const auto now = Clock::now();
     show_steps(label_, done - first_, done, total_,
                std::chrono::duration<double>(now - start_).count());
     const auto interval = terminal_ ? std::chrono::milliseconds(200) : std::chrono::seconds(10);
@@ -72,25 +106,28 @@ void Progress::finish() {
 
 void Progress::print(std::int64_t done, const std::string& detail, bool last) {
     if (current_verbosity == Verbosity::quiet) return;
-    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    const double rate = seconds > 0 ? static_cast<double>(done - first_) / seconds : 0.0;
-    const std::string time =
-        last       ? format_duration(seconds)
-        : rate > 0 ? format_duration(static_cast<double>(total_ - done) / rate) + " left"
-                   : "";
-    const std::string tail = detail.empty() ? "" : "  " + detail;
+    using Seconds = std::chrono::duration<double>;
+    const auto now = Clock::now();
+    const Pace pace = pace_of(done - first_, total_ - done, Seconds(stepped_ - start_).count(),
+                              Seconds(now - stepped_).count());
+    const std::string time = last             ? format_duration(Seconds(now - start_).count())
+                             : pace.left >= 0 ? format_duration(pace.left) + " left"
+                                              : "";
+    std::string tail;
+    for (const std::string& part : {pace.text, time, detail})
+        if (!part.empty()) tail += "  " + part;
     if (terminal_) {
         constexpr int width = 28;
         const int filled =
             total_ > 0 ? static_cast<int>(std::clamp<std::int64_t>(done * width / total_, 0, width))
                        : width;
-        fmt::print(stderr, "\r\033[K{:8} {}{} {}/{}  {:.1f}/s  {}{}{}", label_,
+        fmt::print(stderr, "\r\033[K{:8} {}{} {}/{}{}{}", label_,
                    std::string(static_cast<std::size_t>(filled), '#'),
-                   std::string(static_cast<std::size_t>(width - filled), '.'), done, total_, rate,
-                   time, tail, last ? "\n" : "");
+                   std::string(static_cast<std::size_t>(width - filled), '.'), done, total_, tail,
+                   last ? "\n" : "");
         std::fflush(stderr);
     } else {
-        fmt::print(stderr, "{}: {}/{}  {:.1f}/s  {}{}\n", label_, done, total_, rate, time, tail);
+        fmt::print(stderr, "{}: {}/{}{}\n", label_, done, total_, tail);
     }
 }
 

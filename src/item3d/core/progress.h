@@ -3,7 +3,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <string>
+#include <vector>
 
 namespace item3d {
 
@@ -16,6 +18,26 @@ Verbosity verbosity();
 void note(const std::string& message);
 /// One line that starts with "warning: ". Shown even when quiet.
 void warn(const std::string& message);
+
+/// Keeps the warnings of this process while it lives; the one made last keeps them.
+class CollectedWarnings {
+  public:
+    CollectedWarnings();
+    ~CollectedWarnings();
+    CollectedWarnings(const CollectedWarnings&) = delete;
+    CollectedWarnings& operator=(const CollectedWarnings&) = delete;
+
+    /// Each once, in the order in which they came.
+    std::vector<std::string> lines() const;
+
+  private:
+    friend void warn(const std::string& message);
+    void add(const std::string& message);
+
+    CollectedWarnings* outer_;
+    mutable std::mutex mutex_;
+    std::vector<std::string> lines_;
+};
 
 /// A bar with rate and time left on a terminal; a plain line every ten seconds elsewhere.
 class Progress {
@@ -42,6 +64,7 @@ class Progress {
     std::int64_t done_;
     std::string detail_;
     Clock::time_point start_;
+    Clock::time_point stepped_;  ///< when done_ changed last
     Clock::time_point shown_;
     bool terminal_;
     bool finished_ = false;

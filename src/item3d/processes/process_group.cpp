@@ -185,7 +185,8 @@ ProcessGroup ProcessGroup::from_environment(std::chrono::seconds patience) {
                              hint);
         connection->gloo = c10::make_intrusive<c10d::ProcessGroupGloo>(
             connection->store, place.rank, place.size,
-            c10d::ProcessGroupGloo::Options::create_default(message_timeout));
+            c10d::ProcessGroupGloo::Options::create_default(patience));
+        connection->gloo->setTimeout(message_timeout);
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {

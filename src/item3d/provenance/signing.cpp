@@ -132,8 +132,9 @@ void SigningKey::sign(nlohmann::json& claim) const {
 
 std::string load_public_key(const std::filesystem::path& path) {
     const std::string pem = read_pem(path, how_to_export);
-    Key key = read_key(pem, false);
-    if (!key) key = read_key(pem, true);
+    if (pem.find("PRIVATE KEY-----") != std::string::npos)
+        throw InputError(path.string(), "is a private key, expected a public one", how_to_export);
+    const Key key = read_key(pem, false);
     if (!key) throw InputError(path.string(), "is no public key, or a damaged one", how_to_export);
     require_ed25519(path, key, how_to_export);
     return raw_public_key(key.get());
