@@ -64,9 +64,12 @@ TEST(IndirectLight, BouncesByTheViewFactorOfAWall) {
     EXPECT_GT(checked, 100);
 }
 
-TEST(IndirectLight, ASmoothFloorMirrorsTheWallWhereTheMirroredRayMeetsIt) {
+/// sunk: how far everything went down after the light was stored, as an optimised surface does.
+void expect_mirrored_wall(float sunk) {
     const Geometry geometry = floor_and_wall(2);
-    SeenFloor seen = look_at_floor(geometry);
+    Geometry now = geometry;
+    now.positions = geometry.positions - at::tensor({0.0f, 0.0f, sunk});
+    SeenFloor seen = look_at_floor(now);
     // Seen from the right at 45 degrees, the floor mirrors the wall up to x = 2.
     const at::Tensor view = at::tensor({std::sqrt(0.5f), 0.0f, std::sqrt(0.5f)});
     seen.surface.view = view.expand({seen.surface.count(), 3}).contiguous();
@@ -79,6 +82,15 @@ TEST(IndirectLight, ASmoothFloorMirrorsTheWallWhereTheMirroredRayMeetsIt) {
         EXPECT_NEAR(reflection.open[i].item<float>(), x < 2 ? 0 : 1, 1e-6f) << x;
         EXPECT_NEAR(reflection.radiance[i][0].item<float>(), x < 2 ? 3 : 0, 1e-4f) << x;
     }
+}
+
+TEST(IndirectLight, ASmoothFloorMirrorsTheWallWhereTheMirroredRayMeetsIt) {
+    expect_mirrored_wall(0);
+}
+
+TEST(IndirectLight, ASurfaceThatHasMovedSinceDoesNotMirrorItself) {
+    expect_mirrored_wall(0.01f);
+    expect_mirrored_wall(-0.01f);
 }
 
 TEST(IndirectLight, NothingChangesWhereNothingIsInTheWay) {

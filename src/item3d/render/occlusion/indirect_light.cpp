@@ -117,6 +117,17 @@ struct IndirectLight::State {
         bounce = at::zeros({count, 2, 3});
     }
 
+    /// Position at a place of a triangle, as it was when this was made.
+    Vec3 position(std::size_t triangle, const float* barycentrics) const {
+        const float* points = surfaces[0].position.const_data_ptr<float>();
+        const int steps = grid.resolution[triangle];
+        const auto corner = [&](int i, int j) {
+            return load_row(points, grid.first[triangle] + kernels::grid_index(steps, i, j));
+        };
+        const float b0 = barycentrics[0], b1 = barycentrics[1];
+        return b0 * corner(steps, 0) + b1 * corner(0, steps) + (1 - b0 - b1) * corner(0, 0);
+    }
+
     /// Radiance towards where a ray came from; negative red: nothing is hit.
     Vec3 seen(Vec3 origin, Vec3 direction, std::uint64_t chance) const {
         const RayScene::Hit hit = scene.nearest(origin, direction, chance);
@@ -229,9 +240,9 @@ IndirectLight::Reflection IndirectLight::reflect(const Raster& raster, const Sur
                                                  std::uint64_t seed) const {
     const State& state = *state_;
     const auto plain = [](const at::Tensor& tensor) { return tensor.detach().contiguous(); };
-    const at::Tensor position = plain(surface.position), view = plain(surface.view);
-    const at::Tensor normals = plain(surface.normal), rough = plain(roughness);
-    const at::Tensor triangle = plain(raster.triangle);
+    const at::Tensor view = plain(surface.view), normals = plain(surface.normal);
+    const at::Tensor rough = plain(roughness), triangle = plain(raster.triangle);
+    const at::Tensor barycentrics = plain(raster.barycentrics);
     Reflection result{at::empty({surface.count(), 3}), at::empty({surface.count(), 1})};
     parallel_for(
         "reflect", surface.count(),
@@ -242,7 +253,10 @@ IndirectLight::Reflection IndirectLight::reflect(const Raster& raster, const Sur
             Vec3 up = state.face[static_cast<std::size_t>(state.grid.first[t])];
             if (glm::dot(up, to_view) < 0) up = -up;
             const Frame frame(load_row(normals.const_data_ptr<float>(), i));
-            const Vec3 origin = load_row(position.const_data_ptr<float>(), i) + state.offset * up;
+            // A surface that has moved since, however little, would begin below its old place.
+            const Vec3 origin =
+                state.position(t, barycentrics.const_data_ptr<float>() + 2 * pixel) +
+                state.offset * up;
             const float width = rough.const_data_ptr<float>()[i] * rough.const_data_ptr<float>()[i];
             Random random(seed, static_cast<std::uint64_t>(pixel));
             Vec3 sum(0.0f);

@@ -37,7 +37,8 @@ class IndirectLight {
     void update(const Outgoing& outgoing);
 
     /// [P, 3] mean radiance, by cosine, that arrives from other surfaces; directions without any
-    /// count as 0. raster and surface are of the geometry that this was made for.
+    /// count as 0. raster and surface are of the geometry that this was made for; its vertices may
+    /// have moved a little since.
     at::Tensor bounce(const Raster& raster, const Surface& surface) const;
 
     struct Reflection {
