@@ -13,6 +13,8 @@ namespace item3d {
 
 namespace {
 
+/// With fewer, the noise of what surfaces mirror of each other speaks against all that mirrors.
+constexpr int reflection_rays = 8;
 constexpr float roughness_weight = 1.0f;
 constexpr float metallic_weight = 1.0f;
 constexpr float darkest_metal = 0.5f;
@@ -88,10 +90,10 @@ RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
         radiance = shade(result.surface, shaded, light);
     } else {
         const IndirectLight& indirect = *options.indirect;
-        radiance = shade_indirect(result.surface, shaded, light,
-                                  indirect.bounce(result.raster, result.surface),
-                                  indirect.reflect(result.raster, result.surface,
-                                                   shaded.orm.narrow(1, 1, 1), 1, options.seed));
+        radiance = shade_indirect(
+            result.surface, shaded, light, indirect.bounce(result.raster, result.surface),
+            indirect.reflect(result.raster, result.surface, shaded.orm.narrow(1, 1, 1),
+                             reflection_rays, options.seed));
     }
     const at::Tensor values = at::cat({radiance, at::ones_like(radiance.narrow(1, 0, 1))}, 1);
     result.image = result.without_gain = antialias(
