@@ -8,6 +8,7 @@
 # make test-blender   the extension for Blender, in the Blenders of scripts/blender.txt (fetches up to 900 MB)
 # make blender-extension   the extension as one zip, in build/packages
 # make test-python    build the Python package and run its tests (fetches PyTorch for Python, 3 GB)
+# make test-agents    run `item3d mcp` with the client of the protocol's SDK (fetches 13 MB)
 # make wheel      the Python package as a wheel, into build/wheels
 # make cuda       build the kernels for CUDA devices too (fetches a compiler of 180 MB)
 # make bench      run the benchmarks of bench/ (docs/benchmarks.md says what they measure)
@@ -24,7 +25,7 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell scripts/jobs.sh)
 
 .DEFAULT_GOAL := build
-.PHONY: setup configure build demo studio test-browser test-python wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check cuda \
+.PHONY: setup configure build demo studio test-browser test-python test-agents wheel check-format check-layers test-loaders test-build test test-slurm test-blender blender-extension check cuda \
     bench bench-build format lint install package clean
 BUILD := cmake --build --preset release --parallel $(JOBS)
 # nvcc is there for x86-64 alone.
@@ -100,6 +101,12 @@ test-python:
 	    --disable-pip-version-check --root-user-action=ignore --target $(PYTHON_PACKAGE) .
 	@PYTHONPATH=$(PYTHON_PACKAGE):$(PYTHON_SITE) $(if $(wildcard build/item3d),ITEM3D_PROGRAM=$(CURDIR)/build/item3d) \
 	    python3 -m pytest -q -p no:cacheprovider python/tests
+
+test-agents:
+	@scripts/setup.sh agents
+	@cmake --preset release --log-level=WARNING
+	@$(BUILD) --target item3d item3d-edit item3d-studio
+	@PYTHONPATH=$(CURDIR)/.deps/agents python3 tests/mcp/client.py build/item3d
 
 wheel: setup
 	@$(if $(filter $(CURDIR)/.deps/python,$(PYTHON_SITE)),scripts/setup.sh python)

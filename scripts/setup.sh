@@ -3,11 +3,12 @@
 # downloads of scripts/wheels.txt, unpacked into .deps/. Does nothing when all is there; goes on
 # where an interrupted run stopped. Works as root and as a user who may use sudo.
 #
-# usage: scripts/setup.sh [cuda] [browser] [blender] [python]
+# usage: scripts/setup.sh [cuda] [browser] [blender] [python] [agents]
 #   cuda     the CUDA compiler too, for `make cuda` and `make test`
 #   browser  Chromium, Playwright and TypeScript too, for `make test` (60 MB, and 100 MB of Debian packages)
 #   blender  Blender as a module of Python too, for `make test-blender` (400 MB to 900 MB, by the Pythons that there are)
 #   python   PyTorch for Python too, for `make test-python` (3 GB, 5 GB unpacked)
+#   agents   the client of the Model Context Protocol's SDK too, for `make test-agents` (13 MB)
 #
 #   ITEM3D_TORCH_ROOT=FOLDER  take LibTorch from there (include/ and lib/) and do not download it
 #   ITEM3D_NO_BROWSER=1       leave these out: the page's tests do not run
@@ -265,15 +266,24 @@ unpack_typescript() {
     sed -i 's|"../src/|"./src/|' "$into/three/three.module.min.d.ts"
 }
 
-# For the Python that runs the tests.
-unpack_browser() {
-    local into=$1
-    say "downloading $(grep -o '^playwright==[^ ]*' scripts/browser.txt)"
+# The packages of a list of pins, for the Python that runs the tests. hint: what to say when it fails.
+install_wheels() {
+    local into=$1 pins=$2 hint=${3:-} name
+    name=$(grep -o -m 1 '^[^# ]*==[^ ]*' "$pins")
+    say "downloading $name for Python"
     "$(find_pip)" -m pip install --require-hashes --only-binary=:all: --no-cache-dir --no-compile \
         --retries 5 --timeout 60 --progress-bar off -q --disable-pip-version-check \
-        --root-user-action=ignore --target "$into" -r scripts/browser.txt >"$deps/pip.log" 2>&1 ||
-        fail "downloading Playwright failed: $(grep -i error "$deps/pip.log" | tail -n 1) (all of it: .deps/pip.log; ITEM3D_NO_BROWSER=1 leaves it out)"
+        --root-user-action=ignore --target "$into" -r "$pins" >"$deps/pip.log" 2>&1 ||
+        fail "downloading $name failed: $(grep -i error "$deps/pip.log" | tail -n 1) (all of it: .deps/pip.log$hint)"
 }
+
+unpack_browser() {
+    install_wheels "$1" scripts/browser.txt '; ITEM3D_NO_BROWSER=1 leaves it out'
+}
+
+unpack_python() { install_wheels "$1" scripts/python.txt; }
+
+unpack_agents() { install_wheels "$1" scripts/agents.txt; }
 
 # Each version in a folder of its own, for the Python that scripts/blender.txt names behind it.
 unpack_blender() {
@@ -293,16 +303,6 @@ unpack_blender() {
         found=1
     done < <(grep '^bpy==' scripts/blender.txt)
     [[ $found ]] || fail "no Blender of scripts/blender.txt runs here: it wants python3.11 or python3.13 with pip"
-}
-
-# The same, for `make test-python`.
-unpack_python() {
-    local into=$1
-    say "downloading $(grep -o '^torch==[^ ]*' scripts/python.txt) for Python"
-    "$(find_pip)" -m pip install --require-hashes --only-binary=:all: --no-cache-dir --no-compile \
-        --retries 5 --timeout 60 --progress-bar off -q --disable-pip-version-check \
-        --root-user-action=ignore --target "$into" -r scripts/python.txt >"$deps/pip.log" 2>&1 ||
-        fail "downloading PyTorch for Python failed: $(grep -i error "$deps/pip.log" | tail -n 1) (all of it: .deps/pip.log)"
 }
 
 mkdir -p "$deps" || fail "cannot write to $root"
@@ -329,6 +329,9 @@ if wants blender && [[ $(uname -m) == x86_64 ]]; then
 fi
 if wants python; then
     component python '.*' unpack_python scripts/python.txt
+fi
+if wants agents; then
+    component agents '.*' unpack_agents scripts/agents.txt
 fi
 if wants cuda; then
     component cuda 'nvidia-cuda-nvcc|nvidia-cuda-crt|nvidia-nvvm|nvidia-cuda-runtime|nvidia-nvtx' \

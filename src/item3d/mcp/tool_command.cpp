@@ -1,6 +1,7 @@
 #include "item3d/mcp/tool_command.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/names.h"
 #include "item3d/lighting/environment.h"
 
 #include <algorithm>
@@ -137,12 +138,19 @@ class CommandBuilder {
     }
 
     void add_settings(const json& given) {
-        for (const auto& [name, value] : given.items()) {
+        for (const auto& [asked, value] : given.items()) {
+            std::string name = asked;
+            std::replace(name.begin(), name.end(), '-', '_');
             const auto row =
                 std::find_if(settings_.begin(), settings_.end(),
                              [&](const json& entry) { return entry.at("name") == name; });
-            if (row == settings_.end())
-                throw InputError("settings." + name, "there is no such option of item3d edit");
+            if (row == settings_.end()) {
+                std::vector<std::string> known;
+                for (const json& entry : settings_)
+                    known.push_back(entry.at("name"));
+                throw InputError("settings." + asked, "there is no such option of item3d edit",
+                                 "the nearest is '" + nearest_name(name, known) + "'");
+            }
             const std::string option = row->at("flag").get<std::string>().substr(2);
             const bool is_path = row->value("path", false);
             for (const json& each : value.is_array() ? value : json::array({value})) {
