@@ -109,20 +109,25 @@ TEST_F(LightScale, GradientsOfTheTermsMatchFiniteDifferencesAndReachNothingElse)
         EXPECT_FALSE(parameter.grad().defined());
 }
 
-TEST_F(LightScale, DarkMetalsBecomeDielectrics) {
+TEST_F(LightScale, DarkAndRoughMetalsBecomeDielectrics) {
     RenderedView view = render(appearance_.light.prefiltered());
     const std::int64_t rows = view.surface.count();
     at::Tensor metallic = at::ones({rows}).set_requires_grad(true);
-    const auto loss_at = [&](float base_color) {
+    const auto set = [&](float base_color, float roughness) {
         view.material.base_color = at::full({rows, 3}, base_color);
-        view.material.orm = at::stack({at::ones({rows}), at::ones({rows}), metallic}, 1);
-        return dark_metal_loss(view);
+        view.material.orm = at::stack({at::ones({rows}), at::full({rows}, roughness), metallic}, 1);
     };
-    EXPECT_NEAR(loss_at(0.6f).item<double>(), 0, 1e-7);
-    const at::Tensor dark = loss_at(0.1f);
-    EXPECT_NEAR(dark.item<double>(), 0.4, 1e-6);
-    dark.backward();
-    EXPECT_GT(metallic.grad().min().item<float>(), 0);
+    set(0.6f, 0.6f);
+    EXPECT_NEAR(dark_metal_loss(view).item<double>(), 0, 1e-7);
+    EXPECT_NEAR(rough_metal_loss(view).item<double>(), 0, 1e-7);
+    set(0.1f, 0.8f);
+    for (const auto& [loss, wanted] :
+         {std::pair{dark_metal_loss(view), 0.4}, std::pair{rough_metal_loss(view), 0.1}}) {
+        EXPECT_NEAR(loss.item<double>(), wanted, 1e-6);
+        metallic.mutable_grad() = at::Tensor();
+        loss.backward();
+        EXPECT_GT(metallic.grad().min().item<float>(), 0);
+    }
 }
 
 }  // namespace

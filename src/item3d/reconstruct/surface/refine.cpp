@@ -109,7 +109,8 @@ at::Tensor Refinement::regularization(const RenderedView& rendered, const at::Te
         if (iteration() > options_.decision_begin * options_.iterations) {
             const at::Tensor metallic = rendered.material.orm.select(1, 2);
             loss = loss + weights.decision * (metallic * (1 - metallic)).mean() +
-                   weights.dark_metal * dark_metal_loss(rendered);
+                   weights.dark_metal * dark_metal_loss(rendered) +
+                   weights.rough_metal * rough_metal_loss(rendered);
         }
         if (options_.normal_map)
             loss = loss + weights.flat_normals * (1 - rendered.material.normal.select(1, 2)).mean();

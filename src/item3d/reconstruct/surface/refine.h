@@ -21,6 +21,7 @@ struct RegularizerWeights {
     LightScaleWeights light_scale;
     double decision = 0.01;      ///< metallic is 0 or 1, after decision_begin
     double dark_metal = 0.03;    ///< metals are bright, after decision_begin
+    double rough_metal = 0.1;    ///< metals are not rough, after decision_begin
     double crumpling = 0.05;     ///< vertices move together
     double flat_normals = 0.01;  ///< the normal map is flat
 };
@@ -31,8 +32,9 @@ struct RefineOptions {
     /// Part of the iterations in which the whole view has one material, so that shading is first
     /// explained by the light.
     double light_alone = 0.15;
-    /// Part of the iterations after which metallic must decide.
-    double decision_begin = 0.4;
+    /// Part of the iterations after which metallic must decide. Earlier, what is neither yet falls
+    /// to the wrong side.
+    double decision_begin = 0.6;
     bool normal_map = true;
     /// Light that the object itself keeps away, and what its surfaces throw at each other, are
     /// traced: of light from everywhere at first, then of the light that was found so far.

@@ -18,6 +18,7 @@ constexpr int reflection_rays = 8;
 constexpr float roughness_weight = 1.0f;
 constexpr float metallic_weight = 1.0f;
 constexpr float darkest_metal = 0.5f;
+constexpr float roughest_metal = 0.7f;
 
 /// Steps in all directions, of lengths from `nearest` to `farthest`.
 at::Tensor random_steps(std::int64_t rows, float nearest, float farthest, Random& random) {
@@ -142,6 +143,12 @@ at::Tensor dark_metal_loss(const RenderedView& view) {
     if (view.surface.count() == 0) return at::zeros({});
     const at::Tensor lacks = (darkest_metal - view.material.base_color.amax(1)).clamp_min(0.0f);
     return (view.material.orm.select(1, 2) * lacks).mean();
+}
+
+at::Tensor rough_metal_loss(const RenderedView& view) {
+    if (view.surface.count() == 0) return at::zeros({});
+    const at::Tensor roughness = view.material.orm.select(1, 1).detach();
+    return (view.material.orm.select(1, 2) * (roughness - roughest_metal).clamp_min(0.0f)).mean();
 }
 
 }  // namespace item3d

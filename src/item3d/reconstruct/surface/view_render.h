@@ -76,4 +76,8 @@ at::Tensor smoothness_loss(NeuralTexture& field, const RenderedView& view, float
 /// darker, and a black metal looks like black varnish.
 at::Tensor dark_metal_loss(const RenderedView& view);
 
+/// Mean of metallic times what roughness exceeds 0.7: few metals are rougher, and a rough metal
+/// looks like paint. Its gradient reaches metallic alone.
+at::Tensor rough_metal_loss(const RenderedView& view);
+
 }  // namespace item3d
