@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -100,6 +101,17 @@ TEST(Progress, DurationsAreRoundedBeforeTheyAreSplit) {
     EXPECT_EQ(format_duration(125), "2 min 05 s");
     EXPECT_EQ(format_duration(3599.7), "1 h 00 min");
     EXPECT_EQ(format_duration(4200), "1 h 10 min");
+}
+
+TEST(CollectedWarnings, LiveAndEndInAnyOrder) {
+    auto first = std::make_unique<CollectedWarnings>();
+    CollectedWarnings second;
+    warn("one");
+    warn("one");
+    EXPECT_EQ(first->lines(), std::vector<std::string>{"one"});
+    first.reset();
+    warn("two");
+    EXPECT_EQ(second.lines(), (std::vector<std::string>{"one", "two"}));
 }
 
 TEST(Progress, SpeaksOnStderrAloneAndNotWhenQuiet) {

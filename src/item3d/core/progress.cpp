@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 
@@ -15,7 +14,9 @@ namespace {
 
 // Process-wide by nature: there is one stderr.
 Verbosity current_verbosity = Verbosity::normal;
-std::atomic<CollectedWarnings*> current_warnings = nullptr;
+/// Those that live, each with the one made before it; in several threads, in any order.
+CollectedWarnings* newest_warnings = nullptr;
+std::mutex warnings_mutex;
 
 struct Pace {
     std::string text;  ///< "4.2/s", or "28 s each"
@@ -45,13 +46,23 @@ void note(const std::string& message) {
 
 void warn(const std::string& message) {
     fmt::print(stderr, "warning: {}\n", message);
-    if (CollectedWarnings* collected = current_warnings) collected->add(message);
+    const std::lock_guard guard(warnings_mutex);
+    for (CollectedWarnings* each = newest_warnings; each; each = each->outer_)
+        each->add(message);
 }
 
-CollectedWarnings::CollectedWarnings() : outer_(current_warnings.exchange(this)) {}
+CollectedWarnings::CollectedWarnings() {
+    const std::lock_guard guard(warnings_mutex);
+    outer_ = newest_warnings;
+    newest_warnings = this;
+}
 
 CollectedWarnings::~CollectedWarnings() {
-    current_warnings = outer_;
+    const std::lock_guard guard(warnings_mutex);
+    CollectedWarnings** link = &newest_warnings;
+    while (*link != this)
+        link = &(*link)->outer_;
+    *link = outer_;
 }
 
 std::vector<std::string> CollectedWarnings::lines() const {

@@ -19,7 +19,7 @@ void note(const std::string& message);
 /// One line that starts with "warning: ". Shown even when quiet.
 void warn(const std::string& message);
 
-/// Keeps the warnings of this process while it lives; the one made last keeps them.
+/// Keeps the warnings of this process while it lives.
 class CollectedWarnings {
   public:
     CollectedWarnings();
