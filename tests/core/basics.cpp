@@ -10,8 +10,8 @@
 
 #include <atomic>
 #include <cmath>
-#include <stdexcept>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
