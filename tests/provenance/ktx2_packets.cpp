@@ -46,7 +46,7 @@ std::vector<std::string> keys_of(const Bytes& file) {
 }
 
 TEST(Ktx2Packet, StandsBetweenTheKeysAndAllElseStays) {
-    // ETC1S with codebooks, plain UASTC and UASTC in Zstandard; one level and of five.
+    // ETC1S with codebooks, plain UASTC and UASTC in Zstandard; of one level and of five.
     for (const char* name : {"etc1s", "etc1s_alpha", "uastc", "uastc_zstd"}) {
         SCOPED_TRACE(name);
         const Bytes file = ktx2_file(name);

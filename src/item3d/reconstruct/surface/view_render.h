@@ -39,7 +39,7 @@ struct RenderedView {
 
 struct ViewRenderOptions {
     const Occlusion* occlusion = nullptr;  ///< traced, in place of the material's own
-    /// What surfaces throw at each other; null: nothing. Rays of each lobe are drawn by `seed`.
+    /// Light between surfaces; null: none. Rays of each lobe are drawn by `seed`.
     const IndirectLight* indirect = nullptr;
     std::uint64_t seed = 0;
     bool normal_map = false;    ///< use the field's tangent-space normals
