@@ -123,10 +123,13 @@ void score(Reconstruction& result, const ViewCorrections& corrections) {
     }
     result.train =
         renderer.score(some_views(corrections.corrected(result.dataset.train), train_views_scored));
-    if (corrections.refines_poses() && !test.empty())
+    if (corrections.refines_poses() && !test.empty()) {
+        const Dataset& dataset = result.dataset;
+        const auto by_outlines = aligned_to_mesh(mesh_of(result.model), dataset, test);
         result.test_aligned =
-            renderer.score_both(aligned_to_mesh(mesh_of(result.model), result.dataset, test))
+            renderer.score_both(renderer.aligned(by_outlines, dataset.centre, dataset.radius))
                 .each_scaled;
+    }
     result.test_without_shadows = ModelRenderer(result.model, result.light, 0).score(test);
     for (const RelitViews& views : request.relit) {
         const auto targets = relit_views(result.dataset, request, views);

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/parallel.h"
 #include "item3d/metrics/image_quality.h"
+#include "item3d/reconstruct/surface/pose_step.h"
 #include "item3d/render/occlusion/indirect_light.h"
 #include "item3d/render/pictures.h"
 #include "item3d/render/render.h"
@@ -17,6 +18,7 @@ namespace item3d {
 namespace {
 
 constexpr int light_cube = 128;
+constexpr int alignment_steps = 6;
 
 /// [1, H, W, 4] premultiplied linear -> [1, 3, H, W] sRGB over white.
 at::Tensor displayed_over_white(const at::Tensor& image) {
@@ -186,6 +188,30 @@ ModelRenderer::BothScores ModelRenderer::score_both(const std::vector<Photograph
         both.each_scaled.push_back(score_of(wanted, drawn, fit.gain(), is_pictured));
     }
     return both;
+}
+
+std::vector<Photograph> ModelRenderer::aligned(std::vector<Photograph> views, Vec3 centre,
+                                               float radius) const {
+    const at::NoGradGuard no_gradient;
+    const at::Tensor middle = at::tensor({centre.x, centre.y, centre.z});
+    for (Photograph& view : views) {
+        for (int step = 0; step < alignment_steps; ++step) {
+            const TargetView wanted = target(view);
+            const at::Tensor drawn = draw(wanted);
+            GainFit fit;
+            fit.add(wanted, drawn);
+            const Vec3 gain = fit.gain();
+            const Raster raster =
+                rasterize(geometry_, {wanted.camera}, wanted.width(), wanted.height());
+            const Surface surface = interpolate_surface(geometry_, raster, {wanted.camera});
+            const SmallMotion motion =
+                pose_step({wanted.camera, drawn * at::tensor({gain.x, gain.y, gain.z, 1.0f}),
+                           surface.pixel, surface.position},
+                          wanted.image, middle, radius);
+            view.camera = rigid_motion(motion, middle, radius).seen_from(view.camera);
+        }
+    }
+    return views;
 }
 
 double chamfer_distance(const TriangleMesh& mesh, const TriangleMesh& reference, int points,

@@ -51,6 +51,9 @@ class ModelRenderer {
         std::vector<ScoredView> as_it_is, each_scaled;
     };
     BothScores score_both(const std::vector<Photograph>& views) const;
+    /// Views with the cameras that bring what they draw, with a gain each, to their photographs.
+    /// The object is around `centre`, within `radius`; cameras are off by a few pixels at most.
+    std::vector<Photograph> aligned(std::vector<Photograph> views, Vec3 centre, float radius) const;
 
   private:
     TargetView target(const Photograph& view) const;

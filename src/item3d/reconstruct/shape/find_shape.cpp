@@ -23,9 +23,6 @@ constexpr std::int64_t smoothness_points_of_shape = 2048;
                      "masks and poses do not belong together, or the object is tiny");
 }
 
-/// Of the learning rates of corrections, at the end.
-constexpr double corrections_scale_last = 0.2;
-
 double blend(double first, double last, int iteration, int iterations) {
     return first + (last - first) * static_cast<double>(iteration) / std::max(1, iterations);
 }
@@ -115,7 +112,6 @@ void ShapeSearch::begin_level(int level, const at::Tensor& start) {
                    {.learning_rate = options_.offset_learning_rate, .beta2 = 0.999});
     adam.add_group("weights", field_->extraction->weights(),
                    {.learning_rate = options_.weight_learning_rate, .beta2 = 0.999});
-    corrections_.add_groups(adam);
 }
 
 void ShapeSearch::start_next_level() {
@@ -159,15 +155,14 @@ void ShapeSearch::step() {
     ViewRenderOptions how{.one_material = light_alone,
                           .gain = corrections_.gain(index),
                           .base_color_factor = learning_.base_color_factor};
-    if (!light_alone) how.motion = corrections_.motion(index);
+    how.motion = corrections_.motion(index).detached();
     const RenderedView rendered =
         render_view(geometry, appearance_.field, learning_.light, view, how);
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
     const at::Tensor picture = picture_loss(rendered.image, view.image, background);
     const at::Tensor mask = mask_loss(rendered.image, view.image);
     at::Tensor loss = corrections_.weight(index) * (picture + options_.mask_weight * mask) +
-                      loss_besides_picture(rendered, surface, light_alone) +
-                      corrections_.motion_loss(index);
+                      loss_besides_picture(rendered, surface, light_alone);
     if (light_learns)
         loss = loss + options_.whiteness_weight * appearance_.light.whiteness_loss() +
                light_scale_loss(appearance_.light, learning_.light, rendered, options_.light_scale);
@@ -177,15 +172,16 @@ void ShapeSearch::step() {
     adam.options("values").learning_rate = rate * options_.value_learning_rate;
     adam.options("offsets").learning_rate = rate * options_.offset_learning_rate;
     adam.options("weights").learning_rate = rate * options_.weight_learning_rate;
-    corrections_.set_rates(adam,
-                           blend(1.0, corrections_scale_last, iteration(), options_.iterations));
     adam.step();
     adam.zero_grad();
     {
         const at::NoGradGuard no_gradient;
         field_->values.clamp_(-largest_value, largest_value);
     }
-    if (!light_alone) corrections_.update_gain(index, rendered.without_gain, view.image);
+    if (!light_alone) {
+        corrections_.update_gain(index, rendered.without_gain, view.image);
+        corrections_.update_motion(index, as_drawn(view, rendered), view.image);
+    }
     learning_.note_losses(picture, mask);
     triangles_.push_back(static_cast<double>(surface.triangles.size(0)));
     ++learning_.iteration;

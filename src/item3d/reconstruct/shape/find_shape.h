@@ -19,7 +19,7 @@ struct ShapeOptions {
     std::string extraction = "flexicubes";  ///< see extraction_names()
     std::vector<int> cells{48, 96};     ///< along the box's longest edge, each twice the one before
     int iterations = 1000;              ///< in all; half as many on every lattice but the last
-    double value_learning_rate = 0.02;  ///< in cells
+    double value_learning_rate = 0.05;  ///< in cells
     double offset_learning_rate = 0.01;  ///< in cells
     double weight_learning_rate = 0.02;  ///< of what the extraction learns besides
     double mask_weight = 2.0;

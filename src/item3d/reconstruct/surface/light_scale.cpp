@@ -6,8 +6,8 @@ namespace item3d {
 
 namespace {
 
-constexpr double paper = 0.8;  ///< base colour of what looks white
-constexpr double far_from_paper = 0.25;
+constexpr double white = 0.88;  ///< base colour of white paint, 241 in sRGB
+constexpr double far_from_white = 0.25;
 
 at::Tensor luminance(const at::Tensor& color) {
     return (color * at::tensor({0.2126f, 0.7152f, 0.0722f})).sum(-1);
@@ -47,8 +47,8 @@ at::Tensor light_scale_loss(const TrainableLight& trainable, const EnvironmentLi
                       weights.green * green.square();
     if (view.surface.count() > 0) {
         const at::Tensor decile = quantile(luminance(view.material.base_color.detach()), 0.9);
-        const at::Tensor square = (decile * (-change.mean()).exp() - paper).square();
-        loss = loss + weights.brightness * square / (square + far_from_paper * far_from_paper);
+        const at::Tensor square = (decile * (-change.mean()).exp() - white).square();
+        loss = loss + weights.brightness * square / (square + far_from_white * far_from_white);
     }
     return loss;
 }

@@ -21,8 +21,8 @@ struct LightScaleWeights {
     double warmth = 0.003;
     /// The same along green and magenta, as it hardly does.
     double green = 0.03;
-    /// White is like paper: d^2 / (d^2 + 0.25^2), d the distance of the ninth decile of the view's
-    /// base colour (luminance) from 0.8. What is far darker is let go (Geman and McClure 1987).
+    /// White is like paint: d^2 / (d^2 + 0.25^2), d the distance of the ninth decile of the view's
+    /// base colour (luminance) from 0.88. What is far darker is let go (Geman and McClure 1987).
     double brightness = 0.003;
 };
 

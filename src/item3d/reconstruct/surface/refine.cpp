@@ -13,8 +13,6 @@ namespace {
 constexpr double final_rate = 0.1;
 constexpr std::int64_t smoothness_points = 4096;
 constexpr float farthest_smoothness = 0.15f;  ///< of the object's diagonal
-/// Of the learning rates of corrections: most was found with the shape.
-constexpr double corrections_scale = 0.25;
 
 double falling(double rate, int iteration, int iterations) {
     const double progress = static_cast<double>(iteration) / iterations;
@@ -60,7 +58,6 @@ Refinement::Refinement(Appearance& appearance, ViewCorrections& corrections, Mov
     if (mesh.moves())
         add("offsets", {mesh.offsets()},
             {.learning_rate = options.vertex_learning_rate * mesh.mean_edge(), .beta2 = 0.999});
-    corrections_.add_groups(learning_.optimizer);
 }
 
 void Refinement::trace() {
@@ -128,15 +125,13 @@ void Refinement::step() {
     const std::size_t index = order_.at(i);
     const TargetView& view = views_[index];
     const bool light_alone = i < options_.light_alone * options_.iterations;
-    const RigidMotion motion = corrections_.motion(index);
     const RenderedView rendered = render(view, {.one_material = light_alone,
-                                                .motion = light_alone ? motion.detached() : motion,
+                                                .motion = corrections_.motion(index).detached(),
                                                 .gain = corrections_.gain(index)});
     const at::Tensor background = at::full({3}, static_cast<float>(learning_.random.uniform()));
     const at::Tensor picture = picture_loss(rendered.image, view.image, background);
     const at::Tensor mask = mask_loss(rendered.image, view.image);
-    at::Tensor loss = corrections_.weight(index) * picture + regularization(rendered, mask) +
-                      corrections_.motion_loss(index);
+    at::Tensor loss = corrections_.weight(index) * picture + regularization(rendered, mask);
     if (light_learns)
         loss = loss + options_.weights.whiteness * appearance_.light.whiteness_loss() +
                light_scale_loss(appearance_.light, learning_.light, rendered,
@@ -147,10 +142,12 @@ void Refinement::step() {
     Adam& adam = learning_.optimizer;
     for (const auto& [group, rate] : rates_)
         adam.options(group).learning_rate = falling(rate, i, options_.iterations);
-    corrections_.set_rates(adam, falling(corrections_scale, i, options_.iterations));
     adam.step();
     adam.zero_grad();
-    if (!light_alone) corrections_.update_gain(index, rendered.without_gain, view.image);
+    if (!light_alone) {
+        corrections_.update_gain(index, rendered.without_gain, view.image);
+        corrections_.update_motion(index, as_drawn(view, rendered), view.image);
+    }
     learning_.note_losses(picture, mask);
     ++learning_.iteration;
 }

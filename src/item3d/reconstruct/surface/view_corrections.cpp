@@ -10,6 +10,7 @@ namespace {
 constexpr double rotation_rate = 0.0005;    ///< radians
 constexpr double translation_rate = 0.001;  ///< of the radius
 constexpr double motion_weight = 0.2;
+constexpr float step_taken = 0.5f;    ///< of pose_step()
 constexpr double unsure_gain = 0.03;  ///< natural logarithm
 constexpr double spread_weight = 2.0;
 /// Sharpness beside views from about the same side, under which a picture counts less
@@ -44,13 +45,6 @@ std::vector<at::Tensor> zeros_for(std::size_t views) {
     return result;
 }
 
-/// The matrix K of K x = axis x x; its exponential turns by the length of `axis`.
-at::Tensor rotation_matrix(const at::Tensor& axis) {
-    const at::Tensor zero = at::zeros({});
-    const at::Tensor x = axis[0], y = axis[1], z = axis[2];
-    return at::stack({zero, -z, y, z, zero, -x, -y, x, zero}).reshape({3, 3}).matrix_exp();
-}
-
 /// Mean over pixels, all of whose neighbours are covered too; 0 where there is none.
 double mean_laplacian(const Image& image) {
     const auto value = [&](int x, int y) {
@@ -83,38 +77,6 @@ const char* pose_refinement_name(PoseRefinement refinement) {
                                                    : "keep";
 }
 
-Geometry RigidMotion::moved(Geometry geometry) const {
-    geometry.positions =
-        (geometry.positions - centre).matmul(rotation.t()) + (centre + translation);
-    geometry.normals = geometry.normals.matmul(rotation.t());
-    return geometry;
-}
-
-void RigidMotion::move_back(Surface& surface) const {
-    surface.position = (surface.position - (centre + translation)).matmul(rotation) + centre;
-    surface.normal = surface.normal.matmul(rotation);
-    surface.view = surface.view.matmul(rotation);
-}
-
-Camera RigidMotion::seen_from(const Camera& camera) const {
-    Mat4 back(1.0f);
-    const at::Tensor r = rotation.detach(), c = centre, t = translation.detach();
-    const at::Tensor offset = c - (c + t).matmul(r);
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column)
-            back[column][row] = r[column][row].item<float>();
-        back[3][row] = offset[row].item<float>();
-    }
-    Camera moved = camera;
-    moved.camera_to_world = back * camera.camera_to_world;
-    return moved;
-}
-
-RigidMotion RigidMotion::detached() const {
-    if (!rotation.defined()) return {};
-    return {rotation.detach(), translation.detach(), centre};
-}
-
 ViewCorrections::ViewCorrections(const std::vector<Photograph>& views, Vec3 centre, float radius,
                                  const CorrectionOptions& options)
     : rotations_(zeros_for(views.size())),
@@ -145,13 +107,26 @@ void ViewCorrections::set_rates(Adam& adam, double scale) const {
 
 RigidMotion ViewCorrections::motion(std::size_t view) const {
     if (!refines_poses_) return {};
-    return {rotation_matrix(rotations_[view] - mean_of(rotations_)),
-            radius_ * (translations_[view] - mean_of(translations_)), centre_};
+    return rigid_motion(
+        {rotations_[view] - mean_of(rotations_), translations_[view] - mean_of(translations_)},
+        centre_, radius_);
 }
 
 at::Tensor ViewCorrections::motion_loss(std::size_t view) const {
     if (!refines_poses_) return at::zeros({});
     return motion_weight * (rotations_[view].square().sum() + translations_[view].square().sum());
+}
+
+void ViewCorrections::update_motion(std::size_t view, const DrawnView& seen,
+                                    const at::Tensor& photograph) {
+    if (!refines_poses_) return;
+    const at::NoGradGuard no_gradient;
+    const RigidMotion now = motion(view);
+    DrawnView drawn = seen;
+    drawn.position = (seen.position - centre_).matmul(now.rotation.t()) + centre_ + now.translation;
+    const SmallMotion step = pose_step(drawn, photograph, centre_, radius_);
+    rotations_[view] += step_taken * step.rotation;
+    translations_[view] += step_taken * step.translation;
 }
 
 at::Tensor ViewCorrections::gain(std::size_t view) const {

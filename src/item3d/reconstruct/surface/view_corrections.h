@@ -4,7 +4,8 @@
 
 #include "item3d/field/adam.h"
 #include "item3d/reconstruct/dataset/dataset.h"
-#include "item3d/render/interpolate.h"
+#include "item3d/reconstruct/surface/pose_step.h"
+#include "item3d/reconstruct/surface/rigid_motion.h"
 #include "item3d/tensors/checkpoint.h"
 #include "item3d/tensors/tensor.h"
 
@@ -21,22 +22,6 @@ const char* pose_refinement_name(PoseRefinement refinement);
 struct CorrectionOptions {
     PoseRefinement poses = PoseRefinement::automatic;
     bool exposure = true;  ///< a gain for each view and channel
-};
-
-/// A rigid motion of the object in front of a camera that stands still: x -> R (x - c) + c + t.
-/// Differentiable in both.
-struct RigidMotion {
-    at::Tensor rotation;     ///< R, [3, 3]
-    at::Tensor translation;  ///< t, [3]
-    at::Tensor centre;       ///< c, [3]
-
-    /// Positions and normals moved.
-    Geometry moved(Geometry geometry) const;
-    /// Positions, normals and view directions of what was drawn of moved(), back where they were:
-    /// materials and light do not move.
-    void move_back(Surface& surface) const;
-    Camera seen_from(const Camera& camera) const;  ///< the same picture, by a moved camera
-    RigidMotion detached() const;
 };
 
 /// Gain and motion of each training view. The median of the gains is 1 and the mean of the motions
@@ -57,6 +42,9 @@ class ViewCorrections {
 
     /// Undefined tensors where poses are kept.
     RigidMotion motion(std::size_t view) const;
+    /// Moves the view's camera part of the way to its photograph (pose_step()). seen: drawn with
+    /// motion(view); surface: its covered pixels, positions where the object is in the world.
+    void update_motion(std::size_t view, const DrawnView& seen, const at::Tensor& photograph);
     /// Square of the motion, so that what no picture shows stays as it was; 0 where poses are kept.
     at::Tensor motion_loss(std::size_t view) const;
     /// [3], what radiance is multiplied by; undefined where exposure is kept. All are 1 where half

@@ -58,6 +58,11 @@ std::vector<TargetView> make_targets(const std::vector<Photograph>& views,
     return targets;
 }
 
+DrawnView as_drawn(const TargetView& view, const RenderedView& rendered) {
+    return {view.camera, rendered.image.detach(), rendered.surface.pixel,
+            rendered.surface.position.detach()};
+}
+
 RenderedView render_view(const Geometry& geometry, NeuralTexture& field,
                          const EnvironmentLight& light, const TargetView& view,
                          const ViewRenderOptions& options) {

@@ -37,6 +37,8 @@ struct RenderedView {
     MaterialSample shaded;  ///< as it met the light: occlusion traced, one material where asked
 };
 
+DrawnView as_drawn(const TargetView& view, const RenderedView& rendered);
+
 struct ViewRenderOptions {
     const Occlusion* occlusion = nullptr;  ///< traced, in place of the material's own
     /// Light between surfaces; null: none. Rays of each lobe are drawn by `seed`.
