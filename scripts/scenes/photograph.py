@@ -98,8 +98,26 @@ def surface(part):
                           'clearcoat_gloss': 0.95})
 
 
-def plain(part, color):
-    return cut_out(part, {'type': 'diffuse', 'reflectance': color})
+def plain(color):
+    return {'type': 'twosided', 'nested': {'type': 'diffuse', 'reflectance': color}}
+
+
+def solid(part, data, times=4):
+    """The mesh without what an opacity texture cuts away, by quarters of quarters of its triangles."""
+    if part.texture is None or part.texture.shape[-1] < 4:
+        return data
+    v, uv, n, f = data
+    corners = np.concatenate([v, uv, n], 1)[f]
+    for _ in range(times):
+        a, b, c = corners.transpose(1, 0, 2)
+        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+        corners = np.concatenate([np.stack(t, 1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+    opacity = part.texture[..., 3]
+    middle = corners[..., 3:5].mean(1)
+    row, column = ((middle[:, ::-1] % 1) * opacity.shape).astype(int).T
+    corners = corners[opacity[row, column] >= 0.5].reshape(-1, corners.shape[-1])
+    length = np.linalg.norm(corners[:, 5:], axis=1, keepdims=True)
+    return corners[:, :3], corners[:, 3:5], corners[:, 5:] / np.maximum(length, 1e-20), np.arange(len(corners)).reshape(-1, 3)
 
 
 def mesh(data, bsdf):
@@ -176,18 +194,36 @@ def write_obj(path, meshes):
             first += len(v)
 
 
+def world(parts, meshes, bsdf, light):
+    shapes = {f'part{i}': mesh(data, bsdf(part)) for i, (part, data) in enumerate(zip(parts, meshes))}
+    return mi.load_dict({'type': 'scene', **shapes, 'light': light})
+
+
+def write_truth(folder, parts, meshes, views, size):
+    cut = [solid(part, data) for part, data in zip(parts, meshes)]
+    write_obj(f'{folder}/gt/mesh.obj', cut)
+    white = {'type': 'constant', 'radiance': 1.0}
+    truth = mi.load_dict(with_guides({'type': 'path', 'max_depth': 2, 'hide_emitters': True}))
+    colors = world(parts, cut, lambda part: plain(color_of(part)), white)
+    others = world(parts, cut, lambda part: plain(rgb((0, part.roughness, float(part.metallic)))), white)
+    for k, camera in enumerate(views):
+        view = sensor(camera, size)
+        a = np.array(mi.render(colors, sensor=view, integrator=truth, spp=64, seed=k))
+        b = np.array(mi.render(others, sensor=view, integrator=truth, spp=64, seed=k))
+        alpha = a[..., 3:4]
+        save_rgba(f'{folder}/test_gt/r_{k}_albedo.png', np.concatenate([a[..., 4:7], alpha], -1))
+        orm = np.concatenate([b[..., 4:7] / np.maximum(alpha, 1e-6), alpha], -1)
+        Image.fromarray((np.clip(orm, 0, 1) * 255 + 0.5).astype(np.uint8)).save(f'{folder}/test_gt/r_{k}_orm.png')
+        save_exr(f'{folder}/test_gt/r_{k}_normal.exr', a[..., 7:10])
+        save_exr(f'{folder}/test_gt/r_{k}_depth.exr', a[..., 10:11])
+
+
 def photograph(name, folder, options):
     scene = scenes.scenes[name]()
     meshes = normalised(scene.parts)
     lights = {'': scene.light} | scenes.other_lights
     for part in ('train', 'test', 'test_gt', 'gt', *(f'test_{light}' for light in lights if light)):
         os.makedirs(f'{folder}/{part}', exist_ok=True)
-    write_obj(f'{folder}/gt/mesh.obj', meshes)
-
-    def world(bsdf, light=None):
-        parts = {f'part{i}': mesh(data, bsdf(part)) for i, (part, data) in enumerate(zip(scene.parts, meshes))}
-        return mi.load_dict({'type': 'scene', **parts, 'light': emitter(light) if light is not None
-                             else {'type': 'constant', 'radiance': 1.0}})
 
     seed = zlib.crc32(name.encode()) % 100000
     path = mi.load_dict(with_guides({'type': 'path', 'max_depth': options.depth, 'hide_emitters': True}))
@@ -196,7 +232,7 @@ def photograph(name, folder, options):
     for suffix, light in lights.items():
         picture = light_picture(light)
         save_exr(f'{folder}/gt/light{"_" + suffix if suffix else ""}.exr', picture)
-        lit = world(lambda part: surface(part), picture)
+        lit = world(scene.parts, meshes, surface, emitter(picture))
         splits = {f'test_{suffix}': (test, 2)} if suffix else {'train': (train, 1), 'test': (test, 1)}
         for number, (split, (views, step)) in enumerate(splits.items()):
             for k in range(0, len(views), step):
@@ -209,19 +245,7 @@ def photograph(name, folder, options):
         with open(f'{folder}/transforms_{split}.json', 'w') as out:
             json.dump({'camera_angle_x': FIELD_OF_VIEW_X, 'frames': frames}, out, indent=1)
 
-    truth = mi.load_dict(with_guides({'type': 'path', 'max_depth': 2, 'hide_emitters': True}))
-    colors = world(lambda part: plain(part, color_of(part)))
-    others = world(lambda part: plain(part, rgb((0, part.roughness, float(part.metallic)))))
-    for k, camera in enumerate(test):
-        view = sensor(camera, options.size)
-        a = np.array(mi.render(colors, sensor=view, integrator=truth, spp=64, seed=k))
-        b = np.array(mi.render(others, sensor=view, integrator=truth, spp=64, seed=k))
-        alpha = a[..., 3:4]
-        save_rgba(f'{folder}/test_gt/r_{k}_albedo.png', np.concatenate([a[..., 4:7], alpha], -1))
-        orm = np.concatenate([b[..., 4:7] / np.maximum(alpha, 1e-6), alpha], -1)
-        Image.fromarray((np.clip(orm, 0, 1) * 255 + 0.5).astype(np.uint8)).save(f'{folder}/test_gt/r_{k}_orm.png')
-        save_exr(f'{folder}/test_gt/r_{k}_normal.exr', a[..., 7:10])
-        save_exr(f'{folder}/test_gt/r_{k}_depth.exr', a[..., 10:11])
+    write_truth(folder, scene.parts, meshes, test, options.size)
     with open(f'{folder}/info.json', 'w') as out:
         json.dump({'scene': name, 'for': 'tuning' if name in scenes.tuning else 'reporting', 'samples': options.samples,
                    'depth': options.depth, 'bsdf': 'Mitsuba principled, specular 0.5', 'seconds': round(time.time() - begin)},
