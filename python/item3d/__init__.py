@@ -10,13 +10,14 @@ item3d.nvdiffrast has the functions of nvdiffrast.torch. docs/python.md has exam
 from . import _library  # first: says in a line when PyTorch is too old
 from .operations import Raster, antialias, interpolate, mipmaps, rasterize, texture, topology
 from .program import (Error, InputError, InternalError, Interrupted, Job, ProgramMissing, Progress,
-                      ResourceError, UsageError, caption, edit, find_program, reconstruct, relight, score,
-                      start_edit, start_reconstruct, start_relight)
-from .settings import CaptionSettings, EditSettings, ReconstructSettings, RelightSettings, ScoreSettings
+                      ResourceError, UsageError, caption, edit, find_program, layers, reconstruct, region,
+                      relight, score, start_edit, start_reconstruct, start_relight)
+from .settings import (CaptionSettings, EditSettings, LayersSettings, ReconstructSettings, RegionSettings,
+                       RelightSettings, ScoreSettings)
 
 __version__ = '0.1.0'
 __all__ = ['CaptionSettings', 'EditSettings', 'Error', 'InputError', 'InternalError', 'Interrupted', 'Job',
-           'ProgramMissing', 'Progress', 'Raster', 'ReconstructSettings', 'RelightSettings', 'ResourceError',
-           'ScoreSettings', 'UsageError', 'antialias', 'caption', 'edit', 'find_program', 'interpolate',
-           'mipmaps', 'rasterize', 'reconstruct', 'relight', 'score', 'start_edit', 'start_reconstruct',
-           'start_relight', 'texture', 'topology']
+           'LayersSettings', 'ProgramMissing', 'Progress', 'Raster', 'ReconstructSettings', 'RegionSettings',
+           'RelightSettings', 'ResourceError', 'ScoreSettings', 'UsageError', 'antialias', 'caption', 'edit',
+           'find_program', 'interpolate', 'layers', 'mipmaps', 'rasterize', 'reconstruct', 'region', 'relight',
+           'score', 'start_edit', 'start_reconstruct', 'start_relight', 'texture', 'topology']

@@ -22,7 +22,8 @@ import tempfile
 import threading
 from typing import Any, Iterator, Sequence
 
-from .settings import CaptionSettings, EditSettings, ReconstructSettings, RelightSettings, ScoreSettings
+from .settings import (CaptionSettings, EditSettings, LayersSettings, ReconstructSettings, RegionSettings,
+                       RelightSettings, ScoreSettings)
 
 _log = logging.getLogger('item3d')
 
@@ -122,8 +123,9 @@ class Job:
     """A command that runs. Iterating yields its progress, as often as it changes, and ends with the command; it
     raises what result() raises. Leaving a `with` block stops the command if it still runs."""
 
-    def __init__(self, arguments: Sequence[str], program: str | None = None):
-        """arguments: of the program, without --json and --progress-file."""
+    def __init__(self, arguments: Sequence[str], program: str | None = None, output=None):
+        """arguments: of the program, without --json and --progress-file. output: the folder that it writes."""
+        self.output = output
         self._folder = tempfile.mkdtemp(prefix='item3d-')
         self._progress_file = os.path.join(self._folder, 'progress.json')
         self._lines: list[str] = []
@@ -172,6 +174,12 @@ class Job:
             return Progress(str(read['stage']), int(read['done']), int(read['total']), read['seconds_left'])
         except (OSError, ValueError, KeyError, TypeError):
             return None
+
+    def preview(self) -> str | None:
+        """Returns the path of the picture that shows the model as it is now, or None where there is none yet or no
+        more. It is replaced every few seconds, never half written."""
+        path = os.path.join(os.fspath(self.output), 'preview.png') if self.output is not None else ''
+        return path if os.path.exists(path) else None
 
     def __iter__(self) -> Iterator[Progress]:
         last = None
@@ -262,7 +270,7 @@ def start_edit(model, source: str, target: str, *, output, settings: EditSetting
     """Starts `item3d edit`: of the model, as `source` describes it, to what `target` describes. Settings that are
     not given are the program's; `changes` are single ones of them."""
     settings = _settings(EditSettings, settings, changes)
-    return Job(['edit', model, '--from', source, '--to', target, '-o', output, *_options(settings)])
+    return Job(['edit', model, '--from', source, '--to', target, '-o', output, *_options(settings)], output=output)
 
 
 def edit(model, source: str, target: str, *, output, settings: EditSettings | None = None,
@@ -274,7 +282,7 @@ def edit(model, source: str, target: str, *, output, settings: EditSettings | No
 def start_relight(model, *, output, settings: RelightSettings | None = None, **changes) -> Job:
     """Starts `item3d relight`."""
     settings = _settings(RelightSettings, settings, changes)
-    return Job(['relight', model, '-o', output, *_options(settings)])
+    return Job(['relight', model, '-o', output, *_options(settings)], output=output)
 
 
 def relight(model, *, output, settings: RelightSettings | None = None, **changes) -> dict[str, Any]:
@@ -286,7 +294,7 @@ def start_reconstruct(dataset=None, *, output, settings: ReconstructSettings | N
     """Starts `item3d reconstruct` of a dataset's folder, or of from_images=FOLDER."""
     settings = _settings(ReconstructSettings, settings, changes)
     given = [] if dataset is None else [dataset]
-    return Job(['reconstruct', *given, '-o', output, *_options(settings)])
+    return Job(['reconstruct', *given, '-o', output, *_options(settings)], output=output)
 
 
 def reconstruct(dataset=None, *, output, settings: ReconstructSettings | None = None,
@@ -306,6 +314,25 @@ def caption(path, *, settings: CaptionSettings | None = None, **changes) -> dict
     """Describes a picture or a model, as `item3d caption --json` prints it."""
     settings = _settings(CaptionSettings, settings, changes)
     return _finished(Job(['caption', path, *_options(settings)]))
+
+
+def region(model, region=None, *, output, settings: RegionSettings | None = None, **changes) -> dict[str, Any]:
+    """Shows what selectors take of a model, before an edit: `region` is one or a list of them, such as
+    'material=glaze'; without any, the result has the names that can be selected by. `output` is a folder. Returns
+    what `item3d region --json` prints."""
+    if region is not None:
+        changes['region'] = region
+    settings = _settings(RegionSettings, settings, changes)
+    return _finished(Job(['region', model, '-o', output, *_options(settings)]))
+
+
+def layers(model, layers, *, output, settings: LayersSettings | None = None, **changes) -> dict[str, Any]:
+    """Applies what edits changed to the model that they began with. layers: of each edit its folder, or
+    'FOLDER:STRENGTH[:CHANNEL,...]'; a path or a list of them. output: the model to write. Returns what
+    `item3d layers --json` prints."""
+    settings = _settings(LayersSettings, settings, changes)
+    given = [layers] if isinstance(layers, (str, os.PathLike)) else list(layers)
+    return _finished(Job(['layers', model, *given, '-o', output, *_options(settings)]))
 
 
 def _finished(job: Job) -> dict[str, Any]:

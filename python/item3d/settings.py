@@ -178,3 +178,34 @@ class CaptionSettings:
     precision: str | None = None
     threads: int | None = None
     device: str | None = None
+
+
+@dataclass(frozen=True)
+class RegionSettings:
+    """Options of `item3d region`; `item3d region --help` and docs say what each does."""
+
+    region: str | list[str] | None = None
+    exclude: str | list[str] | None = None
+    feather: float | None = None
+    material: str | list[str] | None = None
+    segmenter: str | None = None
+    prior: str | None = None
+    source: str | None = field(default=None, metadata={'option': 'from'})
+    target: str | None = field(default=None, metadata={'option': 'to'})
+    textures: str | list[str] | None = None
+    size: int | None = None
+    texture_size: int | None = None
+    threads: int | None = None
+    device: str | None = None
+
+
+@dataclass(frozen=True)
+class LayersSettings:
+    """Options of `item3d layers`; `item3d layers --help` and docs say what each does."""
+
+    textures: str | list[str] | None = None
+    sign_key: str | None = None
+    texture_format: str | None = None
+    texture_size: int | None = None
+    threads: int | None = None
+    device: str | None = None

@@ -57,6 +57,9 @@ def test_arguments_and_result(stand_in):
     assert item3d.score('a', 'b', 'c', 'd', views=2)['arguments'][:9] == [
         'score', 'a', 'b', '--from', 'c', '--to', 'd', '--views', '2']
     assert item3d.caption('a.png')['arguments'][:2] == ['caption', 'a.png']
+    assert item3d.region('m', ['auto', 'all'], output='o', source='a')['arguments'][:10] == [
+        'region', 'm', '-o', 'o', '--region', 'auto', '--region', 'all', '--from', 'a']
+    assert item3d.layers('m', 'gold:0.5', output='o.glb')['arguments'][:5] == ['layers', 'm', 'gold:0.5', '-o', 'o.glb']
 
 
 @pytest.mark.parametrize('code, error', [
@@ -97,6 +100,20 @@ def test_progress_and_result(stand_in):
     assert [p.done for p in seen] == [0, 1, 2]
     assert seen[0] == item3d.Progress('edit', 0, 3, 1.5) and job.result() == {'files': 1}
     assert not job.running
+
+
+def test_a_preview_while_it_runs(stand_in, tmp_path):
+    stand_in('''
+        folder = arguments[arguments.index('-o') + 1]
+        progress('edit', 1, 2)
+        open(folder + '/preview.png', 'w').close()
+        progress('edit', 2, 2)
+        print('{}')
+    ''')
+    with item3d.start_edit('m', 'a', 'b', output=tmp_path) as job:
+        job.result()
+        assert job.preview() == str(tmp_path / 'preview.png')
+    assert item3d.start_relight('m', output=tmp_path / 'none').preview() is None
 
 
 def test_stop_lets_the_command_end_by_itself(stand_in, tmp_path):
@@ -163,7 +180,8 @@ def program():
 @pytest.mark.parametrize('command, kind', [
     ('edit', item3d.EditSettings), ('relight', item3d.RelightSettings),
     ('reconstruct', item3d.ReconstructSettings), ('score', item3d.ScoreSettings),
-    ('caption', item3d.CaptionSettings)])
+    ('caption', item3d.CaptionSettings), ('region', item3d.RegionSettings),
+    ('layers', item3d.LayersSettings)])
 def test_settings_are_the_options(program, command, kind):
     text = subprocess.run([program, command, '--help'], capture_output=True, text=True, check=True).stdout
     options = set(re.findall(r'^  (?:-\w,)?--([a-z0-9-]+)', text, re.MULTILINE))
@@ -197,3 +215,16 @@ def test_a_short_edit_with_progress(program, tmp_path):
         stages = {progress.stage for progress in job}
     assert job.result() and 'edit' in stages
     assert (tmp_path / 'edit/model.glb').exists()
+
+    item3d.layers(MUG, [f'{tmp_path}/edit:0.5', f'{tmp_path}/edit:0.5:roughness'], output=tmp_path / 'half.glb')
+    assert (tmp_path / 'half.glb').read_bytes()[:4] == b'glTF'
+
+
+def test_a_region_and_its_names(program, tmp_path):
+    names = item3d.region(MUG, output=tmp_path / 'names', size=64)
+    found = item3d.region(MUG, 'named=red', output=tmp_path / 'red', settings=item3d.RegionSettings(size=64))
+    assert (tmp_path / 'red/region.png').exists()
+    assert names['names']['material'] == ['glaze'] and 'materials' not in names
+    assert (tmp_path / 'red' / found['materials'][0]['mask']).exists()
+    with pytest.raises(item3d.InputError, match='no such material; it has glaze'):
+        item3d.region(MUG, ['material=none'], output=tmp_path / 'none')
