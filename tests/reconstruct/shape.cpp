@@ -3,6 +3,7 @@
 #include "item3d/reconstruct/shape/marching_tetrahedra.h"
 #include "item3d/reconstruct/shape/visual_hull.h"
 #include "item3d/reconstruct/surface/movable_mesh.h"
+#include "tests/support/box_scene.h"
 #include "tests/support/reconstruct.h"
 
 #include <cmath>
@@ -118,6 +119,16 @@ TEST(Mesh, SpecksGo) {
     EXPECT_LT(clean.triangles.size(0), mesh.triangles.size(0));
     EXPECT_LT(clean.positions.max().item<float>(), 0.8f);
     expect_closed(clean.triangles);
+}
+
+TEST(CleanMesh, PartsThatFewPicturesShowGo) {
+    const TriangleMesh mesh = testing::box_mesh(
+        {{Vec3(-0.5f), Vec3(0.5f)}, {Vec3(2.0f), Vec3(2.4f)}, {Vec3(3.0f), Vec3(3.4f)}});
+    const at::Tensor shown =
+        at::cat({at::full({8}, 3.0f), at::full({8}, 9.0f), at::full({8}, 4.0f)});
+    const TriangleMesh clean = without_ghosts(mesh, shown, 5);
+    EXPECT_EQ(clean.triangles.size(0), 24);  // the largest stays, whatever shows it
+    EXPECT_LT(clean.positions.max().item<float>(), 2.5f);
 }
 
 TEST(VisualHull, DistancesArePixelsFromTheOutline) {

@@ -21,7 +21,7 @@ export function when(time) {
   const then = new Date(time);
   if (Number.isNaN(then.getTime())) return '';
   const today = new Date().toDateString() === then.toDateString();
-  return then.toLocaleString(undefined, today ? { hour: '2-digit', minute: '2-digit' } : { day: 'numeric', month: 'short', hour: '2-digit', minute: '2-digit' });
+  return then.toLocaleString(undefined, { ...(today ? {} : { day: 'numeric', month: 'short' }), hour: '2-digit', minute: '2-digit', hourCycle: 'h23' });
 }
 
 /** @param {number} value @param {number} digits */

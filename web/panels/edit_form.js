@@ -75,7 +75,7 @@ export function editForm(store, { start, remember, tools }) {
   let project = '', basisId = '';
   store.on(['selected', 'results', 'project'], (state) => {
     const parent = parentOf(state);
-    fill(basis, parent ? text.edit.startFrom(parent.name || parent.to) : text.edit.startSource);
+    fill(basis, parent ? text.edit.startFrom(parent.name || parent.to || text.kinds[parent.kind]) : text.edit.startSource);
     const id = parent?.id ?? '', same = project === state.project?.id;
     if (same && id === basisId) return;
     // What the model is called goes with the model, unless a person calls it something else.

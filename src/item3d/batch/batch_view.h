@@ -61,7 +61,7 @@ class BatchView {
     bool take(const JobEvent& event);
 
     BatchFolder folder_;
-    LineReader jobs_, journals_;
+    AddedLines jobs_, journals_;
     std::vector<BatchEntry> entries_;
     std::unordered_map<std::string, std::size_t> by_id_, by_key_;
     std::size_t open_ = 0;

@@ -18,7 +18,7 @@ bool append_line(const fs::path& path, const std::string& line) {
     return ::close(file) == 0 && is_whole;
 }
 
-std::vector<std::string> LineReader::new_lines() {
+std::vector<std::string> AddedLines::new_lines() {
     std::error_code code;
     for (const auto& entry : fs::directory_iterator(folder_, code))
         if (entry.path().extension() == ".jsonl") read_.emplace(entry.path(), 0);

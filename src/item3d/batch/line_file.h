@@ -15,10 +15,10 @@ bool append_line(const std::filesystem::path& path, const std::string& line);
 
 /// Whole lines that were added to the files of a folder since the last call. Of a process that was
 /// killed while it wrote, the broken last line is never told.
-class LineReader {
+class AddedLines {
   public:
     /// Files of `folder` whose names end in .jsonl.
-    explicit LineReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    explicit AddedLines(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
     /// In the order of files' names, then of lines.
     std::vector<std::string> new_lines();

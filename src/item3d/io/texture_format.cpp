@@ -64,8 +64,9 @@ ImageCoding possible_coding(ImageCoding coding, const Image& image, bool must_be
 }  // namespace
 
 void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
-    for (auto& [index, material_edit] : edit.materials) {
-        const Material& material = model.materials[static_cast<std::size_t>(index)];
+    for (auto& entry : edit.materials) {
+        MaterialEdit& material_edit = entry.second;
+        const Material& material = model.materials[static_cast<std::size_t>(entry.first)];
         const Texture* base = texture_of(model, material.base_color_texture);
         const auto choose = [&](EditedTexture& texture, int slot, bool has_kept_channel) {
             const bool must_be_exact = has_kept_channel || material_edit.keeps_texels;

@@ -41,38 +41,81 @@ Vec3 point(const float* positions, unsigned int index) {
     return {positions[3 * index], positions[3 * index + 1], positions[3 * index + 2]};
 }
 
-/// The root of a vertex in a forest of parents, with shortened paths.
-std::size_t root_of(std::vector<std::size_t>& parent, std::size_t vertex) {
-    while (parent[vertex] != vertex)
-        vertex = parent[vertex] = parent[parent[vertex]];
-    return vertex;
-}
+/// The connected parts of a mesh, each named by one of its vertices.
+class Parts {
+  public:
+    explicit Parts(const TriangleMesh& mesh)
+        : positions_(mesh.positions.detach().contiguous()), indices_(indices_of(mesh)) {
+        parent_.resize(static_cast<std::size_t>(positions_.size(0)));
+        std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+        for (std::size_t i = 0; i < indices_.size(); i += 3) {
+            parent_[root_of(indices_[i])] = root_of(indices_[i + 1]);
+            parent_[root_of(indices_[i + 1])] = root_of(indices_[i + 2]);
+        }
+        for (std::size_t vertex = 0; vertex < parent_.size(); ++vertex)
+            parent_[vertex] = root_of(vertex);
+        area_.resize(parent_.size());
+        const float* p = positions_.const_data_ptr<float>();
+        for (std::size_t i = 0; i < indices_.size(); i += 3) {
+            const Vec3 a = point(p, indices_[i]);
+            area_[parent_[indices_[i]]] += glm::length(
+                glm::cross(point(p, indices_[i + 1]) - a, point(p, indices_[i + 2]) - a));
+        }
+    }
+
+    double area(std::size_t part) const { return area_[part]; }
+    double area_of_largest() const { return *std::max_element(area_.begin(), area_.end()); }
+
+    /// Of a value for each vertex; 0 where the index is no part's name.
+    std::vector<double> means_of(const double* values) const {
+        std::vector<double> sum(parent_.size()), count(parent_.size());
+        for (std::size_t vertex = 0; vertex < parent_.size(); ++vertex) {
+            sum[parent_[vertex]] += values[vertex];
+            count[parent_[vertex]] += 1;
+        }
+        for (std::size_t part = 0; part < sum.size(); ++part)
+            sum[part] /= std::max(1.0, count[part]);
+        return sum;
+    }
+
+    template <class IsKept>
+    TriangleMesh those(IsKept&& is_kept) const {
+        std::vector<unsigned int> kept;
+        for (std::size_t i = 0; i < indices_.size(); i += 3)
+            if (is_kept(parent_[indices_[i]]))
+                kept.insert(kept.end(), indices_.begin() + static_cast<std::ptrdiff_t>(i),
+                            indices_.begin() + static_cast<std::ptrdiff_t>(i + 3));
+        return compacted(positions_, kept);
+    }
+
+  private:
+    std::size_t root_of(std::size_t vertex) {
+        while (parent_[vertex] != vertex)
+            vertex = parent_[vertex] = parent_[parent_[vertex]];
+        return vertex;
+    }
+
+    at::Tensor positions_;
+    std::vector<unsigned int> indices_;
+    std::vector<std::size_t> parent_;
+    std::vector<double> area_;  ///< twice, of the parts
+};
 
 }  // namespace
 
 TriangleMesh without_specks(const TriangleMesh& mesh, double share) {
-    const at::Tensor positions = mesh.positions.detach().contiguous();
-    const float* p = positions.const_data_ptr<float>();
-    const auto indices = indices_of(mesh);
-    std::vector<std::size_t> parent(static_cast<std::size_t>(positions.size(0)));
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    for (std::size_t i = 0; i < indices.size(); i += 3) {
-        parent[root_of(parent, indices[i])] = root_of(parent, indices[i + 1]);
-        parent[root_of(parent, indices[i + 1])] = root_of(parent, indices[i + 2]);
-    }
-    std::vector<double> area(parent.size(), 0.0);
-    for (std::size_t i = 0; i < indices.size(); i += 3) {
-        const Vec3 a = point(p, indices[i]);
-        area[root_of(parent, indices[i])] +=
-            glm::length(glm::cross(point(p, indices[i + 1]) - a, point(p, indices[i + 2]) - a));
-    }
-    const double least = share * *std::max_element(area.begin(), area.end());
-    std::vector<unsigned int> kept;
-    for (std::size_t i = 0; i < indices.size(); i += 3)
-        if (area[root_of(parent, indices[i])] >= least)
-            kept.insert(kept.end(), indices.begin() + static_cast<std::ptrdiff_t>(i),
-                        indices.begin() + static_cast<std::ptrdiff_t>(i + 3));
-    return compacted(positions, kept);
+    const Parts parts(mesh);
+    const double least = share * parts.area_of_largest();
+    return parts.those([&](std::size_t part) { return parts.area(part) >= least; });
+}
+
+TriangleMesh without_ghosts(const TriangleMesh& mesh, const at::Tensor& shown, double fewest) {
+    const Parts parts(mesh);
+    const at::Tensor counts = shown.to(at::kDouble).contiguous();
+    const std::vector<double> means = parts.means_of(counts.const_data_ptr<double>());
+    return parts.those([&](std::size_t part) {
+        return means[part] >= fewest || parts.area(part) == parts.area_of_largest();
+    });
 }
 
 TriangleMesh simplified(const TriangleMesh& mesh, std::int64_t triangles) {

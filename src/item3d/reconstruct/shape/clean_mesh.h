@@ -16,6 +16,10 @@ struct TriangleMesh {
 /// pictures see go.
 TriangleMesh without_specks(const TriangleMesh& mesh, double share = 0.02);
 
+/// Parts besides the largest go whose vertices have less than `fewest` on average: what few
+/// pictures show, none of them can contradict. shown: [V], how many do.
+TriangleMesh without_ghosts(const TriangleMesh& mesh, const at::Tensor& shown, double fewest);
+
 /// At most about `triangles` triangles (meshoptimizer's quadric simplifier), and no vertex that is
 /// not used.
 TriangleMesh simplified(const TriangleMesh& mesh, std::int64_t triangles);

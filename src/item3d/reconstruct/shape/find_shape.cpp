@@ -23,6 +23,20 @@ constexpr std::int64_t smoothness_points_of_shape = 2048;
                      "masks and poses do not belong together, or the object is tiny");
 }
 
+/// [V]: in how many pictures' frames each vertex lies.
+at::Tensor views_that_show(const at::Tensor& positions, const std::vector<TargetView>& views) {
+    at::Tensor count = at::zeros({positions.size(0)});
+    for (const TargetView& view : views) {
+        const Mat4 clip = view.camera.world_to_clip(view.width(), view.height());
+        const auto row = [&](int r) {
+            return positions.matmul(at::tensor({clip[0][r], clip[1][r], clip[2][r]})) + clip[3][r];
+        };
+        const at::Tensor w = row(3);
+        count += (row(0).abs() < w).logical_and(row(1).abs() < w).to(at::kFloat);
+    }
+    return count;
+}
+
 double blend(double first, double last, int iteration, int iterations) {
     return first + (last - first) * static_cast<double>(iteration) / std::max(1, iterations);
 }
@@ -231,7 +245,9 @@ void ShapeSearch::load_state(const CheckpointReader& reader) {
 FoundShape ShapeSearch::shape() {
     const TriangleMesh mesh = field_->mesh();
     if (mesh.triangles.size(0) == 0) refuse_vanished_shape();
-    return {simplified(without_specks(mesh), options_.triangles), learning_.curves, triangles_, 0};
+    const TriangleMesh seen = without_ghosts(mesh, views_that_show(mesh.positions, views_),
+                                             0.5 * static_cast<double>(views_.size()));
+    return {simplified(without_specks(seen), options_.triangles), learning_.curves, triangles_, 0};
 }
 
 }  // namespace item3d

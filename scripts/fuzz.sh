@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# Runs each fuzz target of build-fuzz for a while, from the tests' own files and what earlier runs found.
+#
+#   scripts/fuzz.sh SECONDS [TARGET ...]
+#
+# Inputs that lead further are kept in build-fuzz/corpus/TARGET. What fails is left in build-fuzz/findings/TARGET-*, and the script
+# ends with an error: mend its kind, and put the file into tests/fuzz/corpus/TARGET.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+seconds=${1:?usage: scripts/fuzz.sh SECONDS [TARGET ...]}
+shift
+build=build-fuzz
+targets=("$@")
+if [ $# = 0 ]; then
+    for program in "$build"/tests/fuzz/fuzz_* "$build"/fuzz_*; do
+        [ -x "$program" ] && [ -f "$program" ] && targets+=("${program##*/fuzz_}")
+    done
+fi
+
+# Files of the tests by the endings that a target reads.
+seeds_of() {
+    case $1 in
+        gltf) echo 'glb gltf' ;;
+        obj | mtl | png | webp | ktx2 | tiff | xmp) echo "$1" ;;
+        jpeg) echo "jpg jpeg" ;;
+        radiance) echo hdr ;;
+        openexr) echo exr ;;
+        stb) echo 'bmp tga gif' ;;
+        image_packet) echo 'png jpg webp ktx2' ;;
+        cameras) echo json ;;
+        job_rows) echo 'csv jsonl' ;;
+        *) echo txt ;;
+    esac
+}
+
+failed=()
+mkdir -p "$build/findings"
+for target in "${targets[@]}"; do
+    program=$(find "$build" -maxdepth 3 -name "fuzz_$target" -type f -executable | head -1)
+    corpus=$build/corpus/$target seeds=$build/seeds/$target
+    rm -rf "$seeds"
+    mkdir -p "$corpus" "$seeds"
+    number=0
+    for ending in $(seeds_of "$target"); do
+        while read -r file; do
+            cp "$file" "$seeds/$((++number)).$ending"
+        done < <(find tests/data assets/demo -name "*.$ending" -size -200k)
+    done
+    log=$build/findings/$target.log
+    # Standard error of the target is closed: readers warn there.
+    if "$program" -max_total_time="$seconds" -rss_limit_mb=2048 -timeout=20 -max_len=65536 -close_fd_mask=3 \
+        -artifact_prefix="$build/findings/$target-" -print_final_stats=1 "$corpus" "$seeds" \
+        $([ -d "tests/fuzz/corpus/$target" ] && echo "tests/fuzz/corpus/$target") >"$log" 2>&1; then
+        printf '%-14s %s inputs, %s kept\n' "$target" \
+            "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" "$(ls "$corpus" | wc -l)"
+    else
+        failed+=("$target")
+        printf '%-14s FAILED: %s\n' "$target" "$(grep -m 1 -E 'ERROR|runtime error|terminate|Test unit written' "$log" || tail -n 1 "$log")"
+    fi
+    rm -rf /dev/shm/item3d_fuzz_*
+done
+if [ ${#failed[@]} -gt 0 ]; then
+    echo "findings are in $build/findings: ${failed[*]}" >&2
+    exit 1
+fi

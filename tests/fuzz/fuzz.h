@@ -1,0 +1,68 @@
+// What fuzz targets share: bytes go in, and what comes out is a result or an InputError.
+#pragma once
+
+#include "item3d/core/error.h"
+#include "item3d/core/files.h"
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace item3d::fuzz {
+
+using Target = int (*)(const std::uint8_t* data, std::size_t size);
+
+/// All targets of this program by name; empty where it is one target's own.
+inline std::map<std::string, Target>& all_targets() {
+    static std::map<std::string, Target> targets;
+    return targets;
+}
+
+/// Any other exception than an InputError ends the program, which is a finding.
+template <class Read>
+int read_or_refuse(Read&& read) {
+    try {
+        read();
+    } catch (const InputError&) {
+    }
+    return 0;
+}
+
+inline Bytes as_bytes(const std::uint8_t* data, std::size_t size) {
+    return {data, data + size};
+}
+
+inline std::string as_text(const std::uint8_t* data, std::size_t size) {
+    return {reinterpret_cast<const char*>(data), size};
+}
+
+/// A file in memory with this content, for readers of paths. The same file each time.
+inline std::filesystem::path as_file(const std::string& name, std::string_view content) {
+    static const std::filesystem::path folder =
+        "/dev/shm/item3d_fuzz_" + std::to_string(::getpid());
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / name, std::ios::binary) << content;
+    return folder / name;
+}
+
+}  // namespace item3d::fuzz
+
+/// Begins the function of a target, which reads `data` and returns 0. Where ITEM3D_FUZZ_ALONE is
+/// defined, a file with it is a program of libFuzzer; else it is one of all_targets().
+#ifdef ITEM3D_FUZZ_ALONE
+#define ITEM3D_FUZZ_TARGET(name, data, size) \
+    extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+#else
+#define ITEM3D_FUZZ_TARGET(name, data, size)                            \
+    static int fuzz_##name(const std::uint8_t* data, std::size_t size); \
+    static const bool fuzz_##name##_is_listed =                         \
+        item3d::fuzz::all_targets().emplace(#name, fuzz_##name).second; \
+    static int fuzz_##name(const std::uint8_t* data, std::size_t size)
+#endif
