@@ -65,10 +65,7 @@ std::vector<int> usable_core_numbers() {
 class Supervisor {
   public:
     Supervisor(const BatchFolder& folder, const SupervisorOptions& options)
-        : folder_(folder),
-          options_(options),
-          view_(folder),
-          workers_(static_cast<std::size_t>(options.workers)) {
+        : options_(options), view_(folder), workers_(static_cast<std::size_t>(options.workers)) {
         for (std::size_t i = 0; i < workers_.size(); ++i)
             workers_[i].log = folder.workers() / fmt::format("log-{}.txt", i + 1);
         threads_ =
@@ -216,7 +213,6 @@ class Supervisor {
             worker.program.reset();
     }
 
-    const BatchFolder& folder_;
     const SupervisorOptions& options_;
     BatchView view_;
     std::vector<LocalWorker> workers_;
