@@ -12,7 +12,7 @@ shift
 build=build-fuzz
 targets=("$@")
 if [ $# = 0 ]; then
-    for program in "$build"/tests/fuzz/fuzz_* "$build"/fuzz_*; do
+    for program in "$build"/fuzz_*; do
         [ -x "$program" ] && [ -f "$program" ] && targets+=("${program##*/fuzz_}")
     done
 fi
@@ -36,7 +36,7 @@ seeds_of() {
 failed=()
 mkdir -p "$build/findings"
 for target in "${targets[@]}"; do
-    program=$(find "$build" -maxdepth 3 -name "fuzz_$target" -type f -executable | head -1)
+    program=$build/fuzz_$target
     corpus=$build/corpus/$target seeds=$build/seeds/$target
     rm -rf "$seeds"
     mkdir -p "$corpus" "$seeds"

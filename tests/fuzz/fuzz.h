@@ -1,4 +1,4 @@
-// What fuzz targets share: bytes go in, and what comes out is a result or an InputError.
+// Helpers of all fuzz targets: bytes go in, and a result or an InputError comes out.
 #pragma once
 
 #include "item3d/core/error.h"
@@ -43,13 +43,32 @@ inline std::string as_text(const std::uint8_t* data, std::size_t size) {
     return {reinterpret_cast<const char*>(data), size};
 }
 
-/// A file in memory with this content, for readers of paths. The same file each time.
+/// A folder that goes with the program, in memory where the machine has such folders.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::filesystem::path parent = "/dev/shm";
+        if (!std::filesystem::exists(parent)) parent = std::filesystem::temp_directory_path();
+        path_ = parent / ("item3d_fuzz_" + std::to_string(::getpid()));
+        std::filesystem::create_directories(path_);
+    }
+    ~TemporaryFolder() {
+        std::error_code code;
+        std::filesystem::remove_all(path_, code);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+/// A file with this content, for readers of paths. The same file each time.
 inline std::filesystem::path as_file(const std::string& name, std::string_view content) {
-    static const std::filesystem::path folder =
-        "/dev/shm/item3d_fuzz_" + std::to_string(::getpid());
-    std::filesystem::create_directories(folder);
-    std::ofstream(folder / name, std::ios::binary) << content;
-    return folder / name;
+    static const TemporaryFolder folder;
+    std::ofstream(folder.path() / name, std::ios::binary) << content;
+    return folder.path() / name;
 }
 
 }  // namespace item3d::fuzz

@@ -2,7 +2,7 @@
 
 #include "tests/fuzz/fuzz.h"
 
-/// What is written is found again, and changes nothing but the packet.
+/// A packet that was written and is found again changes nothing when it is written once more.
 ITEM3D_FUZZ_TARGET(image_packet, data, size) {
     using namespace item3d;
     return fuzz::read_or_refuse([&] {

@@ -66,7 +66,7 @@ class Parts {
     double area(std::size_t part) const { return area_[part]; }
     double area_of_largest() const { return *std::max_element(area_.begin(), area_.end()); }
 
-    /// Of a value for each vertex; 0 where the index is no part's name.
+    /// Means of a value for each vertex, by the part; 0 where the index is no part's name.
     std::vector<double> means_of(const double* values) const {
         std::vector<double> sum(parent_.size()), count(parent_.size());
         for (std::size_t vertex = 0; vertex < parent_.size(); ++vertex) {

@@ -60,7 +60,8 @@ SmallMotion pose_step(const DrawnView& drawn, const at::Tensor& photograph,
     const at::Tensor on_image =
         at::stack({at_points(slope_along(mean, 1)), at_points(slope_along(mean, 0))}, 2);
     const int height = static_cast<int>(now.size(0)), width = static_cast<int>(now.size(1));
-    // What a pixel would show less of when the surface moves: [P, 4, 3].
+    // Change of each channel of the picture at a fixed pixel, negated, as the surface moves: [P, 4,
+    // 3].
     const at::Tensor slope =
         on_image.matmul(pixel_slopes(drawn.camera, width, height, drawn.position));
     const at::Tensor arm = (drawn.position - centre).unsqueeze(1).expand_as(slope);

@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// What a camera drew of the object, where it is now.
+/// A picture of the object by a camera, with the places that it shows.
 struct DrawnView {
     Camera camera;
     at::Tensor image;     ///< [1, H, W, 4] premultiplied linear RGB and coverage

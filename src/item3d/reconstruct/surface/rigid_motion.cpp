@@ -13,9 +13,12 @@ at::Tensor rotation_matrix(const at::Tensor& axis) {
 
 }  // namespace
 
+at::Tensor RigidMotion::moved(const at::Tensor& positions) const {
+    return (positions - centre).matmul(rotation.t()) + (centre + translation);
+}
+
 Geometry RigidMotion::moved(Geometry geometry) const {
-    geometry.positions =
-        (geometry.positions - centre).matmul(rotation.t()) + (centre + translation);
+    geometry.positions = moved(geometry.positions);
     geometry.normals = geometry.normals.matmul(rotation.t());
     return geometry;
 }

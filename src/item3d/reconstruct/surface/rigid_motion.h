@@ -14,6 +14,7 @@ struct RigidMotion {
     at::Tensor translation;  ///< t, [3]
     at::Tensor centre;       ///< c, [3]
 
+    at::Tensor moved(const at::Tensor& positions) const;
     /// Positions and normals moved.
     Geometry moved(Geometry geometry) const;
     /// Positions, normals and view directions of what was drawn of moved(), back where they were:

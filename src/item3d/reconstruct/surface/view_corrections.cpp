@@ -123,7 +123,7 @@ void ViewCorrections::update_motion(std::size_t view, const DrawnView& seen,
     const at::NoGradGuard no_gradient;
     const RigidMotion now = motion(view);
     DrawnView drawn = seen;
-    drawn.position = (seen.position - centre_).matmul(now.rotation.t()) + centre_ + now.translation;
+    drawn.position = now.moved(seen.position);
     const SmallMotion step = pose_step(drawn, photograph, centre_, radius_);
     rotations_[view] += step_taken * step.rotation;
     translations_[view] += step_taken * step.translation;

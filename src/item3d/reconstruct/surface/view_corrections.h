@@ -42,8 +42,8 @@ class ViewCorrections {
 
     /// Undefined tensors where poses are kept.
     RigidMotion motion(std::size_t view) const;
-    /// Moves the view's camera part of the way to its photograph (pose_step()). seen: drawn with
-    /// motion(view); surface: its covered pixels, positions where the object is in the world.
+    /// Moves the view's camera half of the way to its photograph (pose_step()). seen: drawn with
+    /// motion(view), its positions moved back (RigidMotion::move_back()).
     void update_motion(std::size_t view, const DrawnView& seen, const at::Tensor& photograph);
     /// Square of the motion, so that what no picture shows stays as it was; 0 where poses are kept.
     at::Tensor motion_loss(std::size_t view) const;
