@@ -273,6 +273,9 @@ TEST_F(StudioHttp, StreamsEventsAndRepeatsThem) {
               std::string::npos);
     EXPECT_NE(listen({{"Last-Event-ID", "5"}}, "event: reset").find("event: reset"),
               std::string::npos);
+    // A page that is cut off before its first event names this one.
+    const std::string id = "id: " + std::to_string(studio_->events().last()) + "\n\n";
+    EXPECT_NE(listen({}, "\n\n").find(id), std::string::npos);
 }
 
 TEST_F(StudioHttp, IsTheOnlyOneInItsFolder) {

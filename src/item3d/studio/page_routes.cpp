@@ -91,7 +91,9 @@ void answer_events(Studio& studio, const HttpRequest& request, HttpResponse& res
             if (studio.events().is_closed()) return false;
             std::string text;
             if (std::exchange(*is_first, false))
-                text = "retry: 1000\n\n: hello\n\n";
+                // The id alone is no event, and a page that is cut off before the first one knows
+                // where to go on.
+                text = "retry: 1000\nid: " + std::to_string(*after) + "\n\n";
             else
                 text = studio.events().wait(*after, heartbeat);
             return sink.write(text.data(), text.size());
