@@ -39,7 +39,7 @@ configure: setup
 	@cmake --preset release --log-level=WARNING
 
 build: configure
-	@$(BUILD) --target item3d item3d-edit item3d-reconstruct item3d-train item3d-bench item3d-compare item3d-study item3d-studio item3d_ktx2
+	@$(BUILD) --target item3d item3d-edit item3d-reconstruct item3d-train item3d-bench item3d-compare item3d-study item3d-studio item3d_ktx2 item3d_manual
 
 demo: configure
 	@$(BUILD) --target item3d item3d-edit

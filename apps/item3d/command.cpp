@@ -1,5 +1,6 @@
 #include "apps/item3d/command.h"
 
+#include "apps/item3d/command_help.h"
 #include "apps/item3d/commands.h"
 #include "item3d/core/error.h"
 #include "item3d/core/progress.h"
@@ -41,6 +42,12 @@ at::Device choose_device(const std::string& name) {
     return first_cuda;
 }
 
+/// "prior train"
+std::string name_of(const CLI::App& command) {
+    const std::string name = full_name(command);
+    return name.substr(name.find(' ') + 1);
+}
+
 std::string described(const std::string& name) {
     const CommandEntry* entry = find_command(name);
     ITEM3D_CHECK(entry, "a command that commands.h does not list");
@@ -51,18 +58,21 @@ std::string described(const std::string& name) {
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
     const std::string group = "Common options";
-    command.add_flag("--quiet", options.quiet, "Say nothing but warnings and errors")->group(group);
+    command.add_flag("--quiet", options.quiet, "Print warnings and errors only")->group(group);
     command.add_flag("--json", options.json, "Print the result as one JSON object on stdout")
         ->group(group);
-    command.add_option("--threads", options.threads, "CPU threads; without it, one for each core")
+    command.add_option("--threads", options.threads, "CPU threads. Without it: one for each core")
         ->check(CLI::Range(1, 1024))
         ->group(group);
     command
         .add_option("--progress-file", options.progress_file,
-                    "A file in which stage, steps done and seconds left are renewed as JSON while "
-                    "the command works")
+                    "File for the progress as JSON (stage, steps, seconds left), renewed while the "
+                    "command runs")
+        ->type_name("FILE")
         ->group(group);
-    command.add_option("--device", options.device, "What to compute on: cpu, cuda, or auto")
+    command
+        .add_option("--device", options.device,
+                    "Device to compute on; auto takes CUDA where there is a device")
         ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
         ->capture_default_str()
         ->group(group);
@@ -71,6 +81,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& description,
                       CommonOptions& options) {
     CLI::App* command = app.add_subcommand(name, description);
+    use_help(*command, command_help(name_of(*command)));
     add_common_options(*command, options);
     return command;
 }
@@ -80,7 +91,9 @@ CLI::App* add_command(CLI::App& app, const std::string& name, CommonOptions& opt
 }
 
 CLI::App* add_command_group(CLI::App& app, const std::string& name) {
-    return app.add_subcommand(name, described(name));
+    CLI::App* group = app.add_subcommand(name, described(name));
+    use_help(*group, command_help(name));
+    return group;
 }
 
 at::Device start_command(const CommonOptions& options) {

@@ -1,5 +1,7 @@
 #include "apps/item3d/program.h"
 
+#include "apps/item3d/help.h"
+#include "apps/item3d/help_description.h"
 #include "item3d/core/format.h"
 
 #include <cstdio>
@@ -7,10 +9,14 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <string_view>
 #include <system_error>
 
 namespace item3d {
 namespace {
+
+/// For scripts/reference.py, not for people.
+constexpr std::string_view describe_commands = "--describe-commands";
 
 /// "item3d edit", as far as the command line got.
 std::string command_of(const CLI::App& app) {
@@ -47,8 +53,13 @@ int fail_out_of_memory(const std::string& lacking) {
 int parse_and_run(int argc, char** argv, std::initializer_list<AddCommand> add_commands) {
     CLI::App app("Edits the look of textured 3D models from two sentences.", "item3d");
     app.require_subcommand(1);
+    use_help(app, {});
     for (const AddCommand add_command : add_commands)
         add_command(app);
+    if (argc == 2 && argv[1] == describe_commands) {
+        fmt::print("{}\n", command_description(app)["commands"].dump());
+        return static_cast<int>(ExitCode::done);
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

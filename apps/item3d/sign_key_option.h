@@ -20,9 +20,10 @@ struct SignKeyOption {
 };
 
 inline void add_sign_key(CLI::App& command, SignKeyOption& option) {
-    command.add_option("--sign-key", option.path,
-                       "Ed25519 private key in PEM (openssl genpkey -algorithm ed25519) that signs "
-                       "what is written; item3d provenance --public-key verifies it");
+    command
+        .add_option("--sign-key", option.path,
+                    "Ed25519 private key in PEM, which signs the output (docs/provenance.md)")
+        ->type_name("FILE");
 }
 
 }  // namespace item3d

@@ -183,10 +183,10 @@ def program():
     ('caption', item3d.CaptionSettings), ('region', item3d.RegionSettings),
     ('layers', item3d.LayersSettings)])
 def test_settings_are_the_options(program, command, kind):
-    text = subprocess.run([program, command, '--help'], capture_output=True, text=True, check=True).stdout
-    options = set(re.findall(r'^  (?:-\w,)?--([a-z0-9-]+)', text, re.MULTILINE))
+    text = subprocess.run([program, command, '--help-all' if command in ('edit', 'reconstruct', 'relight') else '--help'], capture_output=True, text=True, check=True).stdout
+    options = set(re.findall(r'^  (?:-\w, |    )--([a-z0-9-]+)', text, re.MULTILINE))
     fields = {f.metadata.get('option', f.name.replace('_', '-')) for f in dataclasses.fields(kind)}
-    own = {'help', 'json', 'progress-file', 'quiet', 'output', 'plan'}
+    own = {'help', 'help-all', 'json', 'progress-file', 'quiet', 'output', 'plan'}
     arguments = {'from', 'to'} if command in ('edit', 'score') else set()
     assert fields == options - own - arguments
 

@@ -161,18 +161,22 @@ void add_bench_render(CLI::App& app) {
     auto options = std::make_shared<BenchRenderCommand>();
     CLI::App* command =
         add_command(app, "render", "Milliseconds of each stage of the renderer", *options);
-    command->add_option("--model", options->models,
-                        "Files to draw; without it, the demo's mug and spheres of up to a million "
-                        "triangles");
-    command->add_option("--size", options->sizes,
-                        "WxH in pixels, one or several; without it, 64, 256 and 512 squared");
     command
-        ->add_option("--light", options->light,
-                     "studio, noon, sunset, overcast, night, or an equirectangular .hdr or .exr")
+        ->add_option(
+            "--model", options->models,
+            "Models to draw. Without it: the demo's mug, and spheres of up to a million triangles")
+        ->type_name("FILE");
+    command
+        ->add_option("--size", options->sizes,
+                     "Size in pixels. Without it: 64, 256 and 512 squared")
+        ->type_name("WxH");
+    command
+        ->add_option(
+            "--light", options->light,
+            "Light: studio, noon, sunset, overcast, night, or an equirectangular .hdr or .exr file")
+        ->type_name("LIGHT")
         ->capture_default_str();
-    command
-        ->add_option("--repeats", options->repeats,
-                     "Runs of each, after one that does not count; the median is shown")
+    command->add_option("--repeats", options->repeats, "Runs of each; the median is shown")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     command->callback([options] { run_bench_render(*options, start_command(*options)); });

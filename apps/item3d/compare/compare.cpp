@@ -137,54 +137,57 @@ void add_compare_command(CLI::App& app) {
     auto options = std::make_shared<CompareCommand>();
     CLI::App* command = add_command(app, "compare", *options);
     command->add_option("CASES", options->cases,
-                        "JSON list or CSV file of cases: model, from, to, instruction and other "
-                        "options of edit; without it, those of the suite");
+                        "Cases as a JSON list or CSV: model, from, to, instruction and other "
+                        "options of edit. Without it: those of the suite");
     command
         ->add_option("-o,--output", options->output,
-                     "Folder for the runs, table.csv, table.tex and index.html; what is there "
-                     "already is kept")
+                     "Folder for the runs, table.csv, table.tex and index.html; runs that are "
+                     "there are kept")
+        ->type_name("FOLDER")
         ->required();
     command
         ->add_option("--suite", options->suite,
-                     "What is compared: methods, quality, direction, adjustment, guidance, "
-                     "relighting, lights or 2d; it brings methods, cases and pictures")
+                     "Suite: methods, quality, direction, adjustment, guidance, relighting, "
+                     "lights, 2d. It brings methods, cases and pictures")
         ->capture_default_str();
     command
         ->add_option("--mesh", options->meshes,
-                     "NOUN=FILE for the cases of quality, direction and guidance, beside the "
-                     "demo's mug; may be given several times")
+                     "Further mesh for the cases of quality, direction and guidance")
+        ->type_name("NOUN=FILE")
         ->allow_extra_args(false);
     command
         ->add_option("--rows", options->rows,
-                     "Rows of the U-Net, forward, that each edit of --suite guidance gets")
+                     "U-Net rows, forward, of each edit of --suite guidance")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
     command
         ->add_option("--lights", options->lights,
-                     "Presets or files, with commas: each result is drawn in these too")
+                     "Further lights to draw each result in: presets or files")
+        ->type_name("LIGHT,...")
         ->delimiter(',');
     command
-        ->add_option(
-            "--methods", options->methods,
-            "Of item3d edit --method help, or of the suite's, with commas; without it, all "
-            "of the suite's, or all that the prior can run")
+        ->add_option("--methods", options->methods,
+                     "Methods (`item3d edit --method help`). Without it: those of the suite, or "
+                     "all that the prior can run")
+        ->type_name("NAME,...")
         ->delimiter(',');
     command
         ->add_option("--prior", options->priors,
-                     "A folder or a name; may be given several times; without it, the embedded "
-                     "one")
+                     "Diffusion model, by folder or name. Without it: the embedded one")
+        ->type_name("PRIOR")
         ->allow_extra_args(false);
     command
         ->add_option("--with", options->settings,
-                     "NAME=VALUE: an option of item3d edit for all cases, as iterations=100; may "
-                     "be given several times")
+                     "Option of edit for all cases, such as iterations=100")
+        ->type_name("NAME=VALUE")
         ->allow_extra_args(false);
-    command->add_option("--seeds", options->seeds, "0..2, or numbers with commas")
+    command->add_option("--seeds", options->seeds, "Seeds: 0..2, or numbers with commas")
+        ->type_name("SEEDS")
         ->capture_default_str();
     command
         ->add_option("--workers", options->workers,
                      "Edits at a time, as far as memory allows; they share the cores, so that "
-                     "seconds are those of a busy machine")
+                     "their seconds are those of a busy machine")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
     command->callback([options] {

@@ -292,10 +292,9 @@ std::shared_ptr<StatusCommand> add_folder_command(CLI::App& batch, const std::st
     CLI::App* command = add_command(batch, name, description, *options);
     command->add_option("DIR", options->folder, "The folder of a batch")->required();
     if (name == "report")
-        command->add_flag(
-            "--variants", options->variants,
-            "Write variants/MODEL.glb as well: all edits of a model that are done, as "
-            "looks of one file");
+        command->add_flag("--variants", options->variants,
+                          "At the end, write variants/MODEL.glb for each model: its edits as looks "
+                          "of one file (KHR_materials_variants)");
     if (name == "remove")
         command
             ->add_option("JOB", options->jobs,
@@ -342,42 +341,50 @@ void add_batch_command(CLI::App& app) {
     auto options = std::make_shared<BatchCommand>();
     CLI::App* command = add_command(app, "batch", *options);
     command->add_option("JOBS", options->jobs,
-                        "CSV or JSON Lines: model, from, to, name, after, command (edit or "
+                        "Jobs as CSV or JSON Lines: model, from, to, name, after, command (edit or "
                         "relight), and any option of that command");
-    command->add_option("-o,--output", options->output,
-                        "Folder of the batch; one that is there gets the jobs that are new");
+    command
+        ->add_option("-o,--output", options->output,
+                     "Folder of the batch; a batch that exists gets the jobs that are new")
+        ->type_name("FOLDER");
     const auto each = [](CLI::Option* option) { option->allow_extra_args(false); };
-    command->add_option("--models", options->matrix.models,
-                        "Models in place of JOBS: files, or a pattern in quotes ('shop/*.glb')");
+    command
+        ->add_option("--models", options->matrix.models,
+                     "Models in place of JOBS: files, or a pattern in quotes ('shop/*.glb')")
+        ->type_name("FILE");
     each(command->add_option("--from", options->matrix.from,
-                             "Sentence of the models as they are, in which {name} is the file's "
-                             "name; once, or as often as --to"));
+                             "Sentence of the models as they are, in which {name} is the name of "
+                             "the file; once, or as often as --to"));
     each(command->add_option("--to", options->matrix.to,
-                             "Sentence of what they shall become; may be given several times"));
-    command->add_option("--seeds", options->seeds,
-                        "0..2, or numbers with commas: each job with each seed");
+                             "Sentence of the models as they should be"));
+    command
+        ->add_option("--seeds", options->seeds, "Seeds of each job: 0..2, or numbers with commas")
+        ->type_name("SEEDS");
     command->add_flag(
         "--variants", options->variants,
         "At the end, write variants/MODEL.glb of each model: its edits as looks of one "
         "file (KHR_materials_variants)");
-    each(command->add_option("--with", options->values,
-                             "NAME=VALUE: an option for all jobs, as iterations=100; a name given "
-                             "several times is every job with each value"));
+    each(command
+             ->add_option("--with", options->values,
+                          "Option for all jobs, such as iterations=100; a name given several "
+                          "times: each job with each value")
+             ->type_name("NAME=VALUE"));
     command
         ->add_option("--workers", options->workers,
-                     "Processes on this machine, as far as memory allows, which share its cores; "
-                     "0 adds jobs and leaves them to others (item3d batch work)")
+                     "Worker processes on this machine, as far as memory allows, which share its "
+                     "cores; 0: only add the jobs, for `item3d batch work` elsewhere")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
-    command->add_flag("--slurm", options->slurm,
-                      "Submit --workers workers of --threads CPUs to Slurm, as tasks of an array "
-                      "(sbatch), and return");
-    each(command->add_option("--sbatch-option", options->sbatch_options,
-                             "An option of sbatch for --slurm, as --sbatch-option=--time=2:00:00; "
-                             "may be given several times"));
+    command->add_flag(
+        "--slurm", options->slurm,
+        "Submit --workers workers of --threads CPUs to Slurm as an array (sbatch), and return");
+    each(command
+             ->add_option("--sbatch-option", options->sbatch_options,
+                          "Option of sbatch for --slurm: --sbatch-option=--time=2:00:00")
+             ->type_name("OPTION"));
     command
         ->add_option("--gpus-per-worker", options->gpus_per_worker,
-                     "GPUs that --slurm asks for each worker, which computes on one")
+                     "GPUs of each worker that --slurm starts")
         ->check(CLI::Range(0, 1))
         ->capture_default_str();
     add_limits(*command, options->limits);

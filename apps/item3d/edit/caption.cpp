@@ -103,30 +103,35 @@ void add_caption_command(CLI::App& app) {
                      "A .png, .jpg, .hdr or .exr picture, or a .glb, .gltf or .obj model")
         ->required();
     add_texture_folders(*command, options->texture_folders);
-    command->add_option(
-        "--captioner", options->captioner,
-        "A folder with BLIP or BLIP-2 (OPT) in the transformers layout; without it, "
-        "the embedded prior's captioner");
+    command
+        ->add_option("--captioner", options->captioner,
+                     "BLIP or BLIP-2 (OPT) in the transformers layout. Without it: the embedded "
+                     "prior's captioner")
+        ->type_name("FOLDER");
     command->add_option("--prefix", options->caption.prefix,
-                        "What the caption goes on from, as in \"a photo of\"");
-    command->add_option("--beams", options->caption.beams, "Of the beam search; 1: greedy")
+                        "Beginning of the caption: \"a photo of\"");
+    command->add_option("--beams", options->caption.beams, "Beams of the search; 1: greedy")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
     command
         ->add_option("--max-tokens", options->caption.max_new_tokens,
-                     "Longest caption, in tokens behind the prefix")
+                     "Tokens behind the prefix, at most")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command
         ->add_option("--views", options->views,
-                     "Around a model, which the caption is made from together")
+                     "Views around a model, from which one caption is made")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
     command
-        ->add_option("--light", options->light,
-                     "On a model: studio, noon, sunset, overcast, night, or an .hdr or .exr file")
+        ->add_option(
+            "--light", options->light,
+            "Light on a model: studio, noon, sunset, overcast, night, or an .hdr or .exr file")
+        ->type_name("LIGHT")
         ->capture_default_str();
-    command->add_option("--precision", options->precision, "Of the networks: auto, fp32 or bf16")
+    command
+        ->add_option("--precision", options->precision,
+                     "Precision of the networks: auto, fp32, bf16")
         ->capture_default_str();
     command->callback([options] {
         const at::Device device = start_command(*options);

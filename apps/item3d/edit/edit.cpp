@@ -212,70 +212,95 @@ nlohmann::json perform_edit(EditCommandOptions& options, EditSession& session) {
     return options.plan_file.empty() ? edit_once(options, session) : edit_by_plan(options);
 }
 
+namespace {
+
+/// Models that an edit runs beside its prior's U-Net.
+void add_network_options(CLI::App& command, EditRequest& request) {
+    const auto add = [&command](const char* name, std::filesystem::path& folder, const char* help) {
+        command.add_option(name, folder, help)->type_name("FOLDER")->group("Networks");
+    };
+    add("--clip", request.clip,
+        "CLIP model in the transformers layout, for the scores. Without it: the prior's own, if it "
+        "has one");
+    add("--captioner", request.captioner,
+        "BLIP or BLIP-2 in the transformers layout, for --adjust caption. Without it: the prior's "
+        "own");
+    add("--segmenter", request.segmenter,
+        "CLIPSeg in the transformers layout, for --region words=. Without it: the prior's own, "
+        "else its cross-attention");
+    add("--inpainting", request.inpainting,
+        "Inpainting prior (9 input channels), for --method texture. Without it: latents are "
+        "blended");
+    add("--instruct", request.instruct,
+        "InstructPix2Pix in the diffusers layout, for --method in2n. Without it: the prior's own");
+    add("--teacher", request.teacher,
+        "CLIP model that --method clip follows. Without it: that of --clip");
+    command.add_option("--precision", request.precision, "Precision of the networks")
+        ->check(CLI::IsMember(precision_names()))
+        ->capture_default_str()
+        ->group("Networks");
+    command
+        .add_option("--memory", request.memory,
+                    "low takes less memory and more time; auto takes low where high does not fit")
+        ->check(CLI::IsMember({"auto", "low", "high"}))
+        ->capture_default_str()
+        ->group("Networks");
+}
+
+}  // namespace
+
 void add_edit_options(CLI::App& command, EditCommandOptions& options) {
     EditRequest& request = options.request;
     command.add_option("MODEL", request.model, "A .glb, .gltf or .obj file")->required();
-    add_setting(command, options.overrides, "from");
-    add_setting(command, options.overrides, "to");
-    command.add_option("--plan", options.plan_file,
-                       "A JSON file of several edits, made one after the other; instead of --from "
-                       "and --to");
-    command.add_option("-o,--output", request.output, "Folder for everything that is made")
-        ->required();
-    command.add_option("--prior", options.prior,
-                       "Diffusion model: a folder in the diffusers layout, or a name (item3d "
-                       "prior pull); without it, the embedded one");
-    command.add_option("--clip", request.clip,
-                       "CLIP model in the transformers layout: scores of the result, as of score; "
-                       "without it, the one that the prior brings along, if any");
-    command.add_option("--captioner", request.captioner,
-                       "BLIP or BLIP-2 in the transformers layout, for --adjust caption; without "
-                       "it, the one that the prior brings along");
-    command.add_option("--inpainting", request.inpainting,
-                       "Prior with 9 input channels that inpaints, for --method texture; without "
-                       "it, latents are blended");
-    command.add_option("--instruct", request.instruct,
-                       "InstructPix2Pix in the diffusers layout, for --method in2n; without it, "
-                       "the one that the prior brings along, else the prior must be one");
-    command.add_option("--teacher", request.teacher,
-                       "CLIP model that --method clip follows; without it, the one of --clip");
-    command.add_option("--segmenter", request.segmenter,
-                       "CLIPSeg in the transformers layout, for --region words=...; without it, "
-                       "the one that the prior brings along, else the prior's cross-attention");
-    command.add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
+    add_setting(command, options.overrides, "from")->group("Options");
+    add_setting(command, options.overrides, "to")->group("Options");
+    command
+        .add_option(
+            "--plan", options.plan_file,
+            "JSON file of several edits, made one after the other; in place of --from and --to")
+        ->type_name("FILE");
+    command
+        .add_option("-o,--output", request.output,
+                    "Folder for the model, its textures and the report")
+        ->required()
+        ->type_name("FOLDER");
+    command
+        .add_option("--prior", options.prior,
+                    "Diffusion model: a folder in the diffusers layout, or a name (`item3d prior "
+                    "list`). Without it: the "
+                    "embedded one")
+        ->type_name("PRIOR");
+    command.add_flag("--resume", request.resume,
+                     "Continue from the checkpoint in the output folder");
     add_texture_folders(command, request.texture_folders);
-    add_sign_key(command, options.sign_key);
     command.add_flag("--allow-missing-textures", request.allow_missing_textures,
                      "Edit materials whose base colour texture cannot be read as if they had none");
-    command.add_option("--precision", request.precision, "Of the networks")
-        ->check(CLI::IsMember(precision_names()))
-        ->capture_default_str();
-    command
-        .add_option("--memory", request.memory,
-                    "low takes less memory and more time; auto takes low where the usual does not "
-                    "fit")
-        ->check(CLI::IsMember({"auto", "low", "high"}))
-        ->capture_default_str();
     command
         .add_option("--picture-size", request.picture_pixels,
-                    "Edge in pixels of the pictures in the report; its turntable has 3/4 of it")
+                    "Edge of the report's pictures, in pixels")
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();
+    add_sign_key(command, options.sign_key);
     add_with_help(command, options.overrides, "method", print_methods);
     add_with_help(command, options.overrides, "guidance", print_guidance_kinds);
     add_settings(command, options.overrides);
+    add_network_options(command, request);
 }
 
 void add_edit_command(CLI::App& app) {
     auto options = std::make_shared<EditCommandOptions>();
     CLI::App* command = add_command(app, "edit", *options);
     add_edit_options(*command, *options);
-    command->add_option("--live", options->request.live,
-                        "A folder in which small textures of the edit so far are renewed about "
-                        "every second, for programs that show them");
+    command
+        ->add_option("--live", options->request.live,
+                     "Folder for small textures of the running edit, renewed about every second "
+                     "for programs that show "
+                     "them")
+        ->type_name("FOLDER");
     command->footer(
-        "Several processes, machines or devices make one edit where RANK, WORLD_SIZE, MASTER_ADDR "
-        "and MASTER_PORT are set, as torchrun does (docs/clusters.md).");
+        "Defaults are the program's; a prior may bring others (`item3d prior info`).\nSeveral "
+        "processes or machines "
+        "share one edit under torchrun (docs/clusters.md).");
     command->callback([options] {
         options->request.command = command_line();
         run_edit(*options);

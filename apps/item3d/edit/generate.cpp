@@ -234,49 +234,54 @@ void run_generate(const GenerateCommand& command, at::Device device) {
 void add_generate_command(CLI::App& app) {
     auto options = std::make_shared<GenerateCommand>();
     CLI::App* command = add_command(app, "generate", *options);
-    command->add_option("PROMPT", options->generate.prompt, "What to draw, as in \"a golden vase\"")
+    command
+        ->add_option("PROMPT", options->generate.prompt, "Text of what to draw: \"a golden vase\"")
         ->required();
     command
         ->add_option("-o,--output", options->output,
-                     "A .png file; of several pictures a sheet, and each with a number behind its "
-                     "name")
+                     "A .png file; of several pictures a sheet, and each picture with a number "
+                     "behind its name")
+        ->type_name("FILE")
         ->required();
-    command->add_option(
-        "--prior", options->prior,
-        "A folder in the diffusers layout, or a name (item3d prior pull); without it, "
-        "the prior that comes along");
+    command
+        ->add_option("--prior", options->prior,
+                     "Diffusion model: a folder in the diffusers layout, or a name (`item3d prior "
+                     "list`). Without it: the embedded one")
+        ->type_name("PRIOR");
     command->add_option_function<std::string>(
         "--negative-prompt",
         [options](const std::string& text) { options->generate.negative_prompt = text; },
-        "What not to draw");
+        "Prompt to stay away from");
     std::vector<std::string> schedulers;
     for (const SamplerKind& kind : sampler_kinds())
         schedulers.push_back(kind.name);
     command
         ->add_option("--scheduler", options->generate.scheduler,
-                     "How to sample, see below; without it, as the prior's folder says")
+                     "Sampler, see below. Without it: the one in the prior's folder")
+        ->type_name("NAME")
         ->check(CLI::IsMember(schedulers));
     command
         ->add_option("--steps", options->steps,
-                     "Denoising steps; without it, the prior's or the scheduler's usual number")
+                     "Denoising steps. Without it: the number of the prior or of the scheduler")
         ->check(CLI::Range(1, 1000));
     command
         ->add_option("--guidance-scale,--cfg", options->guidance_scale,
                      "Weight of the prompt (classifier-free guidance); without it, the prior's own")
         ->check(number_between(0.1f, 1000));
-    command->add_option("--seed", options->generate.seed, "Of the noise that it starts from")
+    command->add_option("--seed", options->generate.seed, "Seed of the noise")
         ->capture_default_str();
-    command->add_option("--count", options->generate.count, "How many pictures")
+    command->add_option("--count", options->generate.count, "Number of pictures")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    command->add_option("--size", options->size,
-                        "WxH in pixels, multiples of 8 for most priors; without it, the size that "
-                        "the prior was trained on");
+    command
+        ->add_option("--size", options->size,
+                     "Size in pixels, multiples of 8 for most priors. Without it: the size that "
+                     "the prior was trained on")
+        ->type_name("WxH");
     command->add_option(
         "--like", options->like,
-        "A model whose shape, seen as render sees it, the picture shall have. Without "
-        "it the embedded prior takes a shape of its own for a thing that it knows; "
-        "none: the prompt alone says what is there");
+        "Model whose shape the picture shows, as `item3d render` shows it. Without it: the "
+        "embedded prior takes a shape of its own for a noun that it knows; none: no shape");
     add_extras_options(*command, options->extras);
     command->footer(list_schedulers());
     command->callback([options] { run_generate(*options, start_command(*options)); });

@@ -53,32 +53,30 @@ void add_layers_command(CLI::App& app) {
         ->required();
     command
         ->add_option("LAYER", options->layers,
-                     "LAYER[:STRENGTH[:CHANNEL,...]]: a layer.safetensors, or the folder of an "
-                     "edit; how much of it, from -1 to 2 (1: as the edit, 0: nothing); and which "
-                     "of base_color, occlusion, roughness, metallic, normal (all of them). May be "
-                     "given several times")
+                     "LAYER[:STRENGTH[:CHANNEL,...]]: a layer.safetensors or the folder of an "
+                     "edit; its strength from -1 to 2 (1: as edited, 0: not at all); its channels "
+                     "of base_color, occlusion, roughness, metallic, normal (all of them)")
         ->required();
-    command->add_option("-o,--output", request.output, "The .glb, .vrm, .gltf or .obj to write")
+    command->add_option("-o,--output", request.output, "Model to write: .glb, .vrm, .gltf or .obj")
+        ->type_name("FILE")
         ->required();
     add_texture_folders(*command, request.texture_folders);
     add_sign_key(*command, options->sign_key);
     command
         ->add_option("--texture-format", options->texture_format,
-                     "Of the textures that are written; without it, as the edits wrote them")
+                     "Format of the written textures. Without it: that of the edits")
         ->check(CLI::IsMember({"keep", "png", "jpeg", "webp", "ktx2"}));
     command
         ->add_option("--texture-size", request.texture_size,
-                     "Longest edge of the textures that the layers change, which are baked anew "
-                     "from the layers' fields; without it, as they are")
+                     "Longest edge of the textures that the layers change, which are baked anew. "
+                     "Without it: as they are")
         ->check(CLI::Range(16, 8192));
     request.rebake = rebake_layer;
     command->footer(
-        "\nThe result is the model's textures plus the sum of strength times difference, rounded "
-        "once.\nOne layer at strength 1 gives the edit's own model.glb, strength 0 the model as it "
-        "is.\nWhere the model's textures have other sizes than the edited one's, or another UV "
-        "map, "
-        "layers are\nbaked anew from the neural fields that they hold.\n\n  item3d layers mug.glb "
-        "golden:0.5 rusty:1:roughness,metallic -o mixed.glb\n");
+        "The result is the model's textures plus the sum of strength times difference, rounded "
+        "once.\n"
+        "One layer at strength 1 gives the edit's own model.glb, strength 0 the model as it is.\n"
+        "Layers of another texture size or UV map are baked anew from their neural fields.");
     command->callback([options] { run_layers(*options); });
 }
 

@@ -77,12 +77,13 @@ void add_light_command(CLI::App& app) {
         ->add_option("LIGHT", options->light,
                      "studio, noon, sunset, overcast, night, or an .hdr or .exr file")
         ->required();
-    command->add_option(
-        "-o,--output", options->output,
-        "An equirectangular .hdr or .exr, or a .png to look at; without it the light "
-        "is described");
+    command
+        ->add_option("-o,--output", options->output,
+                     "Equirectangular .hdr or .exr, or a .png to look at. Without it: the light is "
+                     "described")
+        ->type_name("FILE");
     command->add_flag("--describe", options->describe,
-                      "Say where it comes from, its colour and its range, also with -o");
+                      "Print direction, colour and range of the light, also with -o");
     add_light_options(*command, options->change);
     command->callback([options] {
         start_command(*options);

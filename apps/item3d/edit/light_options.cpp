@@ -96,30 +96,29 @@ CLI::Validator number_between(float low, float high) {
 
 void add_light_options(CLI::App& command, LightOptions& options) {
     const char* const group = "Changing the light, in this order";
-    command
-        .add_option("--layout", options.layout,
-                    "Of a light file: auto (by its shape), equirectangular, cross, strip, angular")
+    command.add_option("--layout", options.layout, "Layout of a light file; auto: by its shape")
         ->check(CLI::IsMember(light_layout_names()))
         ->capture_default_str()
         ->group("Reading the light");
     command
-        .add_option("--rotate", options.rotation, "Degrees about +Y, from north (-Z) to east (+X)")
+        .add_option("--rotate", options.rotation, "Rotation about +Y, from north (-Z) to east (+X)")
+        ->type_name("DEGREES")
         ->check(number_between(-36000.0f, 36000.0f))
         ->capture_default_str()
         ->group(group);
     command
         .add_option("--tilt", options.tilt,
-                    "Degrees about the line from west to east: what is in the north rises")
+                    "Tilt about the line from west to east, which raises the north")
+        ->type_name("DEGREES")
         ->check(number_between(-36000.0f, 36000.0f))
         ->capture_default_str()
         ->group(group);
     CLI::Option* sun =
         command
-            .add_option(
-                "--sun", options.sun,
-                "AZIMUTH,ELEVATION[,STRENGTH]: moves the light's sun, or adds one. Degrees; "
-                "azimuth 0 is north, 90 east. STRENGTH is its irradiance over the mean of "
-                "the rest (without it, what its sun has, else 6)")
+            .add_option("--sun", options.sun,
+                        "Move the light's sun, or add one: AZIMUTH,ELEVATION[,STRENGTH], in "
+                        "degrees; azimuth 0 is north, 90 east. STRENGTH is the sun's irradiance "
+                        "over the mean of the rest. Without it: that of its sun, else 6")
             ->group(group);
     command
         .add_option(
@@ -129,19 +128,23 @@ void add_light_options(CLI::App& command, LightOptions& options) {
                         fmt::join(light_words_help(), "; "), 180 - default_azimuth * 180 / pi))
         ->excludes(sun)
         ->group(group);
-    command.add_option("--strength", options.strength, "STRENGTH for --lit")
+    command.add_option("--strength", options.strength, "Strength of --lit")
         ->check(number_between(1e-3f, 1e6f))
         ->excludes(sun)
         ->group(group);
-    command.add_option("--sun-width", options.sun_width, "Degrees across; the true sun has 0.53")
+    command.add_option("--sun-width", options.sun_width, "Width of the sun; the real one has 0.53")
+        ->type_name("DEGREES")
         ->check(number_between(0.53f, 30.0f))
         ->capture_default_str()
         ->group(group);
     command
         .add_option("--tint", options.tint,
-                    "A colour by name or #rrggbb that multiplies all, at luminance 1")
+                    "Colour that multiplies the light, at luminance 1: a name or #rrggbb")
+        ->type_name("COLOUR")
         ->group(group);
-    command.add_option("--exposure", options.exposure, "Stops: the light is multiplied by 2^EV")
+    command
+        .add_option("--exposure", options.exposure, "Exposure: the light is multiplied by 2^STOPS")
+        ->type_name("STOPS")
         ->check(number_between(-30.0f, 30.0f))
         ->capture_default_str()
         ->group(group);

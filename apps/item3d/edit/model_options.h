@@ -11,10 +11,9 @@ namespace item3d {
 /// Adds --textures.
 inline void add_texture_folders(CLI::App& command, std::vector<std::filesystem::path>& folders) {
     command
-        .add_option(
-            "--textures", folders,
-            "A folder that textures may be read from beside the model's own, and the folders in "
-            "it; may be given several times")
+        .add_option("--textures", folders,
+                    "Further folder to look for textures in, with the folders in it")
+        ->type_name("FOLDER")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }

@@ -132,16 +132,15 @@ void add_provenance_command(CLI::App& app) {
     CLI::App* command = add_command(app, "provenance", *options);
     command->add_option("FILE", options->file, "A .glb, .gltf, PNG, JPEG, WebP or KTX2")
         ->required();
-    command->add_option("--public-key", options->public_key,
-                        "Ed25519 public key in PEM (openssl pkey -pubout): says whether the file "
-                        "is signed by it");
+    command
+        ->add_option(
+            "--public-key", options->public_key,
+            "Ed25519 public key in PEM (openssl pkey -pubout) that the signature is checked with")
+        ->type_name("FILE");
     command->footer(
-        "\nExit codes: 0 what is claimed is so (or nothing is), 5 altered since, 6 signed by "
-        "another key\nthan --public-key, 7 not signed though --public-key is given; 3 for files "
-        "that cannot be read.\n\n  openssl genpkey -algorithm ed25519 -out shop.pem\n  openssl "
-        "pkey -in shop.pem -pubout -out shop.pub.pem\n  item3d edit mug.glb --from \"a red mug\" "
-        "--to \"a golden mug\" -o out --sign-key shop.pem\n  item3d provenance out/model.glb "
-        "--public-key shop.pub.pem\n");
+        "Exit codes: 0 the claim holds, or there is none; 5 changed since; 6 signed by another "
+        "key\n"
+        "than --public-key; 7 not signed, with --public-key; 3 the file cannot be read.");
     command->callback([options] {
         start_command(*options);
         run_provenance(*options);

@@ -291,39 +291,43 @@ void add_region_command(CLI::App& app) {
     command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
     command
         ->add_option("-o,--output", options->output,
-                     "Folder: region.png shows the region, mask_<material>.png holds it in UV "
-                     "space, view_<n>.png and transforms.json are there to paint on")
+                     "Folder for region.png (the region), mask_MATERIAL.png (the region in UV "
+                     "space), view_N.png and transforms.json (views to paint on)")
+        ->type_name("FOLDER")
         ->required();
     command
         ->add_option("--region", options->request.include,
-                     "What to select; may be given several times, for the union. Without it, "
-                     "the names that can be selected by")
+                     "Selector; several: their union. Without it: the names that can be selected")
+        ->type_name("SELECTOR")
         ->allow_extra_args(false);
-    command
-        ->add_option("--exclude", options->request.exclude,
-                     "What to leave out of it; may be given several times")
+    command->add_option("--exclude", options->request.exclude, "Selector of what to leave out")
+        ->type_name("SELECTOR")
         ->allow_extra_args(false);
     command
         ->add_option("--feather", options->request.feather,
-                     "Width of the soft border, within the region, in percent of the model's "
-                     "size")
+                     "Width of the soft border inside the region, in percent of the model's size")
         ->check(CLI::Range(0.0, 50.0));
-    command->add_option("--material", options->materials, "Only the materials of these names");
-    command->add_option("--segmenter", options->segmenter,
-                        "CLIPSeg in the transformers layout, for words=; without it, the one that "
-                        "the prior brings along, if any");
-    command->add_option("--prior", options->prior,
-                        "Diffusion model, for auto, and for words= where there is no segmenter: a "
-                        "folder in the diffusers layout, or a name; without it, the embedded one");
-    command->add_option("--from", options->from, "The sentence before an edit, for auto");
-    command->add_option("--to", options->to, "And the one after it");
+    command->add_option("--material", options->materials, "Only these materials, by name")
+        ->type_name("NAME,...");
+    command
+        ->add_option("--segmenter", options->segmenter,
+                     "CLIPSeg in the transformers layout, for words=. Without it: the prior's own, "
+                     "if it has one")
+        ->type_name("FOLDER");
+    command
+        ->add_option("--prior", options->prior,
+                     "Diffusion model for auto, and for words= without a segmenter: a folder in "
+                     "the diffusers layout, or a name. Without it: the embedded one")
+        ->type_name("PRIOR");
+    command->add_option("--from", options->from, "Sentence before the edit, for auto");
+    command->add_option("--to", options->to, "Sentence after the edit, for auto");
     add_texture_folders(*command, options->texture_folders);
-    command->add_option("--size", options->size, "Pixels of a view's side")
+    command->add_option("--size", options->size, "Edge of a view, in pixels")
         ->check(CLI::Range(32, 4096))
         ->capture_default_str();
     command
         ->add_option("--texture-size", options->texture_size,
-                     "Edge of the masks; 0: as the textures'")
+                     "Edge of the masks, in pixels; 0: as the textures")
         ->check(CLI::Range(0, 8192));
     command->footer(selectors_help());
     command->callback([options] { run_region(*options, start_command(*options)); });

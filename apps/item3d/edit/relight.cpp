@@ -245,43 +245,48 @@ nlohmann::json perform_relight(const RelightCommand& options, EditSession& sessi
 
 void add_relight_options(CLI::App& command, RelightCommand& options) {
     command.add_option("MODEL", options.model, "A .glb, .gltf or .obj file")->required();
-    command.add_option("-o,--output", options.output, "A folder")->required();
+    command
+        .add_option("-o,--output", options.output,
+                    "Folder for the model, pictures before and after, and a turntable")
+        ->type_name("FOLDER")
+        ->required();
     add_texture_folders(command, options.texture_folders);
     CLI::Option* light =
         command
             .add_option(
                 "--light", options.light,
-                "The new light: studio, noon, sunset, overcast, night, or a .hdr, .exr or .glb "
-                "file")
+                "New light: studio, noon, sunset, overcast, night, or an .hdr, .exr or .glb file")
+            ->type_name("LIGHT")
             ->each([&options](const std::string&) { options.light_is_given = true; })
             ->capture_default_str();
     command
-        .add_option(
-            "--sky", options.sky,
-            "A clear sky at this hour (0 to 24) instead: the sun rises in the east at 6 and "
-            "is in the south at 12")
+        .add_option("--sky", options.sky,
+                    "New light: a clear sky at this hour. The sun rises in the east at 6 and is in "
+                    "the south at 12")
+        ->type_name("HOUR")
         ->check(number_between(0, 24))
         ->excludes(light);
-    command.add_option("--from-light", options.from_light, "The old light, to compare with")
+    command.add_option("--from-light", options.from_light, "Old light, to compare with")
+        ->type_name("LIGHT")
         ->capture_default_str();
     add_light_options(command, options.change);
     add_words_options(command, options.words);
     add_sign_key(command, options.sign_key);
     command.add_flag("--punctual", options.punctual,
-                     "Add the light's brightest lobe to model.glb as a directional light "
+                     "Add the brightest part of the light to model.glb as a directional light "
                      "(KHR_lights_punctual)");
     command.add_flag("--image-based", options.image_based,
-                     "Add the light to model.glb as an image-based light "
-                     "(EXT_lights_image_based); with --punctual, all of it but that lobe");
+                     "Add the light to model.glb as an image-based light (EXT_lights_image_based); "
+                     "with --punctual, without its brightest part");
     command.add_flag("!--no-shadows", options.shadows,
                      "Draw without the shadows that the model throws upon itself");
-    command.add_option("--views", options.views, "Of before.png and after.png")
+    command.add_option("--views", options.views, "Views in before.png and after.png")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
-    command.add_option("--frames", options.frames, "Of turntable.webp")
+    command.add_option("--frames", options.frames, "Frames of turntable.webp")
         ->check(CLI::Range(1, 360))
         ->capture_default_str();
-    command.add_option("--size", options.size, "Pixels of a view's side")
+    command.add_option("--size", options.size, "Edge of a view, in pixels")
         ->check(CLI::Range(16, 2048))
         ->capture_default_str();
 }

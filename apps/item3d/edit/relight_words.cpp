@@ -78,45 +78,45 @@ void add_words_options(CLI::App& command, RelightWords& words) {
     const std::string group = "By words";
     command
         .add_option("--from", words.from,
-                    "What the model looks like now: the light is then found by guidance, as in "
-                    "--from 'a mug' --to 'a mug at sunset'")
+                    "Sentence of the model as it is; the new light is then found by guidance: "
+                    "--from \"a mug\" --to \"a mug at sunset\"")
         ->group(group);
     command
         .add_option("--to", words.to,
-                    "What it shall look like. Directions in it are read as by --lit; other words "
-                    "are the prior's")
+                    "Sentence of the model in the new light. Directions in it are read as --lit "
+                    "reads them; other words are the prior's")
         ->group(group);
     command
         .add_option("--prior", words.prior,
-                    "Diffusion model: a folder in the diffusers layout, or a name; without it, the "
-                    "embedded one, which knows sunset, night, dark, bright, overcast, noon, studio")
+                    "Diffusion model, by folder or name. Without it: the embedded one, which knows "
+                    "sunset, night, dark, bright, overcast, noon, studio")
         ->group(group);
     const auto set = [&words](const char* key) {
         return [&words, key](const auto& value) { words.overrides[key] = value; };
     };
     command
-        .add_option_function<std::string>(
-            "--light-model", set("light_model"),
-            "physical (a sky, a sun and a ground in eight numbers; the default for small priors) "
-            "or texels (each of the environment's by itself)")
+        .add_option_function<std::string>("--light-model", set("light_model"),
+                                          "Parameters of the light: physical (a sky, a sun and a "
+                                          "ground; the default of small priors) or texels")
         ->check(CLI::IsMember(light_kind_names()))
         ->group(group);
     command
         .add_option_function<std::string>("--guidance", set("guidance"),
-                                          "The method, as of edit; dds if not given")
+                                          "Guidance, as of edit. Without it: dds")
         ->check(CLI::IsMember(guidance_methods()))
         ->group(group);
-    command.add_option_function<int>("--iterations", set("iterations"), "Steps, 80 if not given")
+    command
+        .add_option_function<int>("--iterations", set("iterations"),
+                                  "Optimisation steps. Without it: 80")
         ->check(CLI::Range(0, 100000))
         ->group(group);
-    command
-        .add_option_function<std::uint64_t>("--seed", set("seed"), "Another seed, another result")
+    command.add_option_function<std::uint64_t>("--seed", set("seed"), "Seed of everything random")
         ->group(group);
-    command.add_option("--precision", words.precision, "Of the networks")
+    command.add_option("--precision", words.precision, "Precision of the networks")
         ->check(CLI::IsMember(precision_names()))
         ->capture_default_str()
         ->group(group);
-    command.add_flag("--resume", words.resume, "Go on from the checkpoint in the output folder")
+    command.add_flag("--resume", words.resume, "Continue from the checkpoint in the output folder")
         ->group(group);
 }
 

@@ -357,54 +357,68 @@ void add_render_command(CLI::App& app) {
     command->add_option("MODEL", options->model, "A .glb, .gltf or .obj file")->required();
     command
         ->add_option("-o,--output", options->output,
-                     "A .png or .exr file, or a folder for several pictures")
+                     "Picture (.png, .exr), or a folder for several")
+        ->type_name("FILE|FOLDER")
         ->required();
-    command->add_option("--variant", options->variant,
-                        "The look of this name, of a glTF that offers several");
-    command->add_option("--views", options->views, "So many views around the model")
+    command
+        ->add_option("--variant", options->variant,
+                     "Look to draw, by name, of a glTF that has several")
+        ->type_name("NAME");
+    command->add_option("--views", options->views, "Number of views around the model")
         ->check(CLI::Range(1, 10000));
-    command->add_option("--cameras", options->cameras,
-                        "A NeRF-synthetic transforms.json in the model's own axes: one picture for "
-                        "each frame, named after it");
+    command
+        ->add_option(
+            "--cameras", options->cameras,
+            "Cameras, one picture each: a NeRF-synthetic transforms.json in the axes of the model")
+        ->type_name("FILE");
     add_texture_folders(*command, options->texture_folders);
-    command->add_option("--format", options->format, "Of pictures that go into a folder")
+    command->add_option("--format", options->format, "Format of the pictures in a folder")
         ->check(CLI::IsMember({"png", "exr"}))
         ->capture_default_str();
     command
-        ->add_option("--light", options->light,
-                     "studio, noon, sunset, overcast, night, or an equirectangular .hdr or .exr")
+        ->add_option(
+            "--light", options->light,
+            "Light: studio, noon, sunset, overcast, night, or an equirectangular .hdr or .exr file")
+        ->type_name("LIGHT")
         ->capture_default_str();
     command
         ->add_option("--light-rotation", options->light_rotation,
-                     "Degrees about +Y, from -Z towards +X")
+                     "Rotation of the light about +Y, from -Z towards +X")
+        ->type_name("DEGREES")
         ->check(number_between(-36000, 36000))
         ->capture_default_str();
-    command->add_option("--exposure", options->exposure, "Stops: the light is multiplied by 2^EV")
+    command
+        ->add_option("--exposure", options->exposure,
+                     "Exposure: the light is multiplied by 2^STOPS")
+        ->type_name("STOPS")
         ->check(number_between(-30, 30))
         ->capture_default_str();
-    command->add_option("--size", options->size, "WxH in pixels")->capture_default_str();
+    command->add_option("--size", options->size, "Size of a picture, in pixels")
+        ->type_name("WxH")
+        ->capture_default_str();
     command
         ->add_option("--channel", options->channel,
-                     "shaded; or at pixel centres base_color, orm, normal (world space), depth "
-                     "(along the view axis), mask")
+                     "Quantity to draw: shaded, or at pixel centres base_color, orm, normal (world "
+                     "space), depth (along the view axis), mask")
         ->check(CLI::IsMember({"shaded", "base_color", "orm", "normal", "depth", "mask"}))
         ->capture_default_str();
     command
         ->add_flag("--occlusion{ambient}", options->occlusion,
-                   "Darken what the model hides from light all around it; --occlusion=light: from "
-                   "this light, so that its sun casts shadows. Multiplies an occlusion texture")
+                   "Ambient occlusion: less light where the model hides it. =light: shadows of "
+                   "this light and its sun. It multiplies an occlusion texture")
         ->check(CLI::IsMember({"none", "ambient", "light"}));
     command->add_flag("--indirect", options->indirect,
-                      "Light that surfaces throw at each other, and each other's reflections; with "
-                      "--occlusion=light unless another is asked for");
+                      "Light between surfaces, and reflections of each other; with "
+                      "--occlusion=light where no other is given");
     command
         ->add_option("--samples", options->samples,
-                     "So many along each side of a shaded pixel: more make finer edges and take "
-                     "longer (2, or 1 for pictures too large for that)")
+                     "Samples along each side of a pixel. Without it: 2, or 1 for pictures too "
+                     "large for that")
         ->check(CLI::Range(1, 16));
     command
         ->add_option("--background", options->background,
-                     "A colour by name, #rrggbb, or none for a transparent picture")
+                     "Background: a colour by name, #rrggbb, or none for transparency")
+        ->type_name("COLOUR")
         ->capture_default_str();
     command->callback([options] { run_render(*options, start_command(*options)); });
 }

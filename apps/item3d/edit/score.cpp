@@ -102,24 +102,27 @@ void run_score(const ScoreCommand& options, at::Device device) {
 void add_score_command(CLI::App& app) {
     auto options = std::make_shared<ScoreCommand>();
     CLI::App* command = add_command(app, "score", *options);
-    command->add_option("BEFORE", options->before, "The model as it was")->required();
-    command->add_option("AFTER", options->after, "The edited model")->required();
+    command->add_option("BEFORE", options->before, "Model before the edit")->required();
+    command->add_option("AFTER", options->after, "Model after the edit")->required();
     add_texture_folders(*command, options->texture_folders);
-    command->add_option("--from", options->from, "What the model looked like")->required();
-    command->add_option("--to", options->to, "What it should look like")->required();
-    command->add_option("--clip", options->clip,
-                        "A folder with CLIP in the transformers layout; without it, the embedded "
-                        "prior's, which knows its words alone");
-    command->add_option("--views", options->views, "Around the model, the same for both")
+    command->add_option("--from", options->from, "Sentence of the model before")->required();
+    command->add_option("--to", options->to, "Sentence of the model after")->required();
+    command
+        ->add_option("--clip", options->clip,
+                     "CLIP in the transformers layout. Without it: the embedded prior's, which "
+                     "knows only its words")
+        ->type_name("FOLDER");
+    command->add_option("--views", options->views, "Views around each model")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command
         ->add_option("--precision", options->precision,
-                     "Of the network: fp32, as the reference computes, or bf16, quicker")
+                     "Precision of the network: fp32 (as the reference), bf16 (faster)")
         ->capture_default_str();
     command
         ->add_option("--light", options->light,
-                     "studio, noon, sunset, overcast, night, or an .hdr or .exr file")
+                     "Light: studio, noon, sunset, overcast, night, or an .hdr or .exr file")
+        ->type_name("LIGHT")
         ->capture_default_str();
     command->callback([options] {
         const at::Device device = start_command(*options);

@@ -1,6 +1,7 @@
 #include "apps/item3d/edit/setting_options.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/format.h"
 #include "item3d/edit/settings_table.h"
 
 #include <cstdint>
@@ -17,7 +18,7 @@ CLI::Option* add_typed(CLI::App& command, nlohmann::json& overrides, const Setti
         setting.help);
 }
 
-CLI::Option* add_row(CLI::App& command, nlohmann::json& overrides, const Setting& setting) {
+CLI::Option* add_untold(CLI::App& command, nlohmann::json& overrides, const Setting& setting) {
     switch (setting.type) {
         case SettingType::text:
         case SettingType::choice:
@@ -40,6 +41,31 @@ CLI::Option* add_row(CLI::App& command, nlohmann::json& overrides, const Setting
                 ->allow_extra_args(false);
     }
     ITEM3D_CHECK(false, "unknown type of a setting");
+}
+
+/// "keep|png|jpeg", or NAME where that is long.
+std::string placeholder(const Setting& setting) {
+    constexpr std::size_t longest = 24;
+    if (setting.choices.empty()) return setting.placeholder;
+    const std::string all = fmt::format("{}", fmt::join(setting.choices, "|"));
+    return all.size() <= longest ? all : "NAME";
+}
+
+/// What --help says of a setting beside its description. The value itself is checked with all
+/// others, once the prior's are known.
+void tell(CLI::Option& option, const Setting& setting) {
+    option.group(setting.group);
+    if (const std::string name = placeholder(setting); !name.empty()) option.type_name(name);
+    if (const std::string value = readable(setting.get({})); value != "none" && value != "[]")
+        option.default_str(value);
+    if (!setting.values.empty() && setting.choices.empty())
+        option.check(CLI::Validator([](std::string&) { return std::string(); }, setting.values));
+}
+
+CLI::Option* add_row(CLI::App& command, nlohmann::json& overrides, const Setting& setting) {
+    CLI::Option* option = add_untold(command, overrides, setting);
+    tell(*option, setting);
+    return option;
 }
 
 }  // namespace

@@ -44,29 +44,30 @@ void add_variants_command(CLI::App& app) {
     VariantsRequest& request = options->request;
     command->add_option("MODEL", request.model, "The model that was edited: .glb, .gltf or .obj")
         ->required();
-    command
-        ->add_option("EDIT_DIR", request.edits, "Folders that item3d edit -o left, of this model")
+    command->add_option("EDIT_DIR", request.edits, "Output folders of item3d edit, of this model")
         ->required();
-    command->add_option("-o,--output", request.output, "The .glb or .gltf to write")->required();
+    command->add_option("-o,--output", request.output, "Model to write: .glb or .gltf")
+        ->type_name("FILE")
+        ->required();
     command
         ->add_option("--name", request.names,
-                     "Name of a look, once for each EDIT_DIR in their order; without it, the "
+                     "Name of a look, once for each EDIT_DIR, in their order. Without it: the "
                      "target sentence without its article")
+        ->type_name("NAME")
         ->allow_extra_args(false);
-    command->add_option("--original", request.original,
-                        "Name of the model's own look; without it, \"original\", or none where "
-                        "the model has variants already");
+    command
+        ->add_option("--original", request.original,
+                     "Name of the model's own look. Without it: \"original\", or none where the "
+                     "model has variants already")
+        ->type_name("NAME");
     add_texture_folders(*command, request.texture_folders);
     command
         ->add_option("--provenance", options->provenance,
-                     "on: the file says by which edits it came to be; off: nothing")
+                     "on: the file names the edits that it came from. off: it does not")
         ->check(CLI::IsMember({"on", "off"}))
         ->capture_default_str();
     add_sign_key(*command, options->sign_key);
-    command->footer(
-        "\nThe model's own look is shown first; viewers offer the others by name.\n\n  item3d "
-        "variants mug.glb golden blue -o shop.glb\n  item3d render shop.glb --variant \"golden "
-        "mug\" -o golden.png\n");
+    command->footer("The model's own look is shown first; viewers offer the others by name.");
     command->callback([options] { run_variants(*options); });
 }
 

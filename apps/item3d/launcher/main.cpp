@@ -30,13 +30,16 @@ std::string list_of_commands() {
 }
 
 std::string help() {
-    return "Edits the look of textured 3D models from two sentences.\n"
+    return "Edits the look of textured 3D models from two sentences.\n\n"
            "Usage: item3d COMMAND [OPTIONS]\n\n"
            "Options:\n"
-           "  -h,--help                   Print this help message and exit\n"
-           "  --version                   Print the version and exit\n\n"
+           "  -h, --help                  Print this help and exit\n"
+           "      --version               Print the version and exit\n\n"
            "Commands:\n" +
-           list_of_commands() + "\n`item3d COMMAND --help` lists a command's options.\n";
+           list_of_commands() +
+           "\n`item3d COMMAND --help` shows a command's options and examples, and names its page.\n"
+           "Begin with README.md, or with:\n"
+           "  item3d edit mug.glb --from \"a red mug\" --to \"a golden mug\" -o golden\n";
 }
 
 int say(const std::string& text) {

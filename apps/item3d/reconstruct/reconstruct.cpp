@@ -100,22 +100,30 @@ void run_reconstruct(const ReconstructCommand& options) {
 
 void add_dataset_options(CLI::App& command, ReconstructCommand& options) {
     DatasetOptions& dataset = options.request.dataset_options;
-    command.add_option("--images", dataset.images, "Folder of the pictures (COLMAP, LLFF)");
-    command.add_option("--masks", dataset.masks, "Folder of masks, named as the pictures");
-    command.add_option("--background", options.background,
-                       "What has this colour is not the object: a name, #rrggbb or r,g,b");
+    command.add_option("--images", dataset.images, "Folder of the pictures, of COLMAP and LLFF")
+        ->type_name("FOLDER");
+    command.add_option("--masks", dataset.masks, "Folder of masks with the pictures' names")
+        ->type_name("FOLDER");
     command
-        .add_option("--longest-side", dataset.longest_side, "Shrink pictures to this many pixels")
+        .add_option("--background", options.background,
+                    "Background colour, in place of masks: a name, #rrggbb or r,g,b")
+        ->type_name("COLOUR");
+    command
+        .add_option("--longest-side", dataset.longest_side,
+                    "Size that larger pictures are reduced to, in pixels")
         ->check(CLI::Range(16, 8192));
     command.add_flag("--linear", dataset.is_linear, "PNG and JPEG hold linear light, not sRGB");
     command
         .add_option("--hold-out", dataset.hold_out,
-                    "Keep every n-th view for testing where the dataset does not say; 0: none")
+                    "Every n-th view is for testing, where the dataset does not say which; 0: none")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
-    command.add_option("--views", dataset.most_views, "Learn from this many views, evenly chosen")
+    command
+        .add_option("--views", dataset.most_views, "Number of views to learn from, evenly chosen")
         ->check(CLI::Range(3, 100000));
-    command.add_option("--up", dataset.up, "Up in the dataset's world: x, y, z, -x, ... or auto")
+    command
+        .add_option("--up", dataset.up, "Up in the world of the dataset: x, y, z, -x, ... or auto")
+        ->type_name("AXIS")
         ->capture_default_str();
 }
 
@@ -124,15 +132,22 @@ void add_several(CLI::Option* option) {
 }
 
 void add_comparisons(CLI::App& command, ReconstructCommand& options) {
-    add_several(command.add_option("--relit", options.relit,
-                                   "Pictures of the test views in another light, to compare with; "
-                                   "may be given several times, and so --relit-light"));
-    add_several(command.add_option("--relit-light", options.relit_lights,
-                                   "That light: a preset or a file"));
-    add_several(command.add_option("--relit-exposure", options.relit_exposures, "Of it, stops"));
-    command.add_option("--truth", options.request.truth,
-                       "Pictures of the test views' materials, to compare with: NAME_albedo.png, "
-                       "NAME_orm.png");
+    add_several(command
+                    .add_option("--relit", options.relit,
+                                "Pictures of the test views in another light, for a comparison; "
+                                "once for each --relit-light")
+                    ->type_name("FOLDER"));
+    add_several(command
+                    .add_option("--relit-light", options.relit_lights,
+                                "Light of --relit: a preset or a file")
+                    ->type_name("LIGHT"));
+    add_several(command.add_option("--relit-exposure", options.relit_exposures,
+                                   "Exposure of --relit, in stops"));
+    command
+        .add_option("--truth", options.request.truth,
+                    "Pictures of the true materials in the test views, for a comparison: "
+                    "NAME_albedo.png, NAME_orm.png")
+        ->type_name("FOLDER");
 }
 
 }  // namespace
@@ -142,70 +157,84 @@ void add_reconstruct_command(CLI::App& app) {
     CLI::App* command = add_command(app, "reconstruct", *options);
     ReconstructRequest& request = options->request;
     CLI::Option* dataset = command->add_option(
-        "DATASET", request.dataset, "NeRF-synthetic, nerfstudio (transforms.json), COLMAP or LLFF");
+        "DATASET", request.dataset,
+        "Folder of a dataset: NeRF-synthetic, nerfstudio (transforms.json), COLMAP or LLFF");
     command
         ->add_option("--from-images", options->from_images,
-                     "Photographs without poses, in place of DATASET: COLMAP (apt install colmap) "
-                     "finds them")
+                     "Photographs without poses, which COLMAP finds (apt install colmap)")
+        ->type_name("FOLDER")
         ->excludes(dataset);
-    command->add_option("-o,--output", request.output, "A folder")->required();
-    command->add_flag("--resume", request.resume, "Go on from the checkpoint in the output folder");
+    command
+        ->add_option("-o,--output", request.output,
+                     "Folder for the model, its light and the report")
+        ->type_name("FOLDER")
+        ->required();
+    command->add_flag("--resume", request.resume,
+                      "Continue from the checkpoint in the output folder");
     add_dataset_options(*command, *options);
-    CLI::Option* mesh = command->add_option(
-        "--mesh", request.mesh, "The shape, known already: find its materials and the light");
-    command->add_flag("--move-vertices", options->move_vertices, "Let that mesh's vertices move")
+    CLI::Option* mesh = command
+                            ->add_option("--mesh", request.mesh,
+                                         "Known shape: only its materials and the light are found")
+                            ->type_name("FILE");
+    command
+        ->add_flag("--move-vertices", options->move_vertices,
+                   "Vertices of the known shape may move")
         ->needs(mesh);
     command
         ->add_flag("--place-mesh", request.place_mesh,
-                   "Turn, scale and move that mesh to where the photographs show it")
+                   "Turn, scale and move the known shape to where the photographs show it")
         ->needs(mesh);
     command
         ->add_option("--extraction", request.shape.extraction,
-                     "How triangles come from values on a lattice")
+                     "Method that makes triangles of the values on the lattice")
         ->check(CLI::IsMember(extraction_names()))
         ->capture_default_str();
     command
-        ->add_option("--cells", options->cells, "Of the lattice, along the object's longest side")
+        ->add_option("--cells", options->cells,
+                     "Cells of the lattice along the longest side of the object")
         ->check(CLI::Range(16, 256))
         ->capture_default_str();
     command
-        ->add_option("--shape-iterations", request.shape.iterations, "One picture each; the shape")
+        ->add_option("--shape-iterations", request.shape.iterations,
+                     "Optimisation steps of the shape, one picture each")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
     command
         ->add_option("--iterations", request.refine.iterations,
-                     "One picture each; materials, light and vertices")
+                     "Optimisation steps of materials, light and vertices, one picture each")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
-    command->add_option("--triangles", request.shape.triangles, "Of the model, at most about")
+    command->add_option("--triangles", request.shape.triangles, "Triangles of the model, at most")
         ->check(CLI::Range(100, 10000000))
         ->capture_default_str();
     command
         ->add_option("--texture-size", request.texture_size,
-                     "Pixels of a side; without it 1024 to 4096, as fine as the photographs")
+                     "Edge of the textures, in pixels. Without it: 1024 to 4096, by the size of "
+                     "the photographs")
         ->check(CLI::Range(16, 4096));
-    command->add_flag("--no-normal-map", options->no_normal_map, "The mesh alone has normals");
+    command->add_flag("--no-normal-map", options->no_normal_map, "Write no normal map");
     command->add_flag("--no-shadows", options->no_shadows,
-                      "Do not trace what the object hides from the light");
+                      "Leave out the shadows that the object throws on itself");
     command
-        ->add_option("--poses", options->poses,
-                     "Whether cameras are moved; auto: where the outlines of the pictures do not "
-                     "agree")
+        ->add_option(
+            "--poses", options->poses,
+            "Correction of the cameras; auto: where the outlines in the pictures do not agree")
         ->check(CLI::IsMember({"auto", "refine", "keep"}))
         ->capture_default_str();
     command->add_flag("--keep-exposure", options->keep_exposure,
                       "All pictures have one exposure and white balance");
-    command->add_option("--reference", request.reference,
-                        "The true mesh, to measure a distance to");
+    command->add_option("--reference", request.reference, "True mesh, for a distance to it")
+        ->type_name("FILE");
     add_comparisons(*command, *options);
     command
         ->add_option("--provenance", options->provenance,
-                     "on: model and textures say, as XMP, that they were computed from photographs "
-                     "(docs/provenance.md); off: nothing")
+                     "on: model and textures say in XMP that they were computed from photographs "
+                     "(docs/provenance.md). off: they do not")
         ->check(CLI::IsMember({"on", "off"}))
         ->capture_default_str();
     add_sign_key(*command, options->sign_key);
-    command->add_option("--seed", options->seed)->capture_default_str();
+    command->add_option("--seed", options->seed, "Seed of everything random")
+        ->capture_default_str();
     command->callback([options] {
         start_command(*options);
         if (options->device == "cuda") {

@@ -1,4 +1,5 @@
 // item3d mcp: item3d for agents, over the Model Context Protocol.
+#include "apps/item3d/command_help.h"
 #include "apps/item3d/commands.h"
 #include "apps/item3d/studio/commands.h"
 #include "item3d/core/error.h"
@@ -49,12 +50,14 @@ void run_mcp(const McpCommandOptions& given) {
 void add_mcp_command(CLI::App& app) {
     auto options = std::make_shared<McpCommandOptions>();
     CLI::App* command = app.add_subcommand("mcp", std::string(find_command("mcp")->description));
-    command->add_option("FOLDER", options->folders,
-                        "Folders that models and pictures may be read from; nothing outside them "
-                        "is read");
+    use_help(*command, command_help("mcp"));
+    command->add_option(
+        "FOLDER", options->folders,
+        "Folders that models and pictures are read from; nothing outside them is read");
     command
         ->add_option("-o,--output", options->output,
-                     "Folder for results, each a new folder in it; may be read from as well")
+                     "Folder for results, a new folder each; it is read from as well")
+        ->type_name("FOLDER")
         ->required();
     command->footer(
         "An agent starts it and speaks to it on standard input and output:\n"

@@ -1,4 +1,5 @@
 // item3d studio: edits on a page in the browser, served by this program.
+#include "apps/item3d/command_help.h"
 #include "apps/item3d/commands.h"
 #include "apps/item3d/studio/commands.h"
 #include "item3d/core/error.h"
@@ -138,24 +139,33 @@ void add_studio_command(CLI::App& app) {
     auto options = std::make_shared<StudioCommandOptions>();
     CLI::App* command =
         app.add_subcommand("studio", std::string(find_command("studio")->description));
+    use_help(*command, command_help("studio"));
     command->add_option("MODEL", options->model,
-                        "A .glb, .gltf, .vrm, .obj or .zip to open; without it, the page offers "
-                        "what was opened before");
-    command->add_option("--folder", options->folder,
-                        "Folder of projects and results; without it, ~/.local/share/item3d/studio");
+                        "Model to open: .glb, .gltf, .vrm, .obj or .zip. Without it: the page "
+                        "offers the models opened before");
+    command
+        ->add_option("--folder", options->folder,
+                     "Folder of projects and results. Without it: ~/.local/share/item3d/studio")
+        ->type_name("FOLDER");
     command
         ->add_option("--host", options->host,
-                     "Address to listen on; another than this machine's own demands a password")
+                     "Address to listen on. Any but the default can be reached from other machines "
+                     "and demands a password")
+        ->type_name("ADDRESS")
         ->capture_default_str();
-    command->add_option("--port", options->port, "0: a free one")
+    command->add_option("--port", options->port, "Port; 0: a free one")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
-    command->add_option("--password-file", options->password_file,
-                        "A file whose first line is the password that the page asks for, in place "
-                        "of the token in its address");
-    command->add_option("--address", options->address,
-                        "What people type, where a proxy is before the page: "
-                        "https://example.org/studio");
+    command
+        ->add_option("--password-file", options->password_file,
+                     "File whose first line is the password that the page asks for, in place of "
+                     "the token in its address")
+        ->type_name("FILE");
+    command
+        ->add_option("--address", options->address,
+                     "Address that people type, where a proxy is in front of the page: "
+                     "https://example.org/studio")
+        ->type_name("URL");
     command->add_flag("--no-browser", options->no_browser, "Print the address and open nothing");
     command->add_flag("--quiet", options->quiet, "Say nothing but warnings and errors")
         ->group("Common options");

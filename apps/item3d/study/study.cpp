@@ -42,24 +42,28 @@ void add_make(CLI::App& app) {
     CLI::App* command =
         add_command(app, "make", "Make a study of a comparison's results", *options);
     MakeStudyRequest& request = options->request;
-    command->add_option("COMPARISON", request.comparison, "The folder that item3d compare wrote")
+    command->add_option("COMPARISON", request.comparison, "Folder that item3d compare wrote")
         ->required();
-    command->add_option("-o,--output", request.output, "Folder for the study")->required();
-    command->add_option("--title", request.title, "Above the first page")->capture_default_str();
-    command->add_option("--consent", request.consent,
-                        "Text file that participants agree to, with empty lines between "
-                        "paragraphs; without it, a draft");
+    command->add_option("-o,--output", request.output, "Folder for the study")
+        ->type_name("FOLDER")
+        ->required();
+    command->add_option("--title", request.title, "Title of the first page")->capture_default_str();
+    command
+        ->add_option("--consent", request.consent,
+                     "Text that participants agree to, with empty lines between paragraphs. "
+                     "Without it: a draft")
+        ->type_name("FILE");
     command
         ->add_option("--practice", request.practice,
-                     "Pages before the others whose answers do not count")
+                     "Practice pages at the beginning, whose answers do not count")
         ->check(CLI::Range(0, 2))
         ->capture_default_str();
     command
         ->add_option("--attention", request.attention,
-                     "Pages that ask for two numbers, to see who reads")
+                     "Attention pages, which ask for two given numbers")
         ->check(CLI::Range(0, 10))
         ->capture_default_str();
-    command->add_option("--seed", request.seed, "Of names, orders and positions")
+    command->add_option("--seed", request.seed, "Seed of names, orders and positions")
         ->capture_default_str();
     command->callback([options] {
         start_command(*options);
@@ -118,19 +122,22 @@ void add_serve(CLI::App& app) {
         ->required();
     command
         ->add_option("--participants", options->participants,
-                     "How many links there are; more than before adds some")
+                     "Number of links; a larger number than before adds some")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     command
         ->add_option("--host", options->host,
                      "Address to listen on; 0.0.0.0: all of this machine, for other machines too")
+        ->type_name("ADDRESS")
         ->capture_default_str();
-    command->add_option("--port", options->port, "0: a free one")
+    command->add_option("--port", options->port, "Port; 0: a free one")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
-    command->add_option("--address", options->address,
-                        "What links begin with, where participants reach the page by another "
-                        "address: https://study.example.org");
+    command
+        ->add_option("--address", options->address,
+                     "Address that links begin with, where participants reach the page by another: "
+                     "https://study.example.org")
+        ->type_name("URL");
     command->callback([options] {
         start_command(*options);
         run_serve(*options);
@@ -163,10 +170,10 @@ void add_analyze(CLI::App& app) {
         "Print ratings, tests and agreement; write ratings.csv, table.csv and table.tex", *options);
     command->add_option("STUDY", options->folder, "The study's folder")->required();
     command->add_flag("--all", options->analysis.counts_inattentive,
-                      "Count also who answered attention pages otherwise");
+                      "Count participants whose attention answers were wrong, too");
     command
         ->add_option("--resamples", options->analysis.resamples,
-                     "Of participants, for the intervals")
+                     "Resamples of the participants, for the intervals")
         ->check(CLI::Range(100, 1000000))
         ->capture_default_str();
     command->add_option("--seed", options->analysis.seed, "Of the resampling")

@@ -83,39 +83,38 @@ void run_train(const TrainOptions& options, at::Device device) {
 
 void add_network_settings(CLI::App& command, TrainOptions& options) {
     add_setting(command, options, "--resolution", &TrainSettings::resolution,
-                "Edge of the pictures in pixels: 64 or 128")
+                "Edge of the pictures, in pixels")
         ->check(CLI::IsMember({64, 128}))
         ->capture_default_str();
     add_setting(command, options, "--widths", &TrainSettings::widths,
-                "Channels of the U-Net's levels, multiples of 16, as 48,96,144")
+                "Channels of the U-Net's levels: 48,96,144")
+        ->type_name("N,N,...")
         ->delimiter(',')
         ->check(CLI::IsMember({16, 32, 48, 64, 96, 128, 144, 160, 192, 224, 256, 320, 384, 512}))
         ->expected(2, 4)
         ->capture_default_str();
     add_setting(command, options, "--prediction", &TrainSettings::prediction_type,
-                "What the U-Net learns to say: v_prediction or epsilon")
+                "Prediction of the U-Net")
         ->check(CLI::IsMember({"v_prediction", "epsilon"}))
         ->capture_default_str();
-    add_setting(command, options, "--optimizer", &TrainSettings::optimizer,
-                "How matrices of weights are stepped: muon or adamw")
+    add_setting(command, options, "--optimizer", &TrainSettings::optimizer, "Optimizer of matrices")
         ->check(CLI::IsMember({"adamw", "muon"}))
         ->capture_default_str();
-    add_setting(
-        command, options, "--condition", &TrainSettings::condition,
-        "What the U-Net is told of a shape: surface (depth, position, normal), depth or none")
+    add_setting(command, options, "--condition", &TrainSettings::condition,
+                "Condition of the U-Net: surface (depth, position, normal), depth, none")
         ->check(CLI::IsMember({"surface", "depth", "none"}))
         ->capture_default_str();
     add_setting(command, options, "--batch", &TrainSettings::batch,
-                "Pictures a step and replica that the U-Net learns from")
+                "Pictures in each step of the U-Net, for each replica")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
     options.replicas =
         add_setting(command, options, "--replicas", &TrainSettings::replicas,
-                    "Copies of the model that each process trains in parallel; 1 on a CUDA device")
+                    "Copies of the model that a process trains in parallel; 1 on a CUDA device")
             ->check(CLI::Range(1, 256))
             ->capture_default_str();
     add_setting(command, options, "--learning-rate", &TrainSettings::learning_rate,
-                "Highest learning rate; the captioner's is twice that")
+                "Highest learning rate; that of the captioner is twice as high")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
 }
@@ -134,20 +133,22 @@ void add_count_settings(CLI::App& command, TrainOptions& options) {
         "Pictures that the segmenter learns from, repetitions counted")
         ->check(CLI::PositiveNumber);
     add("--segmenter-batch", &TrainSettings::segmenter_batch,
-        "Pictures a step and replica that the segmenter learns from")
+        "Pictures in each step of the segmenter, for each replica")
         ->check(CLI::Range(1, 4096));
     add("--part-data", &TrainSettings::part_samples, "Different pictures for the segmenter")
         ->check(CLI::Range(16, 10000000));
-    add("--part-variants", &TrainSettings::part_variants, "Shapes of each class for it")
+    add("--part-variants", &TrainSettings::part_variants, "Shapes of each class for the segmenter")
         ->check(CLI::Range(1, 10000));
     add("--labeled-data", &TrainSettings::labeled_samples,
         "Different pictures for CLIP and the captioner")
         ->check(CLI::Range(256, 10000000));
-    add("--labeled-variants", &TrainSettings::labeled_variants, "Shapes of each class for them")
+    add("--labeled-variants", &TrainSettings::labeled_variants,
+        "Shapes of each class for CLIP and the captioner")
         ->check(CLI::Range(1, 10000));
-    add("--samples", &TrainSettings::samples, "Pictures to learn from, repetitions counted")
+    add("--samples", &TrainSettings::samples,
+        "Pictures that the U-Net learns from, repetitions counted")
         ->check(CLI::PositiveNumber);
-    add("--data", &TrainSettings::data_samples, "Different pictures")
+    add("--data", &TrainSettings::data_samples, "Different pictures for the U-Net")
         ->check(CLI::Range(64, 10000000));
     add("--autoencoder-samples", &TrainSettings::autoencoder_samples,
         "Pictures that the autoencoder learns from, repetitions counted")
@@ -160,7 +161,7 @@ void add_count_settings(CLI::App& command, TrainOptions& options) {
     add("--views", &TrainSettings::views_each, "Views of each shape")->check(CLI::Range(1, 1000));
     add("--lights", &TrainSettings::lights, "Different lights")->check(CLI::Range(1, 100000));
     add("--patterns", &TrainSettings::pattern_weight,
-        "How often patterns come, against all else: 1 is 39 % of the pictures")
+        "Frequency of patterns; 1: 39 % of the pictures have one")
         ->check(CLI::Range(0.0, 100.0));
 }
 
@@ -168,47 +169,55 @@ void add_train(CLI::App& app) {
     auto options = std::make_shared<TrainOptions>();
     CLI::App* command =
         add_command(app, "train", "Train the embedded prior from nothing", *options);
-    command->add_option("-o,--output", options->output, "Folder to write the prior to")->required();
-    command->add_option("--work", options->work,
-                        "Folder for data and checkpoints; without it, work/ in the output folder");
+    command->add_option("-o,--output", options->output, "Folder for the prior")
+        ->type_name("FOLDER")
+        ->required();
     command
-        ->add_option("--recipe", options->recipe,
-                     "Settings by name, where no option says otherwise; the defaults below are "
-                     "those of embedded")
+        ->add_option("--work", options->work,
+                     "Folder for data and checkpoints. Without it: work/ in the output folder")
+        ->type_name("FOLDER");
+    command
+        ->add_option(
+            "--recipe", options->recipe,
+            "Settings by name; options override them, and the defaults here are those of embedded")
         ->check(CLI::IsMember(train_recipe_names()))
         ->capture_default_str();
     command
         ->add_option("--part", options->part,
-                     "What to train: diffusion (autoencoder, text encoder and U-Net), clip, "
-                     "captioner, segmenter, or all of these; instruct (an InstructPix2Pix, begun "
+                     "Part to train: diffusion (autoencoder, text encoder and U-Net), clip, "
+                     "captioner, segmenter, all of these, or instruct (an InstructPix2Pix, begun "
                      "with the embedded prior)")
         ->check(CLI::IsMember({"all", "diffusion", "clip", "captioner", "segmenter", "instruct"}))
         ->capture_default_str();
     add_count_settings(*command, *options);
     add_network_settings(*command, *options);
-    CLI::Option* begin = command->add_option(
-        "--begin-with", options->settings.begin_with,
-        "A prior, by folder or name, whose weights, words and autoencoder to begin with, and its "
-        "captioner and CLIP where they are trained");
+    CLI::Option* begin =
+        command
+            ->add_option("--begin-with", options->settings.begin_with,
+                         "Prior to begin with, by folder or name: weights, words and autoencoder, "
+                         "and captioner and CLIP where they are trained")
+            ->type_name("PRIOR");
     options->given.emplace_back([options = options.get(), begin](TrainSettings& to) {
         if (begin->count() > 0) to.begin_with = find_prior(options->settings.begin_with);
     });
-    CLI::Option* autoencoder = command->add_option(
-        "--autoencoder", options->settings.autoencoder,
-        "A prior, by folder or name, whose autoencoder to take instead of training one");
+    CLI::Option* autoencoder =
+        command
+            ->add_option("--autoencoder", options->settings.autoencoder,
+                         "Prior, by folder or name, whose autoencoder is taken instead of trained")
+            ->type_name("PRIOR");
     options->given.emplace_back([options = options.get(), autoencoder](TrainSettings& to) {
         if (autoencoder->count() > 0) to.autoencoder = find_prior(options->settings.autoencoder);
     });
-    add_setting(*command, *options, "--seed", &TrainSettings::seed, "Of everything random")
+    add_setting(*command, *options, "--seed", &TrainSettings::seed, "Seed of everything random")
         ->capture_default_str();
     add_setting(*command, *options, "--word-pictures", &TrainSettings::word_pictures,
-                "Held-out pictures that each word is asked about at the end")
+                "Held-out pictures for each word, in the test at the end")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     add_setting(*command, *options, "--stop-after", &TrainSettings::stop_after,
-                "End after so many pictures, to go on later with --resume");
+                "Pictures after which to stop, for a later --resume");
     CLI::Option* resume = command->add_flag("--resume", options->settings.resume,
-                                            "Go on from the checkpoint in the work folder");
+                                            "Continue from the checkpoint in the work folder");
     options->given.emplace_back([resume](TrainSettings& to) { to.resume = resume->count() > 0; });
     command->footer(
         "Several processes or machines train one prior where RANK, WORLD_SIZE, MASTER_ADDR and "
@@ -242,28 +251,28 @@ void add_pictures(CLI::App& app) {
     auto options = std::make_shared<PicturesOptions>();
     CLI::App* command = add_command(app, "pictures", "Draw a sheet of training pictures", *options);
     SheetOptions& sheet = options->sheet;
-    command->add_option("-o,--output", options->output, "Image file")->required();
+    command->add_option("-o,--output", options->output, "Picture to write")
+        ->type_name("FILE")
+        ->required();
     command
         ->add_option("--of", options->of,
-                     "examples or pairs of instructions as they come, or every one of the objects, "
+                     "Pictures to draw: examples, pairs of instructions, or each of the objects, "
                      "materials or lights")
         ->check(CLI::IsMember({"examples", "instructions", "objects", "materials", "lights"}))
         ->capture_default_str();
-    command->add_option("--columns", sheet.columns)
+    command->add_option("--columns", sheet.columns, "Columns of the sheet")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
-    command->add_option("--rows", sheet.rows, "Of examples")
+    command->add_option("--rows", sheet.rows, "Rows of examples")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
-    command
-        ->add_option("--resolution", sheet.picture,
-                     "Edge of a picture in pixels: 48, 64, 96 or 128")
+    command->add_option("--resolution", sheet.picture, "Edge of a picture, in pixels")
         ->check(CLI::IsMember({48, 64, 96, 128}))
         ->capture_default_str();
     command->add_option("--variants", sheet.variants, "Shapes of each class, of examples")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
-    command->add_option("--seed", sheet.seed)->capture_default_str();
+    command->add_option("--seed", sheet.seed, "Seed of everything random")->capture_default_str();
     command->callback([options] {
         start_command(*options);
         run_pictures(*options);

@@ -201,40 +201,44 @@ void add_prior_evaluate(CLI::App& prior) {
     command
         ->add_option("-o,--output", options->output,
                      "Folder for evaluate.html, evaluate.json and sheets of samples")
+        ->type_name("FOLDER")
         ->required();
     command
         ->add_option("--part", options->part,
-                     "all, or segmenter: that alone, into parts.json, what it finds worst first")
+                     "Part to measure: all, or segmenter alone (into parts.json)")
         ->check(CLI::IsMember({"all", "segmenter"}))
         ->capture_default_str();
-    command->add_flag("--edits", options->edits,
-                      "Ten edits of each of six held-out shapes by the prior's words, with a page "
-                      "of their own, edits/suite.html");
-    command->add_option("--mesh", options->meshes,
-                        "NOUN=FILE, again for each mesh: ten edits of it as well");
+    command->add_flag(
+        "--edits", options->edits,
+        "Also make ten edits of each of six held-out shapes, and edits/suite.html of them");
+    command->add_option("--mesh", options->meshes, "Further mesh for ten edits")
+        ->type_name("NOUN=FILE");
     command->add_flag("--resume", options->resume,
                       "Keep the edits that an interrupted run left in the output folder");
     EvaluationOptions& evaluation = options->evaluation;
     command
         ->add_option("--word-pictures", evaluation.word_pictures,
-                     "Pictures of each word; 0: what prior.json says of them stays")
+                     "Pictures of each word; 0: keep what prior.json says of words")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
-    command->add_option("--pictures", evaluation.pictures, "For the autoencoder")
+    command->add_option("--pictures", evaluation.pictures, "Pictures for the autoencoder")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    command->add_option("--labeled-pictures", evaluation.labeled_pictures, "For CLIP and captioner")
+    command
+        ->add_option("--labeled-pictures", evaluation.labeled_pictures,
+                     "Pictures for CLIP and the captioner")
         ->check(CLI::Range(256, 100000))
         ->capture_default_str();
     command
         ->add_option("--labeled-models", evaluation.labeled_models,
-                     "For the captioner, which sees each from four sides")
+                     "Models for the captioner, which sees each from four sides")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    command->add_option("--part-pictures", evaluation.part_pictures, "For the segmenter")
+    command->add_option("--part-pictures", evaluation.part_pictures, "Pictures for the segmenter")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    command->add_option("--seed", evaluation.seed)->capture_default_str();
+    command->add_option("--seed", evaluation.seed, "Seed of everything random")
+        ->capture_default_str();
     command->callback([options] {
         start_command(*options);
         run_evaluate(*options);

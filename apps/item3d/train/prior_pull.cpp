@@ -57,11 +57,13 @@ void add_prior_pull(CLI::App& prior) {
         prior, "pull", "Download a prior from the Hugging Face hub into its cache", *options);
     command->add_option("REPOSITORY", options->repository, "org/name, or org/name@revision")
         ->required();
-    command->add_option("--revision", options->revision,
-                        "A branch, tag or commit; without it, the main branch");
+    command
+        ->add_option("--revision", options->revision,
+                     "Branch, tag or commit. Without it: the main branch")
+        ->type_name("NAME");
     command
         ->add_option("--variant", options->variant,
-                     "fp16: the weights of half the size, where there are any")
+                     "Weights of half the size (fp16), where there are any")
         ->check(CLI::IsMember({"fp16"}));
     command->footer(
         "HF_TOKEN, HF_HOME, HF_HUB_CACHE and HF_ENDPOINT mean what they mean to huggingface_hub.");

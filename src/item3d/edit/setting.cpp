@@ -6,7 +6,30 @@
 #include <algorithm>
 #include <limits>
 
-namespace item3d::rows {
+namespace item3d {
+
+const char* type_name(SettingType type) {
+    switch (type) {
+        case SettingType::text:
+            return "text";
+        case SettingType::choice:
+            return "choice";
+        case SettingType::integer:
+        case SettingType::unsigned_integer:
+            return "integer";
+        case SettingType::number:
+            return "number";
+        case SettingType::numbers:
+            return "numbers";
+        case SettingType::texts:
+            return "texts";
+        case SettingType::repeated_texts:
+            return "repeated_texts";
+    }
+    ITEM3D_CHECK(false, "unknown type of a setting");
+}
+
+namespace rows {
 
 Setting restricted(Setting setting, const std::string& values,
                    std::function<bool(const EditSettings&)> fits) {
@@ -63,4 +86,10 @@ Setting repeated(Setting setting) {
     return setting;
 }
 
-}  // namespace item3d::rows
+Setting valued(const char* placeholder, Setting setting) {
+    setting.placeholder = placeholder;
+    return setting;
+}
+
+}  // namespace rows
+}  // namespace item3d

@@ -26,6 +26,9 @@ enum class SettingType {
     repeated_texts,
 };
 
+/// "text", "choice", "integer", "number", "numbers", "texts" or "repeated_texts".
+const char* type_name(SettingType type);
+
 struct Setting {
     std::string name;  ///< in JSON, and of EditSettings' member
     std::string flag;  ///< on the command line; empty: there is none
@@ -42,6 +45,7 @@ struct Setting {
     std::string group = {};                     ///< of the settings that belong together
     std::vector<std::string> choices = {};      ///< of a choice
     std::optional<double> low = {}, high = {};  ///< ends of a number's range, themselves in it
+    std::string placeholder = {};  ///< for the value in --help ("FOLDER"); empty: by the type
 };
 
 namespace rows {
@@ -137,6 +141,9 @@ Setting choice(const char* name, Enum EditSettings::*member, const std::vector<s
 
 /// A list of which the option gives one each time.
 Setting repeated(Setting setting);
+
+/// The row with a word for its value in --help.
+Setting valued(const char* placeholder, Setting setting);
 
 }  // namespace rows
 }  // namespace item3d

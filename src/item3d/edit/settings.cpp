@@ -4,29 +4,18 @@
 #include "item3d/core/format.h"
 #include "item3d/edit/settings_table.h"
 
+#include <algorithm>
+
 namespace item3d {
 namespace {
 
 using nlohmann::json;
 
-const char* type_name(SettingType type) {
-    switch (type) {
-        case SettingType::text:
-            return "text";
-        case SettingType::choice:
-            return "choice";
-        case SettingType::integer:
-        case SettingType::unsigned_integer:
-            return "integer";
-        case SettingType::number:
-            return "number";
-        case SettingType::numbers:
-            return "numbers";
-        case SettingType::texts:
-        case SettingType::repeated_texts:
-            return "texts";
-    }
-    ITEM3D_CHECK(false, "unknown type of a setting");
+/// "repeated texts"
+std::string spoken_type(SettingType type) {
+    std::string name = type_name(type);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
 }
 
 }  // namespace
@@ -74,7 +63,7 @@ std::string settings_markdown() {
         const std::string value = readable(row.get({}));
         text += fmt::format("| `{}` | {} | {} | {}{} | {} |\n", row.name,
                             row.flag.empty() ? "" : "`" + row.flag + "`",
-                            value == "none" ? "" : "`" + value + "`", type_name(row.type),
+                            value == "none" ? "" : "`" + value + "`", spoken_type(row.type),
                             row.values.empty() ? "" : ": " + row.values, row.help);
     }
     return text;

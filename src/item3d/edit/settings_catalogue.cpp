@@ -1,6 +1,5 @@
 #include "item3d/edit/settings_catalogue.h"
 
-#include "item3d/core/error.h"
 #include "item3d/core/format.h"
 #include "item3d/edit/settings_table.h"
 
@@ -11,27 +10,6 @@ namespace item3d {
 namespace {
 
 constexpr std::array settings_of_files = {"lora", "embedding", "controlnet", "vae"};
-
-const char* catalogue_type(SettingType type) {
-    switch (type) {
-        case SettingType::text:
-            return "text";
-        case SettingType::choice:
-            return "choice";
-        case SettingType::integer:
-        case SettingType::unsigned_integer:
-            return "integer";
-        case SettingType::number:
-            return "number";
-        case SettingType::numbers:
-            return "numbers";
-        case SettingType::texts:
-            return "texts";
-        case SettingType::repeated_texts:
-            return "repeated_texts";
-    }
-    ITEM3D_CHECK(false, "unknown type of a setting");
-}
 
 /// As people write it: 0.01, and not all digits of the nearest float.
 nlohmann::json plain_value(nlohmann::json value) {
@@ -52,7 +30,7 @@ nlohmann::json settings_catalogue() {
         nlohmann::json entry = {{"name", row.name},     {"flag", row.flag},
                                 {"group", row.group},   {"default", plain_value(row.get({}))},
                                 {"values", row.values}, {"help", row.help}};
-        entry["type"] = row.choices.empty() ? catalogue_type(row.type) : "choice";
+        entry["type"] = row.choices.empty() ? type_name(row.type) : "choice";
         if (!row.choices.empty()) entry["choices"] = row.choices;
         if (row.low) entry["minimum"] = *row.low;
         if (row.high) entry["maximum"] = *row.high;

@@ -13,7 +13,7 @@ namespace {
 
 using S = EditSettings;
 using rows::above_zero, rows::at_least, rows::between, rows::choice, rows::repeated;
-using rows::restricted, rows::setting;
+using rows::restricted, rows::setting, rows::valued;
 
 bool are_timesteps(const S& settings) {
     const std::vector<float>& t = settings.timesteps;
@@ -26,8 +26,9 @@ bool is_direction_or_none(const S& settings) {
 
 Setting kept_channels() {
     Setting row = setting("keep", &S::keep, "--keep",
-                          "Channels not to touch, instead of occlusion,normal: base_color, "
-                          "occlusion, roughness, metallic, normal; or nothing");
+                          "Channels that stay as they are: base_color, occlusion, roughness, "
+                          "metallic, normal; or nothing");
+    row.placeholder = "CHANNEL,...";
     row.check = [](const S& settings) {
         constexpr std::array channels = {"base_color", "occlusion", "roughness", "metallic",
                                          "normal"};
@@ -41,7 +42,7 @@ Setting kept_channels() {
 
 Setting edit_method() {
     Setting row = setting("method", &S::method, "--method",
-                          fmt::format("Of the edit: {}; help tells what each is and costs",
+                          fmt::format("Method: {}; `--method help` explains them",
                                       fmt::join(edit_method_names(), ", ")));
     row.check = [](const S& settings) {
         rows::find_choice("--method", edit_method_names(), settings.method);
@@ -52,7 +53,7 @@ Setting edit_method() {
 
 Setting guidance_method() {
     Setting row = setting("guidance", &S::guidance, "--guidance",
-                          fmt::format("The method: {}; help tells what each is for and costs",
+                          fmt::format("Guidance: {}; `--guidance help` explains them",
                                       fmt::join(guidance_methods(), ", ")));
     row.choices = guidance_methods();
     return row;
@@ -61,33 +62,32 @@ Setting guidance_method() {
 /// The sentences, and what guides an edit from the one to the other.
 std::vector<Setting> guidance_rows() {
     return {
-        setting("from", &S::from, "--from", "What the model looks like now"),
-        setting("to", &S::to, "--to", "What it shall look like"),
+        setting("from", &S::from, "--from", "The model as it is: \"a red mug\""),
+        setting("to", &S::to, "--to", "The model as it should be: \"a golden mug\""),
         edit_method(),
         guidance_method(),
-        choice<Adjustment>(
-            "adjust", &S::adjust, adjustment_names(), parse_adjustment, "--adjust",
-            "How rdl's source follows the render: learned (by its denoising loss, the default), "
-            "caption (by what a captioner sees change), caption-paper (the same with the sign of "
-            "the paper's formula) or off"),
-        setting("adjust_every", &S::adjust_every, between(1, 1000000, "1 or more iterations"),
+        choice<Adjustment>("adjust", &S::adjust, adjustment_names(), parse_adjustment, "--adjust",
+                           "How the source of rdl follows the render: learned (by a denoising "
+                           "loss), caption (by the change that a captioner sees), caption-paper "
+                           "(caption with the sign of the paper's formula), off"),
+        setting("adjust_every", &S::adjust_every, between(1, 1000000, "1 or more"),
                 "--adjust-every",
-                "Iterations between captions, and between the report's pictures of how it went"),
+                "Iterations between captions, and between pictures of the report"),
         setting("adjust_strength", &S::adjust_strength, between(0, 2), "--adjust-strength",
-                "How much captions count, 0 to 2"),
-        setting("adjust_learning_rate", &S::adjust_learning_rate, "", "Of the learned source"),
+                "Weight of the captions"),
+        setting("adjust_learning_rate", &S::adjust_learning_rate, "",
+                "Learning rate of the learned source"),
         setting("adjust_samples", &S::adjust_samples, between(1, 64), "",
-                "Noises that each step of the learned source looks at"),
+                "Noise samples in each step of the learned source"),
         setting("settle", &S::settle,
                 between(0, std::nextafter(1.0f, 0.0f), "between 0 (never) and 1"), "--settle",
-                "Stop where the direction has shrunk to this part of its first length and stays "
-                "there; 0: do all iterations"),
+                "Stop early: once the direction has shrunk to this part of its first length"),
         setting("anchor", &S::anchor, "--anchor",
-                "Pull towards the target's own score, added to rdl; 0: none, 1: strong"),
-        setting("cfg", &S::cfg, "--cfg", "Weight of classifier-free guidance"),
+                "Weight of a pull towards the score of the target, added to rdl; 1 is strong"),
+        setting("cfg", &S::cfg, "--cfg", "Scale of classifier-free guidance"),
         setting("negative_prompt", &S::negative_prompt, "--negative-prompt",
-                "What not to show: guidance pushes away from it, and so does the detail stage. "
-                "Meaningless for rdl's direction, in which it cancels"),
+                "Prompt to stay away from. It acts on every guidance but rdl, where it cancels, "
+                "and on the detail stage"),
     };
 }
 
@@ -95,32 +95,34 @@ std::vector<Setting> guidance_rows() {
 std::vector<Setting> optimization_rows() {
     return {
         setting("iterations", &S::iterations, at_least(0), "--iterations",
-                "Steps of the optimisation; with --settle, at most. Without it, the prior's own "
-                "number, which may be smaller where the detail stage follows"),
+                "Optimisation steps. Without it: the number of the prior, which may be smaller "
+                "where the detail stage follows"),
         setting("iterations_before_detail", &S::iterations_before_detail, at_least(0), "",
-                "Iterations where a texture is edited and the detail stage follows, which paints "
-                "anew what they made of the base colour; 0: as many as without it"),
+                "Optimisation steps where the detail stage follows, which paints the base colour "
+                "anew; 0: as many as without it"),
         setting("fit_steps", &S::fit_steps, at_least(1), "",
-                "Steps that make the neural texture look like the model's own materials"),
+                "Steps that fit the neural texture to the model's own materials"),
         setting("batch", &S::batch, between(1, 64), "--batch", "Views in each step"),
-        setting("resolution", &S::resolution, between(16, 2048, "between 16 and 2048 pixels"),
-                "--resolution", "Edge in pixels of the pictures that the prior sees"),
+        setting("resolution", &S::resolution, between(16, 2048, "between 16 and 2048"),
+                "--resolution", "Edge of the pictures that the prior sees, in pixels"),
         setting("learning_rate", &S::learning_rate, above_zero(), "--learning-rate",
-                "Of the neural texture"),
+                "Learning rate of the neural texture"),
         setting("evenness", &S::evenness, between(0, 1e9, "between 0 (blotches stay) and 1e9"),
                 "--evenness",
-                "How strongly an edit towards a plain colour or metal is held to change the same "
-                "thing everywhere; 0: blotches stay"),
-        restricted(setting("timesteps", &S::timesteps, "--timesteps",
-                           "MIN,MAX noise levels, as parts of the schedule (0.02,0.98)"),
-                   "two rising numbers between 0 and 1, as in 0.02,0.98", are_timesteps),
-        choice<TimestepSchedule>(
-            "timestep_schedule", &S::timestep_schedule, timestep_schedule_names(),
-            parse_timestep_schedule, "--timestep-schedule",
-            "uniform (drawn, the default), anneal (from high to low) or dreamtime"),
-        choice<Weighting>(
-            "weighting", &S::weighting, weighting_names(), parse_weighting, "--weighting",
-            "omega(t) of rdl, sds, nfsd and csd: early, late, dreamfusion or uniform"),
+                "How evenly an edit to a plain colour or metal spreads over the surface"),
+        valued("MIN,MAX",
+               restricted(setting("timesteps", &S::timesteps, "--timesteps",
+                                  "Lowest and highest noise level, as parts of the schedule"),
+                          "two rising numbers between 0 and 1, as in 0.02,0.98", are_timesteps)),
+        choice<TimestepSchedule>("timestep_schedule", &S::timestep_schedule,
+                                 timestep_schedule_names(), parse_timestep_schedule,
+                                 "--timestep-schedule",
+                                 "Order of the noise levels: uniform (drawn at random), anneal "
+                                 "(from high to low), dreamtime"),
+        choice<Weighting>("weighting", &S::weighting, weighting_names(), parse_weighting,
+                          "--weighting",
+                          "Weight of a noise level, for rdl, sds, nfsd and csd: early, late, "
+                          "dreamfusion, uniform"),
     };
 }
 
@@ -128,39 +130,48 @@ std::vector<Setting> optimization_rows() {
 std::vector<Setting> method_rows() {
     return {
         setting("steps", &S::steps, between(0, 999, "between 1 and 999, or 0 for the method's own"),
-                "--steps", "Steps of sampling, of a --method that samples; 0: as it was published"),
+                "--steps", "Sampling steps of a --method that samples"),
         setting("views", &S::views,
                 between(0, 1000, "between 1 and 1000, or 0 for the method's own"), "--views",
-                "Views that a --method paints or edits; 0: as many as were published"),
+                "Views that a --method paints or edits"),
         choice("clip_loss", &S::clip_loss, {"absolute", "directional"}, "--clip-loss",
-               "Of --method clip: absolute (as CLIP-NeRF's released code) or directional"),
+               "Loss of --method clip: absolute (as in CLIP-NeRF's released code), directional"),
         setting("instruction", &S::instruction, "--instruction",
-                "Of --method in2n: what to do, in words (\"turn it into gold\"); without it, "
-                "\"turn it into\" and --to"),
+                "Instruction of --method in2n: \"turn it into gold\". Without it: \"turn it into\" "
+                "and --to"),
         setting("image_cfg", &S::image_cfg, between(0, 100), "--image-cfg",
-                "Of --method in2n: how much the unedited view counts"),
+                "Guidance scale of the unedited view, for --method in2n"),
     };
 }
 
 /// The light that the model stands in.
 std::vector<Setting> light_rows() {
     return {
-        setting("light", &S::light, "--light",
-                "studio, noon, sunset, overcast, night, or an .hdr or .exr file"),
+        valued(
+            "LIGHT",
+            setting(
+                "light", &S::light, "--light",
+                "Light around the model: studio, noon, sunset, overcast, night, or an .hdr or .exr "
+                "file")),
         choice("optimize", &S::optimize, {"texture", "light", "both"}, "--optimize",
-               "texture (the default), light (which relight does alone) or both"),
+               "What the edit changes: texture, light (as `item3d relight --to` does), both"),
         choice("light_model", &S::light_model, {"auto", "physical", "texels"}, "--light-model",
-               "Of a light that is optimised: physical, texels, or auto"),
+               "Parameters of a light that is edited: physical (a sky, a sun and a ground), "
+               "texels, auto"),
         setting("light_learning_rate", &S::light_learning_rate, above_zero(), "",
-                "Of a light that is optimised"),
+                "Learning rate of a light that is edited"),
         restricted(setting("light_from", &S::light_from, "",
-                           "Where a light that is optimised must come from; empty: from anywhere"),
+                           "Direction that a light that is edited must come from; empty: any"),
                    "an azimuth and an elevation in degrees", is_direction_or_none),
         choice("light_augment", &S::light_augment, {"off", "rotate", "all"}, "--light-augment",
-               "How the light varies while a texture is edited, so that no shading is painted: "
-               "off, rotate, or all (other presets and brightness too; the default)"),
-        setting("background", &S::background, "--background",
-                "A colour, or vary: another grey each step"),
+               "Variation of the light while textures are edited, which keeps shading out of them: "
+               "off, rotate, all (rotation, other presets and brightness)"),
+        valued(
+            "COLOUR",
+            setting(
+                "background", &S::background, "--background",
+                "Background of the pictures that the prior sees: a colour, or vary (another grey "
+                "in each step)")),
     };
 }
 
@@ -169,73 +180,76 @@ std::vector<Setting> texture_rows() {
     return {
         setting("texture_size", &S::texture_size,
                 between(0, 8192, "between 1 and 8192, or 0 for the input's own"), "--texture-size",
-                "Edge of the textures that are written; 0: as the input's"),
+                "Edge of the written textures, in pixels"),
         choice("uv", &S::uv, {"auto", "keep", "new"}, "--uv",
-               "The UV map: auto (the input's own, but for detail on a material without textures "
-               "whose "
-               "UVs overlap), keep, or new (each place gets texels of its own)"),
+               "UV map: keep (the input's), new (one without overlaps), auto (new only for detail "
+               "on untextured materials whose UVs overlap)"),
         choice("texture_format", &S::texture_format, {"keep", "png", "jpeg", "webp", "ktx2"},
                "--texture-format",
-               "Of the textures that are written: keep (each as the input's, the default), png, "
-               "jpeg, webp or ktx2; images with alpha are never JPEG, and those of which a channel "
-               "must "
-               "not change are written without losses"),
+               "Format of the written textures: keep (that of each input texture), png, jpeg, "
+               "webp, ktx2. Images with alpha are never JPEG, and a kept channel is never "
+               "compressed with loss"),
         kept_channels(),
         choice("metallic", &S::metallic, {"auto", "always"}, "--metallic",
-               "auto: edit metallic where a sentence names a metal; always: in any case"),
+               "When metallic is edited: auto (where a sentence names a metal), always"),
         setting("metallic_start", &S::metallic_start, between(0, 1), "",
-                "Where metallic begins if the target names a metal and the source does not; as far "
-                "from 1 where only the source does"),
+                "First value of metallic where only --to names a metal; 1 minus it where only "
+                "--from does"),
         choice("detail", &S::detail, {"auto", "off", "always"}, "--detail",
-               "Paint spots, courses or veins after the edit. auto: where the target names a "
-               "pattern, or a material that the prior has them for; off; always"),
+               "Detail stage, which paints spots, courses or veins after the edit: auto (where "
+               "--to names a pattern, or a material that the prior paints so), off, always"),
         setting(
             "detail_words", &S::detail_words, "",
-            "Words in lower case, of which the target must have one that the source has not for "
-            "the detail stage to run by itself"),
+            "Words of --to, in lower case, that start the detail stage where --from lacks them"),
         setting("detail_views", &S::detail_views, between(1, 1000), "",
                 "Views that the detail stage paints"),
-        setting("material", &S::material, "--material", "Edit only the materials of these names"),
-        setting("variant", &S::variant, "--variant",
-                "Edit and show the look of this name, of a glTF that offers several "
-                "(KHR_materials_variants)"),
+        valued("NAME,...", setting("material", &S::material, "--material",
+                                   "Edit only these materials, by name")),
+        valued(
+            "NAME",
+            setting("variant", &S::variant, "--variant",
+                    "Look to edit, by name, of a glTF that has several (KHR_materials_variants)")),
         choice("provenance", &S::provenance, {"on", "off"}, "--provenance",
-               "on (the default): model and textures say, as XMP, that a generative program edited "
-               "them, with sentences, prior, input and date; off: nothing"),
-        setting("seed", &S::seed, "--seed", "Another seed, another result"),
+               "on: model and textures say in XMP that a generative program edited them, with "
+               "sentences, prior, input and date. off: they do not"),
+        setting("seed", &S::seed, "--seed",
+                "Seed of everything random; another seed gives another result"),
     };
 }
 
 /// The part of the surface that is edited.
 std::vector<Setting> region_rows() {
     return {
-        repeated(setting("region", &S::region, "--region",
-                         "Edit only what this selector takes (item3d region --help lists them); "
-                         "may be given several times, for their union. auto: where the "
-                         "sentences differ to the prior; all: everything. Without it: of a change "
-                         "from one colour to another, what has the first; else everything")),
-        repeated(setting("exclude", &S::exclude, "--exclude",
-                         "Leave alone what this selector takes; may be given several times")),
+        valued("SELECTOR",
+               repeated(setting(
+                   "region", &S::region, "--region",
+                   "Part of the surface to edit, by a selector (`item3d region --help`); several: "
+                   "their union. auto: where the sentences differ to the prior; all: everything. "
+                   "Without it: the first colour of a change of colours, else everything"))),
+        valued("SELECTOR", repeated(setting("exclude", &S::exclude, "--exclude",
+                                            "Part to leave alone, by a selector"))),
         setting("feather", &S::feather, between(0, 50), "--feather",
-                "Width of a region's soft border, within it, in percent of the model's size"),
+                "Width of the soft border inside the region, in percent of the model's size"),
     };
 }
 
 /// Additions to the prior.
 std::vector<Setting> extras_rows() {
     return {
-        repeated(setting("lora", &S::lora, "--lora",
-                         "FILE or FILE:SCALE: a LoRA (.safetensors) added to the prior's weights; "
-                         "may be given several times")),
-        repeated(setting("embedding", &S::embedding, "--embedding",
-                         "FILE or FILE:TOKEN: a textual inversion (.safetensors), which a prompt "
-                         "then names by its token; may be given several times")),
-        setting("controlnet", &S::controlnet, "--controlnet",
-                "Folder of a depth ControlNet, for a prior that takes no depth itself"),
+        valued("FILE",
+               repeated(setting("lora", &S::lora, "--lora",
+                                "LoRA (.safetensors) added to the prior: FILE or FILE:SCALE"))),
+        valued("FILE[:TOKEN]", repeated(setting("embedding", &S::embedding, "--embedding",
+                                                "Textual inversion (.safetensors), which a prompt "
+                                                "names by its token: FILE or FILE:TOKEN"))),
+        valued("FOLDER",
+               setting("controlnet", &S::controlnet, "--controlnet",
+                       "Folder of a depth ControlNet, for a prior that takes no depth itself")),
         setting("controlnet_scale", &S::controlnet_scale, "--controlnet-scale",
-                "How much the ControlNet counts, 1 if not given"),
-        setting("vae", &S::vae, "--vae",
-                "Folder of another autoencoder for the prior, as a tiny one for a faster gradient"),
+                "Weight of the ControlNet"),
+        valued("FOLDER",
+               setting("vae", &S::vae, "--vae",
+                       "Folder of another autoencoder, such as a tiny one for faster gradients")),
     };
 }
 
