@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Fails where a test skipped that expected_skips.txt does not list, or whose reason does not hold on this machine.
+
+usage: tests/check_skips.py RESULTS     the folder of GoogleTest's JSON files
+"""
+import fnmatch
+import json
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def expected():
+    for line in (HERE / "expected_skips.txt").read_text().splitlines():
+        if line and not line.startswith("#"):
+            reason, program, pattern = line.split()
+            yield reason, program, pattern
+
+
+def holds(reason):
+    """Whether a reason can be true here; of the others the test itself knows."""
+    return reason != "shared" or not (HERE.parent / "../shared").is_dir()
+
+
+def skipped(file):
+    for suite in json.loads(file.read_text())["testsuites"]:
+        for test in suite["testsuite"]:
+            if test.get("result") == "SKIPPED":
+                yield f"{suite['name']}.{test['name']}"
+
+
+def main(results):
+    files = sorted(pathlib.Path(results).glob("*.json"))
+    if not files:
+        sys.exit(f"check_skips.py: {results} has no results; run the tests by ctest")
+    listed, wrong, count = list(expected()), [], 0
+    for file in files:
+        program = file.stem.removeprefix("test_")
+        for name in skipped(file):
+            count += 1
+            if not any(program == of and fnmatch.fnmatchcase(name, pattern) and holds(reason) for reason, of, pattern in listed):
+                wrong.append(f"{program}: {name}")
+    if wrong:
+        sys.exit("check_skips.py: tests skipped that may not (tests/expected_skips.txt):\n  " + "\n  ".join(wrong))
+    print(f"{count} tests skipped, all as tests/expected_skips.txt says")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
