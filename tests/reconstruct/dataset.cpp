@@ -119,6 +119,42 @@ TEST(Dataset, NamesWhatIsWrong) {
         frame["transform_matrix"] = repeated.document["frames"][0]["transform_matrix"];
     expect_problem(repeated.problem(), "all cameras stand at one place");
 
+    NerfFolder inverse("inverse");
+    for (json& frame : inverse.document["frames"]) {
+        json& rows = frame["transform_matrix"];
+        Mat4 pose(1.0f);
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column)
+                pose[column][row] = rows[row][column].get<float>();
+        rows = rows_of(glm::inverse(pose));
+    }
+    expect_problem(inverse.problem(), "are the matrices world-to-camera?");
+
+    for (const auto& [scale, offset, words] :
+         {std::tuple(1e-9, 0.0, "units large; scale the positions"),
+          std::tuple(1e30, 0.0, "units large; scale the positions"),
+          std::tuple(1.0, 5.4e6, "take the mean position off all of them")}) {
+        NerfFolder placed("placed");
+        for (json& frame : placed.document["frames"])
+            for (int row = 0; row < 3; ++row) {
+                json& value = frame["transform_matrix"][row][3];
+                value = value.get<double>() * scale + offset;
+            }
+        expect_problem(placed.problem(), words);
+    }
+
+    NerfFolder unmasked("unmasked");
+    Image opaque(24, 24, 3, 1.0f);
+    for (int y = 8; y < 16; ++y)
+        for (int x = 6; x < 14; ++x)
+            opaque.at(x, y, 1) = 0.3f;
+    save_image(unmasked.folder / "train/view_2.png", opaque);
+    expect_problem(unmasked.problem(), "'train/view_2' has no mask, though others have");
+
+    DatasetOptions elsewhere;
+    elsewhere.images = "elsewhere";
+    expect_problem(NerfFolder("elsewhere").problem(elsewhere), "--images: is for COLMAP and LLFF");
+
     NerfFolder outside("outside");
     outside.document["frames"][0]["file_path"] = "../secret.png";
     expect_problem(outside.problem(), "is not inside");

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/edit/settings_table.h"
 
 #include <algorithm>
@@ -15,20 +16,6 @@ using nlohmann::json;
 
 constexpr const char* example =
     R"(as {"edits": [{"from": "a cow", "to": "a golden cow", "region": ["named=black"]}]})";
-
-json read_json(const fs::path& path) {
-    const std::string text = read_text(path);
-    try {
-        return json::parse(text);
-    } catch (const json::parse_error& error) {
-        const auto end =
-            text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-        throw InputError(
-            path.string(),
-            fmt::format("is no JSON from line {} on", 1 + std::count(text.begin(), end, '\n')),
-            "look for a comma, a quotation mark or a bracket too many or too few");
-    }
-}
 
 /// One selector may stand for a list of one.
 json with_lists(json edit) {
@@ -53,7 +40,7 @@ void check_types(const std::string& place, const json& edit) {
 }  // namespace
 
 std::vector<json> read_plan_file(const fs::path& path) {
-    const json document = read_json(path);
+    const json document = parse_json_text(read_text(path), path.string());
     if (!document.is_object() || !document.contains("edits") || !document["edits"].is_array() ||
         document["edits"].empty())
         throw InputError(path.string(), "a list of edits was expected", example);

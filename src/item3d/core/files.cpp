@@ -122,6 +122,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
 }
 
 void make_output_folder(const fs::path& folder) {
+    if (folder.empty()) throw InputError("-o", "is empty", "name a folder");
     std::error_code code;
     fs::create_directories(folder, code);
     if (!fs::is_directory(folder)) {

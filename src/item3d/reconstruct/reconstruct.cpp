@@ -21,7 +21,9 @@
 #include "item3d/scene/far_origin.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
+#include <optional>
 
 namespace item3d {
 
@@ -109,7 +111,16 @@ void note_exposures(const std::vector<Photograph>& views) {
                          greatest / least));
 }
 
-void score(Reconstruction& result, const ViewCorrections& corrections) {
+/// The mesh of --reference, which is read before what takes long; nothing without it.
+std::optional<TriangleMesh> read_reference(const ReconstructRequest& request) {
+    if (request.reference.empty()) return std::nullopt;
+    Model reference = load_model(request.reference);
+    move_origin(reference, glm::dvec3(0.0));
+    return mesh_of(reference);
+}
+
+void score(Reconstruction& result, const ViewCorrections& corrections,
+           const std::optional<TriangleMesh>& reference) {
     const ReconstructRequest& request = result.request;
     const std::int64_t shadow_points = request.refine.shadows ? request.refine.shadow_points : 0;
     const ModelRenderer renderer(result.model, result.light, shadow_points);
@@ -141,11 +152,7 @@ void score(Reconstruction& result, const ViewCorrections& corrections) {
     if (!request.truth.empty())
         result.materials = compare_materials(
             result.model, make_targets(test, result.model.bounds()), request.truth);
-    if (!request.reference.empty()) {
-        Model reference = load_model(request.reference);
-        move_origin(reference, glm::dvec3(0.0));
-        result.chamfer = chamfer_distance(mesh_of(result.model), mesh_of(reference));
-    }
+    if (reference) result.chamfer = chamfer_distance(mesh_of(result.model), *reference);
 }
 
 /// To where the photographs show it.
@@ -221,6 +228,9 @@ Start start_from_photographs(const ReconstructRequest& request, Reconstruction& 
 
 nlohmann::json reconstruct(const ReconstructRequest& request) {
     const OutputFolder folder(request.output);
+    if (!request.resume && std::filesystem::exists(request.output / "model.glb"))
+        note((request.output / "model.glb").string() + " is replaced when this run ends");
+    const std::optional<TriangleMesh> reference = read_reference(request);
     StageTimes times;
     Dataset dataset = load_dataset(request.dataset, request.dataset_options);
     note(describe(dataset));
@@ -257,7 +267,7 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     result.times.end_stage("bake");
 
     result.corrections = corrections_json(dataset, corrections);
-    score(result, corrections);
+    score(result, corrections, reference);
     result.times.end_stage("scores");
     const nlohmann::json summary = summary_json(result);
     write_atomically(request.output / "report.html", std::string_view(report_html(result)));

@@ -2,6 +2,7 @@
 
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/scene/pose.h"
 
 #include <fmt/format.h>
@@ -54,7 +55,7 @@ float checked_field_of_view(float angle, const std::string& subject) {
     if (!(angle > 1e-3f && angle < 3.1f)) {
         throw InputError(subject,
                          fmt::format("the field of view must be between 0.001 and 3.1 radians, "
-                                     "found {}",
+                                     "found {:.6g}",
                                      angle),
                          "camera_angle_x is in radians");
     }
@@ -194,12 +195,7 @@ void fit_depth_range(Camera& camera, std::array<Vec3, 2> bounds) {
 
 std::vector<Camera> load_cameras(const std::filesystem::path& path, const glm::dvec3& origin) {
     const std::string subject = path.string();
-    nlohmann::json document;
-    try {
-        document = nlohmann::json::parse(read_text(path));
-    } catch (const nlohmann::json::exception& error) {
-        throw InputError(subject, std::string("expected JSON: ") + error.what());
-    }
+    nlohmann::json document = parse_json_text(read_text(path), subject);
     if (!document.is_object() || !document.contains("frames") || !document["frames"].is_array()) {
         throw InputError(subject, "expected an object with a list \"frames\"",
                          "cameras are read from NeRF-synthetic transforms.json files");

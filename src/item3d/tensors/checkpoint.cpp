@@ -66,7 +66,14 @@ void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkp
 
 std::optional<Checkpoint> load_checkpoint(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path)) return std::nullopt;
-    const SafeTensors file = SafeTensors::open(path);
+    const SafeTensors file = [&path] {
+        try {
+            return SafeTensors::open(path);
+        } catch (const InputError&) {
+            throw InputError(path.string(), "is damaged, or no checkpoint",
+                             "remove it, or leave out --resume");
+        }
+    }();
     const auto identity = file.metadata().find("identity");
     const auto iteration = file.metadata().find("iteration");
     if (identity == file.metadata().end() || iteration == file.metadata().end()) {

@@ -1,6 +1,7 @@
 #include "item3d/io/gltf/document.h"
 
 #include "item3d/core/error.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/io/find_file.h"
 #include "item3d/io/gltf/meshopt.h"
 #include "item3d/io/resources.h"
@@ -101,11 +102,10 @@ bool nests_deeper_than(std::string_view text, int limit) {
 Json parse_json(std::string_view text, const std::string& subject) {
     if (nests_deeper_than(text, 256)) throw InputError(subject, "its JSON is nested too deeply");
     try {
-        Json json = Json::parse(text);
+        Json json = Json::parse(text);  // in the file's own order
         if (json.is_object()) return json;
-    } catch (const Json::exception& error) {
-        throw InputError(subject, std::string("its JSON cannot be read: ") + error.what(),
-                         "the file is damaged, or is no glTF");
+    } catch (const Json::exception&) {
+        parse_json_text(std::string(text), subject);
     }
     throw InputError(subject, "a JSON object was expected", "the file is no glTF");
 }

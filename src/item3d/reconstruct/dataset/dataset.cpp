@@ -62,8 +62,22 @@ fs::path images_folder(const fs::path& folder, const DatasetOptions& options) {
 }
 
 SourceDataset read_source(const fs::path& path, const DatasetOptions& options) {
-    if (!fs::exists(path)) throw InputError(path.string(), "there is no such file or folder");
-    if (fs::is_regular_file(path)) return read_nerfstudio(path);
+    std::error_code problem;
+    const fs::file_status status = fs::status(path, problem);
+    if (problem && status.type() != fs::file_type::not_found)
+        throw InputError(path.string(), "cannot be looked at: " + problem.message(),
+                         "name the folder that holds the photographs and their poses");
+    if (!fs::exists(status))
+        throw InputError(path.string(), "there is no such file or folder",
+                         "name the folder that holds the photographs and their poses");
+    const bool lists_pictures = fs::is_regular_file(status) ||
+                                fs::exists(path / "transforms_train.json") ||
+                                fs::exists(path / "transforms.json");
+    if (lists_pictures && !options.images.empty())
+        throw InputError("--images",
+                         "is for COLMAP and LLFF: this dataset names each picture itself",
+                         "leave it out");
+    if (fs::is_regular_file(status)) return read_nerfstudio(path);
     if (fs::exists(path / "transforms_train.json")) return read_nerf_synthetic(path);
     if (fs::exists(path / "transforms.json")) return read_nerfstudio(path / "transforms.json");
     if (const fs::path model = colmap_model(path); !model.empty()) {
@@ -194,14 +208,34 @@ void check_cameras(const fs::path& path, const Dataset& dataset) {
                          fmt::format("{} view(s) to learn from", dataset.train.size()),
                          "at least 3 are needed, and 30 or more are good");
     }
-    float spread = 0;
-    const Vec3 first = dataset.train.front().camera.position();
-    for (const Photograph& view : dataset.train)
-        spread = std::max(spread, glm::distance(first, view.camera.position()));
-    if (spread < 0.01f * glm::distance(first, dataset.centre) || spread == 0) {
+    float spread = 0, turn = 0;
+    const Camera& first = dataset.train.front().camera;
+    const Vec3 position = first.position();
+    for (const Photograph& view : dataset.train) {
+        spread = std::max(spread, glm::distance(position, view.camera.position()));
+        turn = std::max(turn, glm::distance(Vec3(first.camera_to_world[2]),
+                                            Vec3(view.camera.camera_to_world[2])));
+    }
+    if (std::isfinite(spread) && (spread < 0.01f * glm::distance(position, dataset.centre) ||
+                                  spread <= 5e-7f * glm::length(position))) {
         throw InputError(path.string(), "all cameras stand at one place",
-                         "a shape is seen only from different sides; are the poses those of the "
-                         "pictures?");
+                         turn > 0.5f ? "are the matrices world-to-camera? camera-to-world is wanted"
+                                     : "a shape is seen only from different sides; are the poses "
+                                       "those of the pictures?");
+    }
+    constexpr float smallest = 1e-4f, largest = 1e6f;
+    if (dataset.radius < smallest || dataset.radius > largest) {
+        throw InputError(path.string(),
+                         fmt::format("the object is about {:.2g} units large", 2 * dataset.radius),
+                         "scale the positions of the cameras, so that it is between 0.001 and "
+                         "100000");
+    }
+    // Positions are float32.
+    if (spread < 1e-4f * glm::length(position)) {
+        throw InputError(path.string(),
+                         fmt::format("the cameras stand {:.3g} from the origin and {:.3g} apart",
+                                     glm::length(position), spread),
+                         "take the mean position off all of them, which leaves more digits");
     }
 }
 
@@ -209,7 +243,9 @@ void check_cameras(const fs::path& path, const Dataset& dataset) {
 
 Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
     SourceDataset source = read_source(path, options);
-    if (source.views.empty()) throw InputError(path.string(), "the dataset has no views");
+    if (source.views.empty())
+        throw InputError(path.string(), "the dataset has no views",
+                         "it must list at least 3 pictures with their poses");
     if (source.lenses_of_exif > 0) {
         note(fmt::format("{} focal lengths are those that the camera wrote (EXIF)",
                          source.lenses_of_exif));
@@ -225,6 +261,7 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
     Dataset dataset;
     dataset.kind = source.kind;
     std::map<MaskOrigin, std::size_t> origins;
+    std::string first_without_mask;
     int width = 0, height = 0;
     for (SourceView& from : source.views) {
         fs::path mask = find_mask(masks, from);
@@ -235,7 +272,9 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
         const bool named = mask.empty() && !from.mask.empty();
         if (named) mask = from.mask;
         LoadedPhotograph loaded = load_photograph(from, mask, options);
-        ++origins[named ? MaskOrigin::mask_path : loaded.mask];
+        const MaskOrigin origin = named ? MaskOrigin::mask_path : loaded.mask;
+        if (++origins[origin] == 1 && origin == MaskOrigin::plain_border)
+            first_without_mask = from.name;
         from.camera_to_world = loaded.camera_to_world;
         Photograph view;
         view.name = from.name;
@@ -248,10 +287,13 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
                 width = view.image.width;
                 height = view.image.height;
             } else if (view.image.width != width || view.image.height != height) {
-                throw InputError(from.picture.string(),
-                                 fmt::format("is {} x {}, the pictures before it {} x {}",
-                                             view.image.width, view.image.height, width, height),
-                                 "camera_angle_x speaks of pictures of one size");
+                throw InputError(
+                    from.picture.string(),
+                    fmt::format(
+                        "is {} x {}, the pictures before it {} x {}{}", view.image.width,
+                        view.image.height, width, height,
+                        options.longest_side > 0 ? " (as --longest-side reduces them)" : ""),
+                    "camera_angle_x speaks of pictures of one size");
             }
         }
         view.camera.name = from.name;
@@ -259,6 +301,10 @@ Dataset load_dataset(const fs::path& path, const DatasetOptions& options) {
         view.camera.camera_to_world = from.camera_to_world;
         (from.split == Split::test ? dataset.test : dataset.train).push_back(std::move(view));
     }
+    if (!first_without_mask.empty() && origins.size() > 1)
+        throw InputError(path.string(),
+                         fmt::format("'{}' has no mask, though others have", first_without_mask),
+                         "add it, or take that view out of the dataset");
     dataset.world_from_dataset = upright(source, options.up);
     for (auto* views : {&dataset.train, &dataset.test})
         for (Photograph& view : *views)

@@ -187,7 +187,9 @@ LoadedPhotograph load_photograph(const SourceView& view, const fs::path& mask_fi
     std::error_code ignored;
     if (!fs::is_regular_file(view.picture, ignored)) {
         throw InputError(view.picture.string(),
-                         "the picture of view '" + view.name + "' is missing",
+                         fs::exists(view.picture, ignored)
+                             ? "is no file: the picture of view '" + view.name + "' is wanted here"
+                             : "the picture of view '" + view.name + "' is missing",
                          "every pose needs its picture");
     }
     const CameraFacts facts = camera_facts(view.picture);

@@ -3,6 +3,7 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/parse_json.h"
 #include "item3d/reconstruct/dataset/camera_facts.h"
 #include "item3d/reconstruct/dataset/orientation.h"
 #include "item3d/scene/pose.h"
@@ -22,12 +23,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 Json read_transforms(const fs::path& file) {
-    Json document;
-    try {
-        document = Json::parse(read_text(file));
-    } catch (const Json::exception& error) {
-        throw InputError(file.string(), std::string("expected JSON: ") + error.what());
-    }
+    Json document = parse_json_text(read_text(file), file.string());
     if (!document.is_object() || !document.contains("frames") || !document["frames"].is_array()) {
         throw InputError(file.string(), "expected an object with a list \"frames\"",
                          "NeRF-synthetic and nerfstudio files are like that");
@@ -125,7 +121,7 @@ Lens read_lens(const Numbers& numbers, const fs::path& picture, std::size_t& fro
         if (!(angle > 1e-3 && angle < 3.1)) {
             throw InputError(numbers.subject(),
                              fmt::format("camera_angle_x must be between 0.001 and 3.1 radians, "
-                                         "found {}",
+                                         "found {:.6g}",
                                          angle));
         }
         lens.focal_x = lens.focal_y = 0.5 / std::tan(0.5 * angle);

@@ -1,0 +1,51 @@
+#include "item3d/core/parse_json.h"
+
+#include "item3d/core/error.h"
+#include "item3d/core/format.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
+namespace item3d {
+namespace {
+
+/// The word or sign in which a parser stopped that had read `end` bytes.
+std::string_view word_before(std::string_view text, std::size_t end) {
+    const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+    end = std::min(end, text.size());
+    std::size_t begin = end > 0 ? end - 1 : 0;
+    while (begin > 0 && is_word(text[begin - 1]))
+        --begin;
+    while (end < text.size() && is_word(text[end]))
+        ++end;
+    return text.substr(begin, end - begin);
+}
+
+std::string advice(std::string_view text, std::size_t byte) {
+    const std::string_view word = word_before(text, byte);
+    if (word.find("NaN") != std::string_view::npos ||
+        word.find("Infinity") != std::string_view::npos)
+        return "NaN and Infinity are no numbers of JSON: write what the number should be";
+    if (text.substr(0, 2) == "\xff\xfe" || text.substr(0, 2) == "\xfe\xff")
+        return "it is UTF-16: save it as UTF-8";
+    return "look for a comma, a quotation mark or a bracket too many or too few";
+}
+
+}  // namespace
+
+nlohmann::json parse_json_text(const std::string& text, const std::string& subject) {
+    try {
+        return nlohmann::json::parse(text);
+    } catch (const nlohmann::json::parse_error& error) {
+        const std::size_t byte = std::min(error.byte, text.size());
+        const auto lines =
+            1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n');
+        throw InputError(subject, fmt::format("is no JSON from line {} on", lines),
+                         advice(text, byte));
+    } catch (const nlohmann::json::out_of_range&) {
+        throw InputError(subject, "has a number too large for a double", "numbers end at 1.8e308");
+    }
+}
+
+}  // namespace item3d
