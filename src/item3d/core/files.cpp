@@ -138,14 +138,18 @@ void make_output_folder(const fs::path& folder) {
 
 OutputFolder::OutputFolder(const fs::path& folder) {
     std::error_code code;
-    const bool was_there = fs::exists(folder, code);
+    for (fs::path missing = folder; !missing.empty() && !fs::exists(missing, code);
+         missing = missing.parent_path())
+        made_.push_back(missing);
     make_output_folder(folder);
-    if (!was_there) made_ = folder;
 }
 
 OutputFolder::~OutputFolder() {
     std::error_code code;
-    if (!made_.empty() && fs::is_empty(made_, code) && !code) fs::remove(made_, code);
+    for (const fs::path& folder : made_) {
+        if (!fs::is_empty(folder, code) || code) return;
+        fs::remove(folder, code);
+    }
 }
 
 fs::path assets_folder() {

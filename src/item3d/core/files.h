@@ -46,7 +46,8 @@ class OutputFolder {
     OutputFolder& operator=(const OutputFolder&) = delete;
 
   private:
-    std::filesystem::path made_;  ///< empty: it was there
+    std::vector<std::filesystem::path>
+        made_;  ///< the folder, then those above it that were not there
 };
 
 /// The folder of shipped data (prior, demo model): $ITEM3D_ASSETS, else ../assets or

@@ -111,6 +111,21 @@ void note_exposures(const std::vector<Photograph>& views) {
                          greatest / least));
 }
 
+/// What is compared with in the end is there, and can be read.
+void check_comparisons(const ReconstructRequest& request) {
+    const auto require_folder = [](const std::filesystem::path& folder, const char* pictures) {
+        std::error_code code;
+        if (!std::filesystem::is_directory(folder, code))
+            throw InputError(folder.string(), "there is no such folder",
+                             std::string("name the folder of ") + pictures);
+    };
+    for (const RelitViews& views : request.relit) {
+        require_folder(views.folder, "the test views' pictures in the other light");
+        load_light(views.light);
+    }
+    if (!request.truth.empty()) require_folder(request.truth, "NAME_albedo.png and NAME_orm.png");
+}
+
 /// The mesh of --reference, which is read before what takes long; nothing without it.
 std::optional<TriangleMesh> read_reference(const ReconstructRequest& request) {
     if (request.reference.empty()) return std::nullopt;
@@ -231,6 +246,7 @@ nlohmann::json reconstruct(const ReconstructRequest& request) {
     if (!request.resume && std::filesystem::exists(request.output / "model.glb"))
         note((request.output / "model.glb").string() + " is replaced when this run ends");
     const std::optional<TriangleMesh> reference = read_reference(request);
+    check_comparisons(request);
     StageTimes times;
     Dataset dataset = load_dataset(request.dataset, request.dataset_options);
     note(describe(dataset));

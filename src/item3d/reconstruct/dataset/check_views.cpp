@@ -194,10 +194,17 @@ void check_outlines(const Dataset& dataset, const std::string& subject, ViewProb
     const std::size_t count = dataset.train.size();
     if (found.unsolved || 10 * found.views.size() > count)
         look_for_remedy(masks, dataset, found.share, subject);
+    constexpr double hopeless = 0.5;
+    if (found.share > hopeless)
+        throw InputError(
+            subject,
+            fmt::format("the pictures contradict each other in {:.0f} % of the object's pixels",
+                        100 * found.share),
+            "does each pose belong to its picture, and do masks show the object in white?");
     if (found.unsolved) {
         problems.warnings.push_back(fmt::format(
             "the pictures contradict each other in {:.0f} % of the object's pixels: the object "
-            "moves between them, or poses or masks are wrong",
+            "moves between them, or poses, lens or masks are wrong",
             100 * found.share));
         return;
     }

@@ -3,12 +3,14 @@
 #include "item3d/core/error.h"
 #include "item3d/core/files.h"
 #include "item3d/core/format.h"
+#include "item3d/core/progress.h"
 #include "item3d/scene/pose.h"
 
 #include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <map>
 #include <sstream>
@@ -135,6 +137,7 @@ void read_text_cameras(const fs::path& file, ColmapReader& reader) {
         std::vector<double> parameters;
         for (double value = 0; words >> value;)
             parameters.push_back(value);
+        if (!words.eof()) throw InputError(subject, "a parameter is not a finite number");
         reader.lenses[id] = make_lens(model, width, height, parameters, subject);
     }
 }
@@ -142,8 +145,10 @@ void read_text_cameras(const fs::path& file, ColmapReader& reader) {
 void read_text_images(const fs::path& file, ColmapReader& reader) {
     std::istringstream lines(read_text(file));
     int number = 0;
+    std::size_t announced = 0;
     for (std::string line; std::getline(lines, line);) {
         ++number;
+        std::sscanf(line.c_str(), "# Number of images: %zu", &announced);
         if (line.empty() || line[0] == '#' || line == "\r") continue;
         const std::string subject = fmt::format("{}:{}", file.string(), number);
         std::istringstream words(line);
@@ -161,6 +166,9 @@ void read_text_images(const fs::path& file, ColmapReader& reader) {
         std::getline(lines, line);
         ++number;
     }
+    if (announced > reader.dataset.views.size())
+        warn(fmt::format("{}: its first lines speak of {} images, {} follow: is it cut off?",
+                         file.string(), announced, reader.dataset.views.size()));
 }
 
 /// Little-endian values one after the other.

@@ -70,6 +70,12 @@ SourceDataset read_source(const fs::path& path, const DatasetOptions& options) {
     if (!fs::exists(status))
         throw InputError(path.string(), "there is no such file or folder",
                          "name the folder that holds the photographs and their poses");
+    if (fs::is_directory(status)) {
+        fs::directory_iterator listing(path, problem);
+        if (problem)
+            throw InputError(path.string(), "cannot be looked at: " + problem.message(),
+                             "allow reading it");
+    }
     const bool lists_pictures = fs::is_regular_file(status) ||
                                 fs::exists(path / "transforms_train.json") ||
                                 fs::exists(path / "transforms.json");
@@ -77,7 +83,9 @@ SourceDataset read_source(const fs::path& path, const DatasetOptions& options) {
         throw InputError("--images",
                          "is for COLMAP and LLFF: this dataset names each picture itself",
                          "leave it out");
-    if (fs::is_regular_file(status)) return read_nerfstudio(path);
+    if (fs::is_regular_file(status))
+        return path.filename() == "transforms_train.json" ? read_nerf_synthetic(path.parent_path())
+                                                          : read_nerfstudio(path);
     if (fs::exists(path / "transforms_train.json")) return read_nerf_synthetic(path);
     if (fs::exists(path / "transforms.json")) return read_nerfstudio(path / "transforms.json");
     if (const fs::path model = colmap_model(path); !model.empty()) {
@@ -146,6 +154,7 @@ std::string origin_words(const std::map<MaskOrigin, std::size_t>& origins) {
 
 struct Coverage {
     double share = 0;
+    float brightest = 0;
     bool touches_edge = false;
 };
 
@@ -155,6 +164,7 @@ Coverage coverage_of(const Image& image) {
         for (int x = 0; x < image.width; ++x) {
             const float alpha = image.at(x, y, 3);
             coverage.share += alpha;
+            coverage.brightest = std::max(coverage.brightest, alpha);
             const bool edge = x == 0 || y == 0 || x + 1 == image.width || y + 1 == image.height;
             coverage.touches_edge = coverage.touches_edge || (edge && alpha > 0.5f);
         }
@@ -166,12 +176,14 @@ Coverage coverage_of(const Image& image) {
 /// Masks that say nothing make every shape right, or none.
 void check_masks(const fs::path& path, Dataset& dataset) {
     std::size_t full = 0, total = 0;
+    float brightest = 0;
     std::vector<std::string> empty;
     for (const auto* views : {&dataset.train, &dataset.test}) {
         for (const Photograph& view : *views) {
             const Coverage coverage = coverage_of(view.image);
             ++total;
             full += coverage.share > 0.999;
+            brightest = std::max(brightest, coverage.brightest);
             if (coverage.share < 1e-5) empty.push_back(view.name);
             dataset.cut_off += coverage.touches_edge;
         }
@@ -191,6 +203,12 @@ void check_masks(const fs::path& path, Dataset& dataset) {
                         empty.front(),
                         empty.size() > 1 ? fmt::format(" (and {} more)", empty.size() - 1) : ""),
             "take such views out of the dataset, or mend their masks");
+    }
+    if (brightest < 0.5f) {
+        throw InputError(
+            path.string(),
+            fmt::format("the masks are dark: nowhere above {:.3g} of 255", 255 * brightest),
+            "a mask is white where the object is, and black elsewhere");
     }
     if (dataset.cut_off == total) {
         throw InputError(path.string(), "the object is cut off by the frame of every picture",

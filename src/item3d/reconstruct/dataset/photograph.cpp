@@ -186,11 +186,12 @@ LoadedPhotograph load_photograph(const SourceView& view, const fs::path& mask_fi
                                  const DatasetOptions& options) {
     std::error_code ignored;
     if (!fs::is_regular_file(view.picture, ignored)) {
-        throw InputError(view.picture.string(),
-                         fs::exists(view.picture, ignored)
-                             ? "is no file: the picture of view '" + view.name + "' is wanted here"
-                             : "the picture of view '" + view.name + "' is missing",
-                         "every pose needs its picture");
+        throw InputError(
+            view.picture.string(),
+            fs::exists(view.picture, ignored)
+                ? "is no file: the picture of view '" + view.name + "' is wanted here"
+                : "the picture of view '" + view.name + "' is missing",
+            "every pose needs its picture; --images says where COLMAP's and LLFF's lie");
     }
     const CameraFacts facts = camera_facts(view.picture);
     Image picture = load_image(view.picture);
