@@ -29,8 +29,7 @@ struct PriorUse {
 struct PriorNeeds {
     at::Device device = at::kCPU;
     at::ScalarType precision = at::kFloat;
-    bool any_sentence = false;  ///< some sentences are not known yet, because a captioner will say
-                                ///< them
+    bool any_sentence = false;  ///< a captioner will add unknown sentences
     /// All known sentences, as the prior reads them, except the default negative prompt.
     std::vector<std::string> sentences;
     bool decoder = false;  ///< latents will be decoded

@@ -42,8 +42,7 @@ struct EditPlan : EditSettings {
     ChannelMask channels;
     LightKind light_kind = LightKind::texels;          ///< kind of an optimised light
     LightAugment light_variation = LightAugment::off;  ///< off for an optimised light
-    int light_cube_size = 256;                         ///< texels along the edge of prefiltered
-                                                       ///< lights
+    int light_cube_size = 256;                         ///< edge of prefiltered lights, texels
     int supersampling = 1;                             ///< of the images that the prior sees
 
     GuidanceOptions guidance_options() const;

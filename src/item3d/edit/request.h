@@ -20,10 +20,8 @@ struct EditRequest {
     std::filesystem::path clip;        ///< CLIP model for scores of the result; empty: none
     std::filesystem::path segmenter;   ///< CLIPSeg, for regions by words; loaded on demand
     std::filesystem::path captioner;   ///< BLIP or BLIP-2; loaded where the plan uses it
-    std::filesystem::path inpainting;  ///< prior of 9 input channels, for method texture; empty:
-                                       ///< none
-    std::filesystem::path instruct;    ///< InstructPix2Pix, for method in2n; empty: the prior
-                                       ///< itself
+    std::filesystem::path inpainting;  ///< prior of 9 channels, for method texture
+    std::filesystem::path instruct;    ///< InstructPix2Pix, for in2n; empty: the prior
     std::filesystem::path teacher;     ///< CLIP model of method clip; empty: `clip`
     EditPlan plan;
     bool resume = false;

@@ -31,8 +31,7 @@ struct EditScene {
     BoundingSphere sphere;
     std::vector<int> materials;            ///< edited ones, indices into model.materials
     std::map<int, MaterialLosses> losses;  ///< of the edited materials, by index
-    bool is_prepared = false;              ///< some material lost a property, so model differs from
-                                           ///< the file
+    bool is_prepared = false;              ///< model differs from the file by losses
     MaterialStart start;                   ///< initial values, and the edited channels
     /// UV maps that the result is baked into; new ones come by unwrap_meanwhile().
     Atlas atlas;

@@ -61,8 +61,7 @@ struct EditState {
     EnvironmentLight first_light;        ///< initial value of `light`
     std::unique_ptr<Guidance> guidance;  ///< null with a painter
     std::unique_ptr<PaintingScene> painting;  ///< null unless the method paints views
-    std::unique_ptr<ViewPainter> painter;     ///< null with `painting` null; if set, there is no
-                                              ///< field
+    std::unique_ptr<ViewPainter> painter;     ///< null without `painting`; else there is no field
     /// Diffusion models that the edit runs, and rows of their U-Nets in earlier runs.
     std::vector<std::shared_ptr<const DiffusionModel>> networks;
     std::int64_t earlier_unet_rows = 0;

@@ -107,8 +107,7 @@ class Painter {
     const EditPlan& plan_;
     EditState& state_;
     std::vector<PaintingView> views_;
-    std::map<std::size_t, PaintedView> kept_;  ///< cached views by index in the plan, where they
-                                               ///< are small
+    std::map<std::size_t, PaintedView> kept_;  ///< cached small views by index in the plan
 };
 
 /// Returns a view, from the cache if possible: each is rendered dozens of times.

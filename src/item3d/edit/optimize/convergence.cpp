@@ -8,8 +8,7 @@ namespace {
 /// Number of iterations that averages out the noise levels, on which the lengths depend.
 constexpr std::int64_t window = 50;
 constexpr std::int64_t min_iterations = 3 * window;
-constexpr double still = 0.9;  ///< smallest ratio of the halves' means at which the length counts
-                               ///< as constant
+constexpr double still = 0.9;  ///< smallest ratio of the halves' means in convergence
 
 /// Returns the mean of the finite values: an overflow in bf16 must not decide.
 double mean(const std::vector<float>& values, std::int64_t begin, std::int64_t end) {

@@ -31,11 +31,10 @@ struct MipmapParameters {
     MipmapFilter filter;
     MipmapBoundary boundary;
     std::int64_t pixels_per_view;
-    const float* uv;      ///< [P, 2]; on cubes directions [P, 3]
-    const float* slopes;  ///< [P, 4 or 6] slopes in x and y, coordinate after coordinate; null:
-                          ///< level 0
-    const float* bias;    ///< [P] added to the level, or null
-    float* values;        ///< [P, C]
+    const float* uv;              ///< [P, 2]; on cubes directions [P, 3]
+    const float* slopes;          ///< [P, 4 or 6] in x and y, by coordinate; null: level 0
+    const float* bias;            ///< [P] added to the level, or null
+    float* values;                ///< [P, C]
     const float* value_gradient;  ///< [P, C]
     float* uv_gradient;           ///< [P, 2 or 3], or null
     float* slope_gradient;        ///< [P, 4 or 6], or null
@@ -132,8 +131,7 @@ ITEM3D_HOST_DEVICE inline MipmapTaps nearest_mipmap_taps(const MipmapParameters&
 /// A pixel's footprint in texels of level 0, and the corresponding level.
 struct MipmapFootprint {
     float level;       ///< before the bias, not clamped
-    float a, b, c, d;  ///< Jacobian: a, b along the texture's x, c, d along y; columns for the
-                       ///< pixel's x and y
+    float a, b, c, d;  ///< Jacobian [[a, b], [c, d]] by the pixel's x and y
     float squared;     ///< squared length of the longer axis
     float half, cross, spread;
 };

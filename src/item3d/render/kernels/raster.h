@@ -309,8 +309,7 @@ struct KeyedRasterParameters {
     RasterParameters raster;
     unsigned long long* keys;  ///< [N, H, W], zeros initially: bits of nearness, then of ~triangle
     std::int64_t views;        ///< N
-    std::int64_t bands;        ///< number of bands of rows; a thread draws a triangle into one of
-                               ///< them
+    std::int64_t bands;        ///< bands of rows; a thread draws into one
 };
 
 /// index: (band * N + view) * T + triangle.

@@ -95,8 +95,7 @@ class OcclusionLight {
     }
 
     int width_, height_;
-    std::vector<double> row_cosine_;  ///< cosine of the polar angle at the top of each row, and
-                                      ///< below all
+    std::vector<double> row_cosine_;  ///< by row: cosine of its top's polar angle
     std::vector<float> luminance_;
     std::vector<double> sums_;        ///< cumulative luminance times solid angle, by texel
     std::vector<std::size_t> guide_;  ///< start of the search for each part of the light
