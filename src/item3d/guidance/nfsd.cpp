@@ -6,7 +6,8 @@
 namespace item3d {
 namespace {
 
-constexpr std::int64_t little_noise = 200;  ///< of 1000: below it, eps(empty) is nearly all detail
+constexpr std::int64_t little_noise = 200;  ///< out of 1000; below it, eps(empty) is nearly all
+                                            ///< detail
 
 }  // namespace
 
