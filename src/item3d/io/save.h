@@ -59,7 +59,7 @@ struct ModelEdit {
 /// and PNGs). A glTF source is patched: everything unedited (nodes, names, animations, skins,
 /// cameras, other materials, unknown extensions, extras) stays byte for byte or value for value.
 /// Other sources are written as a new, minimal document. provenance: of edits by sentences; a glTF
-/// and the textures of the edit carry it (io/claims.h).
+/// and the textures of the edit carry it (io/image_claims.h, io/gltf/claims.h).
 void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit = {},
                 const Provenance& provenance = {});
 

@@ -15,8 +15,7 @@ namespace item3d {
 struct VariantsRequest {
     std::filesystem::path model;                         ///< the unedited model
     std::vector<std::filesystem::path> edits;            ///< folders of item3d edit
-    std::vector<std::string> names;                      ///< one for each edit; empty:
-                                                         ///< variant_names_of()
+    std::vector<std::string> names;                      ///< by edit; empty: variant_names_of()
     std::string original;                                ///< empty: "original"
     std::filesystem::path output;                        ///< .glb or .gltf
     std::vector<std::filesystem::path> texture_folders;  ///< see LoadOptions

@@ -14,8 +14,7 @@ namespace item3d {
 /// A directional light at infinity.
 struct DirectionalLight {
     Vec3 direction{0, 1, 0};  ///< unit, towards the light, in world space
-    Vec3 irradiance{1};       ///< on a perpendicular plane, linear RGB, relative to radiance 1 =
-                              ///< white
+    Vec3 irradiance{1};       ///< on a perpendicular plane, linear RGB; radiance 1 is white
 };
 
 /// Lights of a model.
