@@ -94,8 +94,7 @@ class GltfReader {
     GltfObject root_;
     NodeTree nodes_;
     Model model_;
-    glm::dvec3 low_{std::numeric_limits<double>::max()};  ///< bounds of all positions, in world
-                                                          ///< space
+    glm::dvec3 low_{std::numeric_limits<double>::max()};  ///< of all positions, in world space
     glm::dvec3 high_{std::numeric_limits<double>::lowest()};
     std::set<std::string> warnings_;
     std::optional<std::size_t> variant_;
