@@ -21,7 +21,7 @@ struct LightWords {
 /// viewer_azimuth: azimuth of the camera, degrees as in SkyAngles. "From the camera" (or front),
 /// left, right, and "behind" (beyond the model) are relative to it. Compass words are not: north is
 /// -Z, east +X. On a clock the model is at the centre, the camera at 6 and its viewing direction at
-/// 12 o'clock. Several directions are averaged.
+/// 12 o'clock. Several directions are added as vectors.
 LightWords parse_light_words(const std::string& sentence, float viewer_azimuth);
 
 /// Returns the supported words, a line for each kind; for help and errors.
