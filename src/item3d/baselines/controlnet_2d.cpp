@@ -8,8 +8,7 @@
 namespace item3d {
 namespace {
 
-constexpr int controlnet_steps = 20;  ///< as in ControlNet's own demonstration, as is the sampler
-                                      ///< DDIM
+constexpr int controlnet_steps = 20;  ///< with DDIM, as in ControlNet's own demonstration
 
 }  // namespace
 

@@ -15,8 +15,7 @@ constexpr int sync_steps = 30;
 constexpr double last_exponent = 6;
 constexpr double together = 0.8;  ///< share of the steps, after which views separate
 constexpr double shuffled = 0.4;  ///< share of the steps, in which backgrounds change their colour
-constexpr float latent_tolerance = 0.03f;  ///< depth tolerance of a coarse view, in parts of the
-                                           ///< radius
+constexpr float latent_tolerance = 0.03f;  ///< depth tolerance of a view, in radii
 
 /// Smallest sum of bilinear weights of covered cells; below it a texel counts as background.
 constexpr double least_covered = 0.25;

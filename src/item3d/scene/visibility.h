@@ -11,7 +11,7 @@ namespace item3d {
 /// area, whose material, texture and vertex colours are not wholly transparent.
 bool is_visible(const Model& model, const std::vector<int>& materials);
 
-/// As above, for all materials.
+/// True if any of the model's materials has a visible triangle.
 bool is_visible(const Model& model);
 
 }  // namespace item3d

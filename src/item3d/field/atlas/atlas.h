@@ -17,9 +17,9 @@ enum class UvPolicy {
     automatic,  ///< keep for a material with textures, own_texels without
     keep,       ///< own UVs where they exist
     make_new,
-    /// As automatic, but keep for materials without textures too: points that share a texel all get
-    /// the same change of colour, so sharing does no harm. Where vertex colours of such points
-    /// differ, as own_texels.
+    /// Same as automatic, but keep for materials without textures too: points that share a texel
+    /// all get the same change of colour, so sharing does no harm. Where vertex colours of such
+    /// points differ, same as own_texels.
     recolored,
     own_texels,  ///< own UVs where no two surface points share a texel, else new ones
 };

@@ -231,7 +231,7 @@ void SetBaker::start_orm() {
                             orm_.size);
     occlusion_texels_ = texels_of(material_.occlusion_texture, material_.occlusion_uvs, orm_.size);
     if (orm_texels_ != nullptr && orm_texels_->channels < 3) orm_texels_ = nullptr;
-    // Where the material has no occlusion red is 1: other values would enable it.
+    // Red is 1 without occlusion: other values would enable it.
     const bool fills_occlusion =
         occlusion_texels_ == nullptr && material_.occlusion_texture >= 0 && !keeps_occlusion_;
     orm_.filled_channels = (fills_occlusion ? 1u : 0u) | (orm_texels_ != nullptr ? 0u : 6u);

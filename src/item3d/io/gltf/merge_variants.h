@@ -20,9 +20,10 @@ struct EditedDocument {
 
 /// Adds every edited copy as a variant to `builder`'s JSON, a copy of document.json, after existing
 /// variants. original: name of a variant for the document's default materials; empty: none.
-/// Vertices and triangles stay unchanged, except where all edits gave a primitive the same new UV
-/// map: the primitive then gets that map, and the source's textures use the moved coordinates.
-/// Throws InputError for a document that is no edited copy, and where UV maps of edits differ.
+/// Vertices and triangles stay unchanged, except for a primitive that edits gave a new UV map:
+/// all variants then use that map, and the source's textures use the moved coordinates. Throws
+/// InputError for a document that is no edited copy, and where edits' UV maps of a primitive
+/// differ.
 void merge_variants(const SourceDocument& document, const std::vector<EditedDocument>& edits,
                     const std::string& original, GltfBuilder& builder);
 

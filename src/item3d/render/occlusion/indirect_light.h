@@ -15,7 +15,7 @@ class Occlusion;
 struct IndirectLightOptions {
     int rays = 64;  ///< number for each side of a stored point
     int bounces = 2;
-    /// As in OcclusionOptions.
+    /// Same meaning as in OcclusionOptions.
     float spacing = 1.0f / 128;
     std::int64_t most_points = 16384;
     std::uint64_t seed = 0;

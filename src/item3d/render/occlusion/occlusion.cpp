@@ -100,7 +100,7 @@ class Tracer {
         Random random(seed_, key ^ (behind ? 1u : 0u));
         const std::uint64_t scramble = random.bits(), choice = random.bits();
 
-        // Where points of several triangles coincide, rays start from each triangle's plane.
+        // Rays start from the planes of all triangles that share the point.
         std::array<Start, most_members> starts;
         const std::int64_t chosen = std::min<std::int64_t>(members, most_members);
         for (std::int64_t k = 0; k < chosen; ++k) {
