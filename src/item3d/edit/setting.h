@@ -26,7 +26,7 @@ enum class SettingType {
     repeated_texts,
 };
 
-/// "text", "choice", "integer", "number", "numbers", "texts" or "repeated_texts".
+/// Returns "text", "choice", "integer", "number", "numbers", "texts" or "repeated_texts".
 const char* type_name(SettingType type);
 
 struct Setting {

@@ -20,7 +20,7 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit);
 /// bits_per_channel: 8, or 16, which only PNG supports.
 Bytes encode_texture(const Image& image, const ImageCoding& coding, int bits_per_channel);
 
-/// ".png", ".jpg", ".webp", ".ktx2".
+/// Returns ".png", ".jpg", ".webp" or ".ktx2".
 const char* extension_of(ImageEncoding encoding);
 
 }  // namespace item3d
