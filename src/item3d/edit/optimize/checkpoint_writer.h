@@ -23,7 +23,7 @@ class Preview {
     /// Renders the field under `light` from three sides and replaces the image. A preview that
     /// cannot be written does not stop the edit: it warns once and disables itself.
     void update(NeuralTexture& field, const EnvironmentLight& light);
-    /// Shows the last of these images instead, [1, 3, R, R] sRGB each.
+    /// Shows the last few of these images instead, [1, 3, R, R] sRGB each.
     void show(const std::vector<at::Tensor>& pictures);
 
   private:

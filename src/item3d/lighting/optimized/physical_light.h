@@ -26,9 +26,9 @@ struct PhysicalValues {
 /// (lambda T)) for a difference in 1 / T at the wavelengths of the primaries: the Planckian locus
 /// around white, which excludes green and magenta, and is smooth in mired.
 ///
-/// The regularisation couples parameters: a warmer sun is lower; a dark light is colder
-/// (moonlight), and a warm one is not as dark as a night. The direction is a parameter too, but a
-/// weak one, since few words determine it; it is constant where the options fix it.
+/// Parameters are coupled: a warmer sun is lower; a dark light is colder (moonlight), and a warm
+/// one is not as dark as a night. The direction is a parameter too, but a weak one, since few words
+/// determine it; it is constant where the options fix it.
 class PhysicalLight : public LightModel {
   public:
     PhysicalLight(const Image& light, const LightModelOptions& options);
