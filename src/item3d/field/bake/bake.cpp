@@ -93,7 +93,7 @@ class SetBaker {
     const Image* orm_texels_ = nullptr;
     const Image* occlusion_texels_ = nullptr;
     const Image* normal_texels_ = nullptr;
-    const Image* painted_ = nullptr;  ///< base colour in place of the fields'; null: none
+    const Image* painted_ = nullptr;  ///< base colour in place of the fields'; null: theirs
 };
 
 SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options,
@@ -187,8 +187,7 @@ void SetBaker::plan() {
     if (edited.base_color)
         open(base_color_, material_.base_color_texture, slot_size(material_.base_color_texture));
     if (edited.occlusion || edited.roughness || edited.metallic) {
-        // One image holds the channels of two slots; it has the resolution of the one that must not
-        // change.
+        // One image holds both slots' channels, at the resolution of one that must not change.
         const bool occlusion_rules =
             !keeps_occlusion_ && (material_.metallic_roughness_texture < 0 ||
                                   (material_.occlusion_texture >= 0 && !edited.occlusion &&
