@@ -1,5 +1,5 @@
-// CLIP itself as guidance, without a diffusion model: the released loss of CLIP-NeRF (Wang et al.
-// 2022), and the direction between the sentences (StyleGAN-NADA, Gal et al. 2022).
+// Guidance by CLIP without a diffusion model: the released loss of CLIP-NeRF (Wang et al. 2022),
+// and the direction between the sentences (StyleGAN-NADA, Gal et al. 2022).
 #pragma once
 
 #include "item3d/guidance/guidance.h"
@@ -15,12 +15,13 @@ enum class ClipLoss {
     directional  ///< 1 - cos(f(I) - f(I_0), f(target) - f(source)), I_0 the unedited model
 };
 
-/// [N] losses of unit features [N, D]; target, source: [1, D]; before: [N, D], read where
+/// Returns [N] losses of unit features [N, D]; target, source: [1, D]; before: [N, D], used if
 /// directional. Differentiable.
 at::Tensor clip_losses(ClipLoss loss, const at::Tensor& image, const at::Tensor& before,
                        const at::Tensor& target, const at::Tensor& source);
 
-/// The output's "latents" are the images themselves, and direction_length is the mean loss.
+/// Guidance whose output's "latents" are the images themselves, and whose direction_length is the
+/// mean loss.
 class ClipGuidance : public Guidance {
   public:
     ClipGuidance(std::shared_ptr<const Clip> clip, const std::string& source_prompt,

@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-constexpr int controlnet_steps = 20;  ///< of ControlNet's own demonstration, as its sampler DDIM
+constexpr int controlnet_steps = 20;  ///< with DDIM, as in ControlNet's own demonstration
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void Controlnet2d::step(std::int64_t index) {
     const ViewRender render(scene_, side_view(scene_, angles));
     MaskedSampling sampling;
     sampling.steps = options_.steps;
-    sampling.image = encode(render.picture(scene_.source));  // its size alone is looked at
+    sampling.image = encode(render.picture(scene_.source));  // only its size is used
     sampling.noise = seeded_noise(sampling.image.sizes(), options_.seed, BaselineDraw::views,
                                   static_cast<std::uint64_t>(index))
                          .to(sampling.image.device());

@@ -60,12 +60,12 @@ at::Tensor InstructedModel::edit(const at::Tensor& current, const at::Tensor& or
     const std::int64_t last = schedule.config().num_train_timesteps - 1;
     const std::int64_t count = std::clamp<std::int64_t>(steps, 1, std::max<std::int64_t>(1, from));
     const std::int64_t stride = std::max<std::int64_t>(1, from / count);
-    const auto timestep = [&](std::int64_t i) {  // leading, as the published scheduler
+    const auto timestep = [&](std::int64_t i) {  // "leading" spacing, as in the published scheduler
         return std::clamp<std::int64_t>((count - 1 - i) * stride + schedule.config().steps_offset,
                                         0, last);
     };
     const auto alpha = [&](std::int64_t t) {
-        // With set_alpha_to_one what follows the last step is without noise.
+        // With set_alpha_to_one the result of the last step is noise-free.
         if (t < 0 && schedule.config().set_alpha_to_one) return 1.0;
         return schedule.alphas_cumprod()[std::max<std::int64_t>(t, 0)].item<double>();
     };

@@ -1,5 +1,5 @@
 // InstructPix2Pix (Brooks et al. 2023): a U-Net of 8 input channels, the noisy latents and those of
-// the picture that an instruction changes, and its guidance by both.
+// the image to edit, and its guidance by both.
 #pragma once
 
 #include "item3d/networks/diffusion/diffusion_model.h"
@@ -10,37 +10,38 @@
 
 namespace item3d {
 
-/// Whether the U-Net takes a picture's latents beside its own.
+/// True if the U-Net takes an image's latents as additional input.
 bool takes_instructions(const DiffusionModel& model);
 
-/// Weights of the instruction and of the picture.
+/// Guidance scales of the instruction and of the image.
 struct InstructScales {
     float text = 7.5f;
     float image = 1.5f;
 };
 
-/// none + text (full - image) + image_scale (image - none), in the network's own output.
+/// Returns none + text (full - image) + image_scale (image - none), in the network's own output.
 at::Tensor three_way(const at::Tensor& full, const at::Tensor& image, const at::Tensor& none,
                      InstructScales scales);
 
-/// One instruction, encoded.
+/// A model with one encoded instruction.
 class InstructedModel {
   public:
-    /// Throws InputError where the model takes no instructions.
+    /// Throws InputError if the model takes no instructions.
     InstructedModel(const DiffusionModel& model, const std::string& instruction,
                     const std::string& negative_prompt, InstructScales scales,
                     const std::string& subject);
 
-    /// images [N, 3, H, W] sRGB in [0, 1] -> [N, C, h, w], not scaled: what the U-Net reads.
+    /// Encodes images [N, 3, H, W] sRGB in [0, 1] to [N, C, h, w], not scaled, as the U-Net's
+    /// input.
     at::Tensor image_latents(const at::Tensor& images) const;
-    /// latents [N, C, h, w] -> the network's output, in 3 N rows of the U-Net.
+    /// Maps latents [N, C, h, w] to the network's output, in 3 N rows of the U-Net.
     at::Tensor operator()(const at::Tensor& latents, double timestep,
                           const at::Tensor& image_latents) const;
 
-    /// One picture edited anew: `current` [1, 3, H, W] noised to the first of `steps` DDIM steps
-    /// below timestep `from` (as the published code, which sets the schedule's length to it), and
-    /// denoised as told by the instruction and `original`. noise: [1, C, h, w]. Returns [1, 3, H,
-    /// W] in [0, 1].
+    /// Edits one image: `current` [1, 3, H, W] is noised to the first of `steps` DDIM steps below
+    /// timestep `from` (as in the published code, which sets the schedule's length to it), and
+    /// denoised by the instruction and `original`. noise: [1, C, h, w]. Returns [1, 3, H, W] in [0,
+    /// 1].
     at::Tensor edit(const at::Tensor& current, const at::Tensor& original, std::int64_t from,
                     int steps, const at::Tensor& noise) const;
 

@@ -1,4 +1,4 @@
-// Texels that no view painted.
+// The filling of texels that no view painted.
 #pragma once
 
 #include "item3d/baselines/texel_list.h"
@@ -6,12 +6,12 @@
 
 namespace item3d {
 
-/// colors [T, 3]; known [T] bool. The others become the mean of the known ones (TEXTure). Without
-/// known ones they stay.
+/// Sets unknown colors to the mean of known ones (TEXTure); unchanged if none is known. colors: [T,
+/// 3]; known: [T] bool.
 at::Tensor fill_with_mean(const at::Tensor& colors, const at::Tensor& known);
 
-/// The others become the mean of their neighbours in the texture that have a value already, layer
-/// by layer from the known ones; islands without any become the mean of all known ones.
+/// Sets unknown texels to the mean of their known neighbours in the texture, layer by layer
+/// outwards; islands without known texels get the mean of all known ones.
 at::Tensor fill_from_neighbours(const TexelList& texels, const at::Tensor& colors,
                                 const at::Tensor& known);
 

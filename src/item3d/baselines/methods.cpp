@@ -61,7 +61,7 @@ const std::vector<Method>& all_methods() {
           {"settle", 0},
           {"detail", "off"},
           {"cfg", 7.5},
-          {"iterations", 1000},  // each of 24 views is edited four times
+          {"iterations", 1000},  // four edits of each of 24 views
           {"timesteps", {0.02, 0.98}},
           {"light_augment", "off"},
           {"background", "white"}}},

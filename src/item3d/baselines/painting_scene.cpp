@@ -12,9 +12,9 @@ constexpr float degree = pi / 180.0f;
 constexpr float painting_field_of_view = 40.0f * degree;
 constexpr float background = 0.5f;  ///< sRGB
 constexpr double least_share = 0.25;
-/// Parts of the radius by which a texel may lie behind what a view sees.
+/// Depth tolerance of visible texels, in parts of the radius.
 constexpr float tolerance = 0.01f;
-/// Pixels of masks along a pixel of the prior's pictures; small ones are drawn finer.
+/// Returns the pixels of masks for each pixel of the prior's images, more for small ones.
 constexpr int small_picture = 128;
 int mask_scale(int resolution) {
     return resolution <= small_picture ? 4 : 2;

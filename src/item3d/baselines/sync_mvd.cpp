@@ -13,15 +13,14 @@ namespace {
 
 constexpr int sync_steps = 30;
 constexpr double last_exponent = 6;
-constexpr double together = 0.8;  ///< of the steps, after which views go on alone
-constexpr double shuffled = 0.4;  ///< of the steps, in which backgrounds change their colour
-constexpr float latent_tolerance = 0.03f;  ///< of the radius, behind what a coarse view sees
+constexpr double together = 0.8;  ///< share of the steps, after which views separate
+constexpr double shuffled = 0.4;  ///< share of the steps, in which backgrounds change their colour
+constexpr float latent_tolerance = 0.03f;  ///< depth tolerance of a view, in radii
 
-/// Smallest sum of bilinear weights of cells that the model covers; below it a texel is taken for
-/// background.
+/// Smallest sum of bilinear weights of covered cells; below it a texel counts as background.
 constexpr double least_covered = 0.25;
 
-/// The network's output that means `clean` for a sample of that abar.
+/// Returns the network's output that corresponds to `clean` for a sample of that abar.
 at::Tensor output_of(const NoiseSchedule& schedule, const at::Tensor& sample,
                      const at::Tensor& clean, double alpha) {
     if (schedule.config().prediction_type == "sample") return clean;
@@ -88,8 +87,8 @@ at::Tensor SyncMvd::noise(at::IntArrayRef sizes, BaselineDraw draw, std::uint64_
     return seeded_noise(sizes, options_.seed, draw, index).to(scene_.source.device());
 }
 
-/// Latents [1, C, h, w] of one colour: another one in each of the first steps, so that none belongs
-/// to the object.
+/// Returns latents [1, C, h, w] of one colour, which changes in each of the first steps, so that it
+/// does not become part of the object.
 at::Tensor SyncMvd::background(std::int64_t index) const {
     const auto last = static_cast<std::int64_t>(shuffled * options_.steps);
     Random random = seeded_random(options_.seed, BaselineDraw::backgrounds,
@@ -100,7 +99,7 @@ at::Tensor SyncMvd::background(std::int64_t index) const {
     return encode(picture.to(scene_.source.device()));
 }
 
-/// background: [N, C, h, w] with the same noise level.
+/// behind: [N, C, h, w], of the same noise level.
 at::Tensor SyncMvd::texture_to_views(const at::Tensor& behind) const {
     std::vector<at::Tensor> latents;
     for (std::size_t v = 0; v < views_.size(); ++v) {
@@ -161,7 +160,7 @@ void SyncMvd::step(std::int64_t index) {
         latent_texture_ =
             sampler->step(i, output_of(schedule, latent_texture_, spread, alpha), latent_texture_,
                           noise(latent_texture_.sizes(), BaselineDraw::texture_steps, number));
-        // The views' own latents are asked no more until they go on alone.
+        // The views' own latents are not needed before the views separate.
         if (index + 1 >= together * options_.steps)
             view_latents_ = texture_to_views(sampler->step(i, output, latents, fresh));
     } else {

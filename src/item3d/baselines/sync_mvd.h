@@ -1,17 +1,17 @@
-// SyncMVD (Liu et al. 2023, "Text-Guided Texturing by Synchronized Multi-View Diffusion"): one
-// denoising for all views, whose predictions meet in a latent texture. See docs/compare.md for what
-// differs from the published code.
+// SyncMVD (Liu et al. 2023, "Text-Guided Texturing by Synchronized Multi-View Diffusion"): denoises
+// all views together, and merges their predictions in a latent texture. See docs/compare.md for the
+// differences from the published code.
 #pragma once
 
 #include "item3d/baselines/view_painter.h"
 
 namespace item3d {
 
-/// How much a view that sees a texel at `cosine` [T] counts in step `step` of `steps`: cosine^e, e
-/// from 0 to 6 in the course of the steps; 0 where it does not see it.
+/// Returns the weight of a view that sees a texel at `cosine` [T] in step `step` of `steps`:
+/// cosine^e, with e rising from 0 to 6 over the steps; 0 for invisible texels.
 at::Tensor view_weight(const at::Tensor& cosine, int step, int steps);
 
-/// Weighted means [T, C] of N views' values [T, C], and [T] bool where any view counts.
+/// Weighted means [T, C] of N views' values [T, C], and [T] bool for texels with any weight.
 struct MergedTexels {
     at::Tensor values;
     at::Tensor known;
@@ -23,14 +23,14 @@ class SyncMvd : public ViewPainter {
   public:
     SyncMvd(const PaintingScene& scene, const PainterOptions& options);
     static std::int64_t step_count(const PainterOptions& options);
-    /// A step of denoising; the last one decodes the views and paints them.
+    /// Does a step of denoising; the last one decodes the views and paints them.
     void step(std::int64_t index) override;
     void finish() override;
     NamedTensors state() const override;
     void load_state(const CheckpointReader& reader) override;
 
   private:
-    /// One of the views on the grid of latents.
+    /// A view at the resolution of latents.
     struct LatentView {
         SideView view;
         Raster raster;
@@ -45,9 +45,9 @@ class SyncMvd : public ViewPainter {
     void paint_views(const at::Tensor& latents);
 
     std::vector<LatentView> views_;
-    at::Tensor conditions_;      ///< [N, c, h, w]; undefined where the prior takes none
+    at::Tensor conditions_;      ///< [N, c, h, w]; undefined if the prior takes none
     at::Tensor latent_texture_;  ///< [L, C] x_t
-    at::Tensor view_latents_;    ///< [N, C, h, w] x_t, once the views go on alone
+    at::Tensor view_latents_;    ///< [N, C, h, w] x_t, after the views separate
 };
 
 }  // namespace item3d

@@ -9,10 +9,10 @@
 namespace item3d {
 namespace {
 
-/// Texels around an island that continue it.
+/// Width in texels of the padding around an island.
 constexpr int padding = 4;
 
-/// Gives cells without a texel that of a neighbour, `padding` times.
+/// Copies texels to adjacent cells without one, `padding` times.
 void pad(std::vector<std::int64_t>& cells, std::size_t first, int width, int height) {
     const auto place = [&](int x, int y) {
         return first + static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -44,8 +44,9 @@ at::Tensor wrapped_cell(const at::Tensor& cell, const at::Tensor& size, Wrap wra
     return at::where(inside < size, inside, twice - 1 - inside);
 }
 
-/// [1, C + 1, H, W], the last channel the weight of the others, which are multiplied by it -> the
-/// same with weight 1 all over, or 0 where there is none at all.
+/// Normalises planes [1, C + 1, H, W], whose last channel is the weight by which the others are
+/// multiplied, to weight 1 everywhere, filling holes from coarser levels; weight 0 if there is none
+/// at all.
 at::Tensor push_down(const at::Tensor& planes) {
     const std::int64_t height = planes.size(2), width = planes.size(3);
     const at::Tensor weight = planes.slice(1, planes.size(1) - 1);
@@ -62,10 +63,10 @@ at::Tensor push_down(const at::Tensor& planes) {
 
 }  // namespace
 
-/// Texels of all texture sets, as they are collected.
+/// Texels of all texture sets during construction.
 struct TexelList::Found {
-    std::vector<std::int64_t> cells;      ///< texel of each cell
-    std::vector<std::int64_t> own_cells;  ///< cell of each texel
+    std::vector<std::int64_t> cells;      ///< texel, by cell
+    std::vector<std::int64_t> own_cells;  ///< cell, by texel
     std::vector<std::int64_t> triangles;
     std::vector<float> barycentrics;
 };

@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-/// Cosine below which the slope within a pixel is taken for no steeper.
+/// Smallest cosine in the estimate of a pixel's slope.
 constexpr double flattest_slope = 0.1;
 
 }  // namespace

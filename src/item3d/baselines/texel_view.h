@@ -1,5 +1,5 @@
-// The way from a view's pixels back to texels: which texels a camera sees, where in its picture,
-// and how squarely.
+// The projection of texels to a view: which texels are visible, their positions in the image, and
+// the cosines of the viewing angle.
 #pragma once
 
 #include "item3d/render/interpolate.h"
@@ -9,24 +9,24 @@
 namespace item3d {
 
 struct TexelView {
-    at::Tensor place;   ///< [T, 2] x to the right and y down in the picture, [0, 1] inside of it
-    at::Tensor cosine;  ///< [T] between normal and the way to the camera; 0: not seen
+    at::Tensor place;   ///< [T, 2] x to the right and y down in the image, [0, 1] inside
+    at::Tensor cosine;  ///< [T] between normal and direction to the camera; 0: invisible
 };
 
-/// depth: [S, S] z-depths of that camera (Raster::depth of one view), the finer the better.
-/// tolerance: distance by which a texel may lie behind them, besides its slope within a pixel.
-/// A back side, which materials with two sides show, is seen as the front is not.
+/// depth: [S, S] z-depths of that camera (Raster::depth of one view), preferably at a high
+/// resolution. tolerance: distance by which a visible texel may lie behind them, in addition to its
+/// slope within a pixel. Back sides, which two-sided materials show, are treated like front sides.
 TexelView see_texels(const Surface& texels, const Camera& camera, const at::Tensor& depth,
                      float tolerance);
 
-/// Bilinear values of a square picture [C, R, R] at places [T, 2]: [T, C]. Beyond the middle of the
-/// outermost pixels their values go on.
+/// Returns bilinear values of a square image [C, R, R] at positions [T, 2]: [T, C]. Clamps to the
+/// edge.
 at::Tensor sample_picture(const at::Tensor& picture, const at::Tensor& places);
 
-/// The same of pixels that count alone: `counts` [1, R, R] of 0 and 1.
+/// Bilinear values of valid pixels only: `counts` [1, R, R] is 0 or 1.
 struct PictureSample {
-    at::Tensor values;  ///< [T, C] weighted means of those
-    at::Tensor share;   ///< [T] of the bilinear weights that they have; values are 0 where it is 0
+    at::Tensor values;  ///< [T, C] weighted means of valid pixels
+    at::Tensor share;   ///< [T] sum of their bilinear weights; values are 0 where it is 0
 };
 PictureSample sample_pixels(const at::Tensor& picture, const at::Tensor& counts,
                             const at::Tensor& places);

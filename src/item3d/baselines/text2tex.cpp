@@ -11,9 +11,9 @@ namespace {
 constexpr int text2tex_steps = 50;
 constexpr int refinement_views = 20;
 constexpr double update_strength = 0.3;
-constexpr double least_update = 0.05;    ///< of the model's pixels, for which a pass is worth it
-constexpr float heat_tolerance = 0.02f;  ///< of the radius, behind what such a picture sees
-constexpr int heat_pixels = 128;         ///< of the pictures in which candidates are compared
+constexpr double least_update = 0.05;    ///< smallest useful share of the model's pixels
+constexpr float heat_tolerance = 0.02f;  ///< depth tolerance of such an image, in radii
+constexpr int heat_pixels = 128;         ///< size of the images that compare candidates
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 // Text2Tex (Chen et al. 2023, "Text-driven Texture Synthesis via Diffusion Models"), with the
-// settings of its published code, on this project's prior and renderer. See docs/compare.md for
-// what differs.
+// settings of its published code, on this project's prior and renderer. See docs/compare.md for the
+// differences.
 #pragma once
 
 #include "item3d/baselines/text2tex_views.h"
@@ -22,14 +22,14 @@ class Text2Tex : public ViewPainter {
   private:
     GenerationMask look(const ViewRender& render) const;
     std::size_t next_candidate();
-    /// Draws what `mask` has of a view, and paints the texels there.
+    /// Samples a view where `mask` is set, and paints the texels there.
     at::Tensor draw(const ViewRender& render, const at::Tensor& mask, bool with_background,
                     double strength, std::uint64_t noise);
     void find_best();
 
-    at::Tensor best_;                     ///< [T] the largest cosine of all views
+    at::Tensor best_;                     ///< [T] largest cosine over all views
     at::Tensor taken_;                    ///< [candidates] bool
-    std::vector<ViewRender> candidates_;  ///< small, once they were wanted
+    std::vector<ViewRender> candidates_;  ///< small, rendered on demand
 };
 
 }  // namespace item3d

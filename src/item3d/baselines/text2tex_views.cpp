@@ -7,7 +7,7 @@ namespace item3d {
 namespace {
 
 constexpr double flattest = 0.1;
-constexpr double as_good = 0.02;  ///< of the cosine, by which the best view may still be better
+constexpr double as_good = 0.02;  ///< tolerance of the cosine relative to the best view
 constexpr double fresh_weight = 1, update_weight = 0.5, keep_weight = 0.1;
 constexpr double punishment = 0.01;
 constexpr int text2tex_pixels = 768;
@@ -16,7 +16,7 @@ constexpr int text2tex_pixels = 768;
 
 GenerationMask make_generation_mask(const GenerationInput& input) {
     const std::int64_t size = input.cosine.size(3);
-    // Two squares of 3 pixels are one of 5.
+    // Two squares of 3 pixels equal one of 5.
     const int width = scaled_width(5 * 1200 / text2tex_pixels, size);
     const at::Tensor seen = erode((input.cosine > flattest).to(at::kFloat), width) * input.editable;
     const at::Tensor is_best = (input.cosine + as_good >= input.best).to(at::kFloat);

@@ -7,30 +7,31 @@
 
 namespace item3d {
 
-/// Pixels of a view, [1, 1, S, S] each.
+/// Input pixels of a view, [1, 1, S, S] each.
 struct GenerationInput {
     at::Tensor editable;  ///< 0 or 1: pixels that may change
-    at::Tensor painted;   ///< 0 or 1: a view painted them
-    at::Tensor cosine;    ///< similarity: between normal and the way to the camera
-    at::Tensor best;      ///< the same of the view that sees the place best, of all there are
+    at::Tensor painted;   ///< 0 or 1: painted by a view
+    at::Tensor cosine;    ///< similarity: between normal and direction to the camera
+    at::Tensor best;      ///< largest cosine over all views
 };
 
-/// [1, 1, S, S] of 0 and 1 each; no pixel is in two of them, and one that is seen at too flat an
-/// angle, or at the border of what is not, is in none.
+/// Disjoint masks [1, 1, S, S] of 0 and 1; pixels seen at a grazing angle, or near such, are in
+/// none.
 struct GenerationMask {
-    at::Tensor fresh;   ///< "new": not painted yet
-    at::Tensor update;  ///< painted, and no view sees it better
-    at::Tensor keep;    ///< painted otherwise
+    at::Tensor fresh;   ///< "new": unpainted
+    at::Tensor update;  ///< painted, and best seen in this view
+    at::Tensor keep;    ///< other painted pixels
 };
 
-/// A pixel counts where its cosine, eroded twice by squares of 3 pixels of 768, is above 0.1.
+/// Computes the masks. A pixel is valid if its cosine, eroded twice by squares of 3 pixels of 768,
+/// is above 0.1.
 GenerationMask make_generation_mask(const GenerationInput& input);
 
-/// How much a view would add: the sum over the picture's pixels of 1 where fresh, 0.5 where updated
-/// and 0.1 where kept, as a part of all pixels.
+/// Returns the gain of a view: the sum over the image's pixels of 1 where fresh, 0.5 where updated
+/// and 0.1 where kept, divided by the number of pixels.
 double view_heat(const GenerationMask& mask);
 
-/// The index of the largest heat, each multiplied by 0.01 where its view was taken before. The
+/// Returns the index of the largest heat, where those of taken views are multiplied by 0.01; the
 /// first of equal ones.
 std::size_t choose_view(const std::vector<double>& heats, const std::vector<bool>& taken);
 

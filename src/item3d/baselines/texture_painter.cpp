@@ -7,9 +7,9 @@ namespace item3d {
 namespace {
 
 constexpr int texture_steps = 50;
-/// Steps of 50, excluded, between which an inpainting network draws.
+/// Range of steps of 50, exclusive, in which an inpainting network draws.
 constexpr double inpainting_after = 10.0 / 50, inpainting_before = 20.0 / 50;
-constexpr double hidden_grey = 0.5;  ///< of the part that an inpainting network is not shown
+constexpr double hidden_grey = 0.5;  ///< grey of the part hidden from an inpainting network
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void TexturePainter::step(std::int64_t index) {
     const TrimapInput input = look(render);
     const Trimap map = make_trimap(input);
     const at::Tensor rendered = render.picture(colors_);
-    if (map.update.sum().item<float>() == 0) {  // nothing that this view could add
+    if (map.update.sum().item<float>() == 0) {  // nothing to paint in this view
         pictures_.push_back(rendered);
         return;
     }

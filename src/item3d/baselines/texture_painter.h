@@ -1,6 +1,6 @@
 // TEXTure (Richardson et al. 2023, "TEXTure: Text-Guided Texturing of 3D Shapes"), with the
-// settings of its published code, on this project's prior and renderer. See docs/compare.md for
-// what differs.
+// settings of its published code, on this project's prior and renderer. See docs/compare.md for the
+// differences.
 #pragma once
 
 #include "item3d/baselines/trimap.h"
@@ -19,9 +19,9 @@ class TexturePainter : public ViewPainter {
     TrimapInput look(const ViewRender& render) const;
 };
 
-/// [1, 1, h, w] of 0 and 1: what is drawn anew in a step. In the first half of the steps the places
-/// that are refined take part in every other cell of 2 x 2 latents of a checkerboard (of 32 x 32
-/// cells on 64 x 64 latents), so that what is drawn looks like what was there; then all of
+/// Returns the mask [1, 1, h, w] of 0 and 1 to draw in a step. In the first half of the steps,
+/// refined parts are drawn only in every second cell of a checkerboard of 2 x 2 latents (32 x 32
+/// cells on 64 x 64 latents), so that the result resembles the previous content; then all of
 /// `update`.
 at::Tensor drawn_cells(const Trimap& map, std::int64_t height, std::int64_t width, int step,
                        int steps);

@@ -5,10 +5,10 @@
 namespace item3d {
 namespace {
 
-constexpr double better = 0.2;  ///< of the cosine, by which a view must see a place
+constexpr double better = 0.2;  ///< difference of cosines from which a view is better
 constexpr int published_size = 1200;
 
-/// Separable, normalised, of zeros beyond the picture.
+/// Returns a separable, normalised Gaussian blur with zeros outside of the image.
 at::Tensor gaussian(const at::Tensor& mask, int width, double sigma) {
     const at::Tensor x = at::arange(width, mask.options()) - (width - 1) / 2.0;
     at::Tensor kernel = (x.square() / (-2 * sigma * sigma)).exp();
@@ -47,7 +47,7 @@ Trimap make_trimap(const TrimapInput& input) {
         (input.cosine > input.best + better).to(at::kFloat) * (input.best > 0) * input.editable;
     map.refine = dilate(erode(seen_better, opening), opening) * (1 - map.generate) * input.editable;
     map.keep = input.editable * (1 - map.generate) * (1 - map.refine);
-    // The eroded model's outside counts where something is generated: its outline is drawn with it.
+    // Outside of the eroded model only generated pixels count, which include the outline.
     const at::Tensor outside = 1 - erode(input.covered, scaled_width(7, size));
     const at::Tensor both = at::maximum(map.generate, map.refine);
     map.update = both * (1 - outside * (1 - map.generate));

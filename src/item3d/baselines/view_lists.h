@@ -1,4 +1,4 @@
-// From where the published methods look at a model.
+// The views of the published methods.
 #pragma once
 
 #include "item3d/baselines/painting_scene.h"
@@ -7,19 +7,19 @@
 
 namespace item3d {
 
-/// TEXTure's ten, in its order: eight around the model, 30 degrees above, turning away from the
-/// front on both sides; then from above and from below, behind.
+/// Returns TEXTure's ten views, in its order: eight around the model, 30 degrees above, alternating
+/// from the front to both sides; then from above and from below, at the back.
 const std::vector<ViewAngles>& ring_and_poles();
 
-/// Text2Tex's ten principal views: the same ring, 15 degrees above, and both poles.
+/// Returns Text2Tex's ten principal views: the same ring, 15 degrees above, and both poles.
 const std::vector<ViewAngles>& principal_views();
-/// Text2Tex's 36 candidates for automatic refinement: twelve azimuths, three elevations.
+/// Returns Text2Tex's 36 candidates for automatic refinement: twelve azimuths, three elevations.
 const std::vector<ViewAngles>& candidate_views();
 
-/// SyncMVD's ten: eight every 45 degrees at the model's height, two from above.
+/// Returns SyncMVD's ten views: eight every 45 degrees at the model's height, two from above.
 const std::vector<ViewAngles>& synchronized_views();
 
-/// The first `count` of a list; all for 0.
+/// Returns the first `count` of a list; all for 0.
 std::vector<ViewAngles> first_views(const std::vector<ViewAngles>& views, int count);
 
 }  // namespace item3d

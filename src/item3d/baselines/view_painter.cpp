@@ -3,7 +3,7 @@
 namespace item3d {
 namespace {
 
-constexpr float unpainted = 0.5f;  ///< sRGB grey of texels that wait for their view
+constexpr float unpainted = 0.5f;  ///< sRGB grey of unpainted texels
 
 std::string with_side(const std::string& prompt, const std::string& side) {
     return prompt + ", " + side + " view";
@@ -70,7 +70,7 @@ void ViewPainter::paint(const ViewRender& render, const at::Tensor& picture,
     const at::NoGradGuard no_grad;
     const auto [seen, counts] = render.colors_of(picture);
     const at::Tensor weight = (share * counts * (scene_.weight.squeeze(1) > 0)).unsqueeze(1);
-    // The first paint covers what waits for it wholly.
+    // The first painted view replaces unpainted texels completely.
     const at::Tensor whole = (painted_ == 0).unsqueeze(1) & (weight > 0);
     colors_ = at::where(whole, seen, colors_.lerp(seen, weight));
     painted_ =

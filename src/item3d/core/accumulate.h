@@ -1,4 +1,4 @@
-// Sums to which many threads contribute, for kernels that run on the CPU and on CUDA devices.
+// Accumulation of sums by many threads, for kernels that run on the CPU and on CUDA devices.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -10,25 +10,25 @@
 namespace item3d {
 
 /// An array of sums. On the CPU one thread owns it and adds; on a device many threads add at once:
-///   - to floats, by atomics, in whatever order the threads come, or
+///   - to floats, by atomics, in any order, or
 ///   - in two passes whose result does not depend on the order: the first (`largest`) finds the
 ///     largest term of each sum, the second (`fixed`) adds in units of 2^-bits of its power of two,
-///     in 64-bit integers. finish_sum() then makes floats of them.
+///     in 64-bit integers. finish_sum() then converts to float.
 struct Accumulator {
     float* values = nullptr;
-    std::uint32_t* largest = nullptr;     ///< bits of the largest magnitude of each sum's terms
+    std::uint32_t* largest = nullptr;     ///< bits of the largest term's magnitude, by sum
     unsigned long long* fixed = nullptr;  ///< two's complement
     int bits = 0;
 
     ITEM3D_HOST_DEVICE bool wanted() const { return values != nullptr || largest != nullptr; }
 
-    /// The sums from `first` on.
+    /// Returns the sums from `first` on.
     ITEM3D_HOST_DEVICE Accumulator from(std::int64_t first) const {
         return {values ? values + first : nullptr, largest ? largest + first : nullptr,
                 fixed ? fixed + first : nullptr, bits};
     }
 
-    /// On the host not for concurrent calls on one sum.
+    /// On the host, concurrent calls for one sum are unsafe.
     ITEM3D_HOST_DEVICE void add(std::int64_t index, float value) const {
         if (values != nullptr)
             add_to(values[index], value);
@@ -36,18 +36,19 @@ struct Accumulator {
             add_in_passes(index, value);
     }
 
-    /// Exponent of a float's magnitude, of subnormal numbers that of the smallest normal one.
+    /// Returns the exponent of a float's magnitude; for subnormal numbers that of the smallest
+    /// normal one.
     ITEM3D_HOST_DEVICE static int exponent(std::uint32_t magnitude_bits) {
         const int biased = static_cast<int>(magnitude_bits >> 23);
         return (biased > 0 ? biased : 1) - 127;
     }
-    /// Whether the largest term is infinite or not a number.
+    /// True if the largest term is infinite or NaN.
     ITEM3D_HOST_DEVICE static bool overflows(std::uint32_t magnitude_bits) {
         return magnitude_bits >= 0x7f800000u;
     }
 
   private:
-    // Apart, so that what the CPU does stays small enough to be inlined.
+    // A separate function, so that the CPU's path stays small enough for inlining.
 #if !defined(__CUDACC__)
     __attribute__((cold, noinline))
 #endif
@@ -83,7 +84,8 @@ struct Accumulator {
     }
 };
 
-/// How many bits of a term fit below the largest one's power of two when up to `terms` are added.
+/// Returns the number of bits of a term below the largest one's power of two, for sums of up to
+/// `terms` terms.
 inline int accumulator_bits(std::int64_t terms) {
     int bits = 61;
     while (bits > 24 && (terms >> (61 - bits)) > 0)
@@ -98,7 +100,7 @@ struct FinishSumsParameters {
     float* values;
 };
 
-/// What the second pass left, as a float; not a number where a term was none or infinite.
+/// Converts the sum of the second pass to float; NaN where a term was NaN or infinite.
 ITEM3D_HOST_DEVICE inline void finish_sum(const FinishSumsParameters& p, std::int64_t index) {
     const std::uint32_t largest = p.largest[index];
     const double sum = std::ldexp(static_cast<double>(static_cast<long long>(p.fixed[index])),

@@ -21,14 +21,14 @@ double of_the_machine() {
     return unlimited;
 }
 
-/// The number of the file; `otherwise` where it has none ("max").
+/// Returns the number in a file; `otherwise` where it has none ("max").
 double number_in(const fs::path& path, double otherwise) {
     std::ifstream file(path);
     double value = 0;
     return file >> value ? value : otherwise;
 }
 
-/// Bytes of files that the group's limit counts and the system gives back when asked.
+/// Returns the bytes of cached files that count towards the group's limit but can be reclaimed.
 double reclaimable(const fs::path& group) {
     std::ifstream file(group / "memory.stat");
     std::string key;
@@ -38,7 +38,7 @@ double reclaimable(const fs::path& group) {
     return 0;
 }
 
-/// Of this process's group and those around it (version 2 of control groups).
+/// Returns the free memory of this process's control group and its ancestors (cgroups version 2).
 double of_the_groups() {
     std::ifstream file("/proc/self/cgroup");
     std::string line, group;

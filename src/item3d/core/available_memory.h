@@ -1,10 +1,10 @@
-// Memory that is free for programs.
+// The memory that is free for programs.
 #pragma once
 
 namespace item3d {
 
-/// Bytes that processes may still take (MemAvailable, and what the control group of this process
-/// leaves of its limit, as of a cluster's job); 1e18 where the system does not say.
+/// Returns the bytes that processes may still allocate (MemAvailable, limited by this process's
+/// control group, such as a cluster job's); 1e18 where the system does not report it.
 double available_memory();
 
 }  // namespace item3d

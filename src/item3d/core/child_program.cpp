@@ -23,12 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The new process becomes the program. Only calls that are safe in a signal handler may stand
-/// between fork() and exec(): other threads may have held any lock.
+/// Turns the new process into the program. Between fork() and exec() only async-signal-safe calls
+/// are allowed: other threads may have held any lock.
 [[noreturn]] void become(const char* program, char* const* arguments, const char* output,
                          const char* folder, const cpu_set_t& cores, pid_t parent) {
     ::setpgid(0, 0);
-    // Where that is refused, it runs on all of them.
+    // If refused, it runs on all cores.
     if (CPU_COUNT(&cores) > 0) ::sched_setaffinity(0, sizeof(cores), &cores);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const int in = ::open("/dev/null", O_RDONLY);
@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
     const bool is_there = *folder == '\0' || ::chdir(folder) == 0;
     if (is_there && ::getppid() == parent && in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
         ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(out, STDERR_FILENO) >= 0 &&
-        ::close_range(STDERR_FILENO + 1, ~0U, 0) == 0)  // sockets of a server among them
+        ::close_range(STDERR_FILENO + 1, ~0U, 0) == 0)  // including a server's sockets
         ::execv(program, arguments);
     ::_exit(127);
 }
@@ -86,7 +86,7 @@ ChildProgram::ChildProgram(const std::vector<std::string>& arguments, const fs::
     if (id_ == 0)
         become(arguments[0].c_str(), pointers.data(), output.c_str(), surroundings.folder.c_str(),
                cores, parent);
-    ::setpgid(id_, id_);  // both do it: the group must be there before either goes on
+    ::setpgid(id_, id_);  // both processes call it: the group must exist before either continues
 }
 
 ChildProgram::~ChildProgram() {
@@ -109,7 +109,7 @@ std::optional<int> ChildProgram::status() {
     int status = 0;
     const pid_t ended = ::waitpid(id_, &status, WNOHANG);
     if (ended == id_) status_ = status;
-    // Where SIGCHLD is ignored nobody learns how a child ended: what it wrote must tell.
+    // If SIGCHLD is ignored, the exit status is lost: its output must tell.
     if (ended < 0 && errno == ECHILD) status_ = 0;
     return status_;
 }

@@ -1,4 +1,4 @@
-// Another program, started without a shell.
+// Child processes, started without a shell.
 #pragma once
 
 #include <sys/types.h>
@@ -10,40 +10,38 @@
 
 namespace item3d {
 
-/// The first executable file of that name in the folders of $PATH; empty: there is none.
+/// Returns the first executable file of that name in the folders of $PATH; empty: none.
 std::filesystem::path program_in_path(const std::string& name);
 
-/// Where and as what a program runs.
+/// Environment of a child process.
 struct ChildSurroundings {
-    std::filesystem::path folder;  ///< its working directory; empty: this program's
-    std::string name;              ///< that it finds itself called by; empty: its path
-    std::vector<int> cores = {};   ///< that it may run on; empty: those of this program
+    std::filesystem::path folder;  ///< working directory; empty: this program's
+    std::string name;              ///< argv[0]; empty: its path
+    std::vector<int> cores = {};   ///< CPU affinity; empty: this program's
 };
 
-/// "error: ..." of the last line of its log in which a program of ours says what went wrong;
-/// without one, how it ended. status: of waitpid().
+/// Returns the last "error: ..." line in the log of one of the project's programs; without one, a
+/// description of its end. status: of waitpid().
 std::string reason_of_end(const std::filesystem::path& log, int status);
 
-/// A running program in a process group of its own, so that Ctrl-C on a terminal reaches this
-/// program alone. It ends with the thread that started it, however that ends, and has none of this
-/// program's files open.
+/// A child process in its own process group, so that Ctrl-C on a terminal reaches only this
+/// program. It ends with the thread that started it, in any case, and inherits no open files.
 class ChildProgram {
   public:
-    /// arguments: the program's path first; output: a file that what it prints is added to. A
-    /// program that cannot be run exits with 127. Throws ResourceError where no process can be
-    /// made.
+    /// arguments: the program's path first; output: file to which its output is appended. A program
+    /// that cannot be run exits with 127. Throws ResourceError if no process can be created.
     ChildProgram(const std::vector<std::string>& arguments, const std::filesystem::path& output,
                  const ChildSurroundings& surroundings = {});
-    /// Kills the group where the program still runs, and waits for its end.
+    /// Kills the group if the program still runs, and waits for its end.
     ~ChildProgram();
     ChildProgram(const ChildProgram&) = delete;
     ChildProgram& operator=(const ChildProgram&) = delete;
 
-    /// Asks the group to end (SIGTERM), so that it can keep what it has; returns at once.
+    /// Asks the group to end (SIGTERM), so that it can save its state; does not block.
     void ask_to_end();
-    /// Ends the group at once (SIGKILL).
+    /// Kills the group (SIGKILL).
     void kill();
-    /// The status of waitpid() once it has ended; before, nothing.
+    /// Returns the status of waitpid() after its end; nothing before.
     std::optional<int> status();
 
   private:

@@ -10,7 +10,7 @@
 namespace item3d {
 namespace {
 
-/// A JSON number without a fraction, within Config::max_integer.
+/// Reads a JSON number without a fraction, within Config::max_integer.
 bool read_integer(const nlohmann::json& value, int& result) {
     double number = 0;
     if (value.is_number_unsigned() && value.get<std::uint64_t>() > Config::max_integer)
@@ -22,8 +22,8 @@ bool read_integer(const nlohmann::json& value, int& result) {
     return true;
 }
 
-/// Python writes infinities and NaN as bare words, which JSON has not; published configs hold some.
-/// They become strings, so that only a key that is asked for complains.
+/// Quotes infinities and NaN, which Python writes as bare words outside of JSON, and published
+/// configs contain. As strings they cause an error only if their key is read.
 std::string quote_python_numbers(const std::string& text) {
     std::string result;
     bool in_string = false;

@@ -11,17 +11,17 @@
 
 namespace item3d {
 
-/// A JSON object with the name of its file, so that every complaint names both. A missing or null
-/// key gives the fallback; a value of the wrong kind or out of range throws InputError.
+/// A JSON object with the name of its file, so that every error names both. A missing or null key
+/// gives the fallback; a value of the wrong type or out of range throws InputError.
 class Config {
   public:
-    /// subject: what messages call it, usually the path.
+    /// subject: name in messages, usually the path.
     Config(nlohmann::json values, std::string subject);
     static Config read(const std::filesystem::path& path);
 
     const std::string& subject() const { return subject_; }
     const nlohmann::json& json() const { return values_; }
-    /// True when the key is there and not null.
+    /// True if the key exists and is not null.
     bool has(const std::string& key) const;
 
     /// Integers are limited to +-`max_integer`, so that products of a few cannot overflow.
@@ -29,23 +29,23 @@ class Config {
     double number(const std::string& key, double fallback) const;
     bool boolean(const std::string& key, bool fallback) const;
     std::string text(const std::string& key, const std::string& fallback) const;
-    /// A list of integers; a single integer stands for `count` of it (count 0: a list of one).
+    /// Returns a list of integers; a single integer is repeated `count` times (count 0: once).
     std::vector<int> integers(const std::string& key, const std::vector<int>& fallback,
                               std::size_t count = 0) const;
     std::vector<double> numbers(const std::string& key) const;
     std::vector<std::string> texts(const std::string& key,
                                    const std::vector<std::string>& fallback) const;
 
-    /// The object under a key. Throws InputError when there is none.
+    /// Returns the object under a key. Throws InputError when there is none.
     Config part(const std::string& key) const;
 
-    /// As integer(), and at least one.
+    /// Like integer(), and at least one.
     int size(const std::string& key, int fallback) const;
     std::vector<int> sizes(const std::string& key, const std::vector<int>& fallback,
                            std::size_t count = 0) const;
 
-    /// Throws InputError unless the key is missing, null, or has this value: for the options of
-    /// the layout that no supported model uses.
+    /// Throws InputError unless the key is missing, null, or has this value: for options of the
+    /// layout that no supported model uses.
     void expect(const std::string& key, const nlohmann::json& value) const;
     [[noreturn]] void fail(const std::string& key, const std::string& wanted) const;
     /// Throws InputError "KEY: PROBLEM".

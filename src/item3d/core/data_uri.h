@@ -1,4 +1,4 @@
-// Pictures as parts of a page.
+// Images embedded in a page.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -7,8 +7,8 @@
 
 namespace item3d {
 
-/// "data:image/png;base64,..." of an encoded picture (PNG, JPEG, WebP, GIF; told by its first
-/// bytes).
+/// Returns "data:image/png;base64,..." of an encoded image (PNG, JPEG, WebP, GIF; detected by its
+/// first bytes).
 std::string data_uri(const Bytes& bytes);
 
 }  // namespace item3d

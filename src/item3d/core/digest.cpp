@@ -32,7 +32,7 @@ Digest::Digest(DigestKind kind, std::uint64_t size) {
         throw ResourceError("the cryptography library refuses to compute a checksum");
     if (kind == DigestKind::git_blob) {
         const std::string header = fmt::format("blob {}", size);
-        // With the terminating zero.
+        // Including the terminating zero.
         EVP_DigestUpdate(context_->state.get(), header.c_str(), header.size() + 1);
     }
 }

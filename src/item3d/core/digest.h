@@ -1,4 +1,4 @@
-// Checksums: SHA-256, and the SHA-1 that git gives a file.
+// Checksums: SHA-256, and git's SHA-1 of a file.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,27 @@ namespace item3d {
 
 enum class DigestKind {
     none,
-    /// SHA-1 of "blob SIZE\0" and the bytes: how the hub names small files.
+    /// SHA-1 of "blob SIZE\0" and the bytes: the hub's checksum of small files.
     git_blob,
-    /// How the hub names large files (Git LFS).
+    /// The hub's checksum of large files (Git LFS).
     sha256
 };
 
-/// What kind of checksum an entity tag of the hub is: 64 hexadecimal digits, 40, or neither.
+/// Returns the kind of an entity tag of the hub: sha256 for 64 hexadecimal digits, git_blob for 40,
+/// else none.
 DigestKind digest_kind(const std::string& etag);
 
-/// A checksum of bytes that come piece by piece.
+/// Incremental checksum.
 class Digest {
   public:
-    /// size: how many bytes there will be; a git_blob begins with it.
+    /// size: total number of bytes, with which a git_blob begins.
     Digest(DigestKind kind, std::uint64_t size);
     ~Digest();
     Digest(Digest&&) noexcept;
     Digest& operator=(Digest&&) noexcept;
 
     void update(std::span<const std::uint8_t> bytes);
-    /// Lower-case hexadecimal; "" for DigestKind::none. Ends the computation.
+    /// Returns lower-case hexadecimal, "" for DigestKind::none. Call once.
     std::string finish();
 
   private:
@@ -38,7 +39,7 @@ class Digest {
     std::unique_ptr<Context> context_;  ///< null for DigestKind::none
 };
 
-/// SHA-256 in lower-case hexadecimal.
+/// Returns SHA-256 in lower-case hexadecimal.
 std::string sha256(std::span<const std::uint8_t> bytes);
 std::string sha256(std::string_view text);
 

@@ -1,4 +1,4 @@
-// The error of a full disk, which ends a worker but is no fault of its job.
+// The error of a full disk, which ends a worker without failing its job.
 #pragma once
 
 #include "item3d/core/error.h"

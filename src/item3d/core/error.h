@@ -1,4 +1,4 @@
-// The few exception types that cross item3d's boundaries, and the check for programmer mistakes.
+// The exception types of item3d's interfaces, and the check for programming errors.
 #pragma once
 
 #include <stdexcept>
@@ -14,14 +14,14 @@ enum class ExitCode {
     usage = 2,
     bad_input = 3,
     no_resource = 4,
-    // The codes of `item3d provenance` alone.
+    // `item3d provenance` only.
     altered = 5,
     other_signer = 6,
     not_signed = 7,
     interrupted = 130
 };
 
-/// Base of all errors that a user can cause and mend. what() is one line.
+/// Base of all errors that a user can cause and fix. what() is one line.
 class Error : public std::runtime_error {
   public:
     Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -31,10 +31,10 @@ class Error : public std::runtime_error {
     ExitCode code_;
 };
 
-/// A file or value that can't be used. The message reads "SUBJECT: PROBLEM; HINT".
+/// Unusable file or value. The message reads "SUBJECT: PROBLEM; HINT".
 class InputError : public Error {
   public:
-    /// subject: the file or option; problem: what was expected and found; hint: what to try.
+    /// subject: the file or option; problem: expected and actual value; hint: remedy.
     InputError(const std::string& subject, const std::string& problem, const std::string& hint = "")
         : Error(ExitCode::bad_input, subject + ": " + problem + (hint.empty() ? "" : "; " + hint)) {
     }
@@ -46,13 +46,13 @@ class UsageError : public Error {
     explicit UsageError(const std::string& message) : Error(ExitCode::usage, message) {}
 };
 
-/// A missing or spent resource: disk, memory, device.
+/// Missing or exhausted resource: disk, memory, device.
 class ResourceError : public Error {
   public:
     explicit ResourceError(const std::string& message) : Error(ExitCode::no_resource, message) {}
 };
 
-/// Ctrl-C or SIGTERM, thrown from a safe point after what must be kept was written.
+/// Ctrl-C or SIGTERM, thrown from a safe point after the state was saved.
 class Interrupted : public Error {
   public:
     explicit Interrupted(const std::string& message) : Error(ExitCode::interrupted, message) {}
@@ -63,8 +63,8 @@ class Interrupted : public Error {
 
 }  // namespace item3d
 
-/// States what must hold unless our own code is wrong; throws std::logic_error with both the
-/// expression and the detail (any expression that makes a std::string) when it does not.
+/// Asserts an invariant; throws std::logic_error with the expression and the detail (any expression
+/// that makes a std::string) when it fails.
 #define ITEM3D_CHECK(condition, detail)                                       \
     do {                                                                      \
         if (!(condition)) [[unlikely]]                                        \

@@ -32,7 +32,7 @@ fs::path temporary_beside(const fs::path& path) {
                      "choose a folder that you may write to");
 }
 
-/// `shown` stands for the path in messages: a temporary name tells nobody anything.
+/// shown: path in messages, since a temporary name is meaningless to users.
 void write_all(const fs::path& path, std::span<const std::uint8_t> bytes, const fs::path& shown) {
     const int file = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
     if (file < 0) throw_write_error(shown, errno);
@@ -50,7 +50,7 @@ void write_all(const fs::path& path, std::span<const std::uint8_t> bytes, const 
     if (::close(file) != 0) throw_write_error(shown, errno);
 }
 
-/// Errors that the system found only after write() had returned show here.
+/// Flushes the file, and reports errors that the system found after write() returned.
 void sync_file(const fs::path& path, const fs::path& shown) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) throw_write_error(shown, errno);

@@ -1,4 +1,4 @@
-// Whole-file reads and atomic writes: a file that is there is whole.
+// Whole-file reads and atomic writes, so that existing files are complete.
 #pragma once
 
 #include <cstdint>
@@ -13,31 +13,31 @@ namespace item3d {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Reads a whole file. Throws InputError when it is missing, not a file, unreadable, or a pointer
-/// of Git LFS.
+/// Reads a whole file. Throws InputError when it is missing, not a file, unreadable, or a Git LFS
+/// pointer.
 Bytes read_bytes(const std::filesystem::path& path);
 std::string read_text(const std::filesystem::path& path);
 
-/// Throws InputError for a file that begins like a pointer of Git LFS.
+/// Throws InputError for a file that begins like a Git LFS pointer.
 void check_no_lfs_pointer(const std::filesystem::path& path,
                           std::span<const std::uint8_t> first_bytes);
 
 /// Writes to a temporary name beside `path`, flushes, and renames. Throws ResourceError (full disk)
-/// or InputError (unwritable folder); the old file, if any, is then untouched.
+/// or InputError (unwritable folder); an existing file then stays unchanged.
 void write_atomically(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 
-/// As above for writers that want a path of their own: calls write(temporary_path), then renames.
-/// The temporary name keeps the extension of `path`.
+/// Does the same for writers that need a path: calls write(temporary_path), then renames. The
+/// temporary name keeps the extension of `path`.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 
-/// Creates a folder (and its parents) and proves that files can be written there.
-/// Throws InputError that says why not.
+/// Creates a folder (and its parents) and tests that files can be written there. Throws InputError
+/// with the reason if not.
 void make_output_folder(const std::filesystem::path& folder);
 
-/// A folder of make_output_folder(). The destructor removes a folder that this made and that is
-/// still empty.
+/// Folder from make_output_folder(). The destructor removes it if this object created it and it is
+/// empty.
 class OutputFolder {
   public:
     explicit OutputFolder(const std::filesystem::path& folder);
@@ -46,11 +46,11 @@ class OutputFolder {
     OutputFolder& operator=(const OutputFolder&) = delete;
 
   private:
-    std::vector<std::filesystem::path>
-        made_;  ///< the folder, then those above it that were not there
+    /// The folder, then those above it that did not exist.
+    std::vector<std::filesystem::path> made_;
 };
 
-/// The folder of shipped data (prior, demo model): $ITEM3D_ASSETS, else ../assets or
+/// Returns the folder of installed data (prior, demo model): $ITEM3D_ASSETS, else ../assets or
 /// ../share/item3d beside the running program. Throws InputError when none exists.
 std::filesystem::path assets_folder();
 

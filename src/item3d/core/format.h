@@ -1,5 +1,5 @@
-// fmt for files that also see LibTorch. LibTorch brings headers of another version of fmt than the
-// system's library, and the compiler finds those first: their code must then come from the headers.
+// fmt for files that also include LibTorch. LibTorch has headers of another version of fmt than the
+// system's library, which the compiler finds first: the code must then come from these headers.
 #pragma once
 
 #ifndef FMT_HEADER_ONLY

@@ -1,4 +1,4 @@
-// Marks functions that run on the CPU and, when the file is compiled by nvcc, on CUDA devices too.
+// Attributes of functions that run on the CPU and, when compiled by nvcc, on CUDA devices.
 #pragma once
 
 #if defined(__CUDACC__)
@@ -7,7 +7,7 @@
 #define ITEM3D_HOST_DEVICE
 #endif
 
-/// For functions of which every caller makes its own version, for its processor's vectors.
+/// For functions that must be inlined into each caller, for its vector instructions.
 #if defined(__GNUC__)
 #define ITEM3D_ALWAYS_INLINE __attribute__((always_inline))
 #else

@@ -1,11 +1,11 @@
-// Plain text as a part of an HTML page.
+// Escaping of plain text for HTML.
 #pragma once
 
 #include <string>
 
 namespace item3d {
 
-/// For elements' contents and for attributes within quotes.
+/// Escapes for elements' contents and quoted attributes.
 std::string html_escape(const std::string& text);
 
 }  // namespace item3d

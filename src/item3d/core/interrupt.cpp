@@ -8,12 +8,12 @@
 namespace item3d {
 namespace {
 
-// Process-wide by nature: there is one signal handler.
+// Process-wide, because there is one signal handler.
 std::atomic<bool> wanted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
 void on_interrupt(int signal) {
-    // Schedulers may send SIGTERM several times: a second Ctrl-C alone ends the program at once.
+    // Schedulers may send SIGTERM several times: only a second Ctrl-C ends the program immediately.
     const bool is_second = wanted.exchange(true);
     if (!is_second || signal != SIGINT) return;
     std::signal(signal, SIG_DFL);

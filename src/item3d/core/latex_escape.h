@@ -1,11 +1,11 @@
-// Plain text as a part of a LaTeX document.
+// Escaping of plain text for LaTeX.
 #pragma once
 
 #include <string>
 
 namespace item3d {
 
-/// For text outside of mathematics.
+/// Escapes text outside of mathematics.
 std::string latex_escape(const std::string& text);
 
 }  // namespace item3d

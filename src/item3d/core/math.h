@@ -1,4 +1,4 @@
-// Vectors for code that must run on the CPU and on CUDA devices: GLM's types under short names.
+// Vectors for code that runs on the CPU and on CUDA devices: GLM's types under short names.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,12 +9,12 @@ using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
 using Vec4 = glm::vec4;
 using Mat3 = glm::mat3;
-/// Column-major as in GLM; files and tensors hold row-major matrices and are transposed when read.
+/// Column-major as in GLM; row-major matrices of files and tensors are transposed when read.
 using Mat4 = glm::mat4;
 
 inline constexpr float pi = 3.14159265358979323846f;
 
-/// IEC 61966-2-1 transfer functions on [0, 1]; values outside follow the same curve.
+/// IEC 61966-2-1 transfer functions on [0, 1], with the same formula outside.
 float srgb_to_linear(float value);
 float linear_to_srgb(float value);
 

@@ -1,4 +1,4 @@
-// Names: of files made of sentences, of counted things, and the one that somebody meant.
+// Names: file names from sentences, counted nouns, and the nearest known name.
 #pragma once
 
 #include <string>
@@ -6,14 +6,15 @@
 
 namespace item3d {
 
-/// Lower-case letters and digits, at most 40, words joined by dashes; "case" where there are none.
+/// Returns lower-case letters and digits, at most 40, words joined by dashes; "case" for an empty
+/// result.
 std::string slug(const std::string& text);
 
-/// "1 job", "3 jobs": a count with a noun whose plural ends in s.
+/// Returns a count with a noun whose plural ends in s: "1 job", "3 jobs".
 std::string counted(std::size_t count, const std::string& noun);
 
-/// The one of `known`, which is not empty, that takes the fewest insertions, deletions and
-/// replacements of letters (Levenshtein) to become `name`.
+/// Returns the element of `known` (not empty) with the smallest Levenshtein distance from `name`:
+/// the fewest insertions, deletions and replacements of letters.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// One way to launch per-pixel and per-texel kernels on the CPU's threads.
+// The parallel loop of per-pixel and per-texel kernels on the CPU's threads.
 #pragma once
 
 #if !defined(ITEM3D_OTHER_THREADS)
@@ -13,9 +13,9 @@ namespace item3d {
 
 #if defined(ITEM3D_OTHER_THREADS)
 
-/// Threads of a host that has some of its own (the Python package runs on PyTorch's).
+/// Returns the number of the host's threads (the Python package uses PyTorch's).
 int thread_count();
-/// Calls run(f, block) for every block in [0, blocks), in any order, on those threads.
+/// Calls run(f, block) for every block in [0, blocks), in any order, on the host's threads.
 void run_on_threads(std::int64_t blocks, const void* f,
                     void (*run)(const void* f, std::int64_t block));
 
@@ -39,14 +39,14 @@ void parallel_for(const char*, std::int64_t count, const F& f, std::int64_t grai
 
 #else
 
-/// Threads that a loop of this thread may use.
+/// Returns the number of threads that a loop of this thread may use.
 inline int thread_count() {
     return omp_get_max_threads();
 }
 
-/// Calls f(i) for every i in [0, count), in any order, on the threads that OpenMP gives this
-/// thread (omp_get_max_threads). `name` is what a profiler shows. f must not throw: kernels
-/// report through their outputs. Blocks of `grain` indices stay on one thread.
+/// Calls f(i) for every i in [0, count), in any order, on this thread's OpenMP threads
+/// (omp_get_max_threads). name: shown by profilers. f must not throw: kernels report through their
+/// outputs. Blocks of `grain` indices stay on one thread.
 template <typename F>
 void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t grain = 256) {
     (void)name;
@@ -64,8 +64,8 @@ void parallel_for(const char* name, std::int64_t count, const F& f, std::int64_t
     }
 }
 
-/// While it lives, libraries that this thread calls are told of one thread: some choose by that
-/// number, even where they cannot use more, in which order they sum.
+/// RAII limit of this thread to one OpenMP thread: some libraries choose the order of sums by the
+/// number of threads, even where they cannot use more.
 class OneThread {
   public:
     OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }

@@ -12,18 +12,18 @@
 namespace item3d {
 namespace {
 
-// Process-wide by nature: there is one stderr.
+// Process-wide, because there is one stderr.
 Verbosity current_verbosity = Verbosity::normal;
-/// Those that live, each with the one made before it; in several threads, in any order.
+/// Innermost live collector; each refers to the one created before it, in any thread and order.
 CollectedWarnings* newest_warnings = nullptr;
 std::mutex warnings_mutex;
 
 struct Pace {
     std::string text;  ///< "4.2/s", or "28 s each"
-    double left = -1;  ///< seconds; negative while no step is done
+    double left = -1;  ///< seconds; negative before the first step
 };
 
-/// steps were done in `seconds`, `idle` seconds ago.
+/// Returns the pace of `steps` steps in `seconds`, the last of them `idle` seconds ago.
 Pace pace_of(std::int64_t steps, std::int64_t to_do, double seconds, double idle) {
     if (steps <= 0 || seconds <= 0) return {};
     const double each = seconds / static_cast<double>(steps);

@@ -1,4 +1,4 @@
-// What a command tells people while it works: all of it on stderr, results alone go to stdout.
+// Messages and progress of a command on stderr; stdout is for results only.
 #pragma once
 
 #include <chrono>
@@ -9,17 +9,17 @@
 
 namespace item3d {
 
-/// How much is said on stderr. Set once by main() from --quiet; read by Progress, note and warn.
+/// Verbosity on stderr. Set once by main() from --quiet; read by Progress, note() and warn().
 enum class Verbosity { quiet, normal };
 void set_verbosity(Verbosity verbosity);
 Verbosity verbosity();
 
-/// One line of information ("edit: the UV map overlaps, so xatlas made a new one").
+/// Prints one line of information ("edit: the UV map overlaps, so xatlas made a new one").
 void note(const std::string& message);
-/// One line that starts with "warning: ". Shown even when quiet.
+/// Prints one line that starts with "warning: ", even when quiet.
 void warn(const std::string& message);
 
-/// Keeps the warnings of this process while it lives.
+/// Collects the warnings of this process during its lifetime.
 class CollectedWarnings {
   public:
     CollectedWarnings();
@@ -27,7 +27,7 @@ class CollectedWarnings {
     CollectedWarnings(const CollectedWarnings&) = delete;
     CollectedWarnings& operator=(const CollectedWarnings&) = delete;
 
-    /// Each once, in the order in which they came.
+    /// Returns distinct warnings in order.
     std::vector<std::string> lines() const;
 
   private:
@@ -39,19 +39,19 @@ class CollectedWarnings {
     std::vector<std::string> lines_;
 };
 
-/// A bar with rate and time left on a terminal; a plain line every ten seconds elsewhere.
+/// Progress bar with rate and remaining time on a terminal; a plain line every ten seconds
+/// elsewhere.
 class Progress {
   public:
-    /// label: "edit", "fit", ...; total: how many steps there will be; done: how many a resumed
-    /// run has behind it.
+    /// label: "edit", "fit", ...; total: number of steps; done: steps of a resumed run.
     Progress(std::string label, std::int64_t total, std::int64_t done = 0);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// Says that `done` steps are behind us; detail ("loss 0.12") stands at the line's end.
+    /// Reports that `done` steps are finished; detail ("loss 0.12") is printed at the line's end.
     void update(std::int64_t done, const std::string& detail = "");
-    /// Ends the line; called by the destructor too.
+    /// Ends the line; the destructor calls it too.
     void finish();
 
   private:
@@ -64,17 +64,17 @@ class Progress {
     std::int64_t done_;
     std::string detail_;
     Clock::time_point start_;
-    Clock::time_point stepped_;  ///< when done_ changed last
+    Clock::time_point stepped_;  ///< time of the last change of done_
     Clock::time_point shown_;
     bool terminal_;
     bool finished_ = false;
 };
 
-/// "3 s", "2 min 05 s", "1 h 10 min".
+/// Returns "3 s", "2 min 05 s", "1 h 10 min".
 std::string format_duration(double seconds);
 
-/// Becomes true after Ctrl-C or SIGTERM once install_interrupt_handler was called. Loops poll it at
-/// safe points. A second Ctrl-C ends the program at once.
+/// interrupted() returns true after Ctrl-C or SIGTERM once install_interrupt_handler() was called.
+/// Loops poll it at safe points. A second Ctrl-C ends the program immediately.
 void install_interrupt_handler();
 bool interrupted();
 

@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Process-wide by nature, as what is said on stderr: one file for one process.
+/// Process-wide, like stderr: one file for one process.
 struct ProgressFile {
     std::mutex mutex;
     std::string path;

@@ -1,4 +1,4 @@
-// How far a command is, for programs that started it: a small JSON file that is renewed.
+// The progress of a command, as a small JSON file for programs that started it.
 #pragma once
 
 #include <cstdint>
@@ -6,15 +6,15 @@
 
 namespace item3d {
 
-/// From now on progress is written to that file, replaced as a whole at most three times a second:
-/// "stage" ("load", "fit", "edit", ...), "done", "total" (0: nobody knows) and "seconds_left" of
-/// the stage, or null. Set once by main(); empty: nowhere.
+/// Writes progress to that file from now on, replaced atomically at most three times a second:
+/// "stage" ("load", "fit", "edit", ...), "done", "total" (0: unknown) and "seconds_left" of the
+/// stage, or null. Set once by main(); empty: no file.
 void show_progress_in(const std::string& path);
 
-/// A stage without steps begins.
+/// Begins a stage without steps.
 void show_stage(const std::string& stage);
-/// Steps of a stage, of which this run did `own` in so many seconds; Progress calls it. A file that
-/// cannot be written is warned of once.
+/// Reports steps of a stage, of which this run did `own` in `seconds`; called by Progress. Warns
+/// once of a file that cannot be written.
 void show_steps(const std::string& stage, std::int64_t own, std::int64_t done, std::int64_t total,
                 double seconds);
 

@@ -1,5 +1,5 @@
-// Counter-based random numbers: a value depends on (seed, stream, counter) alone, so results do not
-// depend on threads and a resumed run draws what the interrupted one would have drawn.
+// Counter-based random numbers: a value depends only on (seed, stream, counter), so results do not
+// depend on threads, and a resumed run draws the same numbers as an uninterrupted one.
 #pragma once
 
 #include <cmath>
@@ -15,44 +15,44 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/// Streams of a run's seed. Each use draws from a stream of its own, so that no two draw the same
-/// numbers; a value that changes changes the results of what draws from it.
+/// Streams of a run's seed, one for each use, so that no two uses draw the same numbers. Changing a
+/// value changes the results of its use.
 enum class RandomStream : std::uint64_t {
-    surface_means = 0,             ///< edit: points at which a material's means are taken
+    surface_means = 0,             ///< edit: points for a material's means
     noise = 1,                     ///< guidance: timestep and noise
-    renoise = 5,                   ///< guidance: of the learned source's samples
-    further_noise = 8,             ///< guidance: what methods draw besides
-    spread = 6,                    ///< edit: offsets of the points where a material is looked up
-    painting = 7,                  ///< edit: which view the detail stage fits next
-    color_points = 9,              ///< edit: where the colour regulariser looks
-    reading = 10,                  ///< guidance: noise under which a model reads pictures
-    baseline = 12,                 ///< baselines: noise of what is sampled
-    study = 0x7374756479,          ///< study: names of pictures, attention items
+    renoise = 5,                   ///< guidance: noise of the learned source's samples
+    further_noise = 8,             ///< guidance: additional noise of methods
+    spread = 6,                    ///< edit: offsets of the points of material lookups
+    painting = 7,                  ///< edit: order of views in the detail stage's fit
+    color_points = 9,              ///< edit: points of the colour regulariser
+    reading = 10,                  ///< guidance: noise on images that a model reads
+    baseline = 12,                 ///< baselines: noise of samplers
+    study = 0x7374756479,          ///< study: names of images, attention items
     study_bootstrap = 0x626f6f74,  ///< study: resampled raters
-    region = 0x726567696f6e,       ///< region: points that a part of a surface is measured at
-    field = 0x6669656c64,          ///< field: first values of the neural texture
-    fit = 0x666974,                ///< field: points that it is fitted at
-    metallic = 0x6d6574616c,       ///< field: points at which its mean metallic is measured
-    view_order = 0x76696577,       ///< reconstruct: in which order the photographs come
-    shape = 0x7368617065,  ///< reconstruct: the search for a shape; generate: its choice of one
-    refinement = 0x726566696e65,  ///< reconstruct: materials and light
-    chamfer = 0x6368616d,         ///< reconstruct: points that two meshes are compared at
+    region = 0x726567696f6e,       ///< region: points for measuring a region
+    field = 0x6669656c64,          ///< field: initial values of the neural texture
+    fit = 0x666974,                ///< field: points of the fit
+    metallic = 0x6d6574616c,       ///< field: points for the mean metallic
+    view_order = 0x76696577,       ///< reconstruct: order of the photographs
+    shape = 0x7368617065,          ///< reconstruct: search for a shape; generate: choice of one
+    refinement = 0x726566696e65,   ///< reconstruct: materials and light
+    chamfer = 0x6368616d,          ///< reconstruct: points for comparing two meshes
 };
 
-/// Streams of a seed that an index was mixed into. No such seed is a run's own, so that a value may
-/// be one of RandomStream's (8 is).
+/// Streams of a seed that is mixed with an index. Such a seed differs from every run's own, so
+/// values may coincide with RandomStream's (8 does).
 enum class IndexedStream : std::uint64_t {
-    cameras = 2,                 ///< edit: of an iteration
-    backgrounds = 3,             ///< edit: of an iteration
-    lights = 4,                  ///< edit: of an iteration
-    painting_cameras = 8,        ///< edit: of a view of the detail stage
-    region_cameras = 10,         ///< edit: of a close-up
-    region_looks = 11,           ///< edit: what a close-up looks at
+    cameras = 2,                 ///< edit: by iteration
+    backgrounds = 3,             ///< edit: by iteration
+    lights = 4,                  ///< edit: by iteration
+    painting_cameras = 8,        ///< edit: by view of the detail stage
+    region_cameras = 10,         ///< edit: by close-up
+    region_looks = 11,           ///< edit: targets of close-ups
     study_pages = 0x7061676573,  ///< study: a participant's order and positions
 };
 
-/// Two streams of one value are a case that is there twice, which does not compile; one that is
-/// missing here is warned of.
+/// Compile-time check of the streams: two streams of one value are duplicate cases, an error; a
+/// missing one is a warning.
 constexpr bool is_listed(RandomStream stream) {
     switch (stream) {
         case RandomStream::surface_means:
@@ -93,11 +93,12 @@ constexpr bool is_listed(IndexedStream stream) {
 }
 static_assert(is_listed(RandomStream::noise) && is_listed(IndexedStream::cameras));
 
-/// A stream of random numbers. Copying it copies its position; `counter` is its whole state.
+/// A stream of random numbers. A copy continues from the same position; `counter` is the whole
+/// state.
 class Random {
   public:
-    /// Streams of one seed are independent: give each use (cameras, noise, ...) a stream of its
-    /// own.
+    /// Streams of one seed are independent: use a separate one for each purpose (cameras, noise,
+    /// ...).
     explicit Random(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t counter = 0)
         : key_(mix_bits(seed ^ mix_bits(stream + 0x632be59bd9b4e019ull))), counter_(counter) {}
 
@@ -117,7 +118,8 @@ class Random {
         return static_cast<std::int64_t>(uniform() * static_cast<double>(count));
     }
     bool chance(double probability) { return uniform() < probability; }
-    /// Standard normal (Box-Muller; the second value is dropped so that state stays one counter).
+    /// Standard normal (Box-Muller; the second value is dropped so that the state stays one
+    /// counter).
     double normal() {
         const double u = 1.0 - uniform();
         const double v = uniform();

@@ -1,4 +1,4 @@
-// Files that are renewed all the time while a command works.
+// Replacement of files that are updated often while a command runs.
 #pragma once
 
 #include <filesystem>
@@ -6,9 +6,9 @@
 
 namespace item3d {
 
-/// Writes to a temporary name beside `path` and renames, as write_atomically() does, but does not
-/// wait until the bytes are on the disk: readers see a whole file, and after a crash of the machine
-/// nobody wants it. Throws ResourceError where it cannot be written.
+/// Writes to a temporary name beside `path` and renames, like write_atomically(), but without
+/// waiting for the disk: readers always see a complete file, which need not survive a crash of the
+/// machine. Throws ResourceError where it cannot be written.
 void replace_file(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Seeds as the command line has them.
+// Parsing of seeds on the command line.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// "0..2", "3" or "0,4,7": at most 1000, each once. Throws UsageError.
+/// Parses "0..2", "3" or "0,4,7": at most 1000 distinct seeds. Throws UsageError.
 std::vector<std::uint64_t> parse_seeds(const std::string& text);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Where a command's time and memory go.
+// Measurement of a command's time and memory.
 #pragma once
 
 #include <chrono>
@@ -28,7 +28,7 @@ class StageTimes {
     std::vector<std::pair<std::string, double>> stages_;
 };
 
-/// The process's largest resident size so far, in bytes.
+/// Returns the process's peak resident size in bytes.
 std::int64_t peak_memory_bytes();
 
 }  // namespace item3d

@@ -1,11 +1,11 @@
-// The version of this build, as CMakeLists.txt says it.
+// The version of this build, from CMakeLists.txt.
 #pragma once
 
 #include <string>
 
 namespace item3d {
 
-/// "0.1.0".
+/// Returns the version, such as "0.1.0".
 std::string version();
 
 }  // namespace item3d

@@ -6,7 +6,7 @@
 
 namespace item3d {
 
-/// Lower-case words of a prompt: runs of letters, and runs of digits.
+/// Returns the lower-case words of a prompt: runs of letters, and runs of digits.
 std::vector<std::string> prompt_words(const std::string& prompt);
 
 }  // namespace item3d

@@ -19,7 +19,8 @@
 namespace item3d {
 namespace {
 
-/// Throws InputError for what is made one picture after another.
+/// Throws InputError for methods that make one image after another and cannot use several
+/// processes.
 void check_processes(const EditRequest& request) {
     const std::string& method = request.plan.method;
     if (request.processes.several() && (request.plan.paints_views || method == "in2n"))
@@ -43,7 +44,7 @@ nlohmann::json edit_model(const EditRequest& request, EditSession& session) {
 
     show_stage("load");
     EditScene scene = load_scene(request, session);
-    // Needed at the end, but a folder without one is told at once.
+    // Scores need it last, but a bad folder should fail at once.
     std::shared_ptr<const Clip> clip;
     if (processes.first()) clip = session.clip(request.clip);
     times.end_stage("load");

@@ -1,5 +1,5 @@
-// item3d's main path: load model -> fit field -> loop { cameras -> render -> guidance -> backward
-// -> step } -> bake -> write.
+// The main path of an edit: load model -> fit field -> loop { cameras -> render -> guidance ->
+// backward -> step } -> bake -> write.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -9,12 +9,12 @@
 
 namespace item3d {
 
-/// Runs an edit and writes everything that docs/formats.md lists into the output folder. Returns
+/// Runs an edit and writes every file that docs/formats.md lists into the output folder. Returns
 /// the content of edit.json; null on processes other than the request's first. Throws InputError,
 /// ResourceError, and Interrupted (with the checkpoint written) as core/error.h says.
 nlohmann::json edit_model(const EditRequest& request);
-/// One of the edits that share a session: what it left is taken, and the edited model is left for
-/// the next.
+/// Runs one of the edits that share a session: takes the model that the previous edit left there,
+/// and leaves the edited model for the next.
 nlohmann::json edit_model(const EditRequest& request, EditSession& session);
 
 }  // namespace item3d

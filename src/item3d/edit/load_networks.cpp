@@ -26,14 +26,14 @@ struct Need {
 
 Need estimate(const EditRequest& request, at::ScalarType precision) {
     const PriorReport report = verify_prior(request.prior);
-    if (!report.usable()) return {};  // loading it will say why
+    if (!report.usable()) return {};  // loading reports the reason
     const double side = static_cast<double>(request.plan.resolution) / report.resolution;
     const double pictures = request.plan.batch * side * side;
     for (const MemoryReport& memory : report.memory) {
         if (memory.precision != precision_name(precision)) continue;
         const auto all = static_cast<double>(memory.weights);
         const auto text = static_cast<double>(memory.text_encoders);
-        // Sentences that are not known yet, and LoRA files, want all networks at once.
+        // Sentences that are not known yet, and LoRA files, need all networks in memory at once.
         const bool at_once = request.plan.asks_captioner || !request.plan.lora.empty();
         const double weights = at_once ? all : std::max(all - text, text);
         const double base = weights + static_cast<double>(memory.program);
@@ -119,7 +119,7 @@ bool wants_low_memory(const EditRequest& request, at::ScalarType precision, at::
     if (request.memory != "auto" && request.memory != "low" && request.memory != "high")
         throw InputError("--memory", "'" + request.memory + "' is not known",
                          "choose auto, low or high");
-    // A device's own memory is not looked at: LibTorch's message names what it lacked.
+    // Memory of other devices is not checked: LibTorch's error names the shortage.
     if (!device.is_cpu()) return request.memory == "low";
     const Need need = estimate(request, precision);
     const double free = available_memory() + (is_loaded ? need.weights : 0);

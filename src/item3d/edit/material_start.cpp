@@ -7,9 +7,9 @@
 namespace item3d {
 namespace {
 
-/// Roughness of metals that the vocabulary does not know.
+/// Roughness of metals that the vocabulary lacks.
 constexpr float usual_metal_roughness = 0.25f;
-/// Mean metallic from which a model counts as metal.
+/// Mean metallic from which a model counts as a metal.
 constexpr float half_metal = 0.5f;
 
 bool is_kept(const EditPlan& plan, const char* channel) {
@@ -20,19 +20,20 @@ bool is_metal(const KnownWord& word) {
     return word.roughness.has_value();
 }
 
-/// A material that is no metal, such as wood.
+/// True if the prompt names a non-metal, such as wood.
 bool names_other_material(const PriorVocabulary& vocabulary, const std::string& prompt) {
     const std::vector<KnownWord> named = vocabulary.named("materials", prompt);
     return std::any_of(named.begin(), named.end(),
                        [](const KnownWord& word) { return !is_metal(word); });
 }
 
-/// "a red mug" of "a red mug with a golden handle".
+/// Returns the prompt before " with ": "a red mug" of "a red mug with a golden handle".
 std::string without_parts(const std::string& prompt) {
     return prompt.substr(0, prompt.find(" with "));
 }
 
-/// Roughness of the metal that the target names for the whole and the source does not.
+/// Returns the roughness of a metal that the target, but not the source, names for the whole
+/// object.
 std::optional<float> new_metal_roughness(const PriorVocabulary& vocabulary, const EditPlan& plan) {
     const std::string whole = without_parts(plan.to);
     if (!names_metal(whole)) return std::nullopt;

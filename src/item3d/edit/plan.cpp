@@ -14,9 +14,9 @@
 namespace item3d {
 namespace {
 
-/// A prior that sees so few pixels tells little of a light and needs no fine reflections; what it
-/// is shown is drawn at twice the size and averaged, as the embedded prior's training pictures
-/// were.
+/// Largest resolution of a small prior. It resolves little of a light and needs no sharp
+/// reflections; its input is rendered at twice the size and averaged, like the embedded prior's
+/// training images.
 constexpr int small_prior_pixels = 128;
 
 /// Sorted.
@@ -30,7 +30,7 @@ bool has(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Whether the target sentence has one of `detail_words` that the source has not.
+/// True if the target sentence has one of `detail_words` that the source lacks.
 bool names_detail(const EditSettings& settings) {
     const std::vector<std::string> from = prompt_words(settings.from);
     const std::vector<std::string> to = prompt_words(settings.to);
@@ -59,20 +59,20 @@ LightKind resolved_kind(LightChoice choice, bool small_prior) {
     return small_prior ? LightKind::physical : LightKind::texels;
 }
 
-/// Guidance scales and noise levels that a method was published with. The defaults are rdl's and
-/// sds's.
+/// Returns guidance scales and noise levels that a method was published with. The defaults are
+/// those of rdl and sds.
 nlohmann::json published_settings(const std::string& method) {
     if (method == "dds") return {{"timesteps", {0.05, 0.95}}};
-    // cfg is published as 100, for neural radiance fields.
+    // Published as 100, for neural radiance fields.
     if (method == "pds") return {{"cfg", 30}, {"timesteps", {0.1, 0.9}}};
     if (method == "sdi")
         return {{"cfg", 8.5}, {"timesteps", {0.25, 0.98}}, {"timestep_schedule", "anneal"}};
     return nlohmann::json::object();
 }
 
-/// A light has few numbers, and they move the whole picture: fewer steps than for a texture, and a
-/// direction that is taken against the same picture in the first light, which cancels what the
-/// prior makes of the model itself.
+/// Returns settings for relighting. A light has few parameters, each of which changes the whole
+/// image: it needs fewer steps than a texture, and a direction relative to the same view in the
+/// initial light, which cancels the prior's opinion of the model itself.
 nlohmann::json relight_settings() {
     return {{"guidance", "dds"}, {"iterations", 80}};
 }

@@ -12,10 +12,10 @@
 namespace item3d {
 namespace {
 
-/// Shares of the surface between which a colour is one part of several.
+/// Shares of the surface between which a colour counts as a part.
 constexpr double least_share = 0.03, largest_share = 0.97;
 
-/// The one colour that a sentence names; nothing for none and for several.
+/// Returns the single colour that a sentence names; nothing for none or several.
 std::optional<KnownWord> only_color(const PriorVocabulary& vocabulary,
                                     const std::string& sentence) {
     const std::vector<KnownWord> named = vocabulary.named("colors", sentence);
@@ -23,7 +23,7 @@ std::optional<KnownWord> only_color(const PriorVocabulary& vocabulary,
     return named.front();
 }
 
-/// The sentence's words but those that spell the colour.
+/// Returns the sentence's words except articles and those that spell the colour.
 std::vector<std::string> other_words(const std::string& sentence, const KnownWord& color) {
     std::vector<std::string> words = prompt_words(sentence);
     std::erase_if(words, [&](const std::string& word) {
@@ -41,7 +41,8 @@ std::unique_ptr<Region> make_region(const RegionRequest& request, const EditScen
         request, RegionScene{scene.model, scene.geometry, *scene.source_textures, space, &readers});
 }
 
-/// Null where the colour is nearly everywhere or hardly anywhere.
+/// Returns the region of a colour; null where the colour covers nearly everything or hardly
+/// anything.
 std::unique_ptr<Region> region_of_color(const std::string& color, const RegionRequest& request,
                                         const EditScene& scene, const RegionReaders& readers) {
     RegionRequest colored = request;
@@ -84,7 +85,7 @@ void choose_region(const EditRequest& edit, const PriorVocabulary& vocabulary, E
     if (is_automatic || plan.region == std::vector<std::string>{"all"}) request.include.clear();
     const auto color = is_automatic ? color_to_change(plan, vocabulary) : std::nullopt;
     if (request.is_everything() && !color) return;
-    // The textures as they are in the file: selectors by colour look at them.
+    // Unmodified textures of the file, for selectors by colour.
     scene.source_textures = std::make_unique<TexturedMaterials>(scene.model, scene.device);
     RegionReaders readers = load_readers(request, edit.segmenter, edit.prior, scene.device);
     if (needs_prior(request, readers.segmenter != nullptr)) readers.prior = scene.prior();

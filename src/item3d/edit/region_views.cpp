@@ -12,10 +12,10 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t most_looks = 128;
-constexpr int tries = 12;            ///< directions around a place's normal
-constexpr float widest_turn = 0.9f;  ///< of the normal: its tangent
-constexpr float clearance = 1e-4f;   ///< of the model's radius
-/// Radius of a close-up, least, and largest around one place, in parts of the model's.
+constexpr int tries = 12;            ///< directions tried around a point's normal
+constexpr float widest_turn = 0.9f;  ///< largest turn from the normal: its tangent
+constexpr float clearance = 1e-4f;   ///< start of a ray, in parts of the model's radius
+/// Smallest radius of a close-up, and largest around one point, in parts of the model's radius.
 constexpr float least_radius = 0.12f, largest_radius = 0.45f;
 constexpr float margin = 1.3f;
 
@@ -41,7 +41,7 @@ RegionViews::RegionViews(const RegionPoints& points, const Model& model, const G
     float region_radius = 0;
     for (std::int64_t i = 0; i < count; ++i)
         region_radius = std::max(region_radius, glm::length(row_of(positions, i) - centre));
-    // A small region is seen as a whole; a large or scattered one, one place at a time.
+    // A close-up shows a small region whole, and a large or scattered one around one point.
     const bool is_small = margin * region_radius <= largest_radius * model_radius_;
     const float radius =
         std::clamp(is_small ? margin * region_radius : largest_radius * model_radius_,
@@ -52,7 +52,7 @@ RegionViews::RegionViews(const RegionPoints& points, const Model& model, const G
     const std::int64_t step = std::max<std::int64_t>(1, count / most_looks);
     for (std::int64_t i = 0; i < count; i += step) {
         const Vec3 place = row_of(positions, i);
-        // Of parts whose normals point inwards the other side is seen.
+        // Try the opposite side too, because normals may point inwards.
         for (int t = 0; t < 2 * tries; ++t) {
             const Vec3 normal = (t < tries ? 1.0f : -1.0f) * row_of(normals, i);
             const float turn = widest_turn * static_cast<float>(t % tries) / tries;

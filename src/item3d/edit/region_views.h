@@ -1,4 +1,4 @@
-// Close-ups of the part of a model that is edited.
+// Close-up cameras of a model's edited region.
 #pragma once
 
 #include "item3d/region/region.h"
@@ -10,22 +10,22 @@
 
 namespace item3d {
 
-/// Cameras that see places of a region from about straight ahead, near enough that a small part
-/// fills the picture.
+/// Cameras that face points of a region nearly head-on, close enough for a small part to fill the
+/// image.
 class RegionViews {
   public:
-    /// Throws InputError where no place of the region can be seen from outside.
+    /// Throws InputError where no point of the region is visible from outside.
     RegionViews(const RegionPoints& points, const Model& model, const Geometry& geometry);
 
-    /// Exchanges every other of an iteration's cameras (of one, every other iteration's) for a
-    /// close-up; the rest keeps the whole in context.
+    /// Replaces every second camera of an iteration (with one camera, that of every second
+    /// iteration) by a close-up; the others keep the whole model in context.
     void take_turns(std::vector<Camera>& cameras, std::uint64_t seed, std::int64_t iteration) const;
 
   private:
     struct Look {
         Vec3 target;
-        Vec3 direction;  ///< from there to the camera, unit
-        float radius;    ///< of what is to be seen around the target
+        Vec3 direction;  ///< unit vector from target to camera
+        float radius;    ///< of the visible area around the target
     };
     Camera camera(const Look& look, std::uint64_t seed, std::int64_t iteration) const;
 

@@ -17,7 +17,8 @@ namespace item3d {
 
 namespace {
 
-/// Throws InputError where there is nothing to see, or another thing than the file means.
+/// Throws InputError where the edited part is invisible, or its look differs from the file's
+/// intent.
 void check_looks(const EditRequest& request, const Model& model,
                  const std::vector<int>& materials) {
     if (!is_visible(model, materials)) {
@@ -92,7 +93,7 @@ EditScene load_scene(const EditRequest& request, EditSession& session) {
             const MaterialLosses& lost = entry.second;
             return lost.emission || lost.transparency || !lost.extensions.empty();
         });
-    // A region's textures are the same ones, unless the materials had to be prepared.
+    // Shares the region's textures unless the materials were modified.
     scene.textured = scene.source_textures && !scene.is_prepared
                          ? std::make_unique<TexturedMaterials>(*scene.source_textures)
                          : std::make_unique<TexturedMaterials>(scene.model, device);

@@ -12,7 +12,7 @@
 namespace item3d {
 namespace {
 
-/// What decides which networks are loaded.
+/// Returns the key that determines which networks are loaded.
 nlohmann::json key_of(const EditRequest& request, const PriorUse& use) {
     const PipelineExtras& extras = request.plan;
     return {{"prior", networks_folder(request).string()},
@@ -22,7 +22,7 @@ nlohmann::json key_of(const EditRequest& request, const PriorUse& use) {
             {"extras", extras}};
 }
 
-/// What the edits that are known by now ask of the request's prior.
+/// Returns the requirements of all known edits on the request's prior.
 PriorNeeds needs_of(const EditRequest& request, const std::vector<EditPlan>& plans,
                     const PriorUse& use) {
     PriorNeeds needs{use.device, use.precision, request.plan.asks_captioner, {}, false};
@@ -33,14 +33,14 @@ PriorNeeds needs_of(const EditRequest& request, const std::vector<EditPlan>& pla
     return needs;
 }
 
-/// Whether a loaded prior can be asked for these, after it learned new sentences.
+/// True if a loaded prior can encode these sentences, or already has.
 bool can_serve(const std::shared_future<std::shared_ptr<DiffusionModel>>& prior,
                const PriorNeeds& needs) {
     try {
         const auto* running = dynamic_cast<const RunningPipeline*>(prior.get().get());
         return !running || running->can_learn_prompts() || running->knows_prompts(needs.sentences);
     } catch (const std::exception&) {
-        return false;  // it could not be loaded, of which the edit before was told
+        return false;  // failed to load, which the previous edit reported
     }
 }
 
@@ -91,7 +91,7 @@ bool EditSession::has_prior(const EditRequest& request, const PriorUse& use) con
     if (!prior_.valid()) return false;
     const PriorNeeds needs = needs_of(request, plans_, use);
     nlohmann::json key = key_of(request, use);
-    // One with a decoder serves those as well that need none.
+    // A prior with a decoder also serves edits that need none.
     key["decoder"] = needs.decoder || prior_key_.value("decoder", false);
     return prior_key_ == key && can_serve(prior_, needs);
 }
@@ -102,7 +102,7 @@ std::shared_future<std::shared_ptr<const DiffusionModel>> EditSession::prior(
     if (!has_prior(request, use)) {
         prior_key_ = key_of(request, use);
         prior_key_["decoder"] = needs.decoder;
-        prior_ = {};  // the one before is released first
+        prior_ = {};  // releases the previous prior first
         prior_ = std::async(std::launch::async, load_networks, request, needs).share();
     }
     const auto make_ready = [loading = prior_, request, needs, low = use.low_memory] {

@@ -1,4 +1,4 @@
-// What edits that follow one another share: networks, lights, and the model that the last one left.
+// The state shared by successive edits: networks, lights, and the last edited model.
 #pragma once
 
 #include "item3d/edit/load_networks.h"
@@ -21,48 +21,48 @@
 
 namespace item3d {
 
-/// Pictures of a model for the report, and what they depend on.
+/// A model's renders for the report, and their cache key.
 struct DrawnModel {
-    std::filesystem::path model;  ///< its file
+    std::filesystem::path model;  ///< file of the model
     std::string light;
     int pixels = 0;
     at::Tensor pictures;  ///< as draw_pictures() returns them
 };
 
-/// Nothing that an edit takes from here differs from what it would load or draw by itself.
+/// Cache of an edit's inputs. Each equals the one that the edit would load or render by itself.
 class EditSession {
   public:
-    /// Of one edit.
+    /// A session of one edit.
     EditSession() = default;
-    /// Of all these, whose sentences the prior will be asked for; only their plans are looked at.
+    /// A session of several edits, whose sentences the prior will encode; uses only their plans.
     explicit EditSession(const std::vector<EditRequest>& edits);
 
-    /// The request's model: the one that keep_model() was given, where it is of the same file and
-    /// variant, else as load_model() reads it. It is given away.
+    /// Returns the request's model and gives up ownership: the one passed to keep_model(), where
+    /// file and variant match, else load_model() of the file.
     Model take_model(const EditRequest& request);
-    /// model: as load_model() reads it from `path`.
+    /// model: load_model() of `path`.
     void keep_model(const std::filesystem::path& path, const std::string& variant, Model model);
 
-    /// Gives the models that are taken from now on this one's groups, which .glb files do not hold,
-    /// where their triangles are as many.
+    /// Assigns this model's groups, which .glb files do not hold, to models taken later, where the
+    /// numbers of triangles match.
     void keep_groups(const Model& model);
 
-    /// The prior with what the plan adds to it; loads in the background unless the last request
-    /// wanted the same. Warns of words of the sentences that it cuts off.
+    /// Returns the prior with the plan's extras; loads it in the background unless the last request
+    /// used the same. Warns of words of the sentences that the prior cuts off.
     std::shared_future<std::shared_ptr<const DiffusionModel>> prior(const EditRequest& request,
                                                                     const PriorUse& use);
-    /// Whether prior() would load nothing.
+    /// True if prior() would load nothing.
     bool has_prior(const EditRequest& request, const PriorUse& use) const;
     std::shared_future<std::string> prior_hash(const std::filesystem::path& prior);
 
-    /// Null where the plan asks none. Throws as load_wanted_captioner().
+    /// Null where the plan uses none. Throws as load_wanted_captioner().
     std::shared_ptr<const Captioner> captioner(const EditRequest& request,
                                                at::ScalarType precision);
     /// Null for an empty path. Throws InputError.
     std::shared_ptr<const Clip> clip(const std::filesystem::path& folder);
     /// Throws InputError for a light that cannot be loaded.
     std::shared_ptr<LightRig> lights(const EditPlan& plan, at::Device device);
-    std::optional<DrawnModel> drawn;  ///< what the last edit's report shows as edited
+    std::optional<DrawnModel> drawn;  ///< the edited model in the last edit's report
 
   private:
     void add_groups(Model& model) const;
@@ -75,7 +75,7 @@ class EditSession {
     };
     std::optional<KeptModel> model_;
     std::vector<std::vector<std::string>> groups_;
-    std::vector<std::vector<int>> triangle_groups_;  ///< of each primitive
+    std::vector<std::vector<int>> triangle_groups_;  ///< by primitive
     nlohmann::json prior_key_;
     std::shared_future<std::shared_ptr<DiffusionModel>> prior_;
     std::filesystem::path hashed_;

@@ -1,4 +1,4 @@
-// One setting of an edit, and what the rows of settings_table.cpp are made with.
+// One setting of an edit, and the constructors of rows of settings_table.cpp.
 #pragma once
 
 #include "item3d/edit/settings.h"
@@ -13,27 +13,27 @@
 
 namespace item3d {
 
-/// Type of a value. The command line takes a list separated by commas, or (repeated) one value each
-/// time that the option is given.
+/// Type of a value. On the command line, `texts` is a comma-separated list, and `repeated_texts`
+/// takes one value for each use of the option.
 enum class SettingType {
     text,
     choice,
     integer,
-    unsigned_integer,  ///< of 64 bits
+    unsigned_integer,  ///< 64 bits
     number,
     numbers,
     texts,
     repeated_texts,
 };
 
-/// "text", "choice", "integer", "number", "numbers", "texts" or "repeated_texts".
+/// Returns "text", "choice", "integer", "number", "numbers", "texts" or "repeated_texts".
 const char* type_name(SettingType type);
 
 struct Setting {
-    std::string name;  ///< in JSON, and of EditSettings' member
-    std::string flag;  ///< on the command line; empty: there is none
+    std::string name;  ///< key in JSON, and name of EditSettings' member
+    std::string flag;  ///< option of the command line; empty: none
     SettingType type;
-    std::string values;  ///< what it may be, in words ("between 1 and 64"); empty: anything
+    std::string values;  ///< allowed values, in words ("between 1 and 64"); empty: any
     std::string help;
 
     std::function<nlohmann::json(const EditSettings&)> get;
@@ -42,10 +42,10 @@ struct Setting {
     /// Throws InputError where the value is out of range.
     std::function<void(const EditSettings&)> check;
 
-    std::string group = {};                     ///< of the settings that belong together
-    std::vector<std::string> choices = {};      ///< of a choice
-    std::optional<double> low = {}, high = {};  ///< ends of a number's range, themselves in it
-    std::string placeholder = {};  ///< for the value in --help ("FOLDER"); empty: by the type
+    std::string group = {};                     ///< heading in --help
+    std::vector<std::string> choices = {};      ///< of type choice
+    std::optional<double> low = {}, high = {};  ///< inclusive range of a number
+    std::string placeholder = {};  ///< name of the value in --help ("FOLDER"); empty: by the type
 };
 
 namespace rows {
@@ -60,7 +60,7 @@ constexpr SettingType type_of() {
     return SettingType::text;
 }
 
-/// Owner: EditSettings or what it is derived from.
+/// Makes a row. Owner: EditSettings or a base class of it.
 template <typename T, typename Owner>
 Setting setting(const char* name, T Owner::*member, const char* flag, const std::string& help) {
     return {name,
@@ -75,21 +75,21 @@ Setting setting(const char* name, T Owner::*member, const char* flag, const std:
             [](const EditSettings&) {}};
 }
 
-/// The setting, which "must be `values`" where it does not fit.
+/// Restricts a setting; its error says that it "must be `values`".
 Setting restricted(Setting setting, const std::string& values,
                    std::function<bool(const EditSettings&)> fits);
 
 /// Range of a number, ends included.
 struct Limits {
     double low, high;
-    std::string words;  ///< as behind "must be"
+    std::string words;  ///< text after "must be"
 };
 Limits between(double low, double high);
 Limits between(double low, double high, const std::string& words);
 Limits at_least(double low);
 Limits above_zero();
 
-/// The row with the range.
+/// Restricts a number to a range.
 Setting limited(Setting setting, const Limits& limits,
                 std::function<double(const EditSettings&)> value);
 
@@ -101,14 +101,15 @@ Setting setting(const char* name, T EditSettings::*member, const Limits& limits,
         [member](const EditSettings& settings) { return static_cast<double>(settings.*member); });
 }
 
-/// "a, b or c".
+/// Returns "a, b or c".
 std::string alternatives(const std::vector<std::string>& names);
 
-/// Index of `text` in `names`. Throws InputError that names flag and choices.
+/// Returns the index of `text` in `names`. Throws InputError that names the flag and the choices.
 std::size_t find_choice(const std::string& flag, const std::vector<std::string>& names,
                         const std::string& text);
 
-/// names: of the enumeration's values, in their order; parse: one of them, or an InputError.
+/// Makes a row of type choice. names: of the enumeration's values, in order; parse: returns the
+/// value of a name or throws InputError.
 template <typename Enum>
 Setting choice(const char* name, Enum EditSettings::*member, const std::vector<std::string>& names,
                std::function<Enum(const std::string&)> parse, const char* flag,
@@ -139,10 +140,10 @@ Setting choice(const char* name, Enum EditSettings::*member, const std::vector<s
     return choice(name, member, names, parse, flag, help);
 }
 
-/// A list of which the option gives one each time.
+/// Makes a list setting whose option takes one element each time.
 Setting repeated(Setting setting);
 
-/// The row with a word for its value in --help.
+/// Names the value in --help.
 Setting valued(const char* placeholder, Setting setting);
 
 }  // namespace rows

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-/// "repeated texts"
+/// Returns a type's name for messages: "repeated texts".
 std::string spoken_type(SettingType type) {
     std::string name = type_name(type);
     std::replace(name.begin(), name.end(), '_', ' ');

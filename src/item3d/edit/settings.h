@@ -1,4 +1,4 @@
-// The settings of an edit: one value that goes into edit.json, the report, and the checkpoint.
+// The settings of an edit: one value for edit.json, the report, and the checkpoint.
 #pragma once
 
 #include "item3d/baselines/clip_guidance.h"
@@ -15,28 +15,27 @@
 
 namespace item3d {
 
-/// The part of a model that guidance changes.
+/// Part of a model that guidance changes.
 enum class Optimize { texture, light, both };
 
-/// Whether metallic is edited. automatic: where a sentence names a metal.
+/// Policy for editing metallic. automatic: only where a sentence names a metal.
 enum class Metallic { automatic, always };
 
-/// Whether the detail stage follows the iterations. automatic: where the target sentence has one of
-/// `detail_words` that the source has not.
+/// Policy for the detail stage after the iterations. automatic: only where the target sentence has
+/// one of `detail_words` that the source lacks.
 enum class Detail { automatic, off, always };
 
-/// Kind of a light that is optimised. automatic: physical for priors of small images.
+/// Kind of an optimised light. automatic: physical for priors of small images.
 enum class LightChoice { automatic, physical, texels };
 
-/// How the light varies while a texture is edited, so that no shading is painted (LightRig).
+/// Variation of the light while a texture is edited, against baked-in shading (LightRig).
 enum class LightAugment { off, rotate, all };
 
-/// Whether what is written says that it was edited (docs/provenance.md).
+/// Provenance of written files: on where they state that they were edited (docs/provenance.md).
 enum class SaysProvenance { on, off };
 
-/// Every setting that changes the result. settings_table.cpp says what each means and may be; JSON
-/// has them under their names here. Defaults are for Stable Diffusion at 512 pixels. What is added
-/// to the prior is among them.
+/// All settings that change the result, including the prior's extras. settings_table.cpp documents
+/// each one and its range; JSON uses these names. Defaults are for Stable Diffusion at 512 pixels.
 struct EditSettings : PipelineExtras {
     std::string from;
     std::string to;
@@ -93,18 +92,18 @@ struct EditSettings : PipelineExtras {
 
 void to_json(nlohmann::json& json, const EditSettings& settings);
 
-/// Absent settings take their defaults. Throws InputError for the name of a choice that there is
-/// not, and nlohmann::json::exception for a value of another type.
+/// Absent settings take their defaults. Throws InputError for an unknown choice, and
+/// nlohmann::json::exception for a value of another type.
 void from_json(const nlohmann::json& json, EditSettings& settings);
 
-/// Throws InputError that names the option of the first setting that is out of range.
+/// Throws InputError that names the first option out of range.
 void check_settings(const EditSettings& settings);
 
-/// A value as people write it: 0.06 and not all digits of the nearest float, lists without
-/// brackets, "none" for what is empty.
+/// Formats a value for people: 0.06 instead of all digits of the nearest float, lists without
+/// brackets, "none" for empty values.
 std::string readable(const nlohmann::json& value);
 
-/// The content of docs/reference/settings.md: all settings as a table.
+/// Returns the content of docs/reference/settings.md: all settings as a table.
 std::string settings_markdown();
 
 }  // namespace item3d

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array settings_of_files = {"lora", "embedding", "controlnet", "vae"};
 
-/// As people write it: 0.01, and not all digits of the nearest float.
+/// Rounds a float to its shortest decimal form: 0.01 instead of all digits.
 nlohmann::json plain_value(nlohmann::json value) {
     if (value.is_number_float())
         return nlohmann::json::parse(fmt::format("{}", value.get<float>()));

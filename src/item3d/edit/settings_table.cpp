@@ -59,7 +59,7 @@ Setting guidance_method() {
     return row;
 }
 
-/// The sentences, and what guides an edit from the one to the other.
+/// Sentences, method and guidance.
 std::vector<Setting> guidance_rows() {
     return {
         setting("from", &S::from, "--from", "The model as it is: \"a red mug\""),
@@ -91,7 +91,7 @@ std::vector<Setting> guidance_rows() {
     };
 }
 
-/// The optimisation, and what the prior sees of it.
+/// Optimisation, and the renders for the prior.
 std::vector<Setting> optimization_rows() {
     return {
         setting("iterations", &S::iterations, at_least(0), "--iterations",
@@ -126,7 +126,7 @@ std::vector<Setting> optimization_rows() {
     };
 }
 
-/// What methods other than this project's own take.
+/// Parameters of other methods.
 std::vector<Setting> method_rows() {
     return {
         setting("steps", &S::steps, between(0, 999, "between 1 and 999, or 0 for the method's own"),
@@ -144,7 +144,7 @@ std::vector<Setting> method_rows() {
     };
 }
 
-/// The light that the model stands in.
+/// Light of the scene.
 std::vector<Setting> light_rows() {
     return {
         valued(
@@ -175,7 +175,7 @@ std::vector<Setting> light_rows() {
     };
 }
 
-/// Textures that are written: size, channels, detail.
+/// Size, channels and detail of written textures.
 std::vector<Setting> texture_rows() {
     return {
         setting("texture_size", &S::texture_size,
@@ -217,7 +217,7 @@ std::vector<Setting> texture_rows() {
     };
 }
 
-/// The part of the surface that is edited.
+/// Edited part of the surface.
 std::vector<Setting> region_rows() {
     return {
         valued("SELECTOR",

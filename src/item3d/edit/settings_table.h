@@ -1,5 +1,5 @@
-// The settings of an edit, one row each: JSON, the checks, the command line's options and
-// docs/reference/settings.md come from here.
+// The table of an edit's settings, one row each: the source of JSON, checks, command-line options
+// and docs/reference/settings.md.
 #pragma once
 
 #include "item3d/edit/setting.h"
@@ -9,10 +9,10 @@
 
 namespace item3d {
 
-/// In the order of `item3d edit --help`.
+/// Returns the rows in the order of `item3d edit --help`.
 const std::vector<Setting>& settings_table();
 
-/// Throws std::logic_error where there is none.
+/// Throws std::logic_error for an unknown name.
 const Setting& setting_named(const std::string& name);
 
 }  // namespace item3d

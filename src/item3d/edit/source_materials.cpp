@@ -11,7 +11,7 @@
 namespace item3d {
 namespace {
 
-// All sorted.
+// All lists are sorted.
 constexpr std::array<std::string_view, 24> cloth_words = {
     "canvas", "carpet",  "cashmere", "cloth",   "corduroy", "cotton",  "denim",  "fabric",
     "felt",   "flannel", "fleece",   "jersey",  "knit",     "knitted", "linen",  "plush",
@@ -77,7 +77,7 @@ void clear_emission(Material& material) {
     material.emissive_texture = -1;
 }
 
-/// Returns whether the material's emission goes.
+/// Returns true if the material's emission is removed.
 bool settle_emission(const Model& model, Material& material) {
     constexpr float black = 0.01f;
     const std::string name = "material '" + material.name + "'";
@@ -108,7 +108,7 @@ bool settle_emission(const Model& model, Material& material) {
     return false;
 }
 
-/// Returns whether the material becomes opaque.
+/// Returns true if the material becomes opaque.
 bool settle_alpha(const Model& model, const TargetWords& words, Material& material) {
     const int texture = material.base_color_texture;
     const bool has_alpha_texels =

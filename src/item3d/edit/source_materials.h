@@ -1,5 +1,5 @@
-// Properties of a model's materials that contradict an edit: emission that repeats or hides the
-// base colour, glass that is to become gold.
+// The material properties that contradict an edit: emission that repeats or hides the base colour,
+// transmission in an object that becomes gold.
 #pragma once
 
 #include "item3d/edit/plan.h"
@@ -12,24 +12,25 @@
 
 namespace item3d {
 
-/// Properties that an edited material loses in the file besides its textures.
+/// Properties that an edited material loses in the file, besides its textures.
 struct MaterialLosses {
     bool emission = false;
     bool transparency = false;
     std::vector<std::string> extensions;  ///< by name
 };
 
-/// Makes the edited materials what the edit begins from, a surface in light whose look is its base
-/// colour, and says so: unlit ones, and such that show by emission what others have as base colour.
-/// Where the target names a metal or another opaque material, what lets light through goes, and
-/// sheen with all but cloth. What stays and is not edited is a warning.
+/// Turns the edited materials into the edit's starting point, lit surfaces whose look is their base
+/// colour, and logs it: affects unlit materials, and those whose emission takes the role of base
+/// colour. Where the target names a metal or another opaque material, removes transmission, and
+/// sheen except on cloth. Warns of contradicting properties that stay.
 std::map<int, MaterialLosses> prepare_materials(Model& model, const std::vector<int>& materials,
                                                 const EditPlan& plan);
 
-/// Into an edit that is to be saved.
+/// Applies the losses to an edit that is to be saved.
 void apply_losses(const std::map<int, MaterialLosses>& losses, ModelEdit& edit);
 
-/// Names of the model's variants that show one of these materials, or none of them.
+/// Returns names of the model's variants that show one of these materials, or (with = false) none
+/// of them.
 std::vector<std::string> variants_with(const Model& model, const std::vector<int>& materials,
                                        bool with);
 

@@ -1,4 +1,4 @@
-// Everything that an edit changes, which is what a checkpoint holds.
+// The mutable state of an edit, which a checkpoint holds.
 #pragma once
 
 #include "item3d/baselines/view_painter.h"
@@ -20,65 +20,64 @@
 
 namespace item3d {
 
-/// A line of the record of how an edit went, for the report, edit.json and the checkpoint.
+/// An entry of the record of an edit's course, for the report, edit.json and the checkpoint.
 struct AdjustmentRecord {
-    std::int64_t iteration = 0;         ///< steps done by then
-    std::vector<std::string> captions;  ///< of the views; none where nobody was asked
-    std::optional<TextDirection> text;  ///< of methods with a source: after this adjustment
-    std::optional<double> direction;    ///< mean of direction_length since the line before
-    std::optional<double> source_loss;  ///< the same of the source's denoising loss
+    std::int64_t iteration = 0;         ///< iterations done at this time
+    std::vector<std::string> captions;  ///< of the views; empty without a captioner
+    std::optional<TextDirection> text;  ///< after this adjustment, for methods with a source
+    std::optional<double> direction;    ///< mean of direction_length since the previous entry
+    std::optional<double> source_loss;  ///< mean of the source's denoising loss since then
     at::Tensor picture;                 ///< [P, P, 3] uint8 sRGB; not in the JSON
 };
 
-/// "iteration", and of the rest what is there: "captions", "angle", "length", "direction",
-/// "source_loss".
+/// Writes "iteration" and those of "captions", "angle", "length", "direction" and "source_loss"
+/// that are set.
 void to_json(nlohmann::json& json, const AdjustmentRecord& record);
 void from_json(const nlohmann::json& json, AdjustmentRecord& record);
 
-/// Direction adjustment so far; what it did to the source is in the guidance's own state.
+/// Record of direction adjustment; the source itself is in the guidance's state.
 struct AdjustmentState {
     std::vector<AdjustmentRecord> records;
-    std::vector<Caption> captions_before;  ///< of the unedited model, one for each view
-    std::string failure;                   ///< why the captioner is not asked any more
+    std::vector<Caption> captions_before;  ///< of the unedited model, one a view
+    std::string failure;                   ///< error that disabled the captioner; empty: none
 };
 
-/// The detail stage so far.
+/// State of the detail stage.
 struct DetailState {
-    NeuralTexture before{nullptr};    ///< the field at its beginning; empty: not begun
+    NeuralTexture before{nullptr};    ///< field when the stage began; empty: not begun
     Adam optimizer;                   ///< of "table" and "network"
-    std::vector<at::Tensor> targets;  ///< [1, 3, R, R] sRGB, one for each view so far
+    std::vector<at::Tensor> targets;  ///< [1, 3, R, R] sRGB, one for each finished view
 
     bool has_begun() const { return !before.is_empty(); }
-    /// At the field as it is. The stage itself sets the learning rates.
+    /// Starts from this field. The stage itself sets the learning rates.
     void begin(const NeuralTexture& field);
 };
 
 struct EditState {
-    NeuralTexture fitted{nullptr};  ///< the field as fitted to the input, for the bake's residual
+    NeuralTexture fitted{nullptr};  ///< field fitted to the input, for the bake's residual
     NeuralTexture field{nullptr};
-    Adam optimizer;                      ///< of "table" and "network" of the field, and "light"
+    Adam optimizer;                      ///< of the field's "table" and "network", and of "light"
     std::unique_ptr<LightModel> light;   ///< null where the light is not optimised
-    EnvironmentLight first_light;        ///< what `light` began as
+    EnvironmentLight first_light;        ///< initial value of `light`
     std::unique_ptr<Guidance> guidance;  ///< null with a painter
-    std::unique_ptr<PaintingScene> painting;  ///< of a method that paints views; else null
-    std::unique_ptr<ViewPainter> painter;     ///< null with it; then there is no field
-    /// Diffusion models that the edit asks, and rows of their U-Nets that runs before this one
-    /// asked.
+    std::unique_ptr<PaintingScene> painting;  ///< null unless the method paints views
+    std::unique_ptr<ViewPainter> painter;     ///< null without `painting`; else there is no field
+    /// Diffusion models that the edit runs, and rows of their U-Nets in earlier runs.
     std::vector<std::shared_ptr<const DiffusionModel>> networks;
     std::int64_t earlier_unet_rows = 0;
-    std::int64_t unet_rows_elsewhere = 0;  ///< of this run's other processes
+    std::int64_t unet_rows_elsewhere = 0;  ///< of other processes in this run
     std::int64_t own_unet_rows() const;    ///< of this process
-    /// Of all runs and processes of the edit together.
+    /// Sum over all runs and processes of the edit.
     std::int64_t unet_rows() const;
     DetailState detail;
     AdjustmentState adjustment;
-    std::string prior_weights;  ///< hash_of_weights() of what guides it
-    std::string begun;          ///< when the edit began: utc_date()
-    /// Iterations done, views of the detail stage included; iterations that a settled edit was
-    /// spared count as done.
+    std::string prior_weights;  ///< hash_of_weights() of the guiding prior
+    std::string begun;          ///< start of the edit: utc_date()
+    /// Number of finished iterations, including views of the detail stage and iterations skipped by
+    /// convergence.
     std::int64_t iteration = 0;
-    std::vector<float> direction_length;  ///< a curve of the report, one value an iteration
-    std::vector<float> source_loss;       ///< another
+    std::vector<float> direction_length;  ///< curve of the report, one value an iteration
+    std::vector<float> source_loss;       ///< curve of the report, one value an iteration
 };
 
 }  // namespace item3d

@@ -18,7 +18,7 @@ AdamRates make_rates(const AdamOptions& options, int updates) {
             static_cast<float>(1.0 / (1.0 - std::pow(options.beta2, updates)))};
 }
 
-/// The rates of each number of updates where a parameter is; for the CPU a view of `rates`.
+/// Returns the rates by number of updates, on the parameter's device; on the CPU a view of `rates`.
 at::Tensor rates_on(std::vector<AdamRates>& rates, at::Device device) {
     static_assert(std::is_trivially_copyable_v<AdamRates>);
     return at::from_blob(rates.data(),
@@ -71,8 +71,8 @@ void Adam::step() {
     const at::NoGradGuard no_grad;
     ++max_updates_;
     for (Group& group : groups_) {
-        // Rows were updated differently often, but few counts are many rows': powers are taken once
-        // for each count that there can be.
+        // Rows differ in their number of updates, but numbers repeat: compute powers once for each
+        // possible number.
         std::vector<AdamRates> rates;
         for (int updates = 0; updates <= max_updates_; ++updates) {
             rates.push_back(make_rates(group.options, std::max(1, updates)));

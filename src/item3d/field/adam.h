@@ -1,4 +1,4 @@
-// Adam (Kingma and Ba 2015) for parameters of which a step touches few rows.
+// Adam (Kingma and Ba 2015) with lazy updates for parameters whose gradients are sparse.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -15,34 +15,33 @@ struct AdamOptions {
     double beta1 = 0.9;
     double beta2 = 0.99;
     double epsilon = 1e-15;
-    /// [rows] float32, for groups of one parameter: what each row's learning rate is multiplied by.
-    /// Undefined: by 1.
+    /// [rows] float32 factors of the rows' learning rates, for groups of one parameter. Undefined:
+    /// 1.
     at::Tensor row_factors = {};
 };
 
-/// Groups of parameters, each with its own options. A parameter whose gradient is dense is updated
-/// as usual. One whose gradient is sparse (the hash grid's table, [rows, F]) is updated lazily:
-/// only the rows in the gradient, and bias correction counts the updates of each row, so a row that
-/// is seen for the first time after a thousand steps moves as far as one that is seen in the first.
-/// float32, contiguous parameters, on the CPU or a CUDA device. Results do not depend on the number
-/// of threads.
+/// Groups of parameters, each with its own options. A parameter with a dense gradient is updated as
+/// usual. One with a sparse gradient (the hash grid's table, [rows, F]) is updated lazily: only the
+/// rows in the gradient, with bias correction by each row's number of updates, so a row whose first
+/// update comes after a thousand steps moves as far as one in the first step. float32, contiguous
+/// parameters, on the CPU or a CUDA device. Results do not depend on the number of threads.
 class Adam {
   public:
-    /// Each group has a name of its own. Throws std::logic_error for one that is there already.
+    /// Names of groups are unique. Throws std::logic_error for a name in use.
     void add_group(const std::string& name, std::vector<at::Tensor> parameters,
                    const AdamOptions& options);
-    /// Options of a group; throws std::logic_error where none has this name.
+    /// Returns a group's options; throws std::logic_error for an unknown name.
     AdamOptions& options(const std::string& group);
 
     std::vector<at::Tensor> parameters() const;  ///< of all groups
 
-    /// Parameters without a gradient are left alone.
+    /// Skips parameters without a gradient.
     void step();
-    /// Gradients become undefined (the next backward makes new ones).
+    /// Makes the gradients undefined (the next backward pass creates new ones).
     void zero_grad();
 
-    /// All that a resumed run needs, by name ("network.1.momentum": of the group's parameter 1).
-    /// The tensors are the optimiser's own: clone them to keep them beyond the next step.
+    /// Returns the complete state by name ("network.1.momentum": of the group's parameter 1). The
+    /// tensors are the optimiser's own: clone them to keep them beyond the next step.
     std::map<std::string, at::Tensor> state() const;
     /// Copies values of state() back. Throws std::logic_error for a missing name or a wrong shape.
     void load_state(const std::map<std::string, at::Tensor>& state);
@@ -50,9 +49,9 @@ class Adam {
   private:
     struct Slot {
         at::Tensor parameter;
-        at::Tensor momentum;  ///< running mean of gradients, as the parameter
-        at::Tensor variance;  ///< running mean of squares, as the parameter
-        at::Tensor updates;   ///< [rows] int32: how often each row was updated
+        at::Tensor momentum;  ///< running mean of gradients, in the parameter's shape
+        at::Tensor variance;  ///< running mean of squared gradients, in the parameter's shape
+        at::Tensor updates;   ///< [rows] int32: number of updates of each row
     };
     struct Group {
         std::string name;
@@ -60,7 +59,7 @@ class Adam {
         AdamOptions options;
     };
     std::vector<Group> groups_;
-    int max_updates_ = 0;  ///< of any row
+    int max_updates_ = 0;  ///< largest entry of all `updates`
 };
 
 }  // namespace item3d

@@ -14,23 +14,23 @@
 namespace item3d {
 namespace {
 
-/// Adam steps as far for a small gradient as for a large one, but for those below this. Without it
-/// a surface of one colour filled the table with noise that cancelled out until an edit changed the
-/// network, and then was seen: white chairs with grey speckles.
+/// Adam's epsilon. Adam's steps do not depend on the gradient's size except below this. With a
+/// smaller value, a surface of one colour filled the table with noise that cancelled out until an
+/// edit changed the network, and then became visible: white chairs with grey speckles.
 constexpr double negligible_gradient = 1e-6;
 
-/// Before the table joins in: what is the same all over the surface is the network's, so the
-/// table's entries, which are seen more or less often, need not take a share of it each.
+/// Number of steps before the table is trained: the network learns the surface's common part, of
+/// which the table's entries, which are read unequally often, would otherwise each learn a share.
 constexpr int network_steps = 40;
 
-/// [8] what the squared error of each encoded value counts.
+/// Returns [8] weights of the encoded values' squared errors.
 at::Tensor column_weights() {
     constexpr float base_color = 1.0f / 3, orm = 0.5f / 3, slope = 0.1f / 3;
     return at::tensor({base_color, base_color, base_color, orm, orm, orm, slope, slope});
 }
 
-/// Points of the surface, and what the field should return there as NeuralTexture::encoded() has
-/// it, for some steps. Constants.
+/// Surface points and the field's target values there, as in NeuralTexture::encoded(), for several
+/// steps. Constants.
 struct Examples {
     at::Tensor positions;  ///< [steps, P, 3]
     at::Tensor values;     ///< [steps, P, 8]
@@ -48,7 +48,7 @@ Examples draw_examples(const SurfaceSampler& sampler, const FieldSpace& space,
                      .clamp(-steepest, steepest);
     const at::Tensor values = at::cat(
         {linear_to_srgb(own.base_color.clamp(0.0f, 1.0f)), own.orm.clamp(0.0f, 1.0f), slopes}, 1);
-    // The sampler goes over the surface in order: each step takes one of `steps` neighbours.
+    // The sampler goes over the surface in order, so each step takes every `steps`-th point.
     const auto deal = [&](const at::Tensor& rows) {
         return rows.reshape({points, steps, -1}).transpose(0, 1).contiguous();
     };
@@ -71,7 +71,7 @@ NeuralTextureOptions suggest_field_options(const Geometry& geometry, const Field
     for (Vec3& corner : options.bounds) {
         corner += (&corner == &options.bounds[0] ? -0.001f : 0.001f) * extent;
     }
-    // Texels cover the surface evenly at best; half of an atlas is used, typically.
+    // Texels cover the surface evenly at best; typically half of an atlas is used.
     const double texels = 0.5 * texture_size * texture_size;
     const double texel_edge = std::sqrt(SurfaceSampler(geometry, space).area() / texels);
     options.finest_resolution =
@@ -96,7 +96,7 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
     const at::Tensor weights = column_weights().to(field->table().device());
     Examples drawn;
     for (int step = 0; step < steps; ++step) {
-        // Many at once: to draw few takes as long.
+        // Many at once, because drawing few takes as long.
         constexpr int steps_drawn = 16;
         const int place = step % steps_drawn;
         if (place == 0)
@@ -132,7 +132,7 @@ FitResult fit_to_materials(NeuralTexture& field, const Geometry& geometry, const
 
 void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace& space,
                 OrmChannel channel, float mean) {
-    constexpr float most_variation = 0.5f;  // standard deviation before the range is applied
+    constexpr float most_variation = 0.5f;  // standard deviation before the activation
     const at::NoGradGuard no_grad;
     Random random(0, RandomStream::metallic);
     const at::Tensor positions =
@@ -144,7 +144,7 @@ void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace
     };
     /// Sets the bias so that the mean becomes `wanted`.
     const auto solve = [&](float wanted) {
-        // Values rise with the bias; a sigmoid is flat beyond these.
+        // Values increase with the bias; the sigmoid is flat beyond these.
         float low = -32.0f, high = 32.0f;
         for (int step = 0; step < 26; ++step) {
             const float middle = 0.5f * (low + high);
@@ -152,7 +152,7 @@ void shift_mean(NeuralTexture& field, const Geometry& geometry, const FieldSpace
             (values().mean().item<float>() < wanted ? low : high) = middle;
         }
     };
-    // In the middle of the range the differences show as they are.
+    // At the middle of the range the activation keeps differences visible.
     solve(0.5f);
     const at::Tensor shown = values().clamp(1e-4f, 1.0f - 1e-4f);
     const float variation = (shown / (1.0f - shown)).log().std().item<float>();

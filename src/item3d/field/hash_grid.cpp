@@ -13,7 +13,7 @@
 namespace item3d {
 namespace {
 
-constexpr std::int64_t chunk_size = 512;  // points that a thread takes at a time
+constexpr std::int64_t chunk_size = 512;  // points of a thread's chunk
 
 void check_arguments(const HashGrid& grid, const at::Tensor& points, const at::Tensor& table) {
     ITEM3D_CHECK(points.dim() == 2 && points.size(1) == 3 && points.scalar_type() == at::kFloat,
@@ -31,8 +31,8 @@ Vec3 point_at(const float* points, std::int64_t i) {
     return Vec3(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
 }
 
-/// Calls f(level, first, last) for blocks of points; blocks of one level follow each other, so that
-/// the threads work on one level's table at a time and it stays in their caches.
+/// Calls f(level, first, last) for blocks of points, level after level, so that the threads work on
+/// one level's table at a time and it stays in their caches.
 template <typename F>
 void for_each_block(const char* name, const HashGrid& grid, std::int64_t count, const F& f) {
     const std::int64_t blocks = (count + chunk_size - 1) / chunk_size;
@@ -76,13 +76,13 @@ void encode_points_backward(const HashGrid& grid, const float* points, std::int6
     });
 }
 
-/// A set of small integers that can say of each member how many smaller ones there are. Small
-/// enough (1/32 of a table's floats) to stay in the innermost caches.
+/// A set of small integers that returns the rank of each member. Small enough (1/32 of a table's
+/// floats) for the L1 cache.
 class RankedSet {
   public:
     explicit RankedSet(std::size_t size) : words_((size + 63) / 64), before_(words_.size()) {}
     void insert(std::uint32_t value) { words_[value >> 6] |= 1ull << (value & 63); }
-    /// To be called after the last insertion; returns the number of members.
+    /// Computes the ranks, after the last insertion; returns the number of members.
     std::uint32_t finish() {
         std::uint32_t count = 0;
         for (std::size_t i = 0; i < words_.size(); ++i) {
@@ -118,7 +118,8 @@ class RankedSet {
     std::vector<std::uint32_t> before_;
 };
 
-/// Threads take whole levels: each sums its points in order, without atomics.
+/// Computes the table's gradient. Threads take whole levels: each sums its points in order, without
+/// atomics.
 template <int F>
 at::Tensor encode_table_backward(const HashGrid& grid, const float* points, std::int64_t count,
                                  const float* grad) {
@@ -199,8 +200,7 @@ HashGridParameters cuda_parameters(const HashGrid& grid, const at::Tensor& point
     return p;
 }
 
-/// As encode_table_backward: the sums are taken for the whole table, and the rows that points
-/// touched are then picked.
+/// Computes the same on CUDA: sums for the whole table, then selects the rows that points read.
 at::Tensor table_backward_on_cuda(const HashGrid& grid, HashGridParameters p, at::Device device) {
     const at::Tensor touched =
         at::zeros({grid.entries()}, at::TensorOptions().dtype(at::kByte).device(device));

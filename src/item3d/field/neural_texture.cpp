@@ -16,14 +16,14 @@ namespace item3d {
 namespace {
 
 constexpr int output_width = 8;  // base colour 3, orm 3, normal's x and y
-constexpr float awake = 0.5f;    ///< bound of hidden units' first biases
+constexpr float awake = 0.5f;    ///< bound of the hidden layers' initial biases
 
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
 constexpr std::int64_t bounded_grain = 4096;
 
-/// x [P, N] -> values in the ranges low .. high [N] (kernels/bounded.h).
+/// Maps x [P, N] to values in the ranges low .. high [N] (kernels/bounded.h).
 struct Bounded : torch::autograd::Function<Bounded> {
     static void run(const BoundedParameters& p, const at::Tensor& x) {
         const bool back = p.gradient != nullptr;
@@ -84,8 +84,8 @@ NeuralTextureImpl::NeuralTextureImpl(const NeuralTextureOptions& options)
         const bool last = i + 2 == widths.size();
         const float bound = std::sqrt((last ? 1.0f : 6.0f) / widths[i]);
         weights_.push_back(uniform_tensor({widths[i + 1], widths[i]}, bound, random));
-        // Hidden units are awake where the table is empty, so that a plain surface's colour can
-        // change by the network's weights: by the last biases alone it would take far longer.
+        // Hidden units are active where the table is empty, so that a plain surface's colour can
+        // change by the network's weights: with the last biases alone it would take far longer.
         biases_.push_back(uniform_tensor({widths[i + 1]}, last ? 0.0f : awake, random));
     }
     const MaterialRanges& r = options.ranges;
@@ -135,7 +135,7 @@ MaterialSample NeuralTextureImpl::forward(const at::Tensor& positions) {
     MaterialSample sample;
     sample.base_color = srgb_to_linear(values.narrow(1, 0, 3));
     if (base_color_gain_.defined()) {
-        // Beyond 1 the way back stays open.
+        // The gradient passes through the clamp at 1.
         const at::Tensor scaled = sample.base_color * base_color_gain_;
         sample.base_color = scaled - (scaled - scaled.clamp_max(1.0f)).detach();
     }

@@ -1,15 +1,15 @@
-// A source embedding that follows what a captioner sees (--adjust caption; ITEM3D, section 3.4).
+// A source embedding that follows a captioner (--adjust caption; ITEM3D, section 3.4).
 //
-// The paper lets a captioner B describe the render I_i every few iterations and changes the source
-// prompt by what the captions changed. In the space of embeddings its sum of differences
+// In the paper a captioner B describes the render I_i every few iterations, and the source prompt
+// changes by the difference of the captions. In the space of embeddings its sum of differences
 // telescopes:
 //   e_source,i = e(y_source) + lambda mean_v w_v [ e(B(I_i,v)) - e(B(I_0,v)) ],
-// over a few views v. Its formula adds the sum to the direction, target minus source, which is the
-// other sign: `paper_sign`.
 //
-// A captioner that says nothing useful does no harm: w_v is a quarter where a caption does not
-// mention the object and nothing where it is empty or was cut off, and the source moves by no more
-// than the whole way to the target.
+// over a few views v. The paper's formula adds the sum to the direction, target minus source, which
+// is the opposite sign: `paper_sign`.
+//
+// Useless captions do no harm: w_v is a quarter where a caption does not mention the object, and 0
+// where it is empty or was cut off, and the source moves by at most the whole way to the target.
 #pragma once
 
 #include "item3d/guidance/text_direction.h"
@@ -28,12 +28,12 @@ struct CaptionSourceOptions {
     bool paper_sign = false;
 };
 
-/// Words that name the object: those that both sentences have, "a" and "of" and their like left
-/// out; those of the source where they share none. Lower case.
+/// Returns the words that name the object: those in both sentences, without "a", "of" and the like;
+/// the source's words where they share none. Lower case.
 std::vector<std::string> object_words(const std::string& source_prompt,
                                       const std::string& target_prompt);
 
-/// True where one of these words, or its plural, stands in the caption.
+/// True if one of these words, or its plural, is in the caption.
 bool mentions(const std::string& caption, const std::vector<std::string>& words);
 
 class CaptionSource {
@@ -41,8 +41,8 @@ class CaptionSource {
     CaptionSource(std::shared_ptr<const DiffusionModel> pipeline, const std::string& source_prompt,
                   const std::string& target_prompt, const CaptionSourceOptions& options);
 
-    /// What to add to the source prompt's embedding (one row), from the captions of the same views
-    /// before the edit and now. No value when no view has captions of any use.
+    /// Returns the shift of the source prompt's embedding (one row), from the captions of the same
+    /// views before the edit and now. No value when no view has usable captions.
     std::optional<TextEmbedding> shift(const std::vector<Caption>& before,
                                        const std::vector<Caption>& now) const;
 

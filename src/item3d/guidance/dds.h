@@ -1,8 +1,9 @@
 // Delta denoising score (Hertz et al. 2023):
 //   g = eps^w(z_t, y_target) - eps^w(zref_t, y_source),
+//
 // zref the latents of the unedited model from the same cameras, under the same noise. Where the
-// prompts agree and nothing was edited, both terms are equal; what the model has that no word
-// mentions is in both. No omega(t): its exponents are published as 0.
+// prompts agree and nothing was edited, both terms are equal; features that no word mentions
+// cancel. No omega(t): its exponents are published as 0.
 #pragma once
 
 #include "item3d/guidance/guidance.h"
@@ -21,7 +22,7 @@ class DeltaDenoising : public Guidance {
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row each
     TextEmbedding source_text_;
-    TextEmbedding base_text_;  ///< none, or the negative prompt
+    TextEmbedding base_text_;  ///< the negative prompt, or none
 };
 
 }  // namespace item3d

@@ -1,10 +1,11 @@
 // Interval score matching (Liang et al. 2024, LucidDreamer):
 //   g = sqrt((1 - abar_t) / abar_t) (eps^w(z_t, y_target) - eps(z_s, empty)),
+//
 // where z_s and z_t lie on one path: DDIM's inversion without a prompt in strides of 200 up to s,
-// then one step to t = s + delta. Not random noise but the picture's own, so that pseudo-targets do
-// not average to blur. The upper end of the timesteps falls from max_timestep to the middle of the
-// range in the first 0.3 of the edit, and delta from 100 to 80 of 1000. The source prompt is not
-// used; a negative prompt takes the place of the empty one.
+// then one step to t = s + delta. The noise is the image's own instead of random, so that
+// pseudo-targets do not average to blur. The upper end of the timesteps falls from max_timestep to
+// the middle of the range in the first 0.3 of the edit, and delta from 100 to 80 of 1000. The
+// source prompt is not used; a negative prompt replaces the empty one.
 #pragma once
 
 #include "item3d/guidance/target_guidance.h"

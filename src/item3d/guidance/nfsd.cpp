@@ -6,7 +6,7 @@
 namespace item3d {
 namespace {
 
-constexpr std::int64_t little_noise = 200;  ///< of 1000: below it, eps(empty) is nearly all detail
+constexpr std::int64_t little_noise = 200;  ///< of 1000; below it, eps(empty) is mostly detail
 
 }  // namespace
 

@@ -1,8 +1,9 @@
 // Noise-free score distillation (Katzir et al. 2023):
 //   g = omega(t) [ d + w (eps(y_target) - eps(empty)) ],
 //   d = eps(empty) for t < 200 of 1000, else eps(empty) - eps(negative).
-// sds's noise residual eps(empty) - eps is replaced by a part of it that points to real pictures,
-// so that an ordinary w will do. The source prompt is not used.
+//
+// sds's noise residual eps(empty) - eps is replaced by its component towards real images, so that
+// an ordinary w suffices. The source prompt is not used.
 #pragma once
 
 #include "item3d/guidance/target_guidance.h"

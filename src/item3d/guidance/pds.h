@@ -1,9 +1,10 @@
 // Posterior distillation sampling (Koo et al. 2024): the difference of the stochastic latents that
 // take each branch from t to the previous step t' of a 500-step DDIM grid,
 //   g = s(z, y_target) - s(zref, y_source),   s(z, y) = (z_t' - mu(z_t, eps^w(z_t, y))) / sigma,
+//
 // with one noise at t and one at t' for both; zref are the latents of the unedited model, mu and
-// sigma the mean and deviation of DDPM's posterior. Beside dds's difference of predictions it holds
-// a pull of z to zref whose weight depends on t: identity.
+// sigma the mean and deviation of DDPM's posterior. In addition to dds's difference of predictions,
+// g contains a pull of z to zref with a weight that depends on t, which preserves identity.
 #pragma once
 
 #include "item3d/guidance/noised_latents.h"
@@ -19,7 +20,7 @@ class PosteriorDistillation : public Guidance {
     bool needs_reference() const override { return true; }
 
   private:
-    /// s(z, y) at a grid step, see above.
+    /// A grid step for s(z, y), see above.
     struct Step;
     at::Tensor stochastic_latents(const NoisedLatents& start, const Step& step,
                                   const at::Tensor& latents, const TextEmbedding& text) const;
@@ -28,7 +29,7 @@ class PosteriorDistillation : public Guidance {
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row each
     TextEmbedding source_text_;
-    TextEmbedding base_text_;  ///< none, or the negative prompt
+    TextEmbedding base_text_;  ///< the negative prompt, or none
 };
 
 }  // namespace item3d

@@ -7,7 +7,7 @@
 namespace item3d {
 namespace {
 
-/// Rows [first, first + count).
+/// Returns rows [first, first + count).
 at::Tensor narrow(const at::Tensor& all, std::int64_t first, std::int64_t count) {
     return all.defined() ? all.narrow(0, first, count) : all;
 }

@@ -43,8 +43,8 @@ PromptPair RelativeDirection::predict(const NoisedLatents& start, std::int64_t i
     if (!learned_source_) return predict_pair(*pipeline_, start, target_text_, source());
     const NoisedLatents rows = learned_source_->rows(*pipeline_, start, iteration);
     const std::int64_t views = start.noisy.size(0), sources = rows.noisy.size(0);
-    // Rows of the source cost their gradient as well, so both are shared out. A remainder of the
-    // source's rows is with the last processes, the target's with the first.
+    // Rows of the source also need their gradient, so both kinds are shared out. The last processes
+    // take a remainder of the source's rows, the first ones that of the target's.
     const ProcessGroup& processes = start.processes;
     const Share of_source = processes.share(sources);
     const Share of_target =

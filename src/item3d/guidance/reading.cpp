@@ -11,7 +11,7 @@
 namespace item3d {
 namespace {
 
-/// Each picture under every draw of noise, draws of a picture side by side.
+/// Returns each image under every draw of noise; the draws of an image are adjacent.
 NoisyInput noised(const DiffusionModel& model, const GuidanceInput& input,
                   const ReadingOptions& options) {
     ITEM3D_CHECK(options.noises > 0 && options.strength > 0 && options.strength < 1,
@@ -22,7 +22,7 @@ NoisyInput noised(const DiffusionModel& model, const GuidanceInput& input,
     const auto timestep = static_cast<std::int64_t>(options.strength * steps);
     Random random(options.seed, RandomStream::reading);
     auto generator = at::detail::createCPUGenerator(random.bits());
-    // The same draws for every picture.
+    // The same draws for every image.
     const at::Tensor noise =
         at::randn({options.noises, clean.size(1), clean.size(2), clean.size(3)}, generator,
                   at::kFloat)
@@ -37,7 +37,7 @@ NoisyInput noised(const DiffusionModel& model, const GuidanceInput& input,
     return result;
 }
 
-/// [N * noises, ...] -> [N, ...]
+/// Averages [N * noises, ...] to [N, ...].
 at::Tensor mean_of_draws(const at::Tensor& rows, int noises) {
     std::vector<std::int64_t> sizes(rows.sizes().begin() + 1, rows.sizes().end());
     sizes.insert(sizes.begin(), {rows.size(0) / noises, noises});

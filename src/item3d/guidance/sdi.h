@@ -1,10 +1,11 @@
 // Score distillation via inversion (Lukoianov et al. 2024):
 //   g = z - clean(z_t, eps^w(z_t, y_target)),
+//
 // where z_t comes from z by DDIM's inversion with the target's prompt and the guidance scale 2 - w
 // (w is published as 8.5 and the inversion's as -6.5), in strides of 100 of 1000, with 0.3 of
-// DDIM's variance as fresh noise. The noise so fits the picture and the prompt, and g varies little
+// DDIM's variance as fresh noise. The noise thus fits the image and the prompt, and g varies little
 // from step to step: sharp textures, for up to 24 U-Net rows. Meant for --timestep-schedule anneal.
-// The source prompt is not used; a negative prompt takes the place of the empty one.
+// The source prompt is not used; a negative prompt replaces the empty one.
 #pragma once
 
 #include "item3d/guidance/noised_latents.h"
@@ -17,9 +18,9 @@ class InversionDistillation : public TargetGuidance {
     using TargetGuidance::TargetGuidance;
     GuidanceOutput step(const GuidanceInput& input, std::int64_t iteration) override;
 
-    /// The timesteps that the inversion to t walks along, rising: the strides below t, one before
-    /// them (which may be negative: no noise yet), and a last one up to a stride above t. `draw`
-    /// in [0, 1) says how far above.
+    /// Returns the timesteps of the inversion to t, rising: the strides below t, one before them
+    /// (which may be negative: no noise), and a last one up to a stride above t. draw: in [0, 1),
+    /// position of the last.
     std::vector<std::int64_t> inversion_levels(std::int64_t t, double draw) const;
 
   private:

@@ -1,5 +1,6 @@
 // Score distillation sampling (Poole et al. 2022, DreamFusion), the baseline:
 //   g = omega(t) (eps^w(y_target) - eps),  eps^w(y) = eps(n) + w (eps(y) - eps(n))
+//
 // with the negative prompt n, empty by default. The source prompt is not used.
 #pragma once
 

@@ -1,11 +1,11 @@
-// What the methods have in common that go by the target prompt and know no source.
+// Base classes of methods that use the target prompt but no source.
 #pragma once
 
 #include "item3d/guidance/guidance.h"
 
 namespace item3d {
 
-/// Those that weigh the target against one other prediction.
+/// Base of methods that compare the target with one other prediction.
 class TargetGuidance : public Guidance {
   public:
     TargetGuidance(std::shared_ptr<const DiffusionModel> pipeline, const std::string& target_prompt,
@@ -15,11 +15,11 @@ class TargetGuidance : public Guidance {
     std::shared_ptr<const DiffusionModel> pipeline_;
     GuidanceOptions options_;
     TextEmbedding target_text_;  ///< one row each
-    TextEmbedding base_text_;    ///< none, or the negative prompt
+    TextEmbedding base_text_;    ///< the negative prompt, or none
 };
 
-/// Those that need both the prediction without a prompt and one of a negative prompt, a general one
-/// where none is given.
+/// Base of methods that need both the prediction without a prompt and that of a negative prompt,
+/// with a general default.
 class NegativeGuidance : public Guidance {
   public:
     NegativeGuidance(std::shared_ptr<const DiffusionModel> pipeline,

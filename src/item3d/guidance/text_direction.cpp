@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-/// All numbers of a text in a row.
+/// Returns all elements of a text as one row.
 at::Tensor flat(const TextEmbedding& text) {
     const at::Tensor states = text.states.flatten();
     const at::Tensor all =
@@ -16,7 +16,7 @@ at::Tensor flat(const TextEmbedding& text) {
     return all.cpu().to(at::kDouble).contiguous();
 }
 
-/// In order: a library's product is shared out among threads, and so is its rounding.
+/// Sums in order, because a library's product splits the sum, and so its rounding, among threads.
 double dot(const at::Tensor& a, const at::Tensor& b) {
     const double* first = a.const_data_ptr<double>();
     return std::inner_product(first, first + a.numel(), b.const_data_ptr<double>(), 0.0);

@@ -7,19 +7,19 @@ namespace item3d {
 
 TextEmbedding scaled(const TextEmbedding& text, double factor);
 
-/// a + factor b, row by row.
+/// Returns a + factor b, row by row.
 TextEmbedding add_scaled(const TextEmbedding& a, const TextEmbedding& b, double factor);
 
-/// Euclidean, of all numbers together.
+/// Returns the Euclidean norm over all elements.
 double length_of(const TextEmbedding& text);
 
-/// Where the direction to the target points now, beside where it pointed at first.
+/// The current direction to the target relative to the initial one.
 struct TextDirection {
-    double angle = 0;   ///< degrees between the two; 0 where one of them has no length
-    double length = 1;  ///< as a part of the first one's
+    double angle = 0;   ///< degrees between the two; 0 if one has length 0
+    double length = 1;  ///< relative to the initial length
 };
 
-/// One row each; source: the prompt's embedding; adjusted: what stands for it now.
+/// One row each; source: the prompt's embedding; adjusted: its current version.
 TextDirection compare_directions(const TextEmbedding& target, const TextEmbedding& source,
                                  const TextEmbedding& adjusted);
 

@@ -1,4 +1,4 @@
-// How often, and after what waits, a failed request is tried again.
+// Retries of a failed request: their number and waiting times.
 #pragma once
 
 #include "item3d/hub/http.h"
@@ -9,14 +9,14 @@ namespace item3d {
 
 struct RetryPolicy {
     int attempts = 6;
-    double first_wait = 1;  ///< seconds; each further wait is twice the one before
+    double first_wait = 1;  ///< seconds; doubles for each further wait
 };
 
-/// Counts the failures of one request. Bytes that arrived in between start the count anew.
+/// Counts the failures of one request. Received bytes reset the count.
 class Patience {
   public:
     explicit Patience(RetryPolicy policy) : policy_(policy) {}
-    /// Waits before the next try. Throws ResourceError after the last, and Interrupted.
+    /// Blocks before the next try. Throws ResourceError after the last, and Interrupted.
     void wait(const ConnectionError& failure, std::uint64_t bytes_done = 0);
 
   private:
@@ -25,7 +25,7 @@ class Patience {
     std::uint64_t bytes_done_ = 0;
 };
 
-/// The result of `request`, tried again where it throws ConnectionError.
+/// Returns the result of `request`, retrying where it throws ConnectionError.
 template <typename Request>
 auto with_patience(RetryPolicy policy, const Request& request) {
     Patience patience(policy);

@@ -20,13 +20,13 @@ std::string environment(const char* name) {
     return value ? value : "";
 }
 
-/// A leading "~" as shells read it.
+/// Expands a leading "~" like a shell.
 fs::path expanded(const std::string& path) {
     if (path == "~" || path.starts_with("~/")) return environment("HOME") + path.substr(1);
     return path;
 }
 
-/// One half of "org/name".
+/// True for one half of "org/name".
 bool is_name(const std::string& text) {
     const auto allowed = [](unsigned char c) {
         return std::isalnum(c) || c == '-' || c == '_' || c == '.';
@@ -36,7 +36,7 @@ bool is_name(const std::string& text) {
            text.front() != '.' && text.front() != '-' && text.back() != '.' && text.back() != '-';
 }
 
-/// What to try when the cache lacks something.
+/// Returns advice for a missing entry of the cache.
 std::string pull_hint(const std::string& name, const std::string& revision) {
     return "try: item3d prior pull " + name + (revision == "main" ? "" : " --revision " + revision);
 }

@@ -28,7 +28,7 @@ std::uint64_t size_of(const fs::path& path) {
     return code ? 0 : static_cast<std::uint64_t>(size);
 }
 
-/// The gathering file: what is in it, and the checksum of that.
+/// An incomplete download: its size and running checksum.
 class PartialFile {
   public:
     PartialFile(fs::path path, const RemoteFile& file)
@@ -70,11 +70,11 @@ class PartialFile {
         }
     }
 
-    /// Checks the whole and gives it its name.
+    /// Verifies the file and renames it.
     void finish(const fs::path& final_path) {
         if (kind_ != DigestKind::none && digest_.finish() != file_.etag)
             damaged("does not have the checksum that the hub announced");
-        // Where the file system's locks do nothing, two programs may have written here.
+        // If the file system's locks are ineffective, two programs may have written here.
         if (size_of(path_) != file_.size) damaged("was written by another program as well");
         if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno);
         std::error_code code;
@@ -122,13 +122,13 @@ class PartialFile {
     std::uint64_t size_ = 0;
 };
 
-/// One request for what is still missing.
+/// Requests the missing rest once.
 void fetch_rest(HttpClient& client, PartialFile& partial, const RemoteFile& file,
                 const std::function<void(std::uint64_t)>& progress) {
     const std::uint64_t offset = partial.size();
     const auto begin = [&](const HttpResponse& response) {
         if (response.status == 200) {
-            // The whole file, whether or not a part was asked for.
+            // The whole file, even if a part was requested.
             partial.restart();
         } else if (!response.header("content-range")
                         .starts_with(fmt::format("bytes {}-", offset))) {

@@ -1,4 +1,4 @@
-// One file of the hub into the cache's blobs.
+// The download of one file of the hub into the cache's blobs.
 #pragma once
 
 #include "item3d/hub/backoff.h"
@@ -11,23 +11,23 @@
 
 namespace item3d {
 
-/// What the hub's headers say of a file.
+/// A file's properties in the hub's headers.
 struct RemoteFile {
     std::string path;  ///< in the repository
     std::string url;
-    std::string etag;  ///< its SHA-256 or git's SHA-1, mostly; the blob's name
+    std::string etag;  ///< its SHA-256 or git's SHA-1, usually; the blob's name
     std::uint64_t size = 0;
 };
 
-/// True when the blob is there, whole.
+/// True if the blob exists and is complete.
 bool has_blob(const CachedRepository& cache, const RemoteFile& file);
-/// Bytes of it that an interrupted download left.
+/// Returns the size of an interrupted download.
 std::uint64_t partial_size(const CachedRepository& cache, const RemoteFile& file);
 
-/// Fetches the blob unless it is there. The bytes gather in blobs/ETAG.incomplete, which survives
-/// interruptions and is continued; only when size and checksum are right does it become blobs/ETAG.
-/// A lock keeps other programs off. progress: told how many bytes of this file are there.
-/// Throws ResourceError (network, disk), InputError (refused, damaged: the file is then removed),
+/// Downloads the blob unless it exists. The bytes accumulate in blobs/ETAG.incomplete, which
+/// survives interruptions and is continued; it is renamed to blobs/ETAG only when size and checksum
+/// match. A lock excludes other programs. progress: receives the number of bytes present. Throws
+/// ResourceError (network, disk), InputError (refused, damaged: the file is then removed),
 /// Interrupted.
 void download_blob(HttpClient& client, const CachedRepository& cache, const RemoteFile& file,
                    RetryPolicy retry, const std::function<void(std::uint64_t)>& progress);

@@ -1,15 +1,15 @@
-// A lock between processes, as huggingface_hub takes it: flock() on a file of its own.
+// A lock between processes, compatible with huggingface_hub: flock() on a separate file.
 #pragma once
 
 #include <filesystem>
 
 namespace item3d {
 
-/// Held from construction to destruction. The file stays.
+/// RAII lock. The file stays.
 class FileLock {
   public:
-    /// Waits for the lock and says so. Throws InputError when the file cannot be made or locked,
-    /// Interrupted after Ctrl-C.
+    /// Blocks until the lock is free, with a note. Throws InputError when the file cannot be
+    /// created or locked, Interrupted after Ctrl-C.
     explicit FileLock(const std::filesystem::path& path);
     ~FileLock();
     FileLock(const FileLock&) = delete;

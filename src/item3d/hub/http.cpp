@@ -19,11 +19,11 @@ namespace {
 
 constexpr int max_redirects = 10;
 constexpr long connect_seconds = 20;
-/// A connection that brings nothing for so long is given up.
+/// Timeout of a connection that transfers nothing.
 constexpr long silent_seconds = 30;
 
-/// Certificates of the system, where other distributions than the one that libcurl was built for
-/// keep them; $SSL_CERT_FILE goes before. Empty: there are none, and libcurl says so.
+/// Returns the system's certificates, whose location depends on the distribution, not only on
+/// libcurl's build; $SSL_CERT_FILE has priority. Empty: none, and libcurl reports it.
 std::string certificates() {
     if (const char* given = std::getenv("SSL_CERT_FILE"); given && *given) return given;
     for (const char* file : {"/etc/ssl/certs/ca-certificates.crt",  // Debian, Arch, Alpine
@@ -44,7 +44,7 @@ std::string trimmed(const std::string& text) {
     return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
 }
 
-/// "scheme://host:port" in lower case, the port always there.
+/// Returns "scheme://host:port" in lower case, always with the port.
 std::string origin_of(const std::string& url) {
     const std::unique_ptr<CURLU, decltype(&curl_url_cleanup)> parsed(curl_url(), &curl_url_cleanup);
     const auto part = [&](CURLUPart what, unsigned int flags) {
@@ -65,7 +65,7 @@ std::string origin_of(const std::string& url) {
            part(CURLUPART_PORT, CURLU_DEFAULT_PORT);
 }
 
-/// What another try with the same request cannot mend.
+/// True for errors that a retry cannot fix.
 bool is_permanent(CURLcode code) {
     return code == CURLE_PEER_FAILED_VERIFICATION || code == CURLE_SSL_CACERT_BADFILE ||
            code == CURLE_URL_MALFORMAT || code == CURLE_UNSUPPORTED_PROTOCOL;
@@ -106,7 +106,8 @@ struct HttpClient::Handle {
     CURL* curl;
 };
 
-/// One request and what became of it. libcurl is C: an exception waits here until it is done.
+/// One request and its result. Exceptions of callbacks are stored here until libcurl, which is C,
+/// returns.
 struct HttpClient::Transfer {
     bool head = false;
     std::uint64_t offset = 0;
@@ -135,7 +136,7 @@ struct HttpClient::Transfer {
         const auto colon = line.find(':');
         const bool fits = self.guarded([&] {
             if (line.starts_with("HTTP/")) {
-                // libcurl tells the status only at the end, and the body comes before that.
+                // libcurl reports the status only at the end, after the body.
                 const auto space = line.find(' ');
                 self.response.headers.clear();
                 self.response.status =
@@ -185,7 +186,7 @@ HttpClient::~HttpClient() = default;
 
 void HttpClient::perform(Transfer& transfer, const std::string& url) {
     CURL* curl = handle_->curl;
-    // Forgets the options of the last request and keeps its connection.
+    // Resets the options of the last request but keeps its connection.
     curl_easy_reset(curl);
     const std::string agent = "item3d/" + std::string(version());
     std::array<char, CURL_ERROR_SIZE> reason{};

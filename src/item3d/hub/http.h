@@ -1,4 +1,4 @@
-// HTTP(S) as the Hugging Face hub needs it: redirects, ranges, a token that stays with its host.
+// HTTP(S) for the Hugging Face hub: redirects, ranges, and a token that is sent only to its host.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// The connection failed or the server was unwell: worth another try. what() is one line.
+/// Failed connection or server error: a retry may help. what() is one line.
 class ConnectionError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -20,36 +20,36 @@ class ConnectionError : public std::runtime_error {
 struct HttpResponse {
     long status = 0;
     std::map<std::string, std::string> headers;  ///< names in lower case
-    std::string url;                             ///< where it came from, after redirects
-    std::string body;                            ///< of fetch()
+    std::string url;                             ///< final address, after redirects
+    std::string body;                            ///< set by fetch()
 
-    /// "" where it is absent.
+    /// Returns "" if absent.
     std::string header(const std::string& name) const;
-    /// True with "X-Linked-Etag" and "X-Linked-Size": the hub's own tag and size of a file, where
-    /// it redirects to storage that knows less.
+    /// True if "X-Linked-Etag" and "X-Linked-Size" are present: the hub's own tag and size of a
+    /// file that it redirects to another storage.
     bool tells_of_file() const;
 };
 
 class HttpClient {
   public:
-    /// `token`, if any, is sent to the scheme, host and port of `endpoint` and nowhere else, not
-    /// even where that redirects to.
+    /// token: sent only to the scheme, host and port of `endpoint`, never after a redirect
+    /// elsewhere; may be empty.
     HttpClient(std::string endpoint, std::string token);
     ~HttpClient();
     HttpClient(const HttpClient&) = delete;
     HttpClient& operator=(const HttpClient&) = delete;
 
-    // The following throw ConnectionError for what may pass (no connection, cut, too slow, 408,
-    // 429, 5xx), InputError for what will not (bad address or certificate, redirects in circles or
-    // from https to http), and Interrupted after Ctrl-C. Other statuses are returned.
+    // The following throw ConnectionError for temporary failures (no connection, cut, too slow,
+    // 408, 429, 5xx), InputError for permanent ones (bad address or certificate, circular redirects
+    // or from https to http), and Interrupted after Ctrl-C. They return other statuses.
 
-    /// Status and headers alone. Redirects are followed up to the first answer that
+    /// Requests status and headers only. Follows redirects up to the first response that
     /// tells_of_file().
     HttpResponse head(const std::string& url);
-    /// With the body in memory, at most `max_body` bytes.
+    /// Requests a body into memory, at most `max_body` bytes.
     HttpResponse fetch(const std::string& url);
-    /// Asks for the bytes from `offset` on. `begin` gets status and headers once redirects are
-    /// over, then `receive` the body piece by piece if the status is 200 or 206; both may throw.
+    /// Requests the bytes from `offset` on. Calls `begin` with status and headers after redirects,
+    /// then `receive` with parts of the body if the status is 200 or 206; both may throw.
     HttpResponse download(const std::string& url, std::uint64_t offset,
                           const std::function<void(const HttpResponse&)>& begin,
                           const std::function<void(std::span<const std::uint8_t>)>& receive);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Quotes and the mark of a weak tag are not part of a blob's name.
+/// Removes quotes and the mark of a weak tag, which are not part of a blob's name.
 std::string plain_etag(std::string etag) {
     if (etag.starts_with("W/")) etag.erase(0, 2);
     std::erase(etag, '"');
@@ -60,7 +60,7 @@ class Pull {
                            encode_url(path, "/"));
     }
 
-    /// Turns refusals into what a user can do about them.
+    /// Throws InputError with the user's remedy for a refused request.
     void check_access(const HttpResponse& response, const std::string& what) const {
         if (response.status == 200 || (response.status >= 300 && response.status < 400)) return;
         const std::string& name = request_.repository;
@@ -120,7 +120,7 @@ class Pull {
         }
     }
 
-    /// Tag and size by the hub's own headers, not those of what it redirects to.
+    /// Returns tag and size from the hub's own headers, not those of a redirect's target.
     RemoteFile describe(const std::string& path) {
         RemoteFile file{path, url_of(path), "", 0};
         const HttpResponse response =
@@ -139,7 +139,7 @@ class Pull {
         return file;
     }
 
-    /// Fetches a small file ahead of the others, for what it says.
+    /// Downloads a small file before the others, and returns its text.
     std::string text_of(const RemoteFile& file) {
         constexpr std::uint64_t sensible = std::uint64_t(64) << 20;
         if (file.size > sensible)
@@ -151,7 +151,7 @@ class Pull {
         return read_text(cache_.blob(file.etag));
     }
 
-    /// What is still to be downloaded; the largest number when the sizes are absurd.
+    /// Returns the number of bytes still to be downloaded; the maximum on overflow.
     std::uint64_t missing_bytes() const {
         std::uint64_t missing = 0;
         for (const RemoteFile& file : files_) {
@@ -222,7 +222,7 @@ class Pull {
     std::uint64_t downloaded_ = 0;
 };
 
-/// The token as huggingface_hub stores it.
+/// Returns the token that huggingface_hub stores.
 std::string find_token() {
     std::string token;
     if (const char* set = std::getenv("HF_TOKEN"); set && *set) {

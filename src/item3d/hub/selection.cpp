@@ -17,25 +17,25 @@ bool contains(const Paths& files, const std::string& path) {
     return std::find(files.begin(), files.end(), path) != files.end();
 }
 
-/// Formats that are read by running what they hold.
+/// True for formats whose reading executes code.
 bool is_pickle(const std::string& path) {
     for (const char* extension : {".bin", ".ckpt", ".pt", ".pth", ".pkl"})
         if (path.ends_with(extension)) return true;
     return false;
 }
 
-/// Files directly in a part's folder that are neither weights nor their indexes.
+/// True for files directly in a part's folder that are neither weights nor their indexes.
 bool is_description(const std::string& name) {
     return (name.ends_with(".json") && name.find(".index") == std::string::npos) ||
            name == "merges.txt" || name == "vocab.txt";
 }
 
-/// Networks of item3d's own priors that are no part of the pipeline.
+/// True for networks of item3d's own priors outside of the pipeline.
 bool is_own_part(const std::string& part) {
     return part == "clip" || part == "captioner" || part == "segmenter";
 }
 
-/// The stem of a network's weights; "" for parts without any.
+/// Returns the stem of a network's weights; "" for parts without any.
 std::string weights_stem(const std::string& part) {
     if (part == "unet" || part == "vae") return "diffusion_pytorch_model";
     if (part.starts_with("text_encoder") || is_own_part(part)) return "model";
@@ -46,20 +46,21 @@ constexpr const char* used_parts[] = {
     "scheduler", "text_encoder", "text_encoder_2", "tokenizer", "tokenizer_2",
     "unet",      "vae",          "clip",           "captioner", "segmenter"};
 
-/// Whether model_index.json names a class for the part.
+/// True if model_index.json names a class for the part.
 bool is_named(const nlohmann::json& index, const std::string& part) {
     const auto entry = index.find(part);
     return entry != index.end() && entry->is_array() && entry->size() == 2 &&
            (*entry)[1].is_string();
 }
 
-/// What priors of item3d have beside the pipeline: diffusers would not know it in model_index.json.
+/// True for parts of item3d's priors outside of the pipeline, which diffusers would reject in
+/// model_index.json.
 bool stands_beside(const std::string& part, const Paths& files) {
     return is_own_part(part) && contains(files, "prior.json") &&
            contains(files, part + "/config.json");
 }
 
-/// Adds the weights of one variant; false when there are none.
+/// Adds the weights of one variant; returns false when there are none.
 bool add_weights(const std::string& stem, const std::string& variant, const Paths& files,
                  FileSelection& selection) {
     const std::string infix = variant.empty() ? "" : "." + variant;

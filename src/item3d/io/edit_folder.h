@@ -1,4 +1,4 @@
-// The folder that an edit leaves, as far as its model is concerned.
+// The output folder of an edit, as the source of its model.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,14 @@ namespace item3d {
 struct EditFolder {
     std::filesystem::path folder;
     std::filesystem::path model;  ///< model.glb or model.vrm
-    std::string from, to;         ///< of a plan, of its last edit
-    std::string variant;          ///< the look that was edited; empty: what the model shows
-    /// SHA-256 of the model that was edited, and of those that it was made of itself.
+    std::string from, to;         ///< sentences; of a plan, those of its last edit
+    std::string variant;          ///< edited variant; empty: the model's default
+    /// SHA-256 of the edited model, and of the models from which that was made.
     std::vector<std::string> inputs;
 };
 
-/// Reads edit.json, and of a plan those of its edits. Throws InputError for a folder that no edit
-/// left, or one that is not done.
+/// Reads edit.json, and those of a plan's edits. Throws InputError for a folder that is no edit's,
+/// or of an unfinished edit.
 EditFolder read_edit_folder(const std::filesystem::path& folder);
 
 }  // namespace item3d

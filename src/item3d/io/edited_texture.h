@@ -1,4 +1,4 @@
-// A picture that an edit gives to a slot of a material, and the file that it becomes.
+// An image that an edit assigns to a texture slot of a material, and its encoded file.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -11,30 +11,30 @@
 
 namespace item3d {
 
-/// Copies share one picture: materials that share it in the source share one file afterwards.
+/// Copies share one image: materials that share it in the source share one file afterwards.
 class EditedTexture {
   public:
-    /// None: the slot of the material stays as it was.
+    /// No image: the material's slot stays unchanged.
     EditedTexture() = default;
-    /// Values as they go into files: base colour sRGB-encoded, the others linear. A PNG, of 8 bits
-    /// per channel or of 16.
+    /// Takes values as in files: base colour sRGB-encoded, the others linear. Encodes as a PNG of 8
+    /// or 16 bits per channel by default.
     EditedTexture(Image image, int bits_per_channel = 8);
 
     explicit operator bool() const { return picture_ != nullptr; }
     const Image& operator*() const { return picture_->image; }
     const Image* operator->() const { return &picture_->image; }
 
-    /// For all copies.
+    /// Applies to all copies.
     void set_coding(ImageCoding coding);
     const ImageCoding& coding() const { return picture_->coding; }
     int bits_per_channel() const { return picture_->bits_per_channel; }
 
-    /// The bytes of the file; they are made once.
+    /// Returns the bytes of the file; encodes on first use.
     const Bytes& encoded() const;
-    /// Takes the place of encoded() for all copies: the same picture with metadata.
+    /// Replaces encoded() for all copies: the same image with metadata.
     void set_encoded(Bytes bytes) { picture_->encoded = std::move(bytes); }
 
-    /// The same for all copies, and for no other.
+    /// Equal for copies of each other, and only for these.
     const void* identity() const { return picture_.get(); }
 
   private:
@@ -47,7 +47,7 @@ class EditedTexture {
     std::shared_ptr<Picture> picture_;
 };
 
-/// Makes the bytes of all that have none yet, on several threads.
+/// Encodes all images that are not encoded yet, on several threads.
 void encode_all(std::span<const EditedTexture> textures);
 
 }  // namespace item3d

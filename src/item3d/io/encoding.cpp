@@ -16,7 +16,8 @@ namespace item3d {
 namespace fs = std::filesystem;
 namespace {
 
-/// ICU's names, and what people call them. Those whose every second byte tells come first.
+/// A legacy encoding: ICU's name and the usual one. Multi-byte encodings, which few texts fit, come
+/// first.
 struct OldEncoding {
     const char* converter;
     const char* shown;
@@ -43,9 +44,9 @@ bool is_ascii(std::string_view text) {
                        [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
-/// No value where the text is not of that encoding, or ICU lacks it.
+/// Returns no value where the text is not of that encoding, or ICU lacks it.
 std::optional<icu::UnicodeString> convert(std::string_view text, const char* converter) {
-    if (text.size() >= 1u << 30) return std::nullopt;  // ICU counts in 32 bits
+    if (text.size() >= 1u << 30) return std::nullopt;  // ICU's sizes have 32 bits
     UErrorCode status = U_ZERO_ERROR;
     const std::unique_ptr<UConverter, decltype(&ucnv_close)> open(ucnv_open(converter, &status),
                                                                   &ucnv_close);
@@ -69,7 +70,8 @@ std::string utf8_of(const icu::UnicodeString& text) {
     return result;
 }
 
-/// "UTF-16LE" and the like, told by a mark or by where the first characters have their zeros.
+/// Returns "UTF-16LE" and the like, detected by a mark or by the position of zeros in the first
+/// characters.
 const char* wide_encoding(std::string_view text) {
     using namespace std::string_view_literals;
     if (text.starts_with("\xff\xfe\0\0"sv)) return "UTF-32LE";
@@ -86,7 +88,7 @@ const char* wide_encoding(std::string_view text) {
     return nullptr;
 }
 
-/// Whether UTF-8 is left in lines alone that begin with "#".
+/// True if only lines that begin with "#" are not UTF-8.
 bool is_utf8_but_for_remarks(std::string_view text) {
     while (!text.empty()) {
         const std::size_t end = std::min(text.find_first_of("\r\n"), text.size() - 1) + 1;
@@ -112,7 +114,7 @@ bool is_utf8(std::string_view text) {
             if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return false;
         }
         const auto second = length > 1 ? static_cast<unsigned char>(text[i + 1]) : 0;
-        // Overlong forms, surrogates, and what lies beyond U+10FFFF.
+        // Overlong forms, surrogates, and code points beyond U+10FFFF.
         if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
             (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f)) {
             return false;

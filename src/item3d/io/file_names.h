@@ -1,4 +1,4 @@
-// Names for files that are made of what users call their materials.
+// File names made from users' names of materials.
 #pragma once
 
 #include <cstddef>
@@ -7,16 +7,16 @@
 
 namespace item3d {
 
-/// At most `longest` bytes of the name, cut between two code points of UTF-8.
+/// Returns at most `longest` bytes of the name, cut between two code points of UTF-8.
 std::string shortened(const std::string& name, std::size_t longest);
 
-/// ASCII letters, digits, '-' and '_' stay, other bytes become '_'; at most 80 bytes.
+/// Replaces all but ASCII letters, digits, '-' and '_' by '_'; at most 80 bytes.
 std::string plain_file_name(const std::string& name);
 
-/// Gives each name once, also where a file system does not tell cases of letters apart.
+/// Makes names unique, also for case-insensitive file systems.
 class FileNames {
   public:
-    /// `name` itself, or with "_1", "_2", ... where that was given before.
+    /// Returns `name`, or with "_1", "_2", ... if it was returned before.
     std::string unused(const std::string& name);
 
   private:

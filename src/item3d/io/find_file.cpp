@@ -18,7 +18,7 @@ int hexadecimal_digit(char c) {
     return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
-// Equal for names that differ in case or normalization.
+// Returns a key that is equal for names that differ in case or normalization.
 std::string folded(std::string_view name) {
     UErrorCode status = U_ZERO_ERROR;
     const icu::Normalizer2* normalizer = icu::Normalizer2::getNFKCCasefoldInstance(status);
@@ -31,7 +31,7 @@ std::string folded(std::string_view name) {
     return U_SUCCESS(status) ? result : to_lower(name);
 }
 
-// The entry of a folder: of that very name, else the first that is the same but for its spelling.
+// Returns a folder's entry of exactly that name, else the first one with an equal folded() name.
 std::optional<fs::path> entry_of(const fs::path& folder, const std::string& name) {
     std::error_code code;
     if (fs::exists(folder / name, code)) return folder / name;

@@ -1,4 +1,4 @@
-// Names of files as people's files spell them. Internal to io.
+// Lookup of files by inexact names, as other programs' files spell them. Internal to io.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,14 @@
 
 namespace item3d {
 
-/// What a name that is no file may have been meant as, the likeliest first: percent-decoded (also
-/// twice), without what follows a question mark or number sign; each also by its last part alone,
-/// since exporters write paths of the machine that they ran on.
+/// Returns possible spellings of a file name that does not exist, the likeliest first:
+/// percent-decoded (also twice), without a query or fragment; each also as its last component
+/// alone, since exporters write paths of their own machine.
 std::vector<std::string> other_spellings(const std::string& name);
 
-/// The regular file below `root` that `name` means with either separator, in any case of letters
-/// and any normalization of Unicode; bytes that are not UTF-8 are taken as Latin-1. No value where
-/// there is none, or where it lies outside of `root` (by "..", or by a link).
+/// Returns the regular file below `root` that `name` denotes with either separator, ignoring case
+/// and Unicode normalization; bytes that are not UTF-8 count as Latin-1. No value where there is
+/// none, or where it lies outside of `root` (by "..", or by a link).
 std::optional<std::filesystem::path> find_file_below(const std::filesystem::path& root,
                                                      std::string_view name);
 

@@ -49,7 +49,7 @@ Bytes with_claim(const Bytes& image, const std::string& source, const Provenance
                                       {{"", "", image_sha256(image)}});
     if (provenance.key) provenance.key->sign(claim);
     Bytes written = with_packet(image, xmp_with_claim(source, claim));
-    // What is too large for a JPEG is the source's.
+    // If the result is too large for a JPEG, drop the source's packet.
     if (written == image && !source.empty())
         written = with_packet(image, xmp_with_claim("", claim));
     return written;

@@ -1,4 +1,4 @@
-// Claims in the images that an edit writes. Internal to io.
+// Provenance claims in the images that an edit writes. Internal to io.
 #pragma once
 
 #include "item3d/io/save.h"
@@ -7,8 +7,9 @@
 
 namespace item3d {
 
-/// Puts an XMP packet into every encoded image of the edit that can hold one, with what the packet
-/// of the source's image says (its author, licence and edits). Nothing where there are no edits.
+/// Adds an XMP packet to every encoded image of the edit whose format supports it, including the
+/// content of the source image's packet (its author, licence and edits). Does nothing for an empty
+/// provenance.
 void put_claims(const Provenance& provenance, const Model& model, const ModelEdit& edit);
 
 }  // namespace item3d

@@ -1,5 +1,5 @@
-// Files to models and images. Every function throws InputError for what can't be used; none reads
-// outside the model's folder, none allocates out of proportion to the file.
+// Loading of models and images. Every function throws InputError for unusable input; none reads
+// outside the model's folder or allocates out of proportion to the file.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -12,21 +12,21 @@
 namespace item3d {
 
 struct LoadOptions {
-    /// Folders beside the model's own that textures may be read from.
+    /// Additional folders from which textures may be read.
     std::vector<std::filesystem::path> texture_folders = {};
-    /// The name of one of Model::variants, which is shown instead of what the file shows by itself;
-    /// an InputError lists those that there are.
+    /// Name of one of Model::variants to show instead of the default; an unknown name throws an
+    /// InputError that lists them.
     std::string variant = {};
 };
 
-/// glTF 2.0 (.glb, .gltf) or OBJ with MTL, by content and extension. A texture that cannot be read
-/// is a warning (the factor is used). A model without triangles or with non-finite positions is an
-/// InputError, one of which nothing can be seen a warning.
+/// Loads glTF 2.0 (.glb, .gltf) or OBJ with MTL, by content and extension. Warns of an unreadable
+/// texture (its factor is used) and of an invisible model. Throws InputError for a model without
+/// triangles or with non-finite positions.
 Model load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
-/// PNG, JPEG, WebP, KTX2 (Basis Universal), BMP, TGA, GIF, TIFF, Radiance HDR, OpenEXR, by content.
-/// Channels as in the file (palettes are expanded,
-/// 1-bit and 16-bit scaled to [0, 1]).
+/// Loads PNG, JPEG, WebP, KTX2 (Basis Universal), BMP, TGA, GIF, TIFF, Radiance HDR or OpenEXR, by
+/// content. Keeps the file's channels (palettes are expanded, 1-bit and 16-bit values scaled to [0,
+/// 1]).
 Image load_image(const std::filesystem::path& path);
 
 }  // namespace item3d

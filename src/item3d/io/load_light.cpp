@@ -29,7 +29,7 @@ std::string extension_of(const fs::path& path) {
     return extension;
 }
 
-/// Three channels, linear, as far as the file has them.
+/// Returns three channels, linear, where the file has them.
 Image read_picture(const std::string& path) {
     const Bytes bytes = read_bytes(path);
     const Image source = decode_image(bytes, path).image;
@@ -52,10 +52,11 @@ Image read_picture(const std::string& path) {
     return light;
 }
 
-/// The most that a light may be: sums over a sphere of it are far below what float32 holds.
+/// Largest radiance of a light: sums of it over a sphere stay far below float32's maximum.
 constexpr float most_radiance = 1e12f;
 
-/// What infinite values become: half floats end at 65504, so that suns beyond are infinite in them.
+/// Returns the replacement of infinite values: at least 65504, the maximum of half floats, beyond
+/// which suns are infinite in them.
 float sun_radiance(const Image& light) {
     float largest = 65504.0f;
     for (const float value : light.pixels) {
@@ -64,7 +65,7 @@ float sun_radiance(const Image& light) {
     return largest;
 }
 
-/// Throws InputError for what is no light; warns of what is left out.
+/// Throws InputError for an unusable light; warns of values that are replaced.
 void make_usable(Image& light, const std::string& path) {
     std::size_t negative = 0, unbounded = 0, undefined = 0;
     bool is_black = true;
@@ -74,7 +75,7 @@ void make_usable(Image& light, const std::string& path) {
         unbounded += value > most_radiance ? 1 : 0;
         negative += value < 0 ? 1 : 0;
         if (value > most_radiance) value = sun;
-        value = value > 0 ? value : 0.0f;  // of no number as well
+        value = value > 0 ? value : 0.0f;  // also false for NaN
         is_black = is_black && value == 0;
     }
     if (undefined > light.pixels.size() / 2) {

@@ -15,7 +15,7 @@ std::string name_of(const Json& document, const char* list, int index) {
     return name != thing.end() && name->is_string() ? name->get<std::string>() : std::string();
 }
 
-/// By node, -1 for one without.
+/// Returns the parent of each node, -1 for none.
 std::vector<int> parents(const Json& document) {
     const Json& nodes = document.at("nodes");
     std::vector<int> parent(nodes.size(), -1);
@@ -29,7 +29,7 @@ std::vector<int> parents(const Json& document) {
     return parent;
 }
 
-/// Null where the primitive is not from glTF.
+/// Returns null where the primitive is not from glTF.
 const Json* attributes_of(const Model& model, const Primitive& primitive) {
     if (!model.source || primitive.source_mesh < 0) return nullptr;
     const Json& source = model.source->json.at("meshes")

@@ -1,4 +1,4 @@
-// What the file calls the parts of a model: nodes, meshes, vertex attributes.
+// Names in the file of a model's parts: nodes, meshes, vertex attributes.
 #pragma once
 
 #include "item3d/scene/model.h"
@@ -8,16 +8,16 @@
 
 namespace item3d {
 
-/// Names of a primitive's node and of all nodes above it, the nearest first; of its mesh alone.
-/// Empty for a model that is not from glTF, and where the file gives no name.
+/// Return the names of a primitive's node and all its ancestors, the nearest first; and the name of
+/// its mesh. Empty for a model that is not from glTF, and where the file has no name.
 std::vector<std::string> node_names(const Model& model, const Primitive& primitive);
 std::string mesh_name(const Model& model, const Primitive& primitive);
 
-/// Names of the vertex attributes that are no standard ones ("_HANDLE"), in rising order.
+/// Returns names of the non-standard vertex attributes ("_HANDLE"), in rising order.
 std::vector<std::string> vertex_attribute_names(const Model& model);
 
-/// The first component of such an attribute, one a vertex; empty where the primitive has none.
-/// Throws InputError where it cannot be read.
+/// Returns the first component of such an attribute, one for each vertex; empty where the primitive
+/// has none. Throws InputError where it cannot be read.
 std::vector<float> vertex_attribute(const Model& model, const Primitive& primitive,
                                     const std::string& name);
 

@@ -24,7 +24,7 @@ Bytes decode_base64(std::string_view text, const std::string& subject) {
     for (int i = 0; i < 64; ++i) {
         values[static_cast<unsigned char>(base64_digits[i])] = static_cast<std::int8_t>(i);
     }
-    values['-'] = 62;  // the URL alphabet, which some writers use
+    values['-'] = 62;  // URL-safe alphabet, which some writers use
     values['_'] = 63;
     while (!text.empty() && text.back() == '=')
         text.remove_suffix(1);
@@ -49,7 +49,7 @@ Bytes decode_base64(std::string_view text, const std::string& subject) {
     return bytes;
 }
 
-/// Pictures alone are looked for in other folders.
+/// Returns the advice for a missing file; only images are also searched for in other folders.
 std::string cure_of(std::string_view name) {
     const std::string cure = "copy that file beside the model";
     const std::string extension = to_lower(fs::path(name).extension().string());
@@ -106,7 +106,7 @@ fs::path resolve_uri(const fs::path& folder, std::string_view uri, const std::st
                              "', and nothing is read from other places than its folder",
                          cure_of(uri));
     }
-    // What a URI says comes first; a percent sign that belongs to the name, with the other
+    // The decoded URI first; a percent sign that belongs to the name is tried with the other
     // spellings.
     std::error_code code;
     const std::string decoded = percent_decode(uri);
@@ -149,7 +149,7 @@ namespace {
 constexpr std::size_t most_folders = 1000;
 constexpr int deepest_folder = 4;
 
-/// The folders below one that pictures may be read from, relative to it, in order of their names.
+/// Returns the folders below `root` from which images may be read, relative to it, sorted by name.
 std::vector<fs::path> folders_below(const fs::path& root) {
     std::vector<fs::path> folders;
     std::error_code code;
@@ -172,7 +172,7 @@ std::optional<fs::path> find_allowed(const std::vector<fs::path>& allowed, const
         fs::weakly_canonical((folder.empty() ? fs::path(".") : folder) / name, code);
     for (const fs::path& root : allowed) {
         std::vector<fs::path> tries{target.lexically_relative(fs::weakly_canonical(root, code))};
-        // By its own name in the folders below, last.
+        // Last, by the file's name in the folders below.
         const auto below = folders_below(root);
         for (auto from = name.begin(); from != name.end(); ++from) {
             fs::path end;
@@ -188,7 +188,7 @@ std::optional<fs::path> find_allowed(const std::vector<fs::path>& allowed, const
             try {
                 return resolve_in_folder(root, wanted, subject);
             } catch (const InputError&) {
-                // A link that leads out of it.
+                // A link to the outside.
             }
         }
     }

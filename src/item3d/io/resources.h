@@ -1,4 +1,4 @@
-// Files and data that a model refers to, without ever leaving its folder. Internal to io.
+// Access to files and data that a model refers to, restricted to its folder. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -11,43 +11,43 @@
 
 namespace item3d {
 
-/// Whether a file that was found by another spelling of its name is told of.
+/// Policy for a file that is found by another spelling of its name.
 enum class Forgiving { with_note, silently };
 
-/// The regular file `relative` (either separator) in `folder`: that very one, or what
-/// find_file_below() finds for it or for one of its other_spellings(). What lies outside of the
-/// folder (absolute, "..", links) is an InputError that names `subject`, as is a missing file.
+/// Returns the regular file `relative` (with either separator) in `folder`: an exact match, or the
+/// result of find_file_below() for it or for one of its other_spellings(). Throws InputError that
+/// names `subject` for paths outside of the folder (absolute, "..", links) and for a missing file.
 std::filesystem::path resolve_in_folder(const std::filesystem::path& folder,
                                         const std::filesystem::path& relative,
                                         const std::string& subject,
                                         Forgiving forgiving = Forgiving::with_note);
 
-/// The same for a URI of a glTF. Other schemes than a plain relative reference ("http:", ...) are
-/// an InputError: nothing is fetched; of "file:" and drive letters the file's name alone is looked
-/// for.
+/// Resolves a URI of a glTF likewise. Throws InputError for schemes other than a plain relative
+/// reference ("http:", ...): nothing is downloaded. For "file:" and drive letters, searches only
+/// for the file's name.
 std::filesystem::path resolve_uri(const std::filesystem::path& folder, std::string_view uri,
                                   const std::string& subject,
                                   Forgiving forgiving = Forgiving::with_note);
 
-/// The regular file that a text format names, with '/' or '\\' as separators: relative to the first
-/// of `folders` that has it, else by its bare name (exporters write paths of the machine that they
-/// ran on). Nothing outside `root` is read, but for what find_allowed() finds. Throws the
-/// InputError of the first try.
+/// Returns the regular file that a text format names, with '/' or '\\' as separators: relative to
+/// the first of `folders` that has it, else by its bare name (exporters write paths of their own
+/// machine). Reads nothing outside `root` except by find_allowed(). Throws the InputError of the
+/// first attempt.
 std::filesystem::path resolve_beside(const std::filesystem::path& root,
                                      const std::vector<std::filesystem::path>& folders,
                                      const std::string& name, const std::string& subject,
                                      const std::vector<std::filesystem::path>& allowed = {});
 
-/// A file in one of the folders that the user allows (LoadOptions::texture_folders): what `folder`
-/// / `name` is, where that lies in one of them, else the longest end of `name` that one of them
-/// has. No value: there is none.
+/// Returns a file in one of the user's allowed folders (LoadOptions::texture_folders): `folder` /
+/// `name`, if it lies in one of them, else the longest suffix of `name` that one of them has. No
+/// value: none.
 std::optional<std::filesystem::path> find_allowed(const std::vector<std::filesystem::path>& allowed,
                                                   const std::filesystem::path& folder,
                                                   const std::filesystem::path& name,
                                                   const std::string& subject);
 
 bool is_data_uri(std::string_view uri);
-/// The bytes of "data:...;base64,..." or "data:,...". Throws InputError.
+/// Returns the bytes of "data:...;base64,..." or "data:,...". Throws InputError.
 Bytes decode_data_uri(std::string_view uri, const std::string& subject);
 
 std::string path_to_uri(const std::filesystem::path& relative);

@@ -1,4 +1,4 @@
-// Models and images to files; every write is atomic.
+// Saving of models and images; every write is atomic.
 #pragma once
 
 #include "item3d/io/edited_texture.h"
@@ -12,11 +12,11 @@
 
 namespace item3d {
 
-/// By extension: .png (values clamped to [0, 1], 8 or 16 bits), .jpg, .hdr, .exr (float32, or
-/// half). PNG and JPEG store the values as they are: give sRGB-encoded ones.
+/// Writes by extension: .png (values clamped to [0, 1], 8 or 16 bits), .jpg, .hdr, .exr (float32,
+/// or half). PNG and JPEG store the values unchanged: pass sRGB-encoded ones.
 void save_image(const std::filesystem::path& path, const Image& image, int bits_per_channel = 8);
 
-/// The changes of an edit to one material. With a texture, the factors of that slot are reset (base
+/// Changes of an edit to one material. With a texture, the factors of that slot are reset (base
 /// colour, metallic, roughness and occlusion strength, normal scale to 1) so that texture values
 /// are the material's; alpha stays a factor where base_color is RGB. Occlusion is used where the
 /// material had it, or where it is not 1 throughout.
@@ -24,30 +24,30 @@ struct MaterialEdit {
     EditedTexture base_color;          ///< RGB or RGBA
     EditedTexture metallic_roughness;  ///< occlusion, roughness, metallic
     EditedTexture normal;
-    /// A channel of metallic_roughness is the source's: only what was a JPEG becomes one.
+    /// A channel of metallic_roughness is the source's: it becomes a JPEG only if it was one.
     bool keeps_orm_texels = false;
-    /// Texels of all images are the source's where nothing was edited: written without losses.
+    /// Texels of all images are the source's where nothing was edited: written losslessly.
     bool keeps_texels = false;
-    /// base_color holds what vertex colours multiplied before, so primitives with it lose COLOR_0.
+    /// base_color includes the vertex colours' factors, so primitives with it lose COLOR_0.
     bool includes_vertex_colors = true;
-    /// The material's occlusion texture stays as it is, whatever metallic_roughness holds.
+    /// The material's occlusion texture stays unchanged, regardless of metallic_roughness.
     bool keeps_occlusion = false;
-    /// The material does not emit any more.
+    /// The material stops emitting.
     bool removes_emission = false;
     /// Alpha mode and factor become opaque.
     bool makes_opaque = false;
-    /// Extensions of the material that go, by name.
+    /// Removed extensions of the material, by name.
     std::vector<std::string> removed_extensions;
 };
 
-/// New UVs of one primitive: seams split vertices, so every vertex of the new primitive names the
-/// old vertex it copies. Edited textures look at the new UVs (TEXCOORD_0); textures of the material
-/// that were not edited go on looking at the old ones, which move to another set. When some
-/// primitives of an edited material have new UVs, the others keep theirs.
+/// New UVs of one primitive. Seams split vertices, so every vertex of the new primitive refers to
+/// the old vertex that it copies. Edited textures use the new UVs (TEXCOORD_0); unedited textures
+/// of the material keep the old ones, which move to another set. Primitives of an edited material
+/// without new UVs keep theirs.
 struct PrimitiveEdit {
     std::vector<std::uint32_t> source_vertices;  ///< new vertex -> old vertex
-    std::vector<Vec2> uvs;                       ///< one a new vertex
-    std::vector<std::uint32_t> indices;          ///< three a triangle, into new vertices
+    std::vector<Vec2> uvs;                       ///< one for each new vertex
+    std::vector<std::uint32_t> indices;          ///< three for each triangle, into new vertices
 };
 
 struct ModelEdit {
@@ -56,10 +56,10 @@ struct ModelEdit {
 };
 
 /// Writes `model` with the edit applied: .glb, .gltf (+ .bin and PNGs beside it), or .obj (+ .mtl
-/// and PNGs). From a glTF source the document itself is patched: everything that was not edited
-/// (nodes, names, animations, skins, cameras, other materials, unknown extensions, extras) stays
-/// byte for byte or value for value. Other sources are written as a new, minimal document.
-/// provenance: of edits by sentences; a glTF and the textures of the edit carry it (io/claims.h).
+/// and PNGs). A glTF source is patched: everything unedited (nodes, names, animations, skins,
+/// cameras, other materials, unknown extensions, extras) stays byte for byte or value for value.
+/// Other sources are written as a new, minimal document. provenance: of edits by sentences; a glTF
+/// and the textures of the edit carry it (io/image_claims.h, io/gltf/claims.h).
 void save_model(const std::filesystem::path& path, const Model& model, const ModelEdit& edit = {},
                 const Provenance& provenance = {});
 

@@ -72,7 +72,8 @@ std::optional<double> parse_number(std::string_view word) {
     const char* end = word.data() + word.size();
     const auto [stop, error] = std::from_chars(word.data(), end, value);
     if (stop != end || error == std::errc::invalid_argument) return std::nullopt;
-    // from_chars leaves the value alone when it is out of range; strtod tells 0 from infinity.
+    // from_chars leaves the value unset when it is out of range; strtod distinguishes 0 from
+    // infinity.
     if (error == std::errc::result_out_of_range)
         return std::strtod(std::string(word).c_str(), nullptr);
     return value;

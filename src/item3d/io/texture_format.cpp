@@ -10,11 +10,11 @@
 namespace item3d {
 namespace {
 
-/// Longest edge of pictures that are smallest as PNG.
+/// Longest edge of images that are smallest as PNG.
 constexpr int tiny_edge = 8;
 /// JPEG quality of textures that the source lacks.
 constexpr int new_quality = 92;
-/// JPEG quality, at least, of a picture one of whose channels is that of a JPEG already.
+/// Lowest JPEG quality of an image with a channel from a JPEG.
 constexpr int kept_quality = 95;
 
 const Texture* texture_of(const Model& model, int index) {
@@ -72,18 +72,18 @@ void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit) {
             const bool must_be_exact = has_kept_channel || material_edit.keeps_texels;
             if (!texture) return;
             const Texture* own = texture_of(model, slot);
-            // A new one is smooth, so PNG is not followed.
+            // A new texture is smooth, so PNG is not followed.
             const Texture* followed = own                                 ? own
                                       : base && !base->coding.is_lossless ? base
                                                                           : nullptr;
             ImageCoding coding = wanted_coding(format, followed);
-            // A channel that a JPEG lost something of already needs no PNG of four times its size.
+            // A channel that was already lossy needs no PNG of four times its size.
             const bool is_kept_jpeg = must_be_exact && !material_edit.keeps_texels && own &&
                                       own->coding.encoding == ImageEncoding::jpeg &&
                                       coding.encoding == ImageEncoding::jpeg;
             if (is_kept_jpeg) coding.quality = std::max(coding.quality, kept_quality);
             coding = possible_coding(coding, *texture, must_be_exact && !is_kept_jpeg);
-            // Eight bits would be a loss to an image that has more.
+            // Eight bits would lose precision.
             if (format == TextureFormat::keep && own && own->bits_per_channel > 8) coding = {};
             if (coding.encoding == ImageEncoding::ktx2) {
                 coding.is_srgb = &texture == &material_edit.base_color;

@@ -1,4 +1,4 @@
-// In which format edited textures are written.
+// The file formats of edited textures.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -7,20 +7,20 @@
 
 namespace item3d {
 
-/// keep: each as the texture that it replaces. webp: without losses where that texture had none.
-/// ktx2: ETC1S, normals UASTC; PNG where edges are no multiples of four.
+/// keep: the format of the replaced texture. webp: lossless where that texture was. ktx2: ETC1S,
+/// normals UASTC; PNG where edges are no multiples of four.
 enum class TextureFormat { keep, png, jpeg, webp, ktx2 };
 
-/// Sets the codings of all images of the edit. Where a material had no texture in a slot, its base
-/// colour's is followed if that has losses, else it is JPEG. Images that JPEG or a lossy WebP
-/// cannot hold get a coding without losses: those with alpha (JPEG), those that keep texels
-/// (MaterialEdit) unless those are a JPEG's, and with 16 bits.
+/// Sets the codings of all images of the edit. Where a material had no texture in a slot, the base
+/// colour's coding is used if lossy, else JPEG. Images that JPEG or a lossy WebP cannot hold get a
+/// lossless coding: those with alpha (JPEG), those that keep texels (MaterialEdit) unless those are
+/// a JPEG's, and with 16 bits.
 void choose_codings(const Model& model, TextureFormat format, ModelEdit& edit);
 
-/// bits_per_channel: 8, or 16, which PNG alone has.
+/// bits_per_channel: 8, or 16, which only PNG supports.
 Bytes encode_texture(const Image& image, const ImageCoding& coding, int bits_per_channel);
 
-/// ".png", ".jpg", ".webp", ".ktx2".
+/// Returns ".png", ".jpg", ".webp" or ".ktx2".
 const char* extension_of(ImageEncoding encoding);
 
 }  // namespace item3d

@@ -95,7 +95,7 @@ std::vector<std::string> checked_names(const VariantsRequest& request,
     return request.names;
 }
 
-/// Edits of all, each with the name of its look.
+/// Returns the claims of all edits, each with the name of its variant.
 std::vector<EditClaim> claims_of(const SourceDocument& source,
                                  const std::vector<EditedDocument>& edited) {
     const std::vector<EditClaim> earlier = edits_of(read_asset_packet(source.json).claim);

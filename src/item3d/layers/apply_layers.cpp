@@ -61,7 +61,7 @@ class LayerStack {
         return model_.materials[static_cast<std::size_t>(material)].name;
     }
 
-    /// Takes the new UV map, where there is one.
+    /// Checks that layers have the same UVs, and adopts a new UV map, if any.
     void require_same_uvs(int material, const Layers& layers) {
         const auto first = uvs_of(layers.front()->layer, material);
         for (const AppliedLayer* other : layers) {
@@ -84,7 +84,7 @@ class LayerStack {
     }
 
     void edit_material(int index, const Layers& layers) {
-        // A picture with more of the source in it is the one to begin from.
+        // Begin with a layer whose image contains the source's occlusion.
         const AppliedLayer* first = layers.front();
         for (const AppliedLayer* other : layers)
             if (!flags_of(*other, index).keeps_occlusion) {
@@ -118,7 +118,7 @@ class LayerStack {
         }
     }
 
-    /// A channel of a texture that nobody chose stays as the source has it.
+    /// Keeps channels of a texture that no layer uses as in the source.
     void keep_channels(int index, const Layers& layers, MaterialEdit& edit) const {
         const Material& material = model_.materials[static_cast<std::size_t>(index)];
         if (material.metallic_roughness_texture < 0) return;
@@ -176,7 +176,7 @@ class LayerStack {
 
     std::span<const AppliedLayer> layers_;
     Model& model_;
-    std::map<int, Layers> of_material_;  ///< those that change it
+    std::map<int, Layers> of_material_;  ///< layers that change it
     std::map<std::vector<const void*>, EditedTexture> made_;
     ModelEdit edit_;
 };

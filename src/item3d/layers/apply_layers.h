@@ -1,4 +1,4 @@
-// Layers on a model's textures: the model's + the sum of strengths times what the edits changed.
+// The sum of a model's textures and its layers: the model's + the sum of strengths times changes.
 #pragma once
 
 #include "item3d/layers/layer.h"
@@ -9,18 +9,18 @@
 
 namespace item3d {
 
-/// A layer and how it is applied; `use.layer` may be anything.
+/// A layer and its use; `use.layer` is ignored.
 struct AppliedLayer {
     EditLayer layer;
     LayerUse use;
 };
 
-/// The edit that these layers make of the model together, without codings. Sums are of integers,
-/// rounded and clamped once at the end: a layer alone at full strength gives the values of its own
-/// edit, and the order of layers is no matter. Slots and materials that no layer changes are not in
-/// it; it is empty where all strengths are 0. Materials that an edit began from in another way than
-/// the file's become so in `model`. Throws InputError where a layer's textures have other sizes
-/// than the model's or another layer's, or UV maps differ.
+/// Returns the combined edit of these layers, without codings. Sums are of integers, rounded and
+/// clamped once at the end: a single layer at full strength gives the values of its own edit, and
+/// the order of layers does not matter. Contains only slots and materials that a layer changes;
+/// empty where all strengths are 0. Applies a layer's MaterialBeginning to materials of `model`.
+/// Throws InputError where a layer's textures differ in size from the model's or another layer's,
+/// or UV maps differ.
 ModelEdit apply_layers(std::span<const AppliedLayer> layers, Model& model);
 
 }  // namespace item3d

@@ -70,7 +70,7 @@ json material_json(int index, const LayerMaterial& material) {
     return result;
 }
 
-/// Integers of four bytes, from the vector's own.
+/// Returns a tensor of 32-bit integers.
 at::Tensor to_tensor(const std::vector<std::uint32_t>& values) {
     return at::tensor(std::vector<std::int32_t>(values.begin(), values.end()), at::kInt);
 }
@@ -118,7 +118,7 @@ class LayerReader {
         if (!condition) fail(what + " does not fit the rest");
     }
 
-    /// Undefined where the file has none.
+    /// Returns an undefined tensor where the file has none.
     at::Tensor optional_tensor(const std::string& name) const {
         return file_.contains(name) ? file_.tensor(name) : at::Tensor();
     }

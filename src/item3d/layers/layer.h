@@ -1,4 +1,4 @@
-// What an edit changed, apart from what it was applied to: layer.safetensors (docs/formats.md).
+// An edit's changes, separate from its model: layer.safetensors (docs/formats.md).
 #pragma once
 
 #include "item3d/field/bake/bake.h"
@@ -25,29 +25,29 @@ inline constexpr std::array layer_slots = {LayerSlot::base_color, LayerSlot::met
 
 using LayerSize = std::pair<int, int>;  ///< width, height
 
-/// One picture of an edit. Values are the integers that a file has: steps of 1 / (2^bits - 1).
+/// One image of an edit. Values are a file's integers: steps of 1 / (2^bits - 1).
 struct LayerPicture {
     LayerSlot slot = LayerSlot::base_color;
     int width = 0, height = 0, channels = 0;
-    int bits = 8;  ///< a channel: 8 or 16
+    int bits = 8;  ///< for each channel: 8 or 16
     /// Left, top and first channel of `change`.
     int x = 0, y = 0, channel = 0;
-    /// The edited picture - the one before, [h, w, c] of the rectangle and the channels beyond
-    /// which nothing changed: int8, int16 or int32, the narrowest that holds it. Undefined: no
-    /// change.
+    /// Edited minus previous image, [h, w, c] in the rectangle and the channels outside of which
+    /// nothing changed: int8, int16 or int32, the narrowest that holds it. Undefined: no change.
     at::Tensor change;
-    /// The picture before, [height, width, channels] uint8 or int32, where it does not follow from
-    /// the model (source_picture.h). Undefined where it does.
+    /// Previous image, [height, width, channels] uint8 or int32, if it does not follow from the
+    /// model (source_picture.h); else undefined.
     at::Tensor source;
-    /// How much of the edit each texel takes, [height, width] uint8 of 255, of the first picture of
-    /// materials of which a part was edited; else undefined.
+    /// Weight of the edit at each texel, [height, width] uint8 of 255, for the first image of
+    /// materials with a region; else undefined.
     at::Tensor mask;
-    /// Of the model's texture in that slot, and of its occlusion's beside metallic_roughness.
+    /// Sizes of the model's texture in that slot, and of its occlusion texture for
+    /// metallic_roughness.
     std::optional<LayerSize> source_size, occlusion_size;
 };
 
-/// What a material was when the edit began, where that is not what its file says: emission that
-/// became its base colour, transparency that went.
+/// State of a material when the edit began, if it differs from the file: emission that became base
+/// colour, transparency that was removed.
 struct MaterialBeginning {
     int base_color_texture = -1;
     Vec4 base_color_factor{1.0f};
@@ -56,41 +56,41 @@ struct MaterialBeginning {
 
 struct LayerMaterial {
     std::string name;
-    /// Into EditLayer::pictures by slot, -1: the slot stays as it was.
+    /// Indices into EditLayer::pictures by slot, -1: unchanged.
     std::array<int, 3> pictures{-1, -1, -1};
-    MaterialEdit changes;  ///< without pictures
+    MaterialEdit changes;  ///< without images
     std::optional<MaterialBeginning> beginning;
-    /// uv_moments() of the model; no value in files of before they were kept.
+    /// uv_moments() of the model; no value in older files.
     std::optional<std::vector<double>> uvs;
 };
 
-/// The part of the surface that an edit was of, as RegionRequest has it (region/region.h).
+/// The region of an edit, as in RegionRequest (region/region.h).
 struct LayerRegion {
     std::vector<std::string> include, exclude;
     float feather = 0;
 };
 
 struct EditLayer {
-    std::filesystem::path path;  ///< it was read from
+    std::filesystem::path path;  ///< file it was read from
     std::string model;           ///< file name
     std::string model_hash;      ///< hash_of_file()
     nlohmann::json settings;     ///< "from", "to" and all others, as in edit.json
-    EditClaim claim;             ///< of its edit; empty where that says nothing of itself
+    EditClaim claim;             ///< of its edit; empty if disabled
     std::vector<LayerPicture> pictures;
     std::map<int, LayerMaterial> materials;   ///< by index into Model::materials
     std::map<int, PrimitiveEdit> primitives;  ///< by index into Model::primitives
-    std::map<int, int> primitive_materials;   ///< material of each of them
-    std::optional<BakedChannels> channels;    ///< what was baked from the field; none: not kept
+    std::map<int, int> primitive_materials;   ///< material of each primitive
+    std::optional<BakedChannels> channels;    ///< channels baked from the field; none: unknown
     std::optional<LayerRegion> region;        ///< none: the whole surface
     nlohmann::json field;                     ///< options of the neural textures
-    NamedTensors parameters;                  ///< theirs (layer_field.h)
+    NamedTensors parameters;                  ///< of the neural textures (layer_field.h)
 };
 
 /// Writes the file atomically. Throws ResourceError on a full disk.
 void save_layer(const std::filesystem::path& path, const EditLayer& layer);
 
-/// Tensors share the file's memory map. Throws InputError for a file that is no layer, or whose
-/// parts do not fit together.
+/// Loads a layer; tensors share the file's memory map. Throws InputError for a file that is not a
+/// layer, or whose parts are inconsistent.
 EditLayer load_layer(const std::filesystem::path& path);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// The neural textures of an edit in its layer: half precision, the second as what differs.
+// The neural textures of an edit in its layer: half precision, the second one as a difference.
 #pragma once
 
 #include "item3d/field/neural_texture.h"
@@ -6,19 +6,19 @@
 
 namespace item3d {
 
-/// Both fields of an edit, of the same options.
+/// Both fields of an edit, with equal options.
 struct EditFields {
     NeuralTexture fitted{nullptr};  ///< before the edit
     NeuralTexture field{nullptr};   ///< after it
 };
 
 /// Sets layer.field and layer.parameters: "fitted.NAME" and "field.NAME" of
-/// NeuralTextureImpl::named_parameters(), float16; of field's table the rows alone that the edit
+/// NeuralTextureImpl::named_parameters(), float16; of field's table only the rows that the edit
 /// changed, "field.rows" [R] int32 and "field.values" [R, features].
 void put_fields(const EditFields& fields, EditLayer& layer);
 
-/// The fields as they were, to half precision, on the CPU. What the edit did not change is equal in
-/// both. Throws InputError where the layer's tensors do not fit its options.
+/// Returns the fields, in half precision, on the CPU. Parameters that the edit did not change are
+/// equal in both. Throws InputError where the layer's tensors do not match its options.
 EditFields get_fields(const EditLayer& layer);
 
 }  // namespace item3d

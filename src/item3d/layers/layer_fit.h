@@ -1,4 +1,4 @@
-// Whether a layer's pictures lie on a model as they lay on the one that was edited.
+// The test of whether a layer's images match a model as they matched the edited one.
 #pragma once
 
 #include "item3d/layers/layer.h"
@@ -8,14 +8,14 @@
 
 namespace item3d {
 
-/// A sentence on what the layer was made for and this model has not; empty: it fits.
+/// Returns a sentence on a requirement of the layer that the model lacks; empty: it fits.
 std::string misfit(const EditLayer& layer, const Model& model);
 
-/// Whether the edited materials have the UV maps that they had; true where the layer does not say.
+/// True if the edited materials have the same UV maps, or the layer does not record them.
 bool has_same_uvs(const EditLayer& layer, const Model& model);
 
-/// The material of this model that the layer's material `index` is: of that index and name, else of
-/// that name, else the only one where both have one. Throws InputError for none.
+/// Returns the model's material for the layer's material `index`: of that index and name, else of
+/// that name, else the only one if both have one. Throws InputError for none.
 int material_like(const EditLayer& layer, int index, const Model& model);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// The part of a surface that a layer is of, by the masks that it holds.
+// The region of a layer, from its masks.
 #pragma once
 
 #include "item3d/layers/layer.h"
@@ -10,16 +10,16 @@
 
 namespace item3d {
 
-/// Weights of a region by its pictures in UV space: for models with the UV map of the edit. A mask
-/// that is smaller than what is baked is interpolated; others keep the weights of their texels.
+/// Weights of a region from its images in UV space, for models with the edit's UV map. A mask
+/// smaller than the baked texture is interpolated; others are looked up by texel.
 class LayerMask {
   public:
     /// texture_size: of the bake, as for atlas_size().
     LayerMask(const EditLayer& layer, const Model& model, int texture_size);
 
-    /// Whether each of the layer's materials has one.
+    /// True if each of the layer's materials has a mask.
     bool is_complete() const { return is_complete_; }
-    /// [P, 1] float32 in [0, 1] on the surface's device; 0 for other materials.
+    /// Returns [P, 1] float32 in [0, 1] on the surface's device; 0 for other materials.
     at::Tensor weight(const Surface& surface) const;
 
   private:

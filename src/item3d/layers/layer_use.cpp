@@ -24,7 +24,8 @@ constexpr ChannelName channel_names[] = {{"base_color", &LayerChannels::base_col
                                          {"metallic", &LayerChannels::metallic},
                                          {"normal", &LayerChannels::normal}};
 
-/// The end of the longest part before a colon that is there, else of that before the first one.
+/// Returns the end of the longest existing path before a colon, else of the text before the first
+/// colon.
 std::size_t end_of_path(const std::string& text) {
     std::error_code ignored;
     for (std::size_t end = text.size(); end != std::string::npos && end > 0;

@@ -1,4 +1,4 @@
-// A layer as it is to be applied: how much of it, and of which channels.
+// The use of a layer: its strength and channels.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace item3d {
 
-/// Channels of a layer that are applied.
+/// Channels of a layer to apply.
 struct LayerChannels {
-    bool base_color = true;  ///< with its alpha
+    bool base_color = true;  ///< including alpha
     bool occlusion = true;
     bool roughness = true;
     bool metallic = true;
@@ -17,7 +17,8 @@ struct LayerChannels {
 };
 
 struct LayerUse {
-    /// Strengths are whole multiples of 1 / strength_steps, so that sums do not depend on an order.
+    /// Strengths are integral multiples of 1 / strength_steps, so that sums do not depend on their
+    /// order.
     static constexpr int strength_steps = 1 << 16;
     static constexpr double lowest = -1, highest = 2;
 
@@ -26,12 +27,12 @@ struct LayerUse {
     LayerChannels channels;
 };
 
-/// "LAYER[:STRENGTH[:CHANNEL,...]]". LAYER is a file, or the folder of an edit; where it has colons
-/// itself, what is there counts. Throws UsageError for a strength that is no number between lowest
-/// and highest, and for a channel that there is not.
+/// Parses "LAYER[:STRENGTH[:CHANNEL,...]]". LAYER is a file, or the folder of an edit; existing
+/// names may contain colons. Throws UsageError for a strength that is not a number between lowest
+/// and highest, and for an unknown channel.
 LayerUse parse_layer_use(const std::string& text);
 
-/// What would be behind the layer's name: "0.5:roughness"; empty where it is applied as a whole.
+/// Returns the text after the layer's name: "0.5:roughness"; empty for the whole layer.
 std::string strength_text(const LayerUse& use);
 
 }  // namespace item3d

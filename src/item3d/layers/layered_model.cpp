@@ -43,8 +43,8 @@ TextureFormat format_of(const std::vector<AppliedLayer>& layers) {
     return TextureFormat::keep;
 }
 
-/// Says of layers that were made of another file that they are applied all the same; apply_layers()
-/// refuses those that do not fit.
+/// Warns of layers of another file that are applied nevertheless; apply_layers() refuses those that
+/// do not fit.
 void warn_of_others(const LayeredModelRequest& request, const Model& model,
                     const std::vector<AppliedLayer>& layers) {
     const std::string hash = hash_of_file(request.model);
@@ -57,7 +57,7 @@ void warn_of_others(const LayeredModelRequest& request, const Model& model,
     }
 }
 
-/// A copy, where the file stays one of its kind and refers to no other.
+/// Copies a self-contained file if its format stays; else converts it.
 void write_unchanged(const LayeredModelRequest& request, const Model& model) {
     const std::string from = to_lower(request.model.extension().string());
     const std::string to = to_lower(request.output.extension().string());
@@ -69,7 +69,7 @@ void write_unchanged(const LayeredModelRequest& request, const Model& model) {
     }
 }
 
-/// Why layers are to be made anew; empty: they fit as they are.
+/// Returns the reason for rebaking layers; empty: they fit.
 std::string reason_to_rebake(const LayeredModelRequest& request, const Model& model,
                              const std::vector<AppliedLayer>& layers) {
     if (!request.rebake) return "";
@@ -93,7 +93,7 @@ void rebake_all(const LayeredModelRequest& request, const Model& model, const st
             applied.layer = request.rebake(applied.layer, model, request.texture_size);
 }
 
-/// Of the edits that the layers are of, in an order that does not depend on that of the layers.
+/// Returns the claims of the layers' edits, in an order that does not depend on that of the layers.
 std::vector<EditClaim> claims_of(const std::vector<AppliedLayer>& layers) {
     std::vector<EditClaim> claims;
     for (const AppliedLayer& applied : layers) {

@@ -1,4 +1,4 @@
-// A model with layers of edits on it, from files to a file.
+// The application of edits' layers to a model, from files to a file.
 #pragma once
 
 #include "item3d/io/texture_format.h"
@@ -23,22 +23,22 @@ struct LayeredModelRequest {
     std::vector<LayerUse> layers;
     std::filesystem::path output;                        ///< .glb, .vrm, .gltf or .obj
     std::vector<std::filesystem::path> texture_folders;  ///< see LoadOptions
-    /// Of the textures that are written; none: as the layers' edits wrote them, where they agree.
+    /// Format of written textures; none: that of the layers' edits, if they agree.
     std::optional<TextureFormat> texture_format;
-    int texture_size = 0;  ///< longest edge of the textures that layers change; 0: as they are
-    std::shared_ptr<const SigningKey> sign_key = nullptr;  ///< null: the result is not signed
-    /// Makes a layer anew for a model, from its field, with textures of this size (0: as its
-    /// edit's). Null: layers that do not fit are refused.
+    int texture_size = 0;  ///< longest edge of changed textures; 0: unchanged
+    std::shared_ptr<const SigningKey> sign_key = nullptr;  ///< null: the result is unsigned
+    /// Rebakes a layer for a model from its field, with textures of this size (0: as its edit's).
+    /// Null: layers that do not fit are refused.
     std::function<EditLayer(const EditLayer&, const Model&, int texture_size)> rebake = nullptr;
 };
 
-/// Writes the model; with a layer alone at full strength it has the bytes of its edit's model.glb,
-/// with strengths of 0 those of the model's file, where the kind of file stays. Where a texture
-/// size is asked for, and where a layer's pictures do not fit the model (other sizes, another UV
-/// map), all layers are made anew by `rebake`, with a note that says why. A layer of another file
-/// that fits is a warning. Returns "model", "output", "layers" (each with "file", "strength",
-/// "from", "to", and "baked_because" where it was made anew) and "materials", those that changed,
-/// by name. Throws InputError as load_model, load_layer, rebake and apply_layers do.
+/// Writes the model. With a single layer at full strength it equals its edit's model.glb bit for
+/// bit, with strengths of 0 the model's file, if the file format stays. For a given texture size,
+/// and if a layer's images do not fit the model (other sizes, another UV map), `rebake` rebakes all
+/// layers, with a note of the reason. Warns of a fitting layer of another file. Returns "model",
+/// "output", "layers" (each with "file", "strength", "from", "to", and "baked_because" if rebaked)
+/// and "materials", the changed ones, by name. Throws InputError as load_model(), load_layer(),
+/// rebake and apply_layers().
 nlohmann::json write_layered_model(const LayeredModelRequest& request);
 
 }  // namespace item3d

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int rows_at_once = 16;
 
-/// [height, width, channels] of these integers.
+/// Returns [height, width, channels] of file integers.
 at::Tensor file_values(const Image& image, int bits) {
     at::Tensor values =
         at::empty({image.height, image.width, image.channels}, at::TensorOptions(at::kInt));
@@ -29,7 +29,7 @@ at::Tensor file_values(const Image& image, int bits) {
     return values;
 }
 
-/// Columns of a row that are not 0: the first, and one behind the last; {width, 0} for none.
+/// Returns the range of a row's nonzero columns, half-open; {width, 0} for none.
 std::pair<std::int64_t, std::int64_t> used_columns(const std::int32_t* row, std::int64_t width,
                                                    std::int64_t channels) {
     std::pair<std::int64_t, std::int64_t> used(width, 0);
@@ -41,7 +41,7 @@ std::pair<std::int64_t, std::int64_t> used_columns(const std::int32_t* row, std:
     return used;
 }
 
-/// Sets the picture's change to the rectangle and the channels that hold all that is not 0.
+/// Sets the image's change to the smallest rectangle and channels with all nonzero values.
 void crop(const at::Tensor& change, LayerPicture& picture) {
     const std::int64_t height = change.size(0), width = change.size(1), channels = change.size(2);
     const auto* values = change.const_data_ptr<std::int32_t>();
@@ -124,7 +124,7 @@ class LayerMaker {
                                                    begun.base_color_factor, begun.metallic_factor};
     }
 
-    /// Materials that share a picture share it here.
+    /// Returns the index of an image; materials that share it get the same one.
     int picture_of(int material, LayerSlot slot, const EditedTexture& texture) {
         const auto [known, is_new] =
             seen_.emplace(texture.identity(), static_cast<int>(layer_.pictures.size()));
@@ -171,7 +171,7 @@ class LayerMaker {
     const BakedEdit& baked_;
     EditLayer layer_;
     std::map<const void*, int> seen_;
-    std::set<const void*> has_mask_;  ///< a texture set's is stored with its first picture
+    std::set<const void*> has_mask_;  ///< a set's mask is stored with its first image
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The layer of an edit: what its bake changed.
+// The construction of a layer from an edit's bake.
 #pragma once
 
 #include "item3d/field/bake/bake.h"
@@ -10,15 +10,15 @@
 
 namespace item3d {
 
-/// What an edit was made of, and what came of it. All must live as long as the call.
+/// Input and result of an edit, which must outlive the call.
 struct BakedEdit {
-    const std::vector<Material>& file_materials;  ///< as load_model() reads them
-    const Model& model;                           ///< as the edit began from it
+    const std::vector<Material>& file_materials;  ///< unmodified, from load_model()
+    const Model& model;                           ///< the edit's starting point
     const ModelEdit& edit;
-    const std::map<int, UneditedPictures>& unedited;  ///< of bake()
+    const std::map<int, UneditedPictures>& unedited;  ///< from bake()
 };
 
-/// Pictures, materials and primitives of the layer; the rest is the caller's to set.
+/// Returns a layer with images, materials and primitives; the caller sets the rest.
 EditLayer make_layer(const BakedEdit& baked);
 
 }  // namespace item3d

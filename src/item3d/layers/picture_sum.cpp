@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t sum_rows = 16;
 
-/// The change of a whole picture, enlarged to another size: [height, width, channels] int32.
+/// Returns the change of a whole image, resized to [height, width, channels] int32.
 at::Tensor enlarged(const LayerPicture& picture, int width, int height) {
     at::Tensor whole = at::zeros({picture.height, picture.width, picture.channels}, at::kInt);
     whole.slice(0, picture.y, picture.y + picture.change.size(0))
@@ -55,7 +55,7 @@ at::Tensor enlarged(const LayerPicture& picture, int width, int height) {
     return result;
 }
 
-/// A term with its change as rows of a rectangle.
+/// A term whose change is accessed as rows of a rectangle.
 struct Rows {
     at::Tensor change;
     std::int64_t x, y, width, height;
@@ -83,7 +83,7 @@ struct Rows {
     }
 };
 
-/// As the model has it, or as the layer does.
+/// Returns the previous image, from the model or from the layer.
 Image picture_before(const PictureTerm& term, const LayerPicture& shape, const Model& model,
                      int material, const MaterialEdit& changes, bool remakes_uvs) {
     const at::Tensor& source = term.picture->source;
@@ -104,7 +104,7 @@ Image picture_before(const PictureTerm& term, const LayerPicture& shape, const M
     return image;
 }
 
-/// The largest of them; throws where they cannot be brought to it.
+/// Returns the largest term's shape; throws if other terms cannot be resized to it.
 LayerPicture common_shape(const std::vector<PictureTerm>& terms, const std::string& material) {
     LayerPicture shape = *terms.front().picture;
     for (const PictureTerm& term : terms) {

@@ -11,13 +11,13 @@ namespace {
 constexpr double tolerance = 1e-4;
 constexpr std::size_t count = 11;
 
-using Corners = std::array<double, 3>;  ///< a linear function of a triangle
+using Corners = std::array<double, 3>;  ///< corner values of a linear function
 
 double sum(const Corners& f) {
     return f[0] + f[1] + f[2];
 }
 
-/// The mean of a product over the triangle.
+/// Returns the mean of a product over the triangle.
 double mean(const Corners& f, const Corners& g) {
     return (sum(f) * sum(g) + f[0] * g[0] + f[1] * g[1] + f[2] * g[2]) / 12;
 }

@@ -12,7 +12,7 @@ namespace item3d {
 
 namespace {
 
-/// Of a new sun: enough that it is plainly seen from where, with fill in the shadows.
+/// Strength of a new sun: its direction is clear, with fill light in the shadows.
 constexpr double usual_strength = 6;
 
 }  // namespace
@@ -22,7 +22,7 @@ Image tilt_light(const Image& light, float degrees) {
     const float angle = degrees * pi / 180;
     const float cosine = std::cos(angle);
     const float sine = std::sin(angle);
-    // Looks up where each direction was before.
+    // Look up the direction before the rotation.
     return light_from(light.height, [&](Vec3 d) {
         return look_up(light, Vec3(d.x, cosine * d.y + sine * d.z, cosine * d.z - sine * d.y));
     });
@@ -83,7 +83,7 @@ Image place_sun(const Image& light, const SunSetting& setting) {
     const double rest = M_PI * luminance(mean_radiance(result));
     double irradiance = lobe.is_sun() ? luminance(lobe.irradiance) : usual_strength * rest;
     if (setting.strength) irradiance = *setting.strength * rest;
-    // In the dark there is nothing to be relative to.
+    // In the dark there is no reference.
     if (rest == 0 && !lobe.is_sun()) irradiance = M_PI;
     add_sun_disk(result, {.direction = to_direction(setting.from),
                           .radius = setting.width / 2 * pi / 180,

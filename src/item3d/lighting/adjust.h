@@ -1,4 +1,4 @@
-// Changes of a light by hand.
+// Manual adjustments of a light.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -8,33 +8,32 @@
 
 namespace item3d {
 
-/// Turns the light about the X axis (west to east) by `degrees`; positive: what stood in the north
-/// (-Z, the map's centre) rises.
+/// Turns the light about the X axis (west to east) by `degrees`; positive: the north (-Z, the map's
+/// centre) rises.
 Image tilt_light(const Image& light, float degrees);
 
-/// Multiplies by a colour (linear RGB) that is brought to luminance 1 first, so that a tint does
-/// not darken. Throws InputError for black.
+/// Multiplies by a colour (linear RGB), normalised to luminance 1 so that a tint does not darken.
+/// Throws InputError for black.
 Image tint_light(const Image& light, Vec3 linear_color);
 
-/// The light with `lobe` and its blurred rim replaced by the mean of a ring around it.
+/// Returns the light with `lobe` and its blurred rim replaced by the mean of a ring around it.
 Image without_lobe(const Image& light, const LightLobe& lobe);
 
 struct SunSetting {
     SkyAngles from;
-    /// Irradiance facing the sun over the mean irradiance of the rest of the light; none: what the
-    /// light's own sun has, else 6.
+    /// Irradiance facing the sun relative to the mean irradiance of the rest of the light; none:
+    /// that of the light's own sun, else 6.
     std::optional<float> strength;
     float width =
-        3;  ///< degrees across; the true sun has 0.53. Its irradiance does not depend on it
+        3;  ///< diameter in degrees (true sun: 0.53); the irradiance does not depend on it
 };
 
-/// Moves the light's sun, its brightest lobe where that is a sun (LightLobe::is_sun), to
-/// `setting.from`; where there is none, adds a white one. The place where it stood is filled from
-/// its surroundings. The whole is then scaled so that the brightest white surface is as bright as
-/// before.
+/// Moves the light's sun, its brightest lobe if that is a sun (LightLobe::is_sun), to
+/// `setting.from`; adds a white one if there is none. Its old place is filled from its
+/// surroundings. The result is scaled so that the brightest white surface keeps its brightness.
 Image place_sun(const Image& light, const SunSetting& setting);
 
-/// What can be changed of a light.
+/// Adjustments of a light.
 struct LightChange {
     float rotation = 0;  ///< degrees
     float tilt = 0;      ///< degrees
@@ -43,8 +42,8 @@ struct LightChange {
     std::optional<Vec3> tint;  ///< linear RGB
 };
 
-/// The light turned, tilted, given its sun, tinted and exposed, in this order: where a sun is asked
-/// for is where it stands in the end, and tint and exposure are those of the whole.
+/// Returns the light turned, tilted, given its sun, tinted and exposed, in this order: the sun's
+/// direction is the final one, and tint and exposure apply to the whole.
 Image change_light(const Image& light, const LightChange& change);
 
 }  // namespace item3d

@@ -22,12 +22,12 @@ Vec3 direction_at(const Image& light, int x, int y) {
                                      (static_cast<float>(y) + 0.5f) / light.height);
 }
 
-/// Also of pictures that are not 2:1.
+/// Returns the solid angle of a row's texel, also for images that are not 2:1.
 double solid_angle_of_row(const Image& light, int y) {
     return texel_solid_angle(y, light.height) * 2.0 * light.height / light.width;
 }
 
-/// Averages blocks of texels, weighted by solid angle, into one of at most 64 rows.
+/// Averages blocks of texels, weighted by solid angle, down to at most 64 rows.
 Image shrink(const Image& light) {
     const int block = std::max(1, light.height / 64);
     if (block == 1) return light;
@@ -51,7 +51,7 @@ Image shrink(const Image& light) {
     return small;
 }
 
-/// McCamy, "Correlated color temperature as an explicit function of chromaticity coordinates".
+/// McCamy 1992, "Correlated color temperature as an explicit function of chromaticity coordinates".
 std::optional<double> color_temperature_of(Double3 rgb) {
     // Linear sRGB to CIE XYZ (IEC 61966-2-1).
     const double x = glm::dot(rgb, Double3(0.4124, 0.3576, 0.1805));
@@ -100,7 +100,7 @@ SkyAngles to_sky_angles(Vec3 direction) {
     const Vec3 d = glm::normalize(direction);
     SkyAngles angles;
     angles.elevation = std::asin(std::clamp(d.y, -1.0f, 1.0f)) * 180 / pi;
-    // At the poles every azimuth is right, and rounding would choose one.
+    // At the poles the azimuth is arbitrary, and rounding would determine it.
     if (std::hypot(d.x, d.z) > 1e-5f) angles.azimuth = std::atan2(d.x, -d.z) * 180 / pi;
     if (angles.azimuth < 0) angles.azimuth += 360;
     return angles;
@@ -211,7 +211,7 @@ glm::dvec3 mean_radiance(const Image& light) {
 
 float peak_irradiance_over_pi(const Image& light) {
     const Image small = shrink(light);
-    // irradiance_over_pi for many normals, with the directions of the texels made once.
+    // irradiance_over_pi() for many normals, with shared directions of the texels.
     std::vector<Vec3> directions;
     std::vector<double> radiance;  // mean of the channels, times solid angle
     for (int y = 0; y < small.height; ++y) {
@@ -224,7 +224,7 @@ float peak_irradiance_over_pi(const Image& light) {
     constexpr int normals = 256;
     double largest = 0;
     for (int i = 0; i < normals; ++i) {
-        // Fibonacci's spiral covers the sphere evenly.
+        // A Fibonacci spiral covers the sphere evenly.
         const float y = 1 - (2 * i + 1.0f) / normals;
         const float radius = std::sqrt(1 - y * y);
         const float angle = 2.39996323f * static_cast<float>(i);

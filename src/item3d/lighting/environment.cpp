@@ -32,7 +32,7 @@ void normalize_peak(Image& light, float peak) {
 }
 
 /// CIE standard overcast sky (Moon and Spencer 1942): three times brighter at the zenith than at
-/// the horizon, with faint cloud so that reflections are not lifeless.
+/// the horizon, with faint clouds for interesting reflections.
 Image overcast_sky(int height) {
     Image image(2 * height, height, 3);
     const auto value_noise = [](Vec2 p, std::uint64_t seed) {
@@ -50,9 +50,9 @@ Image overcast_sky(int height) {
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < image.width; ++x) {
             const Vec3 d = equirectangular_direction((x + 0.5f) / image.width, (y + 0.5f) / height);
-            Vec3 radiance(0.3f, 0.295f, 0.28f);  // the ground, albedo about 0.35
+            Vec3 radiance(0.3f, 0.295f, 0.28f);  // ground, albedo about 0.35
             if (d.y > 0) {
-                // A layer of cloud on a bowed plane: patches shrink towards the horizon.
+                // A layer of cloud on a curved plane: patches shrink towards the horizon.
                 Vec2 p = Vec2(d.x, d.z) / (d.y + 0.35f) * 1.6f;
                 float cloud = 0;
                 float strength = 0.5f;
@@ -69,8 +69,8 @@ Image overcast_sky(int height) {
     return image;
 }
 
-/// Moonlight is sunlight, 400 000 times dimmer; eyes that have adapted to it see it bluish (Jensen
-/// et al. 2000, "Night rendering"), which is the tint here.
+/// Moonlight is sunlight, 400 000 times dimmer; dark-adapted eyes see it bluish (Jensen et al.
+/// 2000, "Night rendering"), which is the tint here.
 Image night_sky(int height) {
     SkyOptions options;
     options.sun_direction = direction_of(40, 38);
@@ -89,7 +89,7 @@ Image night_sky(int height) {
             equirectangular_uv(Vec3(radius * std::sin(angle), y, radius * std::cos(angle)));
         const int column = std::min(static_cast<int>(uv.x * image.width), image.width - 1);
         const int row = std::min(static_cast<int>(uv.y * height), height - 1);
-        // Near the horizon air hides them.
+        // Air hides them near the horizon.
         const double flux =
             2e-4 * brightness * std::min(1.0, 4 * y) / texel_solid_angle(row, height);
         image.at(column, row, 0) += static_cast<float>(flux * (1 + warmth));
@@ -180,7 +180,7 @@ double texel_solid_angle(int y, int height) {
 Vec3 irradiance_over_pi(const Image& light, Vec3 normal) {
     glm::dvec3 sum(0);
     for (int y = 0; y < light.height; ++y) {
-        // The row's texels may be more or fewer than 2 * height in a picture that is not 2:1.
+        // A row has another number of texels than 2 * height in an image that is not 2:1.
         const double solid_angle =
             texel_solid_angle(y, light.height) * 2.0 * light.height / light.width;
         for (int x = 0; x < light.width; ++x) {

@@ -41,7 +41,7 @@ std::array<Vec3, 9> irradiance_harmonics(const Image& light) {
                 sums[i] += solid_angle * basis[i] * radiance;
         }
     }
-    // Of the cosine lobe, by band (the paper's equation 8).
+    // Coefficients of the cosine lobe, by band (the paper's equation 8).
     constexpr std::array<double, 3> lobe = {M_PI, 2 * M_PI / 3, M_PI / 4};
     std::array<Vec3, 9> result;
     for (std::size_t i = 0; i < 9; ++i)

@@ -1,4 +1,4 @@
-// Light from all around as glTF's EXT_lights_image_based has it.
+// Environment lights in the form of glTF's EXT_lights_image_based.
 #pragma once
 
 #include "item3d/lighting/layout.h"
@@ -9,25 +9,25 @@
 
 namespace item3d {
 
-/// +X, -X, +Y, -Y, +Z, -Z: the faces of OpenGL's cube maps, mirrored, as the extension wants them.
-/// They are then as seen from inside.
+/// +X, -X, +Y, -Y, +Z, -Z: the faces of OpenGL's cube maps, mirrored, as the extension requires:
+/// seen from inside.
 extern const std::array<CubeFaceAxes, 6> gltf_face_axes;
 
-/// Real spherical harmonics of bands 0 to 2 in the direction d (unit), in the order and with the
-/// signs of Ramamoorthi and Hanrahan 2001, "An Efficient Representation for Irradiance Environment
-/// Maps": 1; y, z, x; xy, yz, 3z^2 - 1, xz, x^2 - y^2, each with its positive constant.
+/// Returns real spherical harmonics of bands 0 to 2 in the direction d (unit), in the order and
+/// with the signs of Ramamoorthi and Hanrahan 2001, "An Efficient Representation for Irradiance
+/// Environment Maps": 1; y, z, x; xy, yz, 3z^2 - 1, xz, x^2 - y^2, each with its positive constant.
 std::array<float, 9> spherical_harmonics(Vec3 d);
 
 struct ImageBasedLight {
-    /// Irradiance on a surface that faces d is their sum, weighted by spherical_harmonics(d).
-    /// Linear RGB; a white surface has the radiance irradiance / pi.
+    /// Coefficients of irradiance: their sum weighted by spherical_harmonics(d) is the irradiance
+    /// on a surface that faces d. Linear RGB; a white surface has the radiance irradiance / pi.
     std::array<Vec3, 9> irradiance;
-    /// Linear RGB radiance, prefiltered by GGX: level k of n for the roughness k / (n - 1), each
-    /// half as fine as the one before. Six faces in a row, gltf_face_axes.
+    /// Linear RGB radiance, prefiltered by GGX: level k of n for the roughness k / (n - 1), each of
+    /// half the previous resolution. Six faces in a row, gltf_face_axes.
     std::vector<Image> specular;
 };
 
-/// light: equirectangular, height x width x 3.
+/// Returns the coefficients of irradiance. light: equirectangular, height x width x 3.
 std::array<Vec3, 9> irradiance_harmonics(const Image& light);
 
 }  // namespace item3d

@@ -26,7 +26,7 @@ const std::array<CubeFaceAxes, 6> face_axes = {{
     {{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}},
 }};
 
-/// Where the faces of a layout stand, in faces from the upper left corner.
+/// Positions of a layout's faces, in faces from the upper left corner.
 struct FacePlaces {
     int columns;
     int rows;
@@ -48,7 +48,8 @@ Vec3 texel(const Image& picture, int x, int y) {
     return {picture.at(x, y, 0), picture.at(x, y, 1), picture.at(x, y, 2)};
 }
 
-/// Bilinear at (x, y) in pixels, within the rectangle of pixels that begins at (left, top).
+/// Interpolates bilinearly at (x, y) in pixels, within the rectangle of pixels that begins at
+/// (left, top).
 Vec3 bilinear(const Image& picture, float x, float y, int left, int top, int width, int height) {
     const float column = std::clamp(x - 0.5f, 0.0f, static_cast<float>(width - 1));
     const float row = std::clamp(y - 0.5f, 0.0f, static_cast<float>(height - 1));

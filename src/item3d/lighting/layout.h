@@ -1,4 +1,5 @@
-// Lights as other programs lay them out: cube maps and light probes, brought to equirectangular.
+// Layouts of lights in other programs, cube maps and light probes, and their conversion to
+// equirectangular.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -12,7 +13,7 @@
 namespace item3d {
 
 enum class LightLayout {
-    automatic,        ///< by the ratio of the sides
+    automatic,        ///< by the aspect ratio
     equirectangular,  ///< 2:1
     /// Six faces as an unfolded box, seen from inside, around the front (-Z): right (+X), left, up
     /// and down on its four sides, and the back beyond the right one (4:3) or, upside down, below
@@ -20,37 +21,39 @@ enum class LightLayout {
     cross,
     /// right, left, up, down, front, back in a row (6:1) or a column (1:6), seen from inside; the
     /// lower edge of "up" and the upper edge of "down" meet the front. This is the order +X -X +Y
-    /// -Y +Z -Z of graphics interfaces, whose cube maps look along +Z.
+    /// -Y +Z -Z of graphics APIs, whose cube maps look along +Z.
     strip,
-    /// A light probe (Debevec 1998): the middle looks to -Z, and the distance from it, as a part of
-    /// half the side, is the angle from -Z as a part of 180 degrees. 1:1.
+    /// A light probe (Debevec 1998): the centre looks to -Z, and the distance from it, relative to
+    /// half the side, is the angle from -Z relative to 180 degrees. 1:1.
     angular
 };
 
-/// "auto", "equirectangular", "cross", "strip", "angular".
+/// Returns "auto", "equirectangular", "cross", "strip", "angular".
 const std::vector<std::string>& light_layout_names();
 /// Throws InputError on other names.
 LightLayout parse_light_layout(const std::string& name);
 
-/// picture: linear RGB. Returns height x 2*height x 3, where height is two sides of a cube's face
-/// or half the side of a probe; an equirectangular picture comes back as it is. Throws InputError
-/// that names `subject` when the sides do not fit the layout, or tell of none.
+/// Converts a light. picture: linear RGB. Returns height x 2*height x 3, where height is two sides
+/// of a cube's face or half the side of a probe; an equirectangular image is returned unchanged.
+/// Throws InputError that names `subject` when the aspect ratio does not match the layout, or
+/// matches none.
 Image to_equirectangular(const Image& picture, LightLayout layout, const std::string& subject);
 
-/// A cube's face as it is seen from inside.
+/// Axes of a cube's face, seen from inside.
 struct CubeFaceAxes {
     Vec3 forward;
     Vec3 right;
     Vec3 up;
 };
 
-/// Six square faces in a row to an equirectangular light of two faces' height.
+/// Converts six square faces in a row to an equirectangular light of twice the faces' height.
 Image faces_to_equirectangular(const Image& row, const std::array<CubeFaceAxes, 6>& axes);
 
-/// An equirectangular light of `height` rows from radiance by direction, four samples a texel.
+/// Returns an equirectangular light of `height` rows from radiance by direction, with four samples
+/// a texel.
 Image light_from(int height, const std::function<Vec3(Vec3)>& radiance);
 
-/// Radiance in a direction, bilinear.
+/// Returns the radiance in a direction, interpolated bilinearly.
 Vec3 look_up(const Image& light, Vec3 direction);
 
 }  // namespace item3d

@@ -10,7 +10,7 @@ namespace item3d {
 
 namespace {
 
-/// Part of texel (x, y) that the disk covers, by 8 x 8 points.
+/// Returns the part of texel (x, y) that the disk covers, by 8 x 8 points.
 double coverage_of(int x, int y, const Image& light, const SunDisk& disk, float cosine_radius,
                    float cosine_far) {
     const int width = light.width;
@@ -34,7 +34,7 @@ double coverage_of(int x, int y, const Image& light, const SunDisk& disk, float 
 void add_sun_disk(Image& light, const SunDisk& disk) {
     const int width = light.width;
     const int height = light.height;
-    // Pictures that are not 2:1 have wider or narrower texels.
+    // Images that are not 2:1 have wider or narrower texels.
     const double stretch = 2.0 * height / width;
     const float texel_size = 2 * pi / static_cast<float>(std::min(height, width / 2));
     const float cosine_radius = std::cos(disk.radius);

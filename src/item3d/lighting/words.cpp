@@ -12,15 +12,15 @@ namespace {
 
 // Degrees above the horizon.
 constexpr float usual_elevation = 25;
-constexpr float camera_elevation = 18;  // a lamp on the camera, which stands a little above
+constexpr float camera_elevation = 18;  // a lamp on the camera, which is slightly above
 constexpr float low_elevation = 8;
 constexpr float high_elevation = 60;
-constexpr float above_elevation = 45;  // "from above left"; "from above" alone is the zenith
+constexpr float above_elevation = 45;  // for "from above left"; "from above" alone is the zenith
 constexpr float below_elevation = -35;
 
 struct Word {
     std::string text;
-    std::size_t begin;  ///< in the sentence
+    std::size_t begin;  ///< position in the sentence
     std::size_t end;
 };
 
@@ -47,7 +47,7 @@ std::vector<Word> words_of(const std::string& sentence) {
     return words;
 }
 
-/// Degrees clockwise, seen from above, from the way that the camera looks.
+/// Degrees clockwise, seen from above, from the camera's viewing direction.
 const std::map<std::string, float> viewer_words = {
     {"left", -90}, {"right", 90}, {"front", 180}, {"camera", 180},  {"viewer", 180},  {"behind", 0},
     {"back", 0},   {"rear", 0},   {"backlit", 0}, {"backlight", 0}, {"frontlit", 180}};
@@ -66,22 +66,22 @@ const std::set<std::string> above_words = {"above", "overhead", "top", "upper", 
 const std::set<std::string> below_words = {"below", "underneath", "beneath", "bottom", "lower"};
 const std::set<std::string> low_words = {"low", "rising", "setting"};
 const std::set<std::string> high_words = {"high"};
-/// These say a direction wherever they stand; others only after a preposition, so that "a left
-/// glove" says none.
+/// Words that denote a direction anywhere; others only after a preposition, so that "a left glove"
+/// has none.
 const std::set<std::string> lone_words = {"behind",     "above",   "overhead", "below",
                                           "underneath", "beneath", "backlit",  "frontlit"};
 const std::set<std::string> prepositions = {"from", "in", "at", "on", "to", "towards"};
-/// Between words of direction they say nothing.
+/// Ignored between words of direction.
 const std::set<std::string> fillers = {
     "the", "a", "and",      "of",   "from",     "in", "at",  "on",   "to",  "side",  "hand", "your",
     "my",  "s", "straight", "just", "directly", "up", "far", "very", "sky", "model", "it",   "its"};
-/// What remains of a sentence that says nothing but a direction.
+/// Words that may remain beside a direction without further meaning.
 const std::set<std::string> empty_words = {
     "lit",    "light", "lighted", "illuminated", "sun", "sunlight", "lighting", "lamp",    "the",
     "a",      "is",    "it",      "with",        "by",  "and",      "coming",   "shining", "comes",
     "shines", "falls", "falling", "of",          "in",  "from",     "to",       "at",      "on"};
 
-/// What was said so far.
+/// Accumulated directions of a sentence.
 struct Said {
     float x = 0;  ///< sum of the horizontal directions, east
     float z = 0;  ///< south
@@ -135,7 +135,7 @@ class Parser {
         if (text.size() > 3 || !std::isdigit(static_cast<unsigned char>(text[0]))) return -1;
         return std::stoi(text);
     }
-    /// "2 o'clock", "two oclock".
+    /// True for "2 o'clock", "two oclock".
     bool is_clock(std::size_t i) const {
         const int hour = number_at(i);
         if (hour < 1 || hour > 12) return false;
@@ -145,7 +145,8 @@ class Parser {
         return number_at(i) >= 0 && number_at(i) <= 90 && is(i + 1, {"degree", "degrees"});
     }
 
-    /// How many words from `i` on say a direction, which is added to `said`; 0: none do.
+    /// Returns the number of words from `i` on that denote a direction, which it adds to `said`; 0:
+    /// none.
     std::size_t term(std::size_t i, Said& said) const {
         if (i >= words_.size()) return 0;
         const std::string& text = words_[i].text;
@@ -157,7 +158,7 @@ class Parser {
             said.elevation = static_cast<float>(number_at(i));
             return is(i + 2, {"up", "high", "above"}) ? 3 : 2;
         }
-        // Behind the camera is in front of the model; "camera left" is left in the picture.
+        // Behind the camera is in front of the model; "camera left" is left in the image.
         if (is(i, {"behind"})) {
             std::size_t next = i + 1;
             while (is(next, {"the", "your", "my", "of"}))
@@ -204,7 +205,7 @@ class Parser {
         return any;
     }
 
-    /// Words of direction from `begin` on, with fillers between them. Fillers at the end stay.
+    /// Takes words of direction from `begin` on, with fillers between them. Trailing fillers stay.
     std::size_t group(std::size_t begin) {
         Said said = said_;
         std::size_t end = begin;
@@ -215,10 +216,10 @@ class Parser {
             if (length > 0) end = i;
         }
         if (end == begin) return 0;
-        // "side" and "sky" belong to the words before them: "the left side", "high in the sky".
+        // "side" and "sky" belong to the previous words: "the left side", "high in the sky".
         for (std::size_t i = end; is(i, fillers); ++i)
             if (is(i, {"side", "hand", "sky"})) end = i + 1;
-        // High or low is no direction by itself: "in high spirits".
+        // High or low alone is no direction: "in high spirits".
         if (!said.horizontal && said.vertical == 0) return 0;
         said_ = said;
         std::fill(used_.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -226,7 +227,7 @@ class Parser {
         return end - begin;
     }
 
-    /// "low sun in the east", "a sun low in the east": before the direction.
+    /// Takes modifiers before the direction: "low sun in the east", "a sun low in the east".
     void take_leading_modifiers() {
         for (std::size_t i = 0; i < words_.size(); ++i) {
             if (used_[i] || !modifies(i) || !said_.horizontal) continue;
@@ -262,7 +263,7 @@ class Parser {
         for (std::size_t i = 0; i < words_.size(); ++i)
             says_something = says_something || (!used_[i] && !is(i, empty_words));
         if (!says_something) return "";
-        // Used words are cut together with what stands between them.
+        // Cut used words together with the text between them.
         std::string text = sentence_;
         for (std::size_t end = words_.size(); end > 0;) {
             if (!used_[end - 1]) {
@@ -289,7 +290,7 @@ class Parser {
     }
 
     std::string sentence_;
-    float ahead_;  ///< the azimuth that the camera looks towards
+    float ahead_;  ///< azimuth of the camera's viewing direction
     std::vector<Word> words_;
     std::vector<bool> used_;
     Said said_;

@@ -1,4 +1,4 @@
-// Directions of light as people say them: "lit from the left", "sun low in the east".
+// Parsing of a light's direction in words: "lit from the left", "sun low in the east".
 #pragma once
 
 #include "item3d/lighting/description.h"
@@ -10,23 +10,21 @@
 namespace item3d {
 
 struct LightWords {
-    /// Where the light comes from; none where the sentence says nothing of it, or things that
-    /// cancel
-    /// ("from the left and the right").
+    /// Direction of the light; none where the sentence has no such words, or they cancel ("from the
+    /// left and the right").
     std::optional<SkyAngles> from;
     /// The sentence without its words of direction: "golden evening light" of "golden evening light
     /// from the left". Empty where only words like "lit" or "sun" would remain.
     std::string rest;
 };
 
-/// viewer_azimuth: where the camera stands, degrees as in SkyAngles. To it belong "from the camera"
-/// (or front), left and right as it sees them, and "behind", which is beyond the model. Compass
-/// words do not depend on it: north is -Z, east +X. On the clock the model is in the middle, the
-/// camera at 6 and what it looks towards at 12 o'clock. Directions that are named together are
-/// added up.
+/// viewer_azimuth: azimuth of the camera, degrees as in SkyAngles. "From the camera" (or front),
+/// left, right, and "behind" (beyond the model) are relative to it. Compass words are not: north is
+/// -Z, east +X. On a clock the model is at the centre, the camera at 6 and its viewing direction at
+/// 12 o'clock. Several directions are added as vectors.
 LightWords parse_light_words(const std::string& sentence, float viewer_azimuth);
 
-/// What parse_light_words understands, a line for each kind of word; for help and errors.
+/// Returns the supported words, a line for each kind; for help and errors.
 const std::vector<std::string>& light_words_help();
 
 }  // namespace item3d

@@ -8,7 +8,7 @@
 namespace item3d {
 namespace {
 
-/// Draws of noise that attention is averaged over.
+/// Number of noise draws in the mean attention.
 constexpr int attention_noises = 4;
 
 }  // namespace
@@ -35,7 +35,7 @@ at::Tensor share_of_words(const at::Tensor& attention, std::int64_t tokens) {
 SurfaceReading read_attention(const RegionScene& scene, const DiffusionModel& prior,
                               const std::string& words) {
     const std::string prompt = attention_prompt(words);
-    // Without start and end; what is too long for the prior is cut off.
+    // Without start and end token, and after truncation by the prior.
     const auto tokens =
         std::min<std::int64_t>(static_cast<std::int64_t>(prior.tokenizer().encode(prompt).size()),
                                prior.tokenizer().model_max_length()) -

@@ -1,4 +1,5 @@
-// Where a prior's U-Net reads the words of a phrase: the fallback where no segmenter is there.
+// The reading of a phrase's location from a prior's cross-attention, the fallback without a
+// segmenter.
 #pragma once
 
 #include "item3d/networks/diffusion/diffusion_model.h"
@@ -9,15 +10,16 @@
 
 namespace item3d {
 
-/// "the horns" of "horns", "a horns" and "The horns": what the prior is asked.
+/// Returns the prior's prompt: "the horns" for "horns", "a horns" and "The horns".
 std::string attention_prompt(const std::string& words);
 
-/// [T, h, w] attention to the tokens of "the horns" -> [1, h, w]: the part that the words' own
-/// tokens, all but the article's, have of it among the `tokens` behind the start token.
+/// Maps attention [T, h, w] to the tokens of "the horns" to [1, h, w]: the share of the words' own
+/// tokens, without the article, among the `tokens` after the start token.
 at::Tensor share_of_words(const at::Tensor& attention, std::int64_t tokens);
 
-/// The words' share at points of the surface as a z-score, values [1, K]: 0 is the mean of the
-/// seen points, 1 a standard deviation above it. The prior must know attention_prompt(words).
+/// Returns the words' share at points of the surface as a z-score, values [1, K]: 0 is the mean
+/// over visible points, 1 a standard deviation above it. The prior must know
+/// attention_prompt(words).
 SurfaceReading read_attention(const RegionScene& scene, const DiffusionModel& prior,
                               const std::string& words);
 

@@ -11,10 +11,11 @@ namespace item3d {
 namespace {
 
 constexpr int difference_noises = 3;
-/// Differences above so many times the mean are outliers; half of that is in the region.
+/// Multiple of the mean above which differences are outliers; the region has more than half of
+/// that.
 constexpr double outlier = 4, enough_difference = 0.5;
-/// Priors made for pictures of at most so many pixels are shown them at twice that size: a cell of
-/// their latents is as large as an eye.
+/// Largest native size of a prior that reads images of twice its size, because a cell of its
+/// latents is as large as an eye.
 constexpr int small_native_size = 128;
 
 int difference_pixels(const DiffusionModel& prior) {

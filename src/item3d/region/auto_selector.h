@@ -1,4 +1,4 @@
-// A selector by what an edit's sentences change in a prior's eyes.
+// The selector by a prior's response to the change of an edit's sentences.
 #pragma once
 
 #include "item3d/region/selector.h"
@@ -7,10 +7,10 @@
 
 namespace item3d {
 
-/// Where the predictions of the readers' prior under the readers' two sentences differ most
-/// (guidance/reading.h), gathered and voted as words are: more than twice as much as on average
-/// over the surface. Notes what it took and by how much it stands out. Throws InputError where
-/// sentences or the prior are missing, and where they differ about evenly all over the model.
+/// Selects where the predictions of the readers' prior under the two sentences differ most
+/// (guidance/reading.h), gathered and voted as for words: more than twice the surface's mean. Notes
+/// the selection and its contrast. Throws InputError where sentences or the prior are missing, and
+/// where the difference is about uniform.
 std::unique_ptr<Selector> select_auto(const SelectorText& text, const RegionScene& scene);
 
 }  // namespace item3d

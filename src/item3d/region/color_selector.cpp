@@ -11,14 +11,14 @@ namespace item3d {
 namespace {
 
 constexpr float usual_distance = 12;
-constexpr float fading = 0.5f;  ///< of the distance
+constexpr float fading = 0.5f;  ///< relative to the distance
 
-/// Paint in the shade or worn keeps its hue, and is called by it: of a named colour hue counts
-/// most, chroma where there is little of it, and lightness enough to tell brown from orange.
+/// Scales of naming_space(). Worn or shaded paint keeps its hue and its name, so hue counts most,
+/// chroma where it is low, and lightness enough to distinguish brown from orange.
 constexpr float hue_scale = 60, little_chroma = 10, lightness_scale = 0.35f;
-constexpr float named_fading = 8;  ///< distances over which one name gives way to the next
+constexpr float named_fading = 8;  ///< distance over which names blend
 
-/// [N, 3] in which equal distances are about as different to who names colours. lab: [N, 3].
+/// Returns [N, 3] in which distances approximate differences in colour naming. lab: [N, 3].
 at::Tensor naming_space(const at::Tensor& lab) {
     const at::Tensor ab = lab.narrow(1, 1, 2);
     const at::Tensor chroma = ab.square().sum(1, true).sqrt();
@@ -26,9 +26,9 @@ at::Tensor naming_space(const at::Tensor& lab) {
         {lightness_scale * lab.narrow(1, 0, 1), hue_scale * ab / (chroma + little_chroma)}, 1);
 }
 
-/// CIELAB [P, 3] of the model's own base colour, on the CPU.
+/// Returns CIELAB [P, 3] of the model's own base colour, on the CPU.
 at::Tensor own_lab(const TexturedMaterials& textured, const Surface& surface) {
-    Surface sharp = surface;  // footprints would blur what a pixel covers
+    Surface sharp = surface;  // footprints would blur it
     sharp.uv_footprint = at::Tensor();
     sharp.further_uv_footprints.clear();
     return lab_of(textured.sample(sharp).base_color.cpu());
@@ -82,7 +82,7 @@ class NamedSelector : public Selector {
 }  // namespace
 
 at::Tensor lab_of(const at::Tensor& linear) {
-    // Rows: X, Y, Z over those of D65.
+    // Rows: X, Y, Z relative to D65.
     const at::Tensor to_xyz =
         at::tensor({0.4124564f / 0.95047f, 0.3575761f / 0.95047f, 0.1804375f / 0.95047f, 0.2126729f,
                     0.7151522f, 0.0721750f, 0.0193339f / 1.08883f, 0.1191920f / 1.08883f,

@@ -15,8 +15,8 @@ Vec3 row_of(const float* rows, std::int64_t i) {
     return {rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]};
 }
 
-/// Of `outside`, what lies beside `inside`: all else is farther from the region, and a wide feather
-/// would look at it for each place.
+/// Returns the points of `outside` adjacent to `inside`: all others are farther from the region,
+/// and a wide feather would visit them for each point.
 at::Tensor border_of(const at::Tensor& outside_, const at::Tensor& inside, float spacing) {
     const at::Tensor outside = outside_.contiguous();
     const PointGrid grid(inside, beside * spacing);

@@ -7,15 +7,15 @@
 
 namespace item3d {
 
-/// From 0 at the region's border to 1 `width` away from it, smoothly. The border is points outside
-/// that lie beside points inside; distances are those in space.
+/// A smooth weight from 0 at the region's border to 1 at distance `width`. The border consists of
+/// outside points adjacent to inside points; distances are Euclidean.
 class Feather {
   public:
-    /// outside, inside: [K, 3] on the CPU, about `spacing` apart on the surface; width above 0. All
-    /// three in the units of positions.
+    /// outside, inside: [K, 3] on the CPU, about `spacing` apart on the surface; width: positive.
+    /// All three in the units of positions.
     Feather(const at::Tensor& outside, const at::Tensor& inside, float spacing, float width);
 
-    /// positions: [P, 3] on the CPU; inside: [P], where it is 0 nothing is looked for.
+    /// Returns the weights. positions: [P, 3] on the CPU; inside: [P], points with 0 are skipped.
     at::Tensor weight(const at::Tensor& positions, const at::Tensor& inside) const;
 
   private:

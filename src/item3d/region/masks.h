@@ -1,4 +1,4 @@
-// A region as pictures in UV space.
+// A region as images in UV space.
 #pragma once
 
 #include "item3d/field/atlas/atlas.h"
@@ -9,9 +9,9 @@
 
 namespace item3d {
 
-/// Of each texture set that has UVs of its own, by its first material: the weights of its texels,
-/// one channel, as large as the texture that is baked. Around the triangles they go on as far as
-/// the texture itself does.
+/// Returns weights of texels for each texture set with its own UVs, by its first material: one
+/// channel, in the size of the baked texture. They extend around the triangles as far as the
+/// texture's padding.
 std::map<int, Image> region_masks(const Region& region, const Model& model,
                                   const Geometry& geometry, const Atlas& atlas, int texture_size);
 

@@ -31,7 +31,7 @@ constexpr std::size_t most_listed = 12;
                                          : std::string()));
 }
 
-/// The spelling of `wanted` among the names of the model.
+/// Returns the model's spelling of the wanted name.
 std::string known_name(const SelectorText& text, const std::string& what,
                        const std::set<std::string>& known) {
     if (known.contains(text.value)) return text.value;
@@ -40,10 +40,10 @@ std::string known_name(const SelectorText& text, const std::string& what,
     refuse_name(text, what, known);
 }
 
-/// Whole primitives.
+/// Selects whole primitives.
 class PrimitiveSelector : public Selector {
   public:
-    /// names: of a primitive.
+    /// names: returns those of a primitive.
     PrimitiveSelector(const SelectorText& text, const std::string& what, const RegionScene& scene,
                       const std::function<std::vector<std::string>(const Primitive&)>& names) {
         const std::vector<Primitive>& primitives = scene.model.primitives;
@@ -72,7 +72,7 @@ class PrimitiveSelector : public Selector {
     at::Tensor chosen_;  ///< [primitives] 0 or 1
 };
 
-/// Triangles of the geometry, which come primitive by primitive in the primitive's order.
+/// Selects triangles of the geometry, which are in the order of primitives and of their triangles.
 class TriangleSelector : public Selector {
   public:
     explicit TriangleSelector(std::vector<float> chosen) : chosen_(at::tensor(chosen)) {}
@@ -84,7 +84,7 @@ class TriangleSelector : public Selector {
     at::Tensor chosen_;  ///< [triangles] 0 or 1
 };
 
-/// Values at corners, interpolated by where a place lies in its triangle.
+/// Interpolates values at corners by barycentrics.
 class CornerSelector : public Selector {
   public:
     CornerSelector(const Geometry& geometry, std::vector<Vec3> values)
@@ -126,7 +126,7 @@ class CornerSelector : public Selector {
         return {1 - second - third, second, third};
     }
 
-    std::vector<Vec3> values_;  ///< of each triangle's corners
+    std::vector<Vec3> values_;  ///< by corner of each triangle
     at::Tensor positions_, triangles_;
 };
 

@@ -10,13 +10,14 @@
 namespace item3d {
 namespace {
 
-/// A patch of which less is in is out as a whole, one of which more is in is in as a whole.
+/// Share of included points below which a patch is excluded, and above which it is included as a
+/// whole.
 constexpr double least_part = 0.25, largest_part = 0.75;
-/// Part of the surface above which a patch is cut: a handle may be of one piece with a cup, so that
-/// little of the patch is in. Smaller ones are taken whole from least_part on.
+/// Share of the surface above which a patch is cut: a cup and its handle may be one patch, of which
+/// only a small part is included. Smaller patches are included whole from least_part on.
 constexpr double large_patch = 0.1, little_of_it = 0.005;
 
-/// Values of points that a view sees, looked up between them.
+/// Interpolator of values at visible points.
 class PointField {
   public:
     PointField(const SurfaceReading& reading, const at::Tensor& value)
@@ -24,7 +25,7 @@ class PointField {
           value_(value.contiguous()),
           grid_(reading.position, reading.spacing) {}
 
-    /// Mean around the place, the nearest counting most; -1 where there is no point.
+    /// Returns the mean around a position, weighted by proximity; -1 where there is no point.
     float at(Vec3 place) const {
         const bool* seen = seen_.const_data_ptr<bool>();
         const float* value = value_.const_data_ptr<float>();

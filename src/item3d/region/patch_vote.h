@@ -1,4 +1,4 @@
-// A region from points of the surface, each of which belongs to it or does not.
+// A region from a binary decision at points of the surface.
 #pragma once
 
 #include "item3d/region/surface_reading.h"
@@ -7,18 +7,18 @@
 
 namespace item3d {
 
-/// A vote by the pieces of surface_patches.h, so that borders are the model's own: one is taken
-/// whole where most of its points are in, a small one where a quarter of them is; a large one that
-/// is in part in is cut where the points say.
+/// Majority vote by the patches of surface_patches.h, so that borders are the model's own: a patch
+/// is included if most of its points are, a small one if a quarter is; a large one that is partly
+/// included is cut along the points.
 struct PatchVote {
     std::unique_ptr<Selector> selector;
-    double taken = 0;   ///< part of the points that are in, unseen ones counted as out
-    double mean = 0;    ///< value of those that are in, on average; 0 where none is
-    float highest = 0;  ///< value of any point that is seen
-    at::Tensor inside;  ///< [K] bool: the points that are in
+    double taken = 0;   ///< share of included points; invisible ones count as excluded
+    double mean = 0;    ///< mean value of included points; 0 without any
+    float highest = 0;  ///< largest value of visible points
+    at::Tensor inside;  ///< [K] bool: included points
 };
 
-/// value: [K] of the reading's points; a point is in where it is above `threshold` and seen.
+/// value: [K] at the reading's points; a point is included if it is visible and above `threshold`.
 PatchVote vote_by_patch(const RegionScene& scene, const SurfaceReading& reading,
                         const at::Tensor& value, float threshold);
 

@@ -1,4 +1,4 @@
-// Points in space, looked up by place.
+// A hash grid of points for neighbour queries.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -12,13 +12,12 @@ namespace item3d {
 
 class PointGrid {
   public:
-    /// points: [K, 3] float32 on the CPU. reach: how far from a place its points are found.
+    /// points: [K, 3] float32 on the CPU. reach: query radius.
     PointGrid(const at::Tensor& points, float reach);
 
     float reach() const { return reach_; }
 
-    /// Calls visit(index of the point, its position) for all points within reach, and for some that
-    /// are farther.
+    /// Calls visit(point index, position) for all points within reach, and for some beyond it.
     template <typename Visit>
     void for_each_near(Vec3 place, const Visit& visit) const {
         const glm::ivec3 home = cell_at(place);
@@ -34,7 +33,7 @@ class PointGrid {
 
   private:
     glm::ivec3 cell_at(Vec3 place) const { return glm::ivec3(glm::floor(place / reach_)); }
-    /// Two cells may share a key by chance; then more points are visited.
+    /// Hash collisions of two cells only cause additional visits.
     static std::uint64_t key(glm::ivec3 cell);
 
     float reach_;

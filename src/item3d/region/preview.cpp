@@ -9,8 +9,8 @@
 namespace item3d {
 namespace {
 
-constexpr float dimmed = 0.45f;   ///< what is outside, of its brightness
-constexpr float colored = 0.75f;  ///< part of the mark's colour in what is inside
+constexpr float dimmed = 0.45f;   ///< relative brightness outside of the region
+constexpr float colored = 0.75f;  ///< weight of the mark's colour inside
 
 }  // namespace
 

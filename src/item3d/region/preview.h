@@ -1,4 +1,4 @@
-// A region made visible on its model.
+// Images of a region on its model.
 #pragma once
 
 #include "item3d/region/region.h"
@@ -10,7 +10,7 @@
 
 namespace item3d {
 
-/// One picture a camera, sRGB RGBA: what is in the region in orange, the rest in dim grey.
+/// Returns one image for each camera, sRGB RGBA: the region in orange, the rest in dim grey.
 std::vector<Image> region_pictures(const Region& region, const Geometry& geometry,
                                    const TexturedMaterials& textured, const EnvironmentLight& light,
                                    const std::vector<Camera>& cameras, int pixels);

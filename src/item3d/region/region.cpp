@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::int64_t sampled_points = 1 << 16;
 constexpr std::int64_t kept_points = 4096;
-constexpr double least_share = 1e-7;  ///< of the surface: less is nothing
+constexpr double least_share = 1e-7;  ///< share of the surface below which a region is empty
 
-/// The largest of the selectors' weights.
+/// Returns the maximum of the selectors' weights.
 at::Tensor united(const std::vector<std::unique_ptr<Selector>>& selectors, const Surface& surface) {
     at::Tensor weights = selectors.front()->weight(surface);
     for (std::size_t i = 1; i < selectors.size(); ++i)

@@ -1,4 +1,4 @@
-// A part of a model's surface that an edit changes: a weight in [0, 1] at each place.
+// A region, the part of a model's surface that an edit changes: a weight in [0, 1] at each point.
 #pragma once
 
 #include "item3d/region/feather.h"
@@ -12,39 +12,38 @@
 namespace item3d {
 
 struct RegionRequest {
-    std::vector<std::string> include;  ///< selectors, united; empty: the whole surface
+    std::vector<std::string> include;  ///< selectors, joined; empty: the whole surface
     std::vector<std::string> exclude;  ///< selectors, subtracted
     float feather = 0;  ///< width of the border, in percent of the diagonal of the model's box
 
     bool is_everything() const { return include.empty() && exclude.empty(); }
-    /// Whether a selector is by words.
+    /// True if a selector is by words.
     bool needs_segmenter() const;
-    /// Whether a selector is "auto".
+    /// True if a selector is "auto".
     bool needs_sentences() const;
 };
 
-/// Points of a region, drawn by area: for cameras that look at it.
+/// Points of a region, drawn uniformly by area, for cameras.
 struct RegionPoints {
     at::Tensor positions;  ///< [K, 3] on the CPU
     at::Tensor normals;    ///< [K, 3]
 };
 
-/// Weights are 0 outside: the feather lies within the border. Places that share texels, and
-/// instances of one mesh, cannot be told apart by a texture: what the file shows of them is the
-/// weight of the first.
+/// Weights are 0 outside: the feather lies within the border. A texture cannot distinguish points
+/// that share texels, or instances of one mesh: the first one's weight applies to all.
 class Region {
   public:
-    /// The scene must outlive this. Throws InputError for a selector that cannot be used, and where
-    /// nothing is selected.
+    /// The scene must outlive this. Throws InputError for an unusable selector, and for an empty
+    /// selection.
     Region(const RegionRequest& request, const RegionScene& scene);
 
     const RegionRequest& request() const { return request_; }
-    /// [P, 1] float32 on the surface's device.
+    /// Returns [P, 1] float32 on the surface's device.
     at::Tensor weight(const Surface& surface) const;
-    /// Part of the area of the scene's edited materials, weights counted.
+    /// Returns the weighted share of the area of the scene's edited materials.
     double share() const { return share_; }
     const RegionPoints& points() const { return points_; }
-    /// Materials that have a part in it, rising: indices into Model::materials.
+    /// Returns the materials that overlap the region, rising: indices into Model::materials.
     const std::vector<int>& materials() const { return materials_; }
 
   private:

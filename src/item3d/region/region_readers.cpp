@@ -30,7 +30,7 @@ RegionReaders load_readers(const RegionRequest& request, const fs::path& folder,
     }
     readers.segmenter =
         std::make_unique<Segmenter>(Segmenter::load_to_run(folder, device, at::kFloat));
-    // A prior's own segmenter was trained on the prior's words.
+    // A prior's own segmenter was trained on the prior's vocabulary.
     readers.vocabulary = PriorVocabulary::load(fs::weakly_canonical(folder).parent_path());
     return readers;
 }

@@ -1,4 +1,4 @@
-// The networks that selectors by meaning ask, and what they are asked with.
+// Networks and sentences of selectors by meaning.
 #pragma once
 
 #include "item3d/networks/diffusion/diffusion_model.h"
@@ -14,21 +14,21 @@
 namespace item3d {
 
 struct RegionReaders {
-    std::unique_ptr<Segmenter> segmenter;         ///< for words; null: the prior is asked
-    PriorVocabulary vocabulary;                   ///< of what is asked for words; may be open
-    std::shared_ptr<const DiffusionModel> prior;  ///< null: none is needed
-    std::string from, to;  ///< sentences as the prior reads them, for auto; empty: not given
+    std::unique_ptr<Segmenter> segmenter;         ///< for words; null: the prior is used
+    PriorVocabulary vocabulary;                   ///< of the network for words; may be open
+    std::shared_ptr<const DiffusionModel> prior;  ///< null: not needed
+    std::string from, to;  ///< sentences as the prior reads them, for auto; empty: none
 };
 
-/// Whether a selector of the request asks the prior: auto, and words where there is no segmenter.
+/// True if a selector of the request uses the prior: auto, or words without a segmenter.
 bool needs_prior(const RegionRequest& request, bool has_segmenter);
 
-/// Prompts that the prior is asked for words where there is no segmenter, for RunNeeds.
+/// Returns the prior's prompts for words without a segmenter, for RunNeeds.
 std::vector<std::string> prompts_of_words(const RegionRequest& request);
 
-/// The segmenter in `folder`, where a selector of the request is by words, with the vocabulary of
-/// the prior that it belongs to; without a folder, the vocabulary in `prior`. The prior itself and
-/// the sentences are left to the caller. Throws InputError.
+/// Loads the segmenter in `folder` if a selector of the request is by words, with the vocabulary of
+/// its prior; without a folder, the vocabulary in `prior`. The caller sets the prior itself and the
+/// sentences. Throws InputError.
 RegionReaders load_readers(const RegionRequest& request, const std::filesystem::path& folder,
                            const std::filesystem::path& prior, at::Device device);
 

@@ -1,4 +1,4 @@
-// The shape in a render as a prior sees it.
+// The visible shape in a render, as input of a prior.
 #pragma once
 
 #include "item3d/networks/diffusion/shape_condition.h"
@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// sphere: around the whole model. No graph.
+/// sphere: of the whole model. No graph.
 SeenShape seen_shape(const Raster& raster, const Surface& surface, const BoundingSphere& sphere);
 
 }  // namespace item3d

@@ -11,7 +11,7 @@ namespace {
 
 constexpr float crease = 0.77f;   ///< cosine of the angle between normals: 40 degrees
 constexpr float color_edge = 12;  ///< CIELAB distance between neighbours' mean colours
-/// Where the colour is looked up in a triangle: weights of its vertices 0 and 1.
+/// Barycentrics (weights of vertices 0 and 1) of a triangle's colour lookups.
 constexpr float inner[3][2] = {{0.6f, 0.2f}, {0.2f, 0.6f}, {0.2f, 0.2f}};
 
 class UnionFind {
@@ -31,7 +31,7 @@ class UnionFind {
     std::vector<int> parent_;
 };
 
-/// [T, 3] CIELAB, mean over a few places.
+/// Returns [T, 3] CIELAB, averaged over several points.
 at::Tensor triangle_colors(const RegionScene& scene) {
     const std::int64_t count = scene.geometry.triangles.size(0);
     const at::Tensor triangle = at::arange(count, at::kLong).to(scene.geometry.positions.device());

@@ -1,4 +1,4 @@
-// The surface in the pieces that its maker gave it.
+// The patches of a surface, as its author modelled it.
 #pragma once
 
 #include "item3d/region/selector.h"
@@ -7,10 +7,10 @@
 
 namespace item3d {
 
-/// Triangles that belong together: connected across edges that are no creases, of one material, and
-/// of about one base colour.
+/// Triangles of one patch: connected across edges without creases, of one material, and of a
+/// similar base colour.
 struct SurfacePatches {
-    std::vector<int> of_triangle;       ///< [T] the triangle's patch
+    std::vector<int> of_triangle;       ///< [T] patch of each triangle
     std::vector<double> area;           ///< [patches]
     std::vector<double> triangle_area;  ///< [T]
 };

@@ -15,10 +15,10 @@ namespace {
 
 constexpr int light_size = 64;
 constexpr float view_width = 0.6f;  ///< field of view, radians
-/// Elevations of rings of cameras, radians, and how many each has.
+/// Rings of cameras: elevation in radians, and number.
 constexpr std::pair<float, int> rings[] = {{0.3f, 8}, {-0.5f, 3}, {1.1f, 3}};
 constexpr std::int64_t point_count = 1 << 16;
-/// Pixels a side, at least, of the depth that tells what hides a point.
+/// Smallest resolution of the depth map of the visibility test.
 constexpr int min_depth_pixels = 192;
 
 std::vector<Camera> cameras_around(const Model& model) {
@@ -29,7 +29,7 @@ std::vector<Camera> cameras_around(const Model& model) {
     return cameras;
 }
 
-/// Sums over views of each point's weight, and of its answers times that.
+/// Accumulator over views of each point's weight and weighted values.
 class Gathering {
   public:
     explicit Gathering(const Surface& points)
@@ -37,7 +37,7 @@ class Gathering {
           normal_(points.normal.detach().cpu().contiguous()),
           weight_(at::zeros({points.count()})) {}
 
-    /// answers: [Q, D, D]; depth: [D, D], 0 where nothing is seen.
+    /// answers: [Q, D, D]; depth: [D, D], 0 where uncovered.
     void add(const Camera& camera, const at::Tensor& answers, const at::Tensor& depth) {
         const std::int64_t questions = answers.size(0), count = weight_.size(0);
         const int size = static_cast<int>(depth.size(0));
@@ -64,7 +64,7 @@ class Gathering {
                         size - 1);
                 };
                 const int at = (size - 1 - pixel(clip.y)) * size + pixel(clip.x);
-                // A pixel's slant, and a hundredth of the way for its neighbours.
+                // Tolerance: a pixel's slope, and 1 % of the distance for its neighbours.
                 if (d[at] <= 0 || clip.w > d[at] * (1 + 0.01f / facing)) return;
                 weight[i] += facing;
                 for (std::int64_t q = 0; q < questions; ++q)

@@ -1,4 +1,4 @@
-// What a network says of pictures of a model, gathered on its surface.
+// A network's reading of renders of a model, gathered on its surface.
 #pragma once
 
 #include "item3d/networks/diffusion/shape_condition.h"
@@ -11,30 +11,30 @@
 
 namespace item3d {
 
-/// One of the pictures from all around.
+/// One of the renders from all sides.
 struct ModelView {
     at::Tensor picture;  ///< [1, 3, S, S] sRGB in [0, 1], white behind the model
     SeenShape shape;     ///< [1, D, D, ...], D a multiple of S
 };
 
-/// Answers to Q questions about a picture: [Q, h, w] of any h and w; pixel (0, 0) covers the same
-/// corner as the picture's.
+/// Returns the values of Q quantities in a render, [Q, h, w] of any h and w, aligned with the whole
+/// image.
 using ViewReader = std::function<at::Tensor(const ModelView& view)>;
 
-/// What was answered about points of the surface, which are spread evenly over it.
+/// Values at points that are spread evenly over the surface.
 struct SurfaceReading {
     at::Tensor triangle;  ///< [K] int64
     at::Tensor position;  ///< [K, 3]
-    at::Tensor seen;      ///< [K] bool: whether a view sees the point
-    at::Tensor values;    ///< [Q, K]: means over views; 0 where none sees it
-    float spacing = 0;    ///< within which a point's neighbours are found, in the model's units
+    at::Tensor seen;      ///< [K] bool: visible in a view
+    at::Tensor values;    ///< [Q, K]: means over views; 0 for invisible points
+    float spacing = 0;    ///< radius for a point's neighbours, in the model's units
 };
 
-/// Number of views: rings of cameras at three elevations.
+/// Returns the number of views: rings of cameras at three elevations.
 int reading_views();
 
-/// Asks `reader` about pictures of `pixels` a side from all around. A point takes the answers of
-/// the views that see it, each by how squarely.
+/// Reads renders of `pixels` x `pixels` from all sides. A point's values are the mean over the
+/// views that see it, weighted by the cosine of the viewing angle.
 SurfaceReading read_surface(const RegionScene& scene, int pixels, const ViewReader& reader);
 
 }  // namespace item3d

@@ -16,11 +16,11 @@ namespace {
 
 constexpr int segmenter_pixels = 192;
 constexpr float enough_probability = 0.4f;
-/// Mean probability of what is taken, below which the answer is unsure.
+/// Mean probability of the selection below which it is uncertain.
 constexpr double sure_probability = 0.6;
-/// Of another part's mean probability at the same place: the answer is unsure, too.
+/// Margin to another part's mean probability below which the selection is uncertain.
 constexpr double clearly_more = 0.05;
-/// Standard deviations above the mean from which attention counts.
+/// Attention from which a point counts, in standard deviations above the mean.
 constexpr float enough_attention = 1.25f;
 
 constexpr const char* look = "look at it by item3d region before an edit";
@@ -40,7 +40,7 @@ bool same_in_either_number(const std::string& word, const std::string& other) {
     return word == other || word + "s" == other || word == other + "s";
 }
 
-/// The phrase, and all parts that it does not name: what one of them gets more of is that part.
+/// Returns the phrase and all parts that it does not name, which compete with it.
 std::vector<std::string> with_other_parts(const std::string& phrase,
                                           const PriorVocabulary& vocabulary) {
     std::vector<std::string> prompts{phrase};
@@ -53,7 +53,7 @@ std::vector<std::string> with_other_parts(const std::string& phrase,
     return prompts;
 }
 
-/// The segmenter's answer, and what other parts get where it is.
+/// Returns the segmenter's selection, compared with other parts at the same points.
 std::unique_ptr<Selector> ask_segmenter(const SelectorText& text, const RegionScene& scene) {
     const Segmenter& segmenter = *scene.readers->segmenter;
     segmenter.warn_of_lost_words(text.whole, text.value);
@@ -115,7 +115,7 @@ UnknownWords unknown_words(const PriorVocabulary& vocabulary, const std::string&
     UnknownWords unknown;
     bool has_thing = false;
     for (const std::string& word : prompt_words(phrase)) {
-        // The thing is the last word before "of", "on" and the like.
+        // The noun is the last word before a preposition.
         has_thing = has_thing || prepositions.count(word) > 0;
         const bool known = word == "part" || word == "parts" || is_known(word);
         if (!has_thing) unknown.names_nothing = !known;

@@ -1,4 +1,4 @@
-// A selector by words: what a network sees in pictures of the model.
+// The selector by words, by a network that reads renders of the model.
 #pragma once
 
 #include "item3d/networks/vocabulary.h"
@@ -10,17 +10,17 @@
 
 namespace item3d {
 
-/// What `text.value` names ("the handle"). The readers' segmenter looks at pictures from all
-/// around; without one, the prior's cross-attention is read instead, which is told. The answers are
-/// gathered on the surface (surface_reading.h) and voted by patch (patch_vote.h). Notes what it
-/// took, and warns where the answer is unsure. Throws InputError where there is no network, where
-/// the vocabulary has no such thing, and where nothing of the kind is seen.
+/// Selects `text.value` ("the handle"). The readers' segmenter reads renders from all sides;
+/// without one, the prior's cross-attention is read instead, with a note. Results are gathered on
+/// the surface (surface_reading.h) and voted by patch (patch_vote.h). Notes the selection, and
+/// warns of an uncertain one. Throws InputError without a network, for things outside of the
+/// vocabulary, and if none is found.
 std::unique_ptr<Selector> select_words(const SelectorText& text, const RegionScene& scene);
 
-/// The words of a phrase that a vocabulary does not have in either number ("horn", "horns").
+/// Words of a phrase that a vocabulary lacks in singular and plural ("horn", "horns").
 struct UnknownWords {
-    std::vector<std::string> all;  ///< in their order
-    bool names_nothing = false;  ///< the thing itself is among them: "muzzle" of "the dark muzzle"
+    std::vector<std::string> all;  ///< in order
+    bool names_nothing = false;    ///< the noun itself is unknown: "muzzle" of "the dark muzzle"
 };
 UnknownWords unknown_words(const PriorVocabulary& vocabulary, const std::string& phrase);
 

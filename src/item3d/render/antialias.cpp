@@ -35,7 +35,7 @@ AntialiasParameters antialias_parameters(const AntialiasInput& input,
             static_cast<int>(input.triangle.size(1))};
 }
 
-/// All crossings in the order of their pixels, as bytes.
+/// Returns all crossings in the order of their pixels, as bytes.
 at::Tensor find_crossings(const AntialiasParameters& p, std::int64_t views) {
     const std::vector<std::vector<Crossing>> by_row = list_crossings(p, views);
     std::size_t count = 0;
@@ -62,7 +62,7 @@ void for_each_crossing(const at::Tensor& bytes, const F& f) {
     }
 }
 
-/// On a device each thread gathers what its own pixel takes on.
+/// Blends on a device, where each thread gathers the changes of its own pixel.
 at::Tensor blend_on_cuda(const AntialiasParameters& raster, const at::Tensor& image) {
     at::Tensor result = at::empty_like(image);
     kernels::BlendParameters p{};
@@ -98,8 +98,8 @@ tensor_list blend_backward_on_cuda(const AntialiasParameters& raster, const at::
     return {by_image, sums.view(clip.sizes()), at::Tensor()};
 }
 
-/// On the CPU, pairs are found by all threads and blended by one: pixels belong to several pairs,
-/// and sums in a fixed order give the same bytes again.
+/// Antialiasing as an autograd function. On the CPU all threads find the pairs and one blends them:
+/// pixels belong to several pairs, and sums in a fixed order are reproducible.
 struct Antialias : torch::autograd::Function<Antialias> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& image,
                               const at::Tensor& positions_clip, const AntialiasInput& input) {

@@ -1,4 +1,4 @@
-// Where outlines cross between pixel centres, for all pixels, on the CPU's threads.
+// The list of silhouette crossings of all pixels, on the CPU's threads.
 #pragma once
 
 #include "item3d/core/parallel.h"
@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// Returns the crossings of each of the views' rows, [N * H], in the order of their pixels.
+/// Returns the crossings of each row of all views, [N * H], in the order of their pixels.
 inline std::vector<std::vector<kernels::Crossing>> list_crossings(
     const kernels::AntialiasParameters& p, std::int64_t views) {
     const std::int64_t rows = views * p.height;

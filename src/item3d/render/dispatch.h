@@ -1,4 +1,4 @@
-// One call for a kernel on the CPU's threads or on a CUDA device.
+// Dispatch of a kernel to the CPU's threads or to a CUDA device.
 #pragma once
 
 #include "item3d/core/parallel.h"
@@ -7,7 +7,7 @@
 namespace item3d {
 
 /// Runs a kernel over the indices in [0, count): kernel(parameters, i) on the CPU, or the entry of
-/// the device's table. Throws as cuda::run does.
+/// the device's table. Throws as cuda::run().
 template <auto kernel, typename Parameters>
 void dispatch(at::Device device, const char* name,
               cuda::Kernel<Parameters> cuda::RenderTable::*entry, const Parameters& parameters,

@@ -18,8 +18,8 @@ at::Tensor to_rows(const std::vector<T>& values, std::int64_t channels) {
     return tensor;
 }
 
-/// MikkTSpace's, by the UV map that the normal texture looks at, where the primitive has all that
-/// they need.
+/// Adds MikkTSpace's tangents for the normal texture's UV map, where the primitive has UVs and
+/// normals.
 void add_missing_tangents(const Model& model, Primitive& primitive) {
     if (!primitive.tangents.empty()) return;
     const auto material = static_cast<std::size_t>(primitive.material);

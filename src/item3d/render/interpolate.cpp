@@ -15,7 +15,7 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Indices of covered pixels, ascending: [P] int64.
+/// Returns the indices of covered pixels, ascending: [P] int64.
 at::Tensor covered_pixels(const at::Tensor& triangle) {
     if (triangle.is_cuda()) return triangle.reshape({-1}).ge(0).nonzero().squeeze(1);
     const std::int64_t rows = triangle.size(0) * triangle.size(1), width = triangle.size(2);
@@ -67,7 +67,8 @@ kernels::InterpolateParameters interpolate_parameters(const InterpolateInput& in
     return p;
 }
 
-/// attributes [V, A], positions_clip [N, V, 4] -> [P, A].
+/// Interpolates attributes [V, A] to [P, A]; differentiable in them and in positions_clip [N, V,
+/// 4].
 struct Interpolate : torch::autograd::Function<Interpolate> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& attributes,
                               const at::Tensor& positions_clip, const InterpolateInput& input) {
@@ -113,7 +114,7 @@ struct Interpolate : torch::autograd::Function<Interpolate> {
             clip_gradient = at::zeros_like(saved[1]);
             p.clip_gradient.values = clip_gradient.data_ptr<float>();
         }
-        // One thread: pixels share vertices, and sums in a fixed order give the same bytes again.
+        // One thread: pixels share vertices, and sums in a fixed order are reproducible.
         for (std::int64_t i = 0; i < count; ++i)
             kernels::interpolate_backward(p, i);
         return {attribute_gradient, clip_gradient, at::Tensor()};

@@ -1,4 +1,4 @@
-// Which triangles share an edge, on plain arrays.
+// Triangle adjacency on plain arrays.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace item3d {
 
-/// The smallest vertex index at each vertex's position; positions: [V, 3] without -0.
+/// Returns the smallest vertex index at each vertex's position. positions: [V, 3] without -0.
 inline std::vector<std::int32_t> merge_by_position(const float* positions, std::int64_t vertices) {
     std::vector<std::int32_t> order(static_cast<std::size_t>(vertices));
     std::iota(order.begin(), order.end(), 0);
@@ -31,15 +31,15 @@ inline std::vector<std::int32_t> merge_by_position(const float* positions, std::
     return merged;
 }
 
-/// An edge of a triangle, by its ends.
+/// An edge of a triangle, by its end vertices.
 struct TriangleEdge {
     std::int32_t low, high;
-    std::int64_t corner;  ///< 3 * triangle + the corner that faces the edge
+    std::int64_t corner;  ///< 3 * triangle + the corner opposite the edge
     bool same(const TriangleEdge& other) const { return low == other.low && high == other.high; }
 };
 
-/// Fills out [T, 3] as Geometry::neighbours says. corners: [T, 3]; merged: the vertex that stands
-/// for each one, or null: each stands for itself.
+/// Fills out [T, 3] as Geometry::neighbours describes. corners: [T, 3]; merged: representative of
+/// each vertex; null: each represents itself.
 inline void find_neighbours(const std::int32_t* corners, std::int64_t triangles,
                             const std::int32_t* merged, std::int32_t* out) {
     std::vector<TriangleEdge> edges;

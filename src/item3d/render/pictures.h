@@ -1,4 +1,4 @@
-// Images to tensors and back.
+// Conversion between images and tensors.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -6,7 +6,7 @@
 
 namespace item3d {
 
-at::Tensor to_tensor(const Image& image, at::Device device = at::kCPU);  ///< [H, W, C]
-Image to_image(const at::Tensor& tensor);                                ///< from [H, W, C]
+at::Tensor to_tensor(const Image& image, at::Device device = at::kCPU);  ///< returns [H, W, C]
+Image to_image(const at::Tensor& tensor);                                ///< takes [H, W, C]
 
 }  // namespace item3d

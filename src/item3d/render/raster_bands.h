@@ -1,4 +1,4 @@
-// Coverage on the CPU's threads, each of which draws bands of rows.
+// Rasterization on the CPU's threads, in bands of rows.
 #pragma once
 
 #include "item3d/core/parallel.h"
@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// Triangles of one view that may touch a band of rows, for each band and in rising order: most of
-/// a million triangles lie between pixel centres and are looked at only once.
+/// Triangles of one view that may touch a band of rows, for each band in rising order: most
+/// triangles of a dense mesh lie between pixel centres and are tested only once.
 class BandBins {
   public:
     BandBins(const kernels::RasterParameters& parameters, std::int64_t views, std::int64_t bands)
@@ -59,9 +59,9 @@ class BandBins {
     std::vector<std::vector<std::int32_t>> lists_;
 };
 
-/// Bands of rows are independent of each other, so their number changes no result. Pictures that
-/// take less than a millisecond are not worth waking other threads for. Outputs must be those of an
-/// empty picture.
+/// Rasterizes all views. Bands of rows are independent, so their number changes no result. Images
+/// that take less than a millisecond use one band for each view. The outputs must be initialised as
+/// an empty image.
 inline void rasterize_on_cpu(const kernels::RasterParameters& parameters, std::int64_t views) {
     const int width = parameters.width, height = parameters.height;
     const bool small = views * width * height < 32768 && views * parameters.triangle_count < 32768;

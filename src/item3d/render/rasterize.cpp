@@ -17,7 +17,7 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// [V, 3], [N, 4, 4] column-major -> [N, V, 4].
+/// Maps [V, 3] and [N, 4, 4] column-major matrices to [N, V, 4].
 struct ProjectVertices : torch::autograd::Function<ProjectVertices> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& positions,
                               const at::Tensor& world_to_clip) {
@@ -51,8 +51,8 @@ at::Tensor clip_matrices(const std::vector<Camera>& cameras, int width, int heig
     return matrices;
 }
 
-/// A thread draws one triangle into one band of rows. Bands, where triangles are few, keep a large
-/// one from being a single thread's work.
+/// Rasterizes with one thread for a triangle in a band of rows. Where triangles are few, bands
+/// spread a large one over several threads.
 void rasterize_on_cuda(const kernels::RasterParameters& parameters, std::int64_t views,
                        at::Device device) {
     constexpr std::int64_t enough_threads = 1 << 20;

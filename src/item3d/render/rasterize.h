@@ -1,4 +1,4 @@
-// Visibility: which triangle covers which pixel. The op boundary follows nvdiffrast (Laine et al.
+// Rasterization: the visible triangle of each pixel. The interface follows nvdiffrast (Laine et al.
 // 2020, "Modular Primitives for High-Performance Differentiable Rendering").
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace item3d {
 
-/// Per pixel centre of N views, row 0 at the top.
+/// Visible triangles at the pixel centres of N views, row 0 at the top.
 struct Raster {
     at::Tensor barycentrics;  ///< [N, H, W, 2] float32 weights of the triangle's vertices 0 and 1
     at::Tensor depth;         ///< [N, H, W] float32 distance along the view axis (z-depth), 0: none
@@ -21,8 +21,8 @@ struct Raster {
     int width() const { return static_cast<int>(triangle.size(2)); }
 };
 
-/// behind: [N, H, W] z-depths; a pixel then sees the nearest surface farther than that (the next
-/// layer of a transparent model). Undefined: no limit.
+/// behind: [N, H, W] z-depths; a pixel then shows the nearest surface beyond that depth (depth
+/// peeling of a transparent model). Undefined: no limit.
 Raster rasterize(const Geometry& geometry, const std::vector<Camera>& cameras, int width,
                  int height, const at::Tensor& behind = {});
 

@@ -9,10 +9,10 @@
 namespace item3d {
 namespace {
 
-/// Layers of a transparent model that are seen through each other.
+/// Largest number of layers of a transparent model.
 constexpr int most_layers = 8;
 
-/// One layer, front to back: [1, H, W, 4] premultiplied.
+/// Shades one layer, front to back: [1, H, W, 4] premultiplied.
 at::Tensor shade_layer(const Raster& raster, const Geometry& geometry,
                        const TexturedMaterials& materials, const EnvironmentLight& light,
                        const std::vector<Camera>& camera, const RenderOptions& options) {
@@ -52,7 +52,7 @@ at::Tensor render_view(const Geometry& geometry, const TexturedMaterials& materi
             const at::Tensor open =
                 (picture.select(3, 3) < 0.999f).logical_and(layer.triangle >= 0);
             if (!open.any().item<bool>()) break;
-            // Nothing lies behind the farthest depth, so closed pixels stay as they are.
+            // Nothing lies behind the farthest depth, so opaque pixels stay unchanged.
             layer = rasterize(geometry, cameras, width, height,
                               at::where(open, layer.depth, at::full_like(layer.depth, 1e30f)));
             picture =
@@ -77,7 +77,7 @@ at::Tensor render(const Geometry& geometry, const TexturedMaterials& materials,
                   const RenderOptions& options) {
     ITEM3D_CHECK(options.supersampling >= 1 && options.width >= 1 && options.height >= 1,
                  "render: width, height and supersampling of at least 1");
-    // One view at a time: memory stays that of one supersampled picture.
+    // One view at a time: memory stays that of one supersampled image.
     std::vector<at::Tensor> pictures;
     for (const Camera& camera : cameras)
         pictures.push_back(render_view(geometry, materials, light, camera, options));

@@ -13,7 +13,7 @@ namespace {
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// values [P, C], pixel [P], background [K, C] with K = 1 or pixels -> [pixels, C].
+/// Scatters values [P, C] to pixel [P] over background [K, C], with K = 1 or pixels; [pixels, C].
 struct Scatter : torch::autograd::Function<Scatter> {
     static at::Tensor forward(AutogradContext* context, const at::Tensor& values,
                               const at::Tensor& background, const at::Tensor& pixel,

@@ -1,4 +1,4 @@
-// Values at covered pixels to whole pictures.
+// Scattering of values at covered pixels into images.
 #pragma once
 
 #include "item3d/render/interpolate.h"

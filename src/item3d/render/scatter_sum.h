@@ -1,4 +1,4 @@
-// Scatter-adds that give the same bytes whatever the number of threads.
+// Scatter-adds whose result does not depend on the number of threads.
 #pragma once
 
 #include "item3d/core/parallel.h"
@@ -8,8 +8,9 @@
 
 namespace item3d {
 
-/// Sum over i in [0, count) of what add(i, buffer) adds to a float buffer of `elements`. Work is
-/// cut into a fixed number of chunks with a buffer each, summed in order: memory is 8 * elements.
+/// Returns the sum over i in [0, count) of the values that add(i, buffer) adds to a float buffer of
+/// `elements`. Work is split into a fixed number of chunks with a buffer each, summed in order:
+/// memory is 8 * elements.
 template <typename F>
 at::Tensor scatter_sum(const char* name, std::int64_t count, std::int64_t elements, const F& add) {
     constexpr std::int64_t chunks = 8;

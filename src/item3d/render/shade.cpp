@@ -21,7 +21,7 @@ using kernels::ShadeParameters;
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// What is not differentiated.
+/// Non-differentiable inputs.
 struct ShadeSettings {
     at::Tensor tangent, view;
     std::vector<float> roughness;
@@ -32,14 +32,14 @@ struct ShadeSettings {
 /// specular levels.
 constexpr std::size_t first_level = 5;
 
-/// The BSDF table, which is copied to the first device that asks for it once.
+/// Returns the BSDF table, which is cached on the first device that requests it.
 at::Tensor bsdf_table_on(at::Device device) {
     if (device.is_cpu()) return bsdf_table();
     static const at::Tensor first = bsdf_table().to(device);
     return first.device() == device ? first : bsdf_table().to(device);
 }
 
-/// bsdf: bsdf_table_on() the inputs' device.
+/// bsdf: result of bsdf_table_on() for the inputs' device.
 ShadeParameters shade_parameters(const tensor_list& inputs, const ShadeSettings& settings,
                                  const at::Tensor& bsdf) {
     const auto pointer = [](const at::Tensor& tensor) {

@@ -1,4 +1,4 @@
-// Light and material to radiance, at covered pixels alone.
+// Shading of covered pixels: light and material to radiance.
 #pragma once
 
 #include "item3d/render/interpolate.h"
@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// Material values at P surface points, linear. What a texture lookup or the neural field returns.
+/// Material values at P surface points, linear, from a texture lookup or the neural field.
 struct MaterialSample {
     at::Tensor base_color;  ///< [P, 3] linear, [0, 1]
     at::Tensor orm;         ///< [P, 3] occlusion, roughness (perceptual), metallic, [0, 1]
@@ -17,19 +17,20 @@ struct MaterialSample {
 };
 
 struct ShadeOptions {
-    /// Scales specular reflection by 1 + F0 (1 / (A + B) - 1), the light that bounces between
-    /// microfacets more than once (Turquin 2019, "Practical multiple scattering compensation for
-    /// microfacet models"): a white metal then reflects all light at any roughness. Off: single
-    /// scattering, as most path tracers' GGX has it.
+    /// Scales specular reflection by 1 + F0 (1 / (A + B) - 1), which compensates for light that
+    /// bounces between microfacets more than once (Turquin 2019, "Practical multiple scattering
+    /// compensation for microfacet models"): a white metal then reflects all light at any
+    /// roughness. Off: single scattering, as in most path tracers' GGX.
     bool multiple_scattering = true;
 };
 
-/// Outgoing radiance [P, 3], linear; differentiable in base_color, orm, normal, the surface's
-/// normal and the light's tensors:
+/// Returns outgoing radiance [P, 3], linear; differentiable in base_color, orm, normal, the
+/// surface's normal and the light's tensors:
 ///   base_color (1 - metallic) irradiance(n) occlusion + specular(r, roughness) (F0 A + B)
 ///   occlusion
+///
 /// with F0 = lerp(0.04, base_color, metallic); emissive is added; r leans towards n as roughness
-/// grows. Roughness below the chain's first (0.08) looks like it.
+/// grows. Roughness below the chain's first (0.08) uses the first level.
 at::Tensor shade(const Surface& surface, const MaterialSample& material,
                  const EnvironmentLight& light, const ShadeOptions& options = {});
 

@@ -15,7 +15,7 @@ using CurveKernel = cuda::Kernel<kernels::CurveParameters> cuda::RenderTable::*;
 
 constexpr std::int64_t curve_grain = 4096;
 
-/// An elementwise function by its kernel and that of its gradient, with the table's entries.
+/// An elementwise autograd function, by its kernel, its gradient's kernel, and the table's entries.
 template <auto forward_kernel, auto backward_kernel, CurveKernel forward_entry,
           CurveKernel backward_entry>
 struct Curve : torch::autograd::Function<

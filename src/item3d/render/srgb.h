@@ -1,12 +1,12 @@
-// The transfer function between linear values and sRGB's, for tensors of any shape.
+// The sRGB transfer function, for tensors of any shape.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
-/// float32, differentiable; the gradient of linear_to_srgb is bounded near 0. The same bytes for
-/// any number of threads.
+/// float32, differentiable; the gradient of linear_to_srgb is bounded near 0. The result does not
+/// depend on the number of threads.
 at::Tensor linear_to_srgb(const at::Tensor& linear);
 at::Tensor srgb_to_linear(const at::Tensor& encoded);
 

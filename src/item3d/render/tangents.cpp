@@ -21,15 +21,15 @@ constexpr double least = std::numeric_limits<float>::min();
 /// A triangle over merged vertices. Edge k goes from corner k to corner k + 1.
 struct Face {
     std::array<std::uint32_t, 3> vertices{};
-    DVec3 along_u{0.0}, along_v{0.0};  ///< unit, where the UVs have a direction
-    bool keeps_orientation = false;    ///< of UV space: its UVs are not mirrored
+    DVec3 along_u{0.0}, along_v{0.0};  ///< unit; zero where the UVs have no direction
+    bool keeps_orientation = false;    ///< the UVs are not mirrored
     bool has_direction = false;
-    bool is_degenerate = false;  ///< two corners at one place
+    bool is_degenerate = false;  ///< two corners coincide
     std::array<std::int32_t, 3> neighbours{none, none, none};
-    std::array<std::int32_t, 3> groups{none, none, none};  ///< of its corners
+    std::array<std::int32_t, 3> groups{none, none, none};  ///< by corner
 };
 
-/// Corners at one vertex whose faces hang together there and are mirrored alike: they share a
+/// Corners at one vertex whose faces are connected there and have the same mirroring: they share a
 /// frame.
 struct Group {
     std::uint32_t vertex;
@@ -67,7 +67,7 @@ class TangentSpace {
   private:
     DVec3 position(std::uint32_t vertex) const { return DVec3(primitive_.positions[vertex]); }
 
-    // Files repeat vertices at will: those that are equal in all that matters are one.
+    // Merges vertices that are equal in all relevant attributes; files repeat vertices arbitrarily.
     void merge_vertices() {
         const std::size_t count = primitive_.positions.size();
         std::vector<std::array<std::uint32_t, 8>> keys(count);
@@ -76,7 +76,7 @@ class TangentSpace {
             const Vec2& t = primitive_.uvs[i];
             std::array<float, 8> values{p.x, p.y, p.z, n.x, n.y, n.z, t.x, t.y};
             for (float& value : values)
-                value += 0.0f;  // -0 becomes 0, whose bits differ
+                value += 0.0f;  // turns -0 into 0, whose bits differ
             std::memcpy(keys[i].data(), values.data(), sizeof values);
         }
         std::vector<std::uint32_t> order(count);
@@ -116,12 +116,12 @@ class TangentSpace {
         }
     }
 
-    // Two faces are neighbours across an edge that they run along in opposite directions. An edge
+    // Links neighbours: two faces across an edge that they traverse in opposite directions. An edge
     // of more than two faces joins them in pairs, in the order of the file.
     void link_neighbours() {
         struct Edge {
             std::uint32_t low, high;
-            std::uint32_t corner;  // where it begins
+            std::uint32_t corner;  // first corner of the edge
             bool is_rising;
         };
         std::vector<Edge> edges;
@@ -155,8 +155,8 @@ class TangentSpace {
         return faces_[corner / 3].neighbours[corner % 3];
     }
 
-    // All faces around the vertex that can be reached across edges without crossing a mirrored
-    // seam. Faces without a direction of their own belong to whoever comes first.
+    // Gathers all faces around the vertex that are connected by edges without crossing a mirrored
+    // seam. Faces without a direction join the first group that reaches them.
     void gather(std::uint32_t first, std::int32_t index, Group& group) {
         std::vector<std::int32_t> open{static_cast<std::int32_t>(first / 3)};
         while (!open.empty()) {
@@ -180,7 +180,8 @@ class TangentSpace {
         }
     }
 
-    // The mean of the faces' directions in the plane of the normal, by their angles at the vertex.
+    // Returns the mean of the faces' directions in the plane of the normal, weighted by their
+    // angles at the vertex.
     DVec3 direction(const Group& group) const {
         const DVec3 normal(primitive_.normals[group.vertex]);
         DVec3 sum(0.0);
@@ -204,8 +205,8 @@ class TangentSpace {
     }
 
     std::vector<Vec4> to_corners(const std::vector<Group>& groups) const {
-        // By merged vertex, for corners without a group. MikkTSpace says (1, 0, 0) where nothing is
-        // known; across the normal is as arbitrary, and a frame.
+        // Fallback by merged vertex, for corners without a group. MikkTSpace sets (1, 0, 0) where
+        // nothing is known; a vector across the normal is as arbitrary, but gives a frame.
         std::vector<Vec4> spare(primitive_.positions.size(), Vec4(0.0f));
         std::vector<Vec4> of_group;
         for (const Group& group : groups) {
@@ -231,7 +232,7 @@ class TangentSpace {
     }
 
     const Primitive& primitive_;
-    std::vector<std::uint32_t> merged_;  ///< the first vertex equal to each
+    std::vector<std::uint32_t> merged_;  ///< first equal vertex, by vertex
     std::vector<Face> faces_;
 };
 
@@ -245,7 +246,7 @@ void add_tangents(Primitive& primitive) {
     const std::vector<Vec4> corners = corner_tangents(primitive);
     const std::size_t count = primitive.positions.size();
     primitive.tangents.assign(count, Vec4(0.0f));
-    // The next vertex that was split off the same one.
+    // Next vertex that was split off the same one.
     std::vector<std::int32_t> next(count, none);
     for (std::size_t corner = 0; corner < corners.size(); ++corner) {
         const std::uint32_t source = primitive.indices[corner];

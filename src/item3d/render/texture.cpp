@@ -27,7 +27,7 @@ TextureWrap kernel_wrap(Wrap wrap) {
     }
 }
 
-/// What is not differentiated.
+/// Non-differentiable inputs.
 struct SampleSettings {
     at::Tensor footprint;  ///< [P, 4] or undefined
     TextureWrap wrap_u, wrap_v;
@@ -54,13 +54,13 @@ TextureParameters texture_parameters(const tensor_list& inputs, const SampleSett
     return p;
 }
 
-/// [total]: the gradients of all levels, one after the other.
+/// Returns [total] gradients of all levels, concatenated.
 at::Tensor texel_gradient(const TextureParameters& p, const float* value_gradient,
                           std::int64_t count, std::int64_t total) {
     const at::Tensor gradient = at::zeros({total});
     Accumulator sums;
     sums.values = gradient.data_ptr<float>();
-    // One thread, for the same bytes again; buffers of many threads would cost more to sum.
+    // One thread, for reproducible sums; summing the buffers of several threads would cost more.
     for (std::int64_t i = 0; i < count; ++i)
         kernels::texture_backward(p, i, value_gradient, sums);
     return gradient;
@@ -68,7 +68,7 @@ at::Tensor texel_gradient(const TextureParameters& p, const float* value_gradien
 
 at::Tensor texel_gradient_on_cuda(const TextureParameters& p, const float* value_gradient,
                                   std::int64_t count, std::int64_t total, at::Device device) {
-    // A level of one texel gets all four taps of each probe.
+    // A level of one texel receives all four taps of each probe.
     const std::int64_t most_terms = 4 * kernels::most_texture_probes * count;
     return cuda::sum_on_device(total, most_terms, device, [&](const Accumulator& sums) {
         cuda::run(cuda::render_table().texture_backward,
@@ -141,7 +141,7 @@ struct SampleTexture : torch::autograd::Function<SampleTexture> {
     }
 };
 
-/// [2H, 2W, C] -> [H, W, C], the mean of 2 x 2 texels.
+/// Maps [2H, 2W, C] to [H, W, C], the means of 2 x 2 texels.
 struct HalveTexture : torch::autograd::Function<HalveTexture> {
     static at::Tensor forward(AutogradContext*, const at::Tensor& fine) {
         at::Tensor coarse =

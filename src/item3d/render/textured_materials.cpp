@@ -13,12 +13,12 @@
 namespace item3d {
 namespace {
 
-/// A texture of one use, with the channels that this use wants.
+/// A texture for one purpose, with the channels for it.
 struct MaterialTexture {
     std::vector<at::Tensor> levels;  ///< [H, W, C] and its mip levels; empty: none
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;
-    std::size_t map = 0;  ///< as Material has it: 0 Surface::uv, k Surface::further_uvs[k - 1]
+    std::size_t map = 0;  ///< as in Material: 0: Surface::uv, k: Surface::further_uvs[k - 1]
 
     bool defined() const { return !levels.empty(); }
     at::Tensor at(const Surface& surface) const {
@@ -34,8 +34,8 @@ struct MaterialTexture {
     }
 };
 
-/// sRGB to linear light. Most images have 256 values, and a power for each of an 8K texture's
-/// 200 million would take seconds.
+/// Decoder of sRGB to linear light, by table: most images have 256 values, and computing a power
+/// for each of an 8K texture's 200 million would take seconds.
 class SrgbDecoder {
   public:
     SrgbDecoder() {
@@ -55,8 +55,8 @@ class SrgbDecoder {
     std::array<float, 256> table_;
 };
 
-/// [H, W, channels], in one pass. channels: 3 or 4. Grey images fill all colours; a missing alpha
-/// is 1.
+/// Returns [H, W, channels], in one pass. channels: 3 or 4. Grey images fill all colours; a missing
+/// alpha is 1.
 at::Tensor linear_texels(const Image& image, int channels, bool srgb) {
     at::Tensor texels = at::empty({image.height, image.width, channels}, at::kFloat);
     const int have = image.channels;
@@ -97,7 +97,7 @@ at::Tensor row(std::initializer_list<float> values, at::Device device) {
     return at::tensor(std::vector<float>(values)).to(device);
 }
 
-/// A material's factors as rows on the device, moved there once and not at each lookup.
+/// A material's factors as rows on the device, copied there once.
 struct FactorRows {
     at::Tensor base_color;          ///< [4]
     at::Tensor roughness_metallic;  ///< [2]
@@ -130,11 +130,11 @@ struct MaterialTextures {
 
 struct TexturedMaterials::State {
     std::vector<MaterialTextures> materials;
-    at::Tensor flat_normal;  ///< [3] where a material has no normal texture
-    at::Tensor unlit_orm;    ///< [3] what orm is multiplied by, to be black to the light
+    at::Tensor flat_normal;  ///< [3] for materials without a normal texture
+    at::Tensor unlit_orm;    ///< [3] factor of orm that makes a material black to the light
     bool any_normal = false, any_emissive = false, any_alpha = false;
 
-    /// Of all points of a surface: its UV, footprints and colours alone are looked at.
+    /// Samples one material at all points of a surface; reads only its UVs, footprints and colours.
     MaterialSample sample_one(const MaterialTextures& material, const Surface& surface) const;
 };
 
@@ -197,7 +197,7 @@ MaterialSample TexturedMaterials::State::sample_one(const MaterialTextures& mate
         }
     }
     if (factors.unlit) {
-        // Shown by itself, and black to the light.
+        // Emits its base colour, and is black to the light.
         sample.emissive = sample.base_color;
         sample.orm = sample.orm * unlit_orm;
     } else if (any_emissive) {
@@ -222,7 +222,7 @@ MaterialSample TexturedMaterials::sample(const Surface& surface) const {
     ITEM3D_CHECK(materials > 0, "TexturedMaterials: a model with at least one material");
     if (materials == 1) return state_->sample_one(state_->materials[0], surface);
 
-    // Each point is sampled from its own material, then put back in its place.
+    // Sample each point from its own material, then scatter the results.
     std::vector<MaterialSample> parts;
     std::vector<at::Tensor> places;
     for (std::size_t m = 0; m < materials; ++m) {

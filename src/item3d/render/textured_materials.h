@@ -12,11 +12,11 @@ namespace item3d {
 class TexturedMaterials {
   public:
     explicit TexturedMaterials(const Model& model, at::Device device = at::kCPU);
-    /// With each texture's wrap modes, filtered where the surface has UV footprints. Vertex colours
-    /// multiply the base colour. `normal`, `emissive` and `alpha` are undefined where no material
-    /// of the model has such; alpha of masked materials is 0 or 1.
+    /// Applies each texture's wrap modes, and filters where the surface has UV footprints. Vertex
+    /// colours multiply the base colour. `normal`, `emissive` and `alpha` are undefined where no
+    /// material of the model has them; alpha of masked materials is 0 or 1.
     MaterialSample sample(const Surface& surface) const;
-    /// Whether any material is masked or blended.
+    /// True if any material is masked or blended.
     bool has_alpha() const;
 
   private:

@@ -1,4 +1,4 @@
-// The sphere around a model.
+// The bounding sphere of a model.
 #pragma once
 
 #include "item3d/scene/model.h"

@@ -41,7 +41,8 @@ std::array<Vec3, 8> corners(std::array<Vec3, 2> bounds) {
     return result;
 }
 
-/// "./train/r_0.png" -> "r_0". A dot that begins no image extension is part of the name.
+/// Returns a frame's name: "./train/r_0.png" -> "r_0". A dot that begins no image extension is part
+/// of it.
 std::string frame_name(const std::string& file_path) {
     const std::filesystem::path path(file_path);
     static const std::set<std::string> extensions = {".png", ".jpg", ".jpeg", ".exr", ".hdr",
@@ -62,7 +63,7 @@ float checked_field_of_view(float angle, const std::string& subject) {
     return angle;
 }
 
-/// camera_angle_x, or fl_x (pixels) with w; 0 when the object has neither.
+/// Reads camera_angle_x, or fl_x (pixels) with w; returns 0 when the object has neither.
 float field_of_view_of(const nlohmann::json& object, const std::string& subject) {
     if (object.contains("camera_angle_x")) {
         return checked_field_of_view(
@@ -76,7 +77,7 @@ float field_of_view_of(const nlohmann::json& object, const std::string& subject)
     return 0;
 }
 
-/// From the positions that the rows of a pose end with, where they are numbers.
+/// Subtracts the origin from the last column of a pose's rows, where it has numbers.
 void take_off(const glm::dvec3& origin, nlohmann::json& rows) {
     for (std::size_t i = 0; i < 3 && rows.is_array() && i < rows.size(); ++i) {
         if (!rows[i].is_array() || rows[i].size() != 4 || !rows[i][3].is_number()) continue;
@@ -151,9 +152,9 @@ Camera framing_camera(std::span<const Vec3> points, float azimuth, float elevati
     const Vec3 centre = 0.5f * (bounds[0] + bounds[1]);
     const float size = std::max(glm::length(bounds[1] - bounds[0]), 1e-6f);
 
-    // With the camera `distance` before the centre and moved sideways by `offset`, a point at p
-    // (its z towards the camera) is inside when |p.x - offset.x| <= slope_x (distance - p.z), and
-    // so for y. The two bounds of an axis meet at the offset that centres the points.
+    // With the camera `distance` in front of the centre and moved sideways by `offset`, a point at
+    // p (its z towards the camera) is inside when |p.x - offset.x| <= slope_x (distance - p.z), and
+    // likewise for y. The two bounds of an axis meet at the offset that centres the points.
     const Mat4 axes = orbit_camera(Vec3(0), 0, azimuth, elevation, field_of_view_x).camera_to_world;
     Vec4 reach(-std::numeric_limits<float>::max());
     for (const Vec3& point : points) {
@@ -186,7 +187,7 @@ void fit_depth_range(Camera& camera, std::array<Vec3, 2> bounds) {
         nearest = std::min(nearest, depth);
         farthest = std::max(farthest, depth);
     }
-    if (farthest <= 0) return;  // all of it is behind the camera: any range will do
+    if (farthest <= 0) return;  // all of it is behind the camera: any range is valid
     camera.far_plane = 1.01f * farthest;
     camera.near_plane = std::max(0.99f * nearest, 1e-3f * farthest);
     // A flat box seen head-on still needs a range.

@@ -22,37 +22,40 @@ struct Camera {
 
     Vec3 position() const { return Vec3(camera_to_world[3]); }
     Mat4 world_to_camera() const;
-    /// OpenGL clip space: x, y, z in [-w, w]. width and height in pixels give the aspect ratio.
+    /// Returns the matrix to OpenGL's clip space: x, y, z in [-w, w]. width and height in pixels
+    /// give the aspect ratio.
     Mat4 world_to_clip(int width, int height) const;
 };
 
-/// Angles in radians; azimuth 0 looks from +Z, pi/2 from +X; elevation is positive above.
+/// Returns a camera that looks at `target`. Angles in radians; azimuth 0 looks from +Z, pi/2 from
+/// +X; elevation is positive above.
 Camera orbit_camera(Vec3 target, float distance, float azimuth, float elevation,
                     float field_of_view_x);
 
-/// `count` cameras around the box from `first_azimuth` on, far enough that all of its bounding
-/// sphere is in a square view.
+/// Returns `count` cameras around the box from `first_azimuth` on, far enough for its bounding
+/// sphere to fit in a square view.
 std::vector<Camera> turntable(std::array<Vec3, 2> bounds, int count, float elevation,
                               float field_of_view_x, float first_azimuth = 0);
 
-/// The camera from `azimuth` and `elevation` (radians) that shows all points as large as it can, in
-/// the middle, with a twelfth of the picture free on each side. aspect: width / height; the shorter
-/// side of the picture spans `field_of_view`. Give a
-/// model's vertices where they are at hand: its box is framed with its empty corners.
+/// Returns the camera from `azimuth` and `elevation` (radians) that shows all points centred and as
+/// large as possible, with a margin of a twelfth of the image on each side. aspect: width / height;
+/// the shorter side of the image spans `field_of_view`. Prefer a model's vertices to its box, whose
+/// empty corners are framed too.
 Camera framing_camera(std::span<const Vec3> points, float azimuth, float elevation,
                       float field_of_view, float aspect = 1.0f);
 
 Camera framing_camera(std::array<Vec3, 2> bounds, float azimuth, float elevation,
                       float field_of_view, float aspect = 1.0f);
 
-/// Horizontal field of view of a picture whose shorter side spans `field_of_view` (radians).
+/// Returns the horizontal field of view of an image whose shorter side spans `field_of_view`
+/// (radians).
 float horizontal_field_of_view(float field_of_view, float aspect);
 
 /// Sets near_plane and far_plane so that the box lies between them.
 void fit_depth_range(Camera& camera, std::array<Vec3, 2> bounds);
 
 /// Reads NeRF-synthetic transforms.json (camera_angle_x, frames[].transform_matrix, file_path).
-/// Matrices are taken in the model's own axes, `origin` (Model::origin) off their positions. A
+/// Matrices are in the file's axes; `origin` (Model::origin) is subtracted from their positions. A
 /// camera is named after its frame's file (no folder, no extension), made unique where two frames
 /// share a name. Throws InputError.
 std::vector<Camera> load_cameras(const std::filesystem::path& path,

@@ -1,4 +1,4 @@
-// Pictures in memory.
+// Images in memory.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace item3d {
 
-/// Row 0 is the top; channels are interleaved: pixels[(y * width + x) * channels + c].
-/// Values are what the file says: 8-bit v is v / 255 with no transfer function applied (sRGB stays
+/// An image. Row 0 is the top; channels are interleaved: pixels[(y * width + x) * channels + c].
+/// Values are the file's: 8-bit v is v / 255 with no transfer function applied (sRGB stays
 /// encoded), HDR formats are linear and unbounded.
 struct Image {
     int width = 0;

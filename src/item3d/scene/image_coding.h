@@ -1,4 +1,4 @@
-// How a picture is encoded in a file.
+// The encoding of an image in a file.
 #pragma once
 
 namespace item3d {
@@ -7,13 +7,13 @@ enum class ImageEncoding { png, jpeg, webp, ktx2 };
 
 struct ImageCoding {
     ImageEncoding encoding = ImageEncoding::png;
-    /// PNG always, JPEG never.
+    /// Always true for PNG, false for JPEG.
     bool is_lossless = true;
-    /// 1 to 100, of a picture with losses.
+    /// 1 to 100, for lossy images.
     int quality = 95;
-    /// Of KTX2: colours, rather than other values.
+    /// KTX2: colours instead of other values.
     bool is_srgb = false;
-    /// Of KTX2: UASTC, rather than ETC1S.
+    /// KTX2: UASTC instead of ETC1S.
     bool is_precise = false;
 
     bool operator==(const ImageCoding&) const = default;

@@ -1,4 +1,4 @@
-// A model as the renderer and the editor see it, whatever file it came from.
+// A model as the renderer and the editor use it, independent of its file format.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -16,32 +16,32 @@ namespace item3d {
 
 enum class Wrap { repeat, mirrored_repeat, clamp_to_edge };
 
-/// An image with its sampler. Pictures that could not be read are not in Model::textures: the
-/// materials that wanted them have -1 in that slot and keep their factors.
+/// An image with its sampler. Unreadable images are not in Model::textures: materials that refer to
+/// them have -1 in that slot and keep their factors.
 struct Texture {
     std::string name;
     Image image;
     int bits_per_channel = 8;
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
-    /// How an edited copy is written where it is to be of the source's kind.
+    /// Coding of an edited copy in the source's format.
     ImageCoding coding = {};
-    /// The file that the image came from, where it goes into a new document as it is (PNG, JPEG,
-    /// WebP, as `coding` says); null: none.
+    /// The image's file, to be embedded unchanged in a new document (PNG, JPEG, WebP, by `coding`);
+    /// null: none.
     std::shared_ptr<const std::vector<std::uint8_t>> file = {};
-    /// Magnified, each texel is a square of one colour (glTF's NEAREST), not blended with others.
+    /// glTF's NEAREST magnification: each texel is a square of one colour.
     bool nearest = false;
 };
 
-/// glTF's metallic-roughness material. Texture members index Model::textures, -1: none.
-/// Texture values multiply the factors. Factors are linear; base colour textures are sRGB.
-/// The members ..._uvs say which UV map of a primitive a texture looks at: 0 Primitive::uvs,
-/// k Primitive::further_uvs[k - 1]. The base colour's is always 0.
+/// glTF's metallic-roughness material. Texture members index Model::textures, -1: none. Texture
+/// values multiply the factors. Factors are linear; base colour textures are sRGB. The members
+/// ..._uvs select the UV map of a texture: 0 Primitive::uvs, k Primitive::further_uvs[k - 1]. The
+/// base colour's is always 0.
 struct Material {
     std::string name;
     Vec4 base_color_factor{1.0f};
     int base_color_texture = -1;
-    /// What the file says is the base colour's picture, where that cannot be read.
+    /// Name of the base colour's image in the file, where it cannot be read.
     std::string missing_base_color;
     float metallic_factor = 1.0f;
     float roughness_factor = 1.0f;
@@ -62,10 +62,10 @@ struct Material {
     enum class Alpha { opaque, mask, blend } alpha = Alpha::opaque;
     float alpha_cutoff = 0.5f;
     bool double_sided = false;
-    /// The base colour is shown as it is, in any light (KHR_materials_unlit).
+    /// The base colour is emitted, independent of light (KHR_materials_unlit).
     bool unlit = false;
-    /// Names of the file's extensions of this material that viewers may show and that are not read
-    /// (KHR_materials_transmission, ...).
+    /// Names of the material's extensions in the file that are not read, although viewers may show
+    /// them (KHR_materials_transmission, ...).
     std::vector<std::string> other_extensions;
 };
 
@@ -73,37 +73,37 @@ struct Material {
 struct Primitive {
     std::string name;
     std::vector<Vec3> positions;
-    /// Unit length. Always there: where the file has none, flat for glTF (each corner is a vertex
-    /// of its own then) and by smoothing groups for OBJ, area-weighted by position.
+    /// Unit length. Never empty: where the file has none, flat for glTF (each corner is then a
+    /// vertex of its own) and by smoothing groups for OBJ, area-weighted by position.
     std::vector<Vec3> normals;
     /// Empty when the file has none. glTF's convention: (0, 0) is the top left corner of the image.
     std::vector<Vec2> uvs;
-    /// Other UV maps that textures of its material look at, each as long as positions, or empty
-    /// where the file has none.
+    /// Other UV maps that textures of its material use, each as long as positions, or empty where
+    /// the file has none.
     std::vector<std::vector<Vec2>> further_uvs;
-    /// Unit tangent and handedness in w; empty when the file has none. They follow the UV map of
-    /// the normal texture.
+    /// Unit tangent and handedness in w, for the UV map of the normal texture; empty when the file
+    /// has none.
     std::vector<Vec4> tangents;
-    /// Linear RGBA that multiplies the base colour; empty when the file has none.
+    /// Linear RGBA factors of the base colour; empty when the file has none.
     std::vector<Vec4> colors;
-    /// Three a triangle, each below positions.size(); counter-clockwise is the front.
+    /// Three for each triangle, each below positions.size(); counter-clockwise is the front.
     std::vector<std::uint32_t> indices;
-    /// One a triangle, indices into Model::groups; empty where the file has none.
+    /// One for each triangle, indices into Model::groups; empty where the file has none.
     std::vector<int> triangle_groups;
-    /// Index into Model::materials (always valid: a default material is made when there is none).
+    /// Index into Model::materials (always valid: there is a default material).
     int material = 0;
-    /// Where it came from in the source document, -1: not from glTF.
+    /// Indices in the source document, -1: not from glTF.
     int source_mesh = -1;
     int source_primitive = -1;
     int source_node = -1;
-    /// The node mirrors, so the triangles were reversed to face outwards.
+    /// The node mirrors, so the triangles are reversed to face outwards.
     bool is_mirrored = false;
 };
 
-/// One of the looks that a file offers (KHR_materials_variants).
+/// An appearance variant of a file (KHR_materials_variants).
 struct MaterialVariant {
     std::string name;
-    std::vector<int> materials;  ///< that primitives have in it, rising; into Model::materials
+    std::vector<int> materials;  ///< used in it, rising; indices into Model::materials
 };
 
 class SourceDocument;
@@ -113,20 +113,20 @@ struct Model {
     std::vector<Primitive> primitives;
     std::vector<Material> materials;
     std::vector<Texture> textures;
-    /// Names of an OBJ's groups and objects ("g", "o"): each of the sets of names that triangles of
-    /// it have.
+    /// Distinct sets of an OBJ's group and object names ("g", "o") that its triangles have.
     std::vector<std::vector<std::string>> groups;
-    /// What was taken off the positions of the file (far_origin.h); zero for all but models far
-    /// from their origin. Writers add it again, in double precision.
+    /// Offset subtracted from the file's positions (far_origin.h); zero for all but models far from
+    /// their origin. Writers add it again, in double precision.
     glm::dvec3 origin{0.0};
-    /// Empty where the file has none. Primitives have the materials of the one that was chosen,
-    /// else those that they have without a variant.
+    /// Empty where the file has none. Primitives have the materials of the selected variant, else
+    /// their default ones.
     std::vector<MaterialVariant> variants;
-    /// What was loaded, for writing an edited copy that keeps all else. Null for made models.
+    /// The loaded document, for writing an edited copy that keeps all else. Null for generated
+    /// models.
     std::shared_ptr<const SourceDocument> source;
 
     std::size_t triangle_count() const;
-    /// Corners of the axis-aligned bounding box of all positions.
+    /// Returns the corners of the axis-aligned bounding box of all positions.
     std::array<Vec3, 2> bounds() const;
 };
 

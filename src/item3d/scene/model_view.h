@@ -1,4 +1,4 @@
-// Views of a whole model.
+// Cameras that view a whole model.
 #pragma once
 
 #include "item3d/scene/camera.h"
@@ -6,14 +6,14 @@
 
 namespace item3d {
 
-/// A three-quarter view from a little above, through a lens that is neither wide nor long.
+/// Default view: three-quarter, slightly from above, with a normal lens.
 inline constexpr float default_azimuth = 35 * pi / 180;
 inline constexpr float default_elevation = 18 * pi / 180;
 inline constexpr float default_field_of_view = 30 * pi / 180;
 
-/// The whole model from these angles (radians), as large as it fits. aspect: width / height.
+/// Returns a camera that fits the whole model from these angles (radians). aspect: width / height.
 Camera view_from(const Model& model, float azimuth, float elevation, float aspect);
-/// From the default ones.
+/// Returns view_from() with the default angles.
 Camera default_view(const Model& model, float aspect);
 
 }  // namespace item3d

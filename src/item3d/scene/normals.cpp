@@ -12,7 +12,7 @@ namespace item3d {
 
 namespace {
 
-/// For each vertex: which distinct position it stands at, from 0.
+/// Returns the index of each vertex's distinct position, from 0.
 std::vector<std::uint32_t> number_places(std::span<const Vec3> positions) {
     const auto key = [&](std::uint32_t i) {
         return std::array{positions[i].x, positions[i].y, positions[i].z};
@@ -101,7 +101,7 @@ std::vector<Vec3> smooth_normals(std::span<const Vec3> positions,
 std::vector<std::uint32_t> make_flat(Primitive& primitive) {
     using DVec3 = glm::dvec3;
     std::vector<std::uint32_t> sources = primitive.indices;
-    // The triangles of mirrored nodes were turned over when they were read.
+    // The triangles of mirrored nodes were reversed when they were read.
     for (std::size_t t = 0; primitive.is_mirrored && t < sources.size(); t += 3)
         std::swap(sources[t + 1], sources[t + 2]);
 
@@ -130,7 +130,7 @@ std::vector<std::uint32_t> make_flat(Primitive& primitive) {
         };
         const DVec3 normal = glm::cross(at(1) - at(0), at(2) - at(0));
         const double length = glm::length(normal);
-        // A triangle without area is not seen from any side.
+        // A triangle without area is invisible.
         const bool has_area = std::isfinite(length) && length > 0.0;
         primitive.normals.insert(primitive.normals.end(), 3,
                                  has_area ? Vec3(normal / length) : Vec3(0.0f, 0.0f, 1.0f));

@@ -1,4 +1,4 @@
-// Models of which nothing is seen.
+// The test of whether a model is visible at all.
 #pragma once
 
 #include "item3d/scene/model.h"
@@ -7,11 +7,11 @@
 
 namespace item3d {
 
-/// Whether anything of these materials (indices into Model::materials) can be seen at all: a
-/// triangle with an area, whose material, texture and vertex colours are not wholly transparent.
+/// True if these materials (indices into Model::materials) have a visible triangle: one with an
+/// area, whose material, texture and vertex colours are not wholly transparent.
 bool is_visible(const Model& model, const std::vector<int>& materials);
 
-/// As above, of all materials.
+/// True if any of the model's materials has a visible triangle.
 bool is_visible(const Model& model);
 
 }  // namespace item3d

@@ -15,11 +15,11 @@ namespace {
 
 constexpr const char* begin_anew = "leave out --resume to begin anew";
 constexpr std::int64_t large = 65536;  ///< rows
-/// What a tensor of which a few rows are written becomes: [2] rows in all, of which there are; and
-/// those, by place.
+/// Suffixes of the parts of a tensor that is stored by rows: [2] number of rows, and of stored
+/// rows; their indices; their values.
 const std::string all_rows = "#all", row_places = "#rows", row_values = "#values";
 
-/// Appends the tensor, or the rows of it that are not 0.
+/// Appends the tensor, or its nonzero rows.
 void append_rows(NamedTensors& tensors, const std::string& name, const at::Tensor& tensor) {
     if (tensor.dim() > 0 && tensor.size(0) >= large) {
         const at::Tensor used =
@@ -34,7 +34,7 @@ void append_rows(NamedTensors& tensors, const std::string& name, const at::Tenso
     tensors.emplace_back(name, tensor);
 }
 
-/// The tensors as they were before append_rows().
+/// Returns the tensors from before append_rows().
 NamedTensors whole_tensors(const SafeTensors& file) {
     NamedTensors tensors;
     for (const std::string& name : file.names()) {
@@ -101,7 +101,7 @@ std::string hash_of_file(const std::filesystem::path& path) {
 std::string hash_of_weights(const std::filesystem::path& prior) {
     std::vector<std::filesystem::path> files;
     for (const char* part : {"unet", "text_encoder", "text_encoder_2", "vae"}) {
-        std::error_code ignored;  // of a prior that lacks one of them its loading says so
+        std::error_code ignored;  // loading reports a missing part
         for (const auto& entry : std::filesystem::directory_iterator(prior / part, ignored))
             if (entry.path().extension() == ".safetensors") files.push_back(entry.path());
     }
@@ -132,8 +132,7 @@ void require_same_identity(const std::filesystem::path& path, const nlohmann::js
     const auto before = [&](const std::string& key) {
         return saved.is_object() ? saved.value(key, nlohmann::json()) : nlohmann::json();
     };
-    // First of all what settings follow from: without its --mesh a run has settings that one has
-    // not.
+    // First the inputs on which settings depend: a run without its --mesh also has other settings.
     for (const auto& [key, problem] : inputs)
         if (now.contains(key) && before(key) != now[key]) reject(problem);
     for (const auto& [key, value] : now.items())

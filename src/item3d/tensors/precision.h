@@ -1,4 +1,4 @@
-// Which floating-point type a network computes in.
+// The floating-point type in which a network computes.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -8,15 +8,15 @@
 
 namespace item3d {
 
-/// "auto", "fp32", "bf16", "fp16".
+/// Returns "auto", "fp32", "bf16", "fp16".
 const std::vector<std::string>& precision_names();
 
-/// auto: bf16 where the device computes in it (any CUDA device, CPUs with AVX512-BF16), else fp32.
-/// Throws InputError on an unknown name, and on fp16 on the CPU, whose kernels are slower than
-/// fp32's and overflow in Stable Diffusion's autoencoder.
+/// Chooses the type. auto: bf16 where the device supports it (any CUDA device, CPUs with
+/// AVX512-BF16), else fp32. Throws InputError on an unknown name, and on fp16 on the CPU, whose
+/// kernels are slower than fp32's and overflow in Stable Diffusion's autoencoder.
 at::ScalarType choose_precision(const std::string& name, at::Device device);
 
-/// "fp32", "bf16" or "fp16".
+/// Returns "fp32", "bf16" or "fp16".
 std::string precision_name(at::ScalarType dtype);
 
 }  // namespace item3d

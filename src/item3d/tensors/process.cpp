@@ -7,7 +7,7 @@
 namespace item3d {
 
 void prepare_process() {
-    // Read by the library with its first product.
+    // The library reads it at its first product.
     setenv("MKL_CBWR", "AUTO,STRICT", /*overwrite=*/0);
     give_large_tensors_a_region();
 }

@@ -1,15 +1,14 @@
-// What a program that computes with LibTorch sets for its whole process.
+// Process-wide settings of programs that compute with LibTorch.
 #pragma once
 
 namespace item3d {
 
-/// Call it before the first tensor is made; programs and tests do alike.
+/// Call before the first tensor is created; programs and tests do so.
 ///
-/// Matrix products of the CPU give the same bytes for any number of threads (MKL_CBWR=AUTO,STRICT,
-/// unless the environment says otherwise).
+/// Makes CPU matrix products independent of the number of threads, bit for bit
+/// (MKL_CBWR=AUTO,STRICT, unless the environment sets it).
 ///
-/// Large tensors of the CPU have a region of their own, in large pages, where they are reused (see
-/// tensor_memory.cpp).
+/// Reserves a region of large pages for large CPU tensors (see tensor_memory.cpp).
 void prepare_process();
 
 }  // namespace item3d

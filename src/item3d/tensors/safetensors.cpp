@@ -68,7 +68,7 @@ class File {
 
 }  // namespace
 
-/// The mapped bytes of a file, unmapped with the last tensor that shows them.
+/// Memory-mapped bytes of a file, unmapped with the last tensor that uses them.
 struct SafeTensors::Map {
     std::uint8_t* bytes = nullptr;
     std::size_t size = 0;
@@ -217,7 +217,7 @@ at::Tensor SafeTensors::tensor(const std::string& name) const {
     const auto options = at::TensorOptions().dtype(found.dtype);
     if (found.begin == found.end) return at::empty(found.shape, options);
     if (reinterpret_cast<std::uintptr_t>(bytes) % at::elementSize(found.dtype) != 0) {
-        // The format does not promise alignment; kernels expect it.
+        // The format does not guarantee alignment; kernels require it.
         at::Tensor copy = at::empty(found.shape, options);
         std::memcpy(copy.data_ptr(), bytes, found.end - found.begin);
         return copy;
@@ -230,7 +230,7 @@ void SafeTensors::forget(const std::string& name) const {
     const Entry& found = entry(name);
     const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
     const auto start = reinterpret_cast<std::uintptr_t>(map_->bytes) + data_start_;
-    // Whole pages alone: at the ends are other tensors' bytes.
+    // Whole pages only: partial ones contain other tensors' bytes.
     const std::uintptr_t first = (start + found.begin + page - 1) / page * page;
     const std::uintptr_t last = (start + found.end) / page * page;
     if (last > first) ::madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
@@ -272,8 +272,8 @@ void save_safetensors(const std::filesystem::path& path, const NamedTensors& ten
     std::string text = header.dump();
     text.resize((text.size() + 7) / 8 * 8, ' ');
 
-    // Through one buffer, because write_atomically then syncs it and tells a full disk from a
-    // folder that may not be written to; what this project writes is small.
+    // Through one buffer, because write_atomically() then syncs it and distinguishes a full disk
+    // from an unwritable folder; this project's files are small.
     Bytes bytes(8 + text.size() + offset);
     for (int i = 0; i < 8; ++i)
         bytes[i] = static_cast<std::uint8_t>(text.size() >> (8 * i));

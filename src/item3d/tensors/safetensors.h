@@ -1,6 +1,6 @@
 // The safetensors format: reading by memory map, writing atomically.
-// https://github.com/huggingface/safetensors#format : a u64 header length, a JSON header
-// {name: {dtype, shape, data_offsets}}, then the tensors' bytes without holes.
+// https://github.com/huggingface/safetensors#format : a u64 header length, a JSON header {name:
+// {dtype, shape, data_offsets}}, then the tensors' bytes without gaps.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -15,7 +15,7 @@
 
 namespace item3d {
 
-/// What a file's header says of a tensor.
+/// Entry of a tensor in a file's header.
 struct TensorInfo {
     at::ScalarType dtype;
     std::vector<std::int64_t> shape;
@@ -23,31 +23,32 @@ struct TensorInfo {
 
 using NamedTensors = std::vector<std::pair<std::string, at::Tensor>>;
 
-/// One open file. Tensors that it hands out share its memory map and keep it alive; writing to one
-/// changes private memory, never the file.
+/// One open file. Its tensors share the memory map and keep it alive; writing to one changes
+/// private memory, never the file.
 class SafeTensors {
   public:
-    /// Reads and checks the whole header (length, JSON, types, shapes, offsets, overlap, holes)
-    /// before any tensor is touched. Throws InputError that names the file.
+    /// Reads and checks the whole header (length, JSON, types, shapes, offsets, overlap, gaps)
+    /// before any tensor is accessed. Throws InputError that names the file.
     static SafeTensors open(const std::filesystem::path& path);
 
     const std::filesystem::path& path() const { return path_; }
-    /// Names in the order of their bytes.
+    /// Returns names in the order of their data.
     const std::vector<std::string>& names() const { return names_; }
     bool contains(const std::string& name) const { return entries_.count(name) > 0; }
-    /// Element counts of all tensors together.
+    /// Returns the sum of all tensors' element counts.
     std::int64_t total_elements() const;
-    /// The header's "__metadata__" strings.
+    /// Returns the header's "__metadata__" strings.
     const std::map<std::string, std::string>& metadata() const { return metadata_; }
 
-    /// Of one tensor, without touching its bytes. Throws InputError when absent.
+    /// Returns type and shape of one tensor without reading its bytes. Throws InputError when
+    /// absent.
     TensorInfo info(const std::string& name) const;
-    /// A view of the file's bytes, in the file's own type. Throws InputError when absent.
+    /// Returns a view of the file's bytes, in the file's own type. Throws InputError when absent.
     at::Tensor tensor(const std::string& name) const;
-    /// Lets go of the memory that a tensor's bytes take, for who has copied them; they are read
-    /// from the file again when somebody looks.
+    /// Releases the pages of a tensor that has been copied; a later access reads them from the file
+    /// again.
     void forget(const std::string& name) const;
-    /// All of them, in the order of names().
+    /// Returns all tensors, in the order of names().
     NamedTensors tensors() const;
 
   private:
@@ -71,7 +72,7 @@ class SafeTensors {
 };
 
 /// Writes float32, float16, bfloat16, float64, int64, int32, int16, int8, uint8 or bool tensors of
-/// any device, atomically. Names must differ. Throws ResourceError on a full disk.
+/// any device, atomically. Names must be unique. Throws ResourceError on a full disk.
 void save_safetensors(const std::filesystem::path& path, const NamedTensors& tensors,
                       const std::map<std::string, std::string>& metadata = {});
 

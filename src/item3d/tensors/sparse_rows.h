@@ -1,13 +1,13 @@
-// Gradients of tables of which few rows were looked up.
+// Sparse gradients of tables, with entries only for rows that were read.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
 
 namespace item3d {
 
-/// The sparse gradient with unique rows in rising order, marked as coalesced. Accumulation of CPU
-/// tensors keeps that order and drops the mark, so the rows themselves are looked at before they
-/// are sorted again.
+/// Returns the sparse gradient with unique rows in rising order, marked as coalesced. LibTorch's
+/// accumulation of CPU tensors keeps that order but drops the mark, so this sorts only rows that
+/// are out of order.
 at::Tensor coalesce_rows(const at::Tensor& gradient);
 
 }  // namespace item3d

@@ -18,14 +18,14 @@ namespace {
 
 constexpr std::size_t page = 4096, region_page = 2 << 20;
 constexpr std::size_t large_tensor = 128 << 10;
-/// Free pages that the region keeps for what comes next.
+/// Bytes of free pages that the region keeps for reuse.
 constexpr std::size_t kept = 512 << 20;
 
 std::size_t round_up(std::size_t bytes, std::size_t step) {
     return (bytes + step - 1) / step * step;
 }
 
-/// Blocks are taken from the lowest addresses where they fit, so that what is used stays together.
+/// A region with first-fit allocation from the lowest addresses, which keeps used blocks together.
 class Region {
   public:
     Region() {
@@ -42,7 +42,7 @@ class Region {
         free_[begin_] = size;
     }
 
-    /// Null where no hole is large_tensor enough.
+    /// Returns null if no hole is large enough.
     void* take(std::size_t bytes) {
         const std::size_t size = round_up(bytes, page);
         const std::lock_guard lock(mutex_);
@@ -82,7 +82,7 @@ class Region {
                 hole = before;
             }
         }
-        // Of the end of what was ever used, the system gets back what is more than enough.
+        // Return excess memory at the end of the touched range to the system.
         const std::uintptr_t first = round_up(hole->first + kept, region_page);
         if (hole->first + hole->second == end_ && first < touched_) {
             ::madvise(reinterpret_cast<void*>(first), touched_ - first, MADV_DONTNEED);
@@ -96,7 +96,7 @@ class Region {
     std::map<std::uintptr_t, std::size_t> free_, used_;
 };
 
-/// Lives as long as the program: tensors may outlive everything else.
+/// Never destroyed, because tensors may outlive everything else.
 Region& region() {
     static Region& only = *new Region;
     return only;

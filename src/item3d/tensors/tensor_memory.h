@@ -1,12 +1,12 @@
-// Where the large tensors of a process lie.
+// The memory of a process's large tensors.
 #pragma once
 
 namespace item3d {
 
-/// From now on LibTorch's large tensors of the CPU have a region of their own, in large pages,
-/// where they are reused: given back to the system each of their pages would be cleared anew, and
-/// on the heap what is small and stays keeps what is large and goes apart. Without room for a
-/// region, or with none left in it, they are on the heap as before.
+/// Reserves a region of large pages for LibTorch's large CPU tensors, and reuses it: memory
+/// returned to the system would have to be cleared again page by page, and on the heap small
+/// long-lived blocks fragment the large ones. Without space for a region, or when it is full,
+/// tensors use the heap as before.
 void give_large_tensors_a_region();
 
 }  // namespace item3d

@@ -21,7 +21,7 @@ struct WeightMemory::Pages {
             throw ResourceError(fmt::format("out of memory: the weights take {:.1f} GB",
                                             static_cast<double>(bytes) / 1e9));
         const auto start = reinterpret_cast<std::uintptr_t>(address);
-        // What lies before the first large page, and after the end, is never touched.
+        // Memory before the first large page, and after the end, is never touched.
         begin = (start + huge_page - 1) / huge_page * huge_page;
         ::madvise(reinterpret_cast<void*>(begin), bytes, MADV_HUGEPAGE);
     }

@@ -1,4 +1,4 @@
-// Memory for a network's weights, apart from what comes and goes while it runs.
+// Memory for a network's weights, separate from temporary tensors.
 #pragma once
 
 #include "item3d/tensors/tensor.h"
@@ -8,18 +8,18 @@
 
 namespace item3d {
 
-/// Pages of their own for weights, large ones if the system has them. They go back to the system
-/// with the last tensor in them, whereas weights on the heap leave holes between activations.
+/// Separate pages for weights, large ones if available. The last tensor in them returns them to the
+/// system, whereas weights on the heap leave holes between activations.
 class WeightMemory {
   public:
-    /// Room for so many bytes of weights of the CPU, 64-byte aligned each: see room_for(). Throws
-    /// ResourceError where the system has none.
+    /// Reserves memory for this many bytes of CPU weights, each 64-byte aligned: see room_for().
+    /// Throws ResourceError if the system has none.
     explicit WeightMemory(std::size_t bytes);
 
-    /// What a tensor takes of it.
+    /// Returns the memory that a tensor takes.
     static std::size_t room_for(at::IntArrayRef sizes, at::ScalarType dtype);
 
-    /// Numbers not yet written (zero), contiguous, in the next part of the memory.
+    /// Returns a contiguous tensor of zeros in the next part of the memory.
     at::Tensor empty(at::IntArrayRef sizes, at::ScalarType dtype);
 
   private:
@@ -28,7 +28,7 @@ class WeightMemory {
     std::size_t used_ = 0;
 };
 
-/// One tensor in such memory, or on the heap where it is small.
+/// Returns one tensor in such memory, or on the heap if it is small.
 at::Tensor empty_weight(at::IntArrayRef sizes, at::ScalarType dtype);
 
 }  // namespace item3d

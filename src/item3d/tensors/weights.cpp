@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Shard of each tensor, as an index tells it.
+/// Returns the shard of each tensor from an index.
 std::map<std::string, std::string> read_index(const fs::path& index) {
     const Config config = Config::read(index);
     if (!config.has("weight_map") || !config.json()["weight_map"].is_object())
@@ -27,7 +27,7 @@ std::map<std::string, std::string> read_index(const fs::path& index) {
     return shards;
 }
 
-/// True when the file is there. Throws when it is a link that leads nowhere, as caches leave them.
+/// True if the file exists. Throws InputError for a dangling link, as caches leave them.
 bool is_there(const fs::path& path) {
     if (fs::exists(path)) return true;
     if (fs::is_symlink(path))
@@ -36,7 +36,7 @@ bool is_there(const fs::path& path) {
     return false;
 }
 
-/// The file of `folder` that holds weights as pickles; "" when none does.
+/// Returns the file in `folder` that holds weights as pickles; "" for none.
 std::string find_pickle(const fs::path& folder) {
     std::error_code code;
     for (const auto& entry : fs::directory_iterator(folder, code))

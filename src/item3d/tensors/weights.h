@@ -1,4 +1,4 @@
-// Weights of one network, wherever the layout put them, into a torch module by name.
+// The weights of one network, by name, from any file layout.
 #pragma once
 
 #include "item3d/tensors/safetensors.h"
@@ -16,14 +16,14 @@ namespace item3d {
 class Weights {
   public:
     /// Looks in `folder` for STEM.safetensors, STEM.safetensors.index.json, STEM.fp16.safetensors,
-    /// STEM.safetensors.index.fp16.json and STEM.fp16.safetensors.index.json, in this order.
-    /// Throws InputError when none is there (pickles are never read), a link leads nowhere, or a
-    /// shard or tensor that the index names is not there.
+    /// STEM.safetensors.index.fp16.json and STEM.fp16.safetensors.index.json, in this order. Throws
+    /// InputError when none exists (pickles are never read), for a dangling link, and for a missing
+    /// shard or tensor of the index.
     static Weights open(const std::filesystem::path& folder, const std::string& stem);
-    /// One file.
+    /// Opens one file.
     static Weights open_file(const std::filesystem::path& file);
 
-    /// Gives tensors other names: old spellings, prefixes. An empty new name drops the tensor.
+    /// Renames tensors: old spellings, prefixes. An empty new name drops the tensor.
     void rename(const std::function<std::string(const std::string&)>& new_name);
 
     std::vector<std::string> names() const;
@@ -31,9 +31,9 @@ class Weights {
     at::Tensor tensor(const std::string& name) const;
     TensorInfo info(const std::string& name) const;
     void forget(const std::string& name) const;  ///< see SafeTensors
-    /// The file that holds it, for messages.
+    /// Returns the file that contains it, for messages.
     std::string file_of(const std::string& name) const;
-    /// What messages call the whole.
+    /// Returns the name of the whole in messages.
     const std::string& subject() const { return subject_; }
     std::int64_t total_elements() const;
 
@@ -52,7 +52,8 @@ class Weights {
 };
 
 /// Throws InputError when a network of `elements` parameters (a lower bound from its config) cannot
-/// be in these weights: an absurd config must not make us allocate before the shapes are compared.
+/// be in these weights, so that a bad config does not cause huge allocations before shapes are
+/// compared.
 void check_plausible(const Weights& weights, double elements);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Work on threads of our own, each with one LibTorch thread inside: for many small tasks this beats
+// Worker threads, each with one LibTorch thread inside: for many small tasks this is faster than
 // the parallelism inside operations.
 #pragma once
 
@@ -7,18 +7,18 @@
 
 namespace item3d {
 
-/// Calls work(i) for i in [0, count) on `threads` threads, in any order, without gradients.
-/// The first exception stops the others and is thrown here. Also stops, without exception, between
-/// two tasks after an interrupt: the caller asks interrupted().
+/// Calls work(i) for i in [0, count) on `threads` threads, in any order, without gradients. The
+/// first exception stops the others and is rethrown here. Also stops, without exception, between
+/// two tasks after an interrupt: the caller must check interrupted().
 void run_workers(std::int64_t count, int threads, const std::function<void(std::int64_t)>& work);
 
-/// Calls body(rank) once on each of `threads` threads with one LibTorch thread inside, and waits.
-/// The first exception is thrown here once all have ended; a body that waits for its peers must
-/// itself see to it that they end.
+/// Calls body(rank) once on each of `threads` threads with one LibTorch thread inside, and blocks.
+/// Rethrows the first exception after all have ended; a body that waits for its peers must itself
+/// ensure that they end.
 void run_ranks(int threads, const std::function<void(int)>& body);
 
 /// Keeps freed memory for the next step: by default every large tensor is mapped, cleared by the
-/// kernel and unmapped again, which costs a training step a tenth of its time.
+/// kernel and unmapped again, a tenth of a training step's time.
 void keep_freed_memory();
 
 }  // namespace item3d

@@ -19,24 +19,25 @@ namespace item3d {
 namespace {
 
 constexpr int sampling_steps = 24;
-/// How much of a picture noise replaces: nearly all where the prior is told the shape.
+/// Noise strength of an image, 0 to 1: nearly 1 where a ControlNet gives the prior the shape.
 constexpr double initial_strength = 0.95;
 constexpr double initial_strength_without_shape = 0.7;
 constexpr double refine_strength = 0.7;
 constexpr double close_up_strength = 0.5;
 constexpr float painting_guidance_scale = 5.0f;
-/// A small autoencoder flattens what it decodes; so much of what is fine is added once more.
+/// Factor of the detail that is added once more, since a small autoencoder blurs what it decodes.
 constexpr float sharpening = 0.3f;
-/// Fine is what two box filters of this part of the picture's edge take away.
+/// Image edge divided by this: the width of the two box filters that separate detail.
 constexpr int filter_share = 8;
-constexpr float known_weight = 0.3f;  ///< of what earlier views painted, where a view is fitted
-constexpr int fits = 24;              ///< steps of the optimiser for each view
-constexpr int last_fits = 200;        ///< and for all pictures together at the end
-constexpr double table_rate = 0.01, network_rate = 0.0025;  ///< learning rates
-/// As a part of the first, where the stage ends, so that no picture counts more for coming last.
+constexpr float known_weight = 0.3f;  ///< weight of the pixels of earlier views in a view's fit
+constexpr int fits = 24;              ///< optimiser steps for each view
+constexpr int last_fits = 200;        ///< optimiser steps for all images at the end
+constexpr double table_rate = 0.01, network_rate = 0.0025;  ///< initial learning rates
+/// Final learning rate relative to the initial one; it falls so that the last images have no
+/// greater weight.
 constexpr double final_rate = 0.05;
 constexpr float spread = 0.5f;  ///< pixels, see ViewOptions
-/// Pixels of a picture's edge up to which what its view sees is kept: about 2 MB each.
+/// Largest image edge, in pixels, for which a view's G-buffer is cached: about 2 MB each.
 constexpr int largest_kept = 128;
 
 at::Tensor blur(at::Tensor images) {
@@ -48,25 +49,26 @@ at::Tensor blur(at::Tensor images) {
     return images;
 }
 
-/// Without what varies slowly over the covered part; the background does not count.
+/// Returns the images minus their low frequencies over the covered part; ignores the background.
 at::Tensor fine_part(const at::Tensor& images, const at::Tensor& coverage) {
     return images - blur(images * coverage) / (blur(coverage) + 1e-4f);
 }
 
-/// Pixels whose neighbours are covered too: at silhouettes the prior draws its own outline.
+/// Returns the covered pixels whose neighbours are covered too: at silhouettes the prior draws its
+/// own outline.
 at::Tensor inner(const at::Tensor& coverage) {
     return -at::max_pool2d(-coverage, 3, 1, 1);
 }
 
-/// A view of the plan, without what the stage has painted.
+/// A view of the plan as it was before the stage.
 struct PaintedView {
     GBuffer gbuffer;
-    MaterialSample before;  ///< the field's materials as the stage began
+    MaterialSample before;  ///< the field's materials before the stage
 };
 
-/// How far the channels that the stage leaves alone have moved; the field's features are shared by
-/// all of them. `now` is as of up to half a pixel aside, which they vary little over. These points'
-/// part of the mean over `points` of them.
+/// Returns the mean squared change of the channels that the stage must keep; the field's features
+/// are shared by all channels. `now` is sampled up to half a pixel aside, where these channels vary
+/// little. points: number of points of the whole mean, of which `now` holds a share.
 at::Tensor drift(const MaterialSample& now, const MaterialSample& before, std::int64_t points) {
     const auto values = static_cast<double>(3 * points);
     at::Tensor moved = (now.orm - before.orm).square().sum() / values;
@@ -75,7 +77,7 @@ at::Tensor drift(const MaterialSample& now, const MaterialSample& before, std::i
     return moved;
 }
 
-/// The stage in progress.
+/// A running detail stage.
 class Painter {
   public:
     Painter(const EditRequest& request, const EditScene& scene, EditState& state)
@@ -105,10 +107,10 @@ class Painter {
     const EditPlan& plan_;
     EditState& state_;
     std::vector<PaintingView> views_;
-    std::map<std::size_t, PaintedView> kept_;  ///< views of the plan, where they are small
+    std::map<std::size_t, PaintedView> kept_;  ///< cached small views by index in the plan
 };
 
-/// Each view is rendered dozens of times.
+/// Returns a view, from the cache if possible: each is rendered dozens of times.
 PaintedView Painter::see(std::size_t index) {
     const auto found = kept_.find(index);
     if (found != kept_.end()) return found->second;
@@ -130,7 +132,7 @@ EditView Painter::render(std::size_t index, const GBuffer& gbuffer, float spread
     return render_view(scene_, plan_, state_.field, gbuffer, options);
 }
 
-/// [1, 1, R, R] 0 .. 1.
+/// Returns weights [1, 1, R, R], 0 to 1, of pixels that earlier views painted.
 at::Tensor Painter::known_pixels(std::size_t index) const {
     return at::upsample_bilinear2d(views_[index].known, views_[index].facing.sizes().slice(2),
                                    /*align_corners=*/false);
@@ -148,7 +150,7 @@ double Painter::strength(const PaintingView& planned) const {
     return takes_shape(*scene_.prior()) ? initial_strength : initial_strength_without_shape;
 }
 
-/// The image that the prior samples from this view, [1, 3, R, R].
+/// Returns the prior's sample for this view, [1, 3, R, R].
 at::Tensor Painter::target(std::size_t index, const GBuffer& gbuffer) const {
     const at::NoGradGuard no_grad;
     const EditView view = render(index, gbuffer);
@@ -171,8 +173,8 @@ at::Tensor Painter::target(std::size_t index, const GBuffer& gbuffer) const {
     const at::Tensor condition = condition_of_shape(prior, gbuffer.shape, latents);
     const at::Tensor sampled = generate_latents(prior, options, condition);
     const at::Tensor decoded = prior.decode_image(sampled) / 2 + 0.5f;
-    // The decoded image, not the render: a close-up's render shows, as noise, detail that the
-    // pixels of the round before were too coarse to constrain.
+    // Use the decoded image, not the render: a close-up's render shows, as noise, detail that the
+    // pixels of the previous round were too coarse to constrain.
     const at::Tensor fresh = 1 - known_pixels(index);
     const at::Tensor painted = view.images + fresh * (decoded - view.images);
     return (painted + sharpening * fresh * fine_part(decoded, view.coverage)).clamp(0, 1);
@@ -188,7 +190,7 @@ void Painter::fit_step(std::size_t chosen, std::uint64_t draw) {
         (weight.sum() + 1e-4f);
     const at::Tensor moved =
         drift(view.material, narrow(before, view.points), gbuffer.surface.count());
-    // All processes have the picture: it counts once.
+    // All processes have the image, so its loss counts once.
     (processes_.first() ? apart + moved : 0 * apart + moved).backward();
     sum_gradients(processes_, state_.detail.optimizer.parameters());
     state_.detail.optimizer.step();
@@ -200,8 +202,8 @@ void Painter::paint(std::size_t index) {
     for (std::size_t i = 0; i < fits; ++i) {
         const std::uint64_t draw = index * fits + i;
         Random random(plan_.seed, RandomStream::painting, draw);
-        // Every other step looks back, so that one view does not undo another; not to the pictures
-        // of earlier rounds, which this one refines.
+        // Every second step fits an earlier view, so that views do not undo each other; not one of
+        // an earlier round, whose images this round refines.
         const auto first = static_cast<std::size_t>(views_[index].first_of_round);
         const auto back = random.index(static_cast<std::int64_t>(index - first) + 1);
         fit_step(i % 2 == 0 ? index : index - static_cast<std::size_t>(back), draw);
@@ -215,8 +217,8 @@ void Painter::set_learning_rates(double factor) {
     state_.detail.optimizer.options("network").learning_rate = factor * network_rate;
 }
 
-/// To all pictures but those that the stage began with. What a view got right may have suffered
-/// from the views that came after it.
+/// Fits all images except those of the initial round, because later views may have damaged what
+/// earlier ones painted.
 void Painter::fit_all() {
     const auto first = std::find_if(views_.begin(), views_.end(), [](const PaintingView& view) {
         return view.round != PaintingRound::initial;

@@ -10,12 +10,12 @@ namespace {
 
 constexpr float golden_angle = 2.39996323f;
 constexpr float one_degree = pi / 180.0f;
-constexpr double initial_share = 0.4, refine_share = 0.3;  ///< of the views
-constexpr int samples = 2;                                 ///< along a pixel's edge
-constexpr float flattest = 0.2f;        ///< cosine below which a view does not count
-constexpr float clearly_better = 0.7f;  ///< of a view's own cosine an earlier one must have reached
-constexpr float known_share = 0.75f;    ///< of a latent cell
-/// Parts of the radius by which a point may lie behind what a view sees and still be seen.
+constexpr double initial_share = 0.4, refine_share = 0.3;  ///< share of the views
+constexpr int samples = 2;                                 ///< samples along a pixel's edge
+constexpr float flattest = 0.2f;        ///< smallest cosine at which a point counts as seen
+constexpr float clearly_better = 0.7f;  ///< ratio of an earlier cosine that suffices
+constexpr float known_share = 0.75f;    ///< share of known pixels in a kept latent cell
+/// Depth tolerance of the visibility test, in parts of the model's radius.
 constexpr float depth_tolerance = 0.03f;
 
 PaintingRound round_of(int index, int views) {
@@ -44,12 +44,12 @@ Camera paint_camera(const BoundingSphere& sphere, int index, bool close_up, std:
     return camera;
 }
 
-/// The surface that a view sees, one row a covered sample.
+/// The surface points that a view sees, one row for each covered sample.
 struct Sight {
     Camera camera;
     at::Tensor depth;  ///< [S, S]
     Surface surface;
-    at::Tensor cosine;  ///< [P] between the normal and the way to the camera
+    at::Tensor cosine;  ///< [P] cosine between the normal and the direction to the camera
 
     Sight(const Geometry& geometry, const Camera& from, int size) : camera(from) {
         const Raster raster = rasterize(geometry, {camera}, size, size);
@@ -58,7 +58,7 @@ struct Sight {
         cosine = (surface.normal * surface.view).sum(1).clamp_min(0);
     }
 
-    /// [P'] of another view's points: the cosine at which this one sees them, 0 where it does not.
+    /// Returns [P'] cosines at which this view sees another view's points, 0 where they are hidden.
     at::Tensor cosine_of(const Surface& points, float tolerance) const {
         const auto options = points.position.options();
         const Mat4 view = camera.world_to_camera();
@@ -83,7 +83,7 @@ struct Sight {
     }
 };
 
-/// Values of a view's points as pixels [1, 1, R, R], 0 where there is none.
+/// Scatters the values of a view's points to pixels [1, 1, R, R], 0 elsewhere.
 at::Tensor as_pixels(const Sight& sight, const at::Tensor& values) {
     const std::int64_t size = sight.depth.size(0);
     const at::Tensor pixels = at::zeros({size * size}, values.options())
@@ -124,7 +124,7 @@ std::vector<PaintingView> plan_painting(const EditScene& scene, const EditPlan& 
             view.facing * (as_pixels(sight, best) < clearly_better * own).to(at::kFloat);
         view.known = known_cells(fresh, pixels_each);
         earlier.push_back(sight);
-        earlier.back().surface = {};  // large; later views ask for its depth alone
+        earlier.back().surface = {};  // large, and later views need the depth alone
         views.push_back(view);
     }
     return views;

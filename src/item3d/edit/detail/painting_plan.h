@@ -1,4 +1,4 @@
-// From where the detail stage paints a model, and what each view paints anew.
+// The views of the detail stage: cameras, and the pixels that each view paints.
 #pragma once
 
 #include "item3d/edit/scene.h"
@@ -8,27 +8,27 @@
 
 namespace item3d {
 
-/// The purpose of a view. The plan has them in this order.
+/// Purpose of a view, in the order of the plan.
 enum class PaintingRound {
-    initial,   ///< the whole model, painted anew
-    refine,    ///< the whole model once more, from what the round before left
-    close_up,  ///< a part of it, likewise
+    initial,   ///< the whole model, painted from noise
+    refine,    ///< the whole model again, from the previous round's result
+    close_up,  ///< a part of the model, from the previous round's result
 };
 
 struct PaintingView {
     Camera camera;
     PaintingRound round = PaintingRound::initial;
-    int first_of_round = 0;  ///< where its round begins in the plan
-    /// [1, 1, h, w] on the grid of the prior's latents. 1: what earlier views of its round painted
-    /// (or the background) stays as it is; 0: painted anew.
+    int first_of_round = 0;  ///< index of its round's first view in the plan
+    /// [1, 1, h, w] on the grid of the prior's latents. 1: kept, because an earlier view of the
+    /// round painted it or it is background; 0: painted.
     at::Tensor known;
-    at::Tensor facing;  ///< [1, 1, R, R] 0 or 1: not seen at too flat an angle
+    at::Tensor facing;  ///< [1, 1, R, R] 0 where seen at a grazing angle, else 1
 };
 
-/// Two fifths of the views are initial, three tenths refine, the others are close-ups. The views go
-/// around the model by the golden angle, so that each shows something new however many there are:
-/// in each round a point belongs to the first view that sees it from well in front (TEXTure,
-/// Richardson et al. 2023). A function of the scene and the plan alone.
+/// Returns the views of the detail stage: two fifths initial, three tenths refine, the rest
+/// close-ups. Successive views turn around the model by the golden angle, so that any number of
+/// them covers it. In each round a point belongs to the first view that sees it nearly head-on
+/// (TEXTure, Richardson et al. 2023). Deterministic in the scene and the plan.
 std::vector<PaintingView> plan_painting(const EditScene& scene, const EditPlan& plan);
 
 }  // namespace item3d

@@ -10,15 +10,15 @@
 namespace item3d {
 namespace {
 
-constexpr int caption_views = 4;  ///< captions are averaged over these
+constexpr int caption_views = 4;  ///< number of views whose captions are averaged
 
-/// A prior of small pictures is quick, and its captions must be too; large ones show more to a
-/// captioner.
+/// Returns the image size for captions: small with a small prior, which is quick, since captioners
+/// are quicker on small images and more accurate on large ones.
 int caption_pixels(const EditPlan& plan) {
     return std::clamp(plan.resolution, 144, 384);
 }
 
-/// Mean over the iterations since the line before; no value where there were none.
+/// Returns the mean over the iterations since the previous record; no value where there were none.
 std::optional<double> recent_mean(const std::vector<float>& curve,
                                   const std::vector<AdjustmentRecord>& records) {
     const auto begin = records.empty() ? 0 : records.back().iteration;
@@ -27,7 +27,7 @@ std::optional<double> recent_mean(const std::vector<float>& curve,
     return std::accumulate(first, curve.end(), 0.0) / static_cast<double>(curve.end() - first);
 }
 
-/// [N, H, W, 3] in [0, 1] -> bytes [H, W, 3] of each, on the CPU.
+/// Converts [N, H, W, 3] in [0, 1] to N CPU tensors of bytes [H, W, 3].
 std::vector<at::Tensor> to_bytes(const at::Tensor& pictures) {
     return (pictures * 255).round().to(at::kByte).cpu().unbind(0);
 }
@@ -64,7 +64,7 @@ void DirectionAdjustment::observe(EditState& state) const {
     record.source_loss = recent_mean(state.source_loss, records);
     std::optional<TextEmbedding> shift;
     if (processes_.first()) {
-        // The first view alone where only people look.
+        // Without a captioner, only the first view is needed, for the record.
         const std::vector<Camera> cameras(cameras_.begin(),
                                           asks ? cameras_.end() : cameras_.begin() + 1);
         const at::Tensor pictures = draw_field(scene_, state.field, current_light(scene_, state),
@@ -79,7 +79,7 @@ void DirectionAdjustment::observe(EditState& state) const {
     records.push_back(std::move(record));
 }
 
-/// The first process's.
+/// Sends the first process's shift to all.
 std::optional<TextEmbedding> DirectionAdjustment::handed_on(
     const std::optional<TextEmbedding>& shift) const {
     if (!processes_.several()) return shift;

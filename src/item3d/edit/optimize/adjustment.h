@@ -1,4 +1,4 @@
-// Direction adjustment by captions (ITEM3D, section 3.4), and the record of how an edit goes.
+// Direction adjustment by captions (ITEM3D, section 3.4), and the record of an edit's course.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -12,22 +12,23 @@
 
 namespace item3d {
 
-/// Every adjust_every iterations: pictures of the field as it is, for the record and, where the
-/// settings say so, for a captioner whose words move the source.
+/// Renders the field every adjust_every iterations: for the record, and for a captioner whose words
+/// move the source where the settings ask for it.
 class DirectionAdjustment {
   public:
     /// request and scene must outlive this.
     DirectionAdjustment(const EditRequest& request, const EditScene& scene);
 
-    /// Call before each iteration. A captioner that fails is not asked again: a warning, and the
-    /// edit goes on with the source as it was. Throws Interrupted.
+    /// Call before each iteration. A captioner that fails is not called again: it warns, and the
+    /// edit continues with the unchanged source. Throws Interrupted.
     void before_iteration(EditState& state) const;
-    /// Call behind the last one: records how the edit ended.
+    /// Call after the last iteration: records the end of the edit.
     void finish(EditState& state) const;
 
   private:
     void observe(EditState& state) const;
-    /// What the captioner's words move the source by; none where it is given up.
+    /// Returns the shift of the source by the captioner's words; none where the captioner has
+    /// failed.
     std::optional<TextEmbedding> follow(EditState& state, const at::Tensor& pictures,
                                         std::vector<std::string>& said) const;
     std::optional<TextEmbedding> handed_on(const std::optional<TextEmbedding>& shift) const;

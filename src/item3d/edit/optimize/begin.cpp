@@ -15,17 +15,17 @@
 namespace item3d {
 namespace {
 
-// AdamW's settings of the published code (betas 0.9 and 0.99), without weight decay: decay would
-// pull an untouched texture towards grey.
+// Returns AdamW's settings of the published code (betas 0.9 and 0.99), but no weight decay: it
+// would pull an untouched texture towards grey.
 AdamOptions adam_options(const EditPlan& plan) {
     AdamOptions options;
     options.learning_rate = plan.learning_rate;
     return options;
 }
 
-/// [table rows] What the learning rate of a level of the field's grid is multiplied by. Cells finer
-/// than the prior's pixels get no say from it, only noise, which Adam would make as large as any
-/// other step.
+/// Returns [table rows] factors of the learning rate for the levels of the field's grid. The prior
+/// gives no information on cells finer than its pixels, only noise, which Adam would scale up to
+/// full steps.
 at::Tensor level_factors(const NeuralTexture& field, int resolution) {
     const at::Tensor factors = at::ones({field->grid().entries()});
     for (const HashGridLevel& level : field->grid().levels) {
@@ -56,8 +56,8 @@ std::unique_ptr<LightModel> begin_light(const EditScene& scene, const EditPlan& 
     return make_light_model(scene.lights->image(), options);
 }
 
-/// By process 0, which hands the field on: to exchange a step's gradients takes longer than the
-/// step.
+/// Fits the field on process 0 and broadcasts it: exchanging a step's gradients takes longer than
+/// the step.
 void fit_by_first(const EditRequest& request, const EditScene& scene, NeuralTexture& field) {
     const ProcessGroup& processes = request.processes;
     FitOptions options;
@@ -85,7 +85,7 @@ void fit_by_first(const EditRequest& request, const EditScene& scene, NeuralText
         at::Tensor(tensor).copy_(fitted[next++].second);
 }
 
-/// Makes the field look like the input, with metallic and roughness where the edit starts.
+/// Fits the field to the input, with the edit's initial metallic and roughness.
 void fit_field(const EditRequest& request, const EditScene& scene, EditState& state) {
     fit_by_first(request, scene, state.field);
     state.fitted = snapshot(state.field);
@@ -134,10 +134,10 @@ EditState begin_or_resume(const EditRequest& request, const EditScene& scene) {
         }
         note("nothing to resume in " + request.output.string() + ": beginning anew");
     }
-    // What a method lacks is told before the fit takes its seconds.
+    // Fail on a missing network before the fit, which takes seconds.
     if (!state.guidance && plan.method != "item3d") begin_guidance();
     if (plan.edits_texture) fit_field(request, scene, state);
-    if (!state.guidance) begin_guidance();  // the prior was loaded meanwhile
+    if (!state.guidance) begin_guidance();  // the prior has loaded meanwhile
     if (plan.edits_texture) save_state(request, state);
     return state;
 }

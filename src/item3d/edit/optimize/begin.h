@@ -1,4 +1,4 @@
-// The beginning of an edit: a field fitted to the model's own materials, or a checkpoint.
+// The initial state of an edit: a field fitted to the model's own materials, or a checkpoint.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -7,8 +7,8 @@
 
 namespace item3d {
 
-/// Fits a field to the input's materials, or takes everything from the checkpoint in the output
-/// folder when the request says resume and one is there.
+/// Returns a state whose field is fitted to the input's materials, or the checkpoint in the output
+/// folder when the request resumes and one exists.
 EditState begin_or_resume(const EditRequest& request, const EditScene& scene);
 
 }  // namespace item3d

@@ -26,7 +26,7 @@ nlohmann::json identity_of(const EditRequest& request, const EditState& state) {
     return identity;
 }
 
-/// Its text as bytes of a tensor, its pictures as one.
+/// Appends the record's text as a tensor of bytes, and its images as one tensor.
 void append_adjustment(NamedTensors& tensors, const AdjustmentState& adjustment) {
     nlohmann::json before = nlohmann::json::array();
     for (const Caption& caption : adjustment.captions_before)
@@ -84,7 +84,7 @@ void append_field(NamedTensors& tensors, const EditState& state) {
     append_adjustment(tensors, state.adjustment);
 }
 
-/// That of the first process, on all of them.
+/// Returns the first process's checkpoint on all processes.
 std::optional<Checkpoint> read_checkpoint(const EditRequest& request) {
     const ProcessGroup& processes = request.processes;
     std::optional<Checkpoint> checkpoint;

@@ -1,4 +1,4 @@
-// An edit's state to and from its checkpoint.
+// Saving and loading of an edit's state as a checkpoint.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -6,16 +6,16 @@
 
 namespace item3d {
 
-/// Writes the checkpoint of the request, where this is its first process.
+/// Writes the checkpoint of the request, on its first process only.
 void save_state(const EditRequest& request, const EditState& state);
 
-/// Fills `state` (whose field, optimiser and guidance are already built) from the checkpoint; false
-/// when there is none. With several processes all get what the first one reads. Throws InputError
-/// when it belongs to another model or other settings.
+/// Fills `state` (whose field, optimiser and guidance are already built) from the checkpoint.
+/// Returns false when there is none. With several processes, all get the data that the first one
+/// reads. Throws InputError when the checkpoint belongs to another model or other settings.
 bool load_state(const EditRequest& request, EditState& state);
 
-/// Throws InputError, on all processes, where one of several has another input or other settings
-/// than the first.
+/// Throws InputError, on all processes, where the input or settings of any process differ from the
+/// first's.
 void require_one_request(const EditRequest& request, const EditState& state);
 
 }  // namespace item3d

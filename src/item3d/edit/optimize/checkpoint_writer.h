@@ -1,4 +1,4 @@
-// Between the steps of an edit: checkpoints, previews, and stopping when asked to.
+// The work between two steps of an edit: checkpoints, previews, and interruption.
 #pragma once
 
 #include "item3d/core/progress.h"
@@ -12,18 +12,18 @@
 
 namespace item3d {
 
-/// Writes the checkpoint, where this is the first process, and throws Interrupted with the command
-/// that goes on.
+/// Writes the checkpoint, on the first process, and throws Interrupted with the command that
+/// resumes.
 [[noreturn]] void interrupt(const EditRequest& request, const EditState& state);
 
-/// A picture of the edit so far, refreshed in the output folder while it runs.
+/// A preview image of the edit, refreshed in the output folder while the edit runs.
 class Preview {
   public:
     Preview(std::filesystem::path path, const EditScene& scene);
-    /// Draws the field in that light from three sides and replaces the picture. A preview that
-    /// cannot be written is not worth stopping an edit for: it warns once and gives up.
+    /// Renders the field under `light` from three sides and replaces the image. A preview that
+    /// cannot be written does not stop the edit: it warns once and disables itself.
     void update(NeuralTexture& field, const EnvironmentLight& light);
-    /// The same of the last of these pictures, [1, 3, R, R] sRGB each.
+    /// Shows the last few of these images instead, [1, 3, R, R] sRGB each.
     void show(const std::vector<at::Tensor>& pictures);
 
   private:
@@ -35,18 +35,17 @@ class Preview {
     bool enabled_ = true;
 };
 
-/// Writes the checkpoint, and refreshes the preview, every few seconds.
+/// Writes the checkpoint and refreshes the preview every few seconds.
 class CheckpointWriter {
   public:
-    /// fitted: the field before the edit, for LiveTextures; none with a painter.
+    /// fitted: field before the edit, for LiveTextures; none with a painter.
     CheckpointWriter(const EditRequest& request, const EditScene& scene, NeuralTexture& fitted);
     /// Call after each step, on all processes. Throws Interrupted, with the checkpoint written,
-    /// after Ctrl-C of any process or at the request's stop_after unless the edit is done by then.
+    /// after Ctrl-C of any process, or at the request's stop_after unless the edit ends there.
     void after_step(EditState& state, Progress& progress);
 
   private:
-    /// Takes over how many rows the other processes' networks were asked; whether any process is to
-    /// stop.
+    /// Takes over the other processes' counts of U-Net rows. Returns true if any process must stop.
     bool share_progress(EditState& state) const;
     void update_preview(EditState& state);
 

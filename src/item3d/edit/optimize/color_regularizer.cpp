@@ -8,19 +8,20 @@
 namespace item3d {
 namespace {
 
-constexpr std::int64_t points = 2048;  ///< an iteration
-constexpr std::int64_t draws = 16;     ///< iteration i takes those of i modulo this
-/// In encoded values, where steps look about equal: a blotch departs by less, a part of its own by
-/// more.
+constexpr std::int64_t points = 2048;  ///< points in an iteration
+constexpr std::int64_t draws = 16;     ///< iteration i uses draw i modulo this
+/// Scale in encoded values, which are about perceptually uniform: a blotch departs by less, a
+/// distinct part by more.
 constexpr float blotch = 0.25f;
 constexpr int refits = 3;
-constexpr std::int64_t roughness_output = 4;  ///< of NeuralTexture::encoded()
+constexpr std::int64_t roughness_output = 4;  ///< column of NeuralTexture::encoded()
 constexpr std::int64_t metallic_output = 5;
-/// Keeps the slopes of a surface without contrast at nothing; that of spots is 0.1 and more.
+/// Regularises the slopes of a surface without contrast to 0; a spotted one has a variance of 0.1
+/// or more.
 constexpr float min_variance = 0.01f;
-constexpr double most_draws = 32;  ///< times as many points as are wanted, for a small region
+constexpr double most_draws = 32;  ///< largest oversampling factor, for a small region
 
-/// draws * points of them, in the field's space.
+/// Returns draws * points edited surface points, in the field's space.
 at::Tensor edited_positions(const EditScene& scene, Random& random) {
     const SurfaceSampler sampler(scene.geometry, *scene.space);
     if (!scene.region) return scene.space->positions(sampler.sample(draws * points, random));
@@ -29,7 +30,7 @@ at::Tensor edited_positions(const EditScene& scene, Random& random) {
     const at::Tensor inside = scene.region->weight(surface).squeeze(1).gt(0.5).nonzero().squeeze(1);
     const at::Tensor positions = scene.space->positions(surface);
     if (inside.size(0) == 0) return positions.narrow(0, 0, draws * points);
-    // In the order of the surface still, evenly drawn from what there is.
+    // A uniform subset in the order of the surface.
     const at::Tensor chosen =
         at::linspace(0, static_cast<double>(inside.size(0) - 1), draws * points, at::kDouble)
             .round()
@@ -64,7 +65,7 @@ ColorRegularizer::ColorRegularizer(const EditScene& scene, const EditPlan& plan,
     weight_ = plan.evenness;
     Random random(plan.seed, RandomStream::color_points);
     const at::Tensor positions = edited_positions(scene, random);
-    // The sampler goes over the surface in order: each draw takes one of as many neighbours.
+    // The sampler goes over the surface in order, so each draw takes every draws-th point.
     const auto deal = [](const at::Tensor& rows) {
         return rows.reshape({points, draws, -1}).transpose(0, 1).contiguous();
     };

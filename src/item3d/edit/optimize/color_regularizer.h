@@ -1,4 +1,4 @@
-// A regulariser against blotches, which guidance leaves behind where the target has no pattern.
+// A regulariser against the blotches that guidance leaves where the target has no pattern.
 #pragma once
 
 #include "item3d/edit/scene.h"
@@ -10,38 +10,38 @@
 
 namespace item3d {
 
-/// An edit towards a plain colour or metal is taken for a recolouring: what it adds to a material
-/// is an affine function of the base colour that was there, the same all over the surface, so that
-/// spots and stripes stay to be seen. What departs from the best such function is pulled back, the
-/// less the further it is away (the weights of Geman and McClure), because a part that guidance
-/// keeps apart, as a handle of another colour, is no blotch. Towards a metal, roughness is pulled
-/// to that metal's own: images of a small prior tell little of it.
+/// Regularises an edit towards a plain colour or metal as a recolouring: its change of a material
+/// should be an affine function of the previous base colour, the same over the whole surface, so
+/// that spots and stripes remain visible. Residuals of the best such function are pulled back, the
+/// less the larger they are (Geman-McClure weights), because a part that guidance keeps distinct,
+/// such as a handle of another colour, is no blotch. Towards a metal, roughness is pulled to that
+/// metal's own, which images of a small prior hardly determine.
 class ColorRegularizer {
   public:
-    /// Does nothing unless plan.regularizes_color: where `evenness` is 0 or the target names
-    /// detail.
+    /// Does nothing unless plan.regularizes_color, which is false where `evenness` is 0 or the
+    /// target names detail.
     ColorRegularizer(const EditScene& scene, const EditPlan& plan, const EditState& state);
 
-    /// Adds the gradient of this process's share of the points to the field's. A function of the
-    /// field and the iteration alone.
+    /// Adds the gradient of this process's share of the points to the field's. Deterministic in the
+    /// field and the iteration.
     void backward(const ProcessGroup& processes, EditState& state) const;
 
   private:
     float weight_ = 0;
-    at::Tensor positions_;  ///< [draws, P, 3] of the surface
+    at::Tensor positions_;  ///< [draws, P, 3] surface points
     at::Tensor fitted_;     ///< [draws, P, 8] as NeuralTexture::encoded(), before the edit
-    std::optional<float> metal_roughness_;  ///< of the metal that the surface becomes
+    std::optional<float> metal_roughness_;  ///< that of the target metal
     bool holds_metallic_ = false;
-    at::Tensor channels_;  ///< [8] 1 for those of base colour, roughness and metallic that change
+    at::Tensor channels_;  ///< [8] 1 for changing channels of base colour, roughness and metallic
 };
 
 struct Departures {
     at::Tensor values;   ///< [P, C]
-    at::Tensor weights;  ///< [P, 1] 0 to 1: what each point counted
+    at::Tensor weights;  ///< [P, 1] 0 to 1, robust weight of each point
 };
 
-/// `change` [P, C] without its best affine function of `color` [P, 3]. Points that depart by much
-/// more than `scale` hardly count. For ColorRegularizer and its tests.
+/// Returns `change` [P, C] without its best affine function of `color` [P, 3]. Points whose
+/// residual is much larger than `scale` hardly count. For ColorRegularizer and its tests.
 Departures departures(const at::Tensor& change, const at::Tensor& color, float scale);
 
 }  // namespace item3d

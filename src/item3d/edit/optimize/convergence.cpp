@@ -5,12 +5,12 @@
 namespace item3d {
 namespace {
 
-/// Lengths depend on the noise level that an iteration draws; over so many of them that evens out.
+/// Number of iterations that averages out the noise levels, on which the lengths depend.
 constexpr std::int64_t window = 50;
 constexpr std::int64_t min_iterations = 3 * window;
-constexpr double still = 0.9;  ///< a second half of this part of the first is as long
+constexpr double still = 0.9;  ///< smallest ratio of the halves' means in convergence
 
-/// Mean of the finite values; a single overflow in bf16 must not decide.
+/// Returns the mean of the finite values: an overflow in bf16 must not decide.
 double mean(const std::vector<float>& values, std::int64_t begin, std::int64_t end) {
     double sum = 0;
     int count = 0;

@@ -21,18 +21,18 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int live_edge = 256;  ///< texels
+constexpr int live_edge = 256;  ///< texels along the longest edge
 constexpr double seconds_between_looks = 1;
 constexpr double seconds_to_first_look = 0.3;
-/// Time between two for each second that one takes.
+/// Seconds between two updates for each second that one takes.
 constexpr double rest = 25;
 constexpr std::size_t most_direction_values = 200;
 
-/// Covered texels of a texture set, in the order of the picture, and where they lie.
+/// The covered texels of a texture set, in the order of the image, with their surface points.
 struct CoveredTexels {
     std::vector<std::int64_t> triangle;
     std::vector<float> barycentrics;
-    /// Of each texel of the picture: the covered one that it shows, which is itself or the nearest.
+    /// For each texel of the image: the index of the covered texel nearest to it.
     std::vector<std::int64_t> shown;
 };
 
@@ -59,7 +59,7 @@ CoveredTexels covered_texels(const EditScene& scene, const TextureSet& set, int 
                 uv_barycentrics(triangles[static_cast<std::size_t>(triangle)], raster.uv_at(x, y));
             texels.barycentrics.insert(texels.barycentrics.end(), {weights.x, weights.y});
         }
-    // Breadth first from what is covered, until the picture is full.
+    // Breadth-first dilation of the covered texels over the whole image.
     for (std::size_t i = 0; i < border.size(); ++i) {
         const std::int64_t x = border[i] % width, y = border[i] / width;
         for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
@@ -74,7 +74,8 @@ CoveredTexels covered_texels(const EditScene& scene, const TextureSet& set, int 
     return texels;
 }
 
-/// The size of the base colour's texture, or a square without one, halved until it is small.
+/// Returns the size of the base colour's texture, or a square without one, reduced to at most
+/// live_edge.
 std::pair<int, int> live_size(const Model& model, int material) {
     auto [width, height] = atlas_size(model, material, 0);
     const double scale = std::min(1.0, static_cast<double>(live_edge) / std::max(width, height));
@@ -82,7 +83,8 @@ std::pair<int, int> live_size(const Model& model, int material) {
             std::max(1, static_cast<int>(std::lround(height * scale)))};
 }
 
-/// 1 where a channel is edited: base colour, occlusion, roughness, metallic.
+/// Returns [6] with 1 for the edited channels of base colour (3), occlusion, roughness and
+/// metallic.
 at::Tensor edited_channels(const ChannelMask& channels, const at::TensorOptions& options) {
     const float color = channels.base_color ? 1.0f : 0.0f;
     return at::tensor({color, color, color, channels.occlusion ? 1.0f : 0.0f,
@@ -95,11 +97,11 @@ at::Tensor edited_channels(const ChannelMask& channels, const at::TensorOptions&
 struct LiveTextures::Set {
     std::vector<int> materials;
     int width = 0, height = 0;
-    at::Tensor shown;      ///< [width * height] int64, rows of the others
+    at::Tensor shown;      ///< [width * height] int64, rows of the tensors below
     at::Tensor positions;  ///< [P, 3] in the field's space
-    at::Tensor weight;     ///< [P, 1] how much of the edit; undefined: all
-    at::Tensor channels;   ///< [6] of the edit
-    at::Tensor source;     ///< [P, 6] base colour sRGB-encoded, orm
+    at::Tensor weight;     ///< [P, 1] weight of the edit; undefined: 1 everywhere
+    at::Tensor channels;   ///< [6] 1 for edited channels
+    at::Tensor source;     ///< [P, 6] sRGB-encoded base colour, orm
     at::Tensor alpha;      ///< [P, 1]; undefined: opaque
     at::Tensor fitted;     ///< [P, 6]
 };
@@ -119,7 +121,7 @@ LiveTextures::~LiveTextures() {
     if (writing_.valid()) writing_.wait();
 }
 
-/// What stays the same from one look to the next.
+/// Computes the tensors that stay constant during the edit.
 void LiveTextures::prepare(NeuralTexture& fitted) {
     const at::Device device = scene_.geometry.positions.device();
     for (const TextureSet& texture_set : scene_.atlas.sets) {
@@ -194,7 +196,7 @@ void LiveTextures::write(const std::vector<Pictures>& pictures,
         Json{{"revision", revision_}, {"textures", textures}, {"direction", lengths}}.dump());
 }
 
-/// False while they are being written. What they cost decides when the next ones come.
+/// Returns false while the files are being written. Their cost decides the time of the next update.
 bool LiveTextures::has_written() {
     if (!writing_.valid()) return true;
     if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;

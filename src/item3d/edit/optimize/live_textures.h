@@ -1,4 +1,4 @@
-// The textures of an edit while it runs, small, for programs that show them.
+// Small textures of a running edit, for programs that show them.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -15,20 +15,21 @@ namespace item3d {
 ///
 ///     N_base_color.png, N_orm.png   of material N of the model, at most 256 texels a side
 ///     textures.json                 "revision" (from 1), "textures" ([{"material", "slot",
-///                                   "file"}], slot base_color or orm), "direction" (its length so
-///                                   far, at most 200 values)
+///                                   "file"}], slot base_color or orm), "direction" (the curve of
+///                                   its length, at most 200 values)
 ///
-/// Materials that get a new UV map have none, since no model shows it yet. Each file is replaced as
-/// a whole, textures.json last. What cannot be written is warned of once, and ends it.
+/// Materials that get a new UV map are left out, since no model has that map yet. Each file is
+/// replaced atomically, textures.json last. A failed write warns once and stops all further
+/// writing.
 class LiveTextures {
   public:
-    /// Empty folder: nothing is written. scene outlives it. fitted: the field before the edit.
+    /// Writes nothing for an empty folder. scene must outlive this. fitted: field before the edit.
     LiveTextures(std::filesystem::path folder, const EditScene& scene, NeuralTexture& fitted);
     ~LiveTextures();
     LiveTextures(const LiveTextures&) = delete;
     LiveTextures& operator=(const LiveTextures&) = delete;
 
-    /// Call after each step. is_last: draws in any case.
+    /// Call after each step. is_last: writes in any case.
     void update(const EditState& state, bool is_last);
 
   private:
@@ -43,9 +44,9 @@ class LiveTextures {
     const EditScene& scene_;
     NeuralTexture fitted_{nullptr};
     std::vector<Set> sets_;
-    std::future<double> writing_;  ///< seconds that it took
-    double next_ = 0;              ///< when another may be drawn
-    double drawn_ = 0;             ///< seconds that the last took to draw
+    std::future<double> writing_;  ///< returns its duration in seconds
+    double next_ = 0;              ///< earliest time of the next drawing
+    double drawn_ = 0;             ///< duration of the last drawing, seconds
     int revision_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What moves the neural texture, by the method of an edit.
+// Guidance and cameras of a neural texture's edit, by its method.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -11,11 +11,11 @@
 
 namespace item3d {
 
-/// The plan's guidance, or that of a method which brings its own. Throws InputError where the
-/// method lacks a network.
+/// Returns the plan's guidance, or that of a method which brings its own. Throws InputError where
+/// the method lacks a network.
 std::unique_ptr<Guidance> guidance_of_method(const EditRequest& request, const EditScene& scene);
 
-/// The cameras of an iteration: drawn anew, or views of a method's fixed set.
+/// Returns the cameras of an iteration: random ones, or views of a method's fixed set.
 std::vector<Camera> cameras_of_method(const EditScene& scene, const EditPlan& plan,
                                       std::int64_t iteration);
 

@@ -20,10 +20,10 @@ namespace item3d {
 namespace {
 
 constexpr int warm_up_iterations = 10;
-constexpr float final_learning_rate = 0.1f;  ///< as a part of the first
-constexpr std::int64_t cool_down = 20;       ///< iterations after an edit has converged
+constexpr float final_learning_rate = 0.1f;  ///< relative to the initial one
+constexpr std::int64_t cool_down = 20;       ///< iterations after convergence
 
-/// Warm-up, then a cosine down to a tenth.
+/// Returns the factor of a warm-up followed by a cosine decay to 0.1.
 float scheduled_learning_rate(std::int64_t iteration, std::int64_t iterations) {
     const float warm_up =
         std::min(1.0f, static_cast<float>(iteration + 1) / static_cast<float>(warm_up_iterations));
@@ -32,16 +32,16 @@ float scheduled_learning_rate(std::int64_t iteration, std::int64_t iterations) {
     return warm_up * (final_learning_rate + (1 - final_learning_rate) * cosine);
 }
 
-/// When the edit converged, if it has. Schedules in which noise levels fall change the direction's
-/// length by themselves.
+/// Returns the iteration of convergence, if any. Only for the uniform schedule: with falling noise
+/// levels the direction's length changes by itself.
 std::optional<std::int64_t> converged(const EditPlan& plan, const EditState& state) {
     if (plan.timestep_schedule != TimestepSchedule::uniform) return std::nullopt;
     return converged_at(state.direction_length, plan.settle);
 }
 
-/// As a part of the settings' learning rate: a function of the iteration and of when the edit
-/// converged, so that a resumed run follows the same path. It then comes to rest as it would have
-/// at the end: steps as large as in the middle leave noise.
+/// Returns the factor of the settings' learning rate. Deterministic in the iteration and the
+/// iteration of convergence, so that a resumed run follows the same path. After convergence it
+/// decays as at the end of a full run, because large steps leave noise.
 float learning_rate_factor(const EditPlan& plan, const EditState& state) {
     const float scheduled = scheduled_learning_rate(state.iteration, plan.iterations);
     const auto since = converged(plan, state);
@@ -50,7 +50,7 @@ float learning_rate_factor(const EditPlan& plan, const EditState& state) {
     return scheduled + part * (final_learning_rate - scheduled);
 }
 
-/// Counts as done what an edit that has converged is spared.
+/// Counts the iterations that convergence makes unnecessary as done.
 void end_where_converged(const EditPlan& plan, EditState& state) {
     const auto since = converged(plan, state);
     if (!since || state.iteration < *since + cool_down || state.iteration >= plan.iterations)
@@ -69,7 +69,7 @@ GBuffer rasterize_iteration(const EditScene& scene, const EditPlan& plan, std::i
     return rasterize_views(scene, plan, {first, first + views.count});
 }
 
-/// [N, 1, h, w], 1 where a pixel of the region, or one beside it, falls on a latent.
+/// Returns [N, 1, h, w] with 1 for latents that contain, or lie beside, a pixel of the region.
 at::Tensor edited_latents(const GBuffer& gbuffer, const at::Tensor& latents) {
     const at::Tensor pixels = scatter(gbuffer.own.edited, gbuffer.surface, gbuffer.raster,
                                       at::zeros({1}, gbuffer.own.edited.options()))
@@ -85,17 +85,16 @@ SeenShape narrow(const SeenShape& shape, const Share& views) {
     return {rows(shape.depth), rows(shape.position), rows(shape.normal)};
 }
 
-/// The pictures of an iteration, as far as this process draws them, and the part that it hands to
-/// guidance.
+/// The images of an iteration that this process renders, and the part that it hands to guidance.
 struct IterationPictures {
     ViewShare views;
-    GBuffer gbuffer;    ///< of views.drawn()
-    at::Tensor images;  ///< of them
+    GBuffer gbuffer;    ///< views.drawn()
+    at::Tensor images;  ///< of the same views
     GuidanceInput input;
 };
 
-/// The unedited model is the field as it was fitted, so that a render that has not been edited yet
-/// equals its reference.
+/// Renders an iteration. Its reference for the unedited model is the fitted field, so that an
+/// unedited render equals its reference.
 IterationPictures draw_iteration(const EditRequest& request, const EditScene& scene,
                                  EditState& state) {
     const EditPlan& plan = request.plan;
@@ -131,13 +130,13 @@ IterationPictures draw_iteration(const EditRequest& request, const EditScene& sc
     return pictures;
 }
 
-/// Of all views, to the parameters' gradients.
+/// Propagates the gradients of all views to the parameters.
 void backward(const EditRequest& request, const EditScene& scene,
               const ColorRegularizer& color_regularizer, const IterationPictures& pictures,
               const GuidanceOutput& guidance, EditState& state) {
     const ProcessGroup& processes = request.processes;
     if (pictures.views.own.count > 0) {
-        // A single bad prediction (an overflow in bf16) must not destroy the field.
+        // An overflow of one prediction in bf16 must not destroy the field.
         at::Tensor gradient = at::nan_to_num(guidance.latents_gradient, 0.0, 0.0, 0.0);
         if (scene.region)
             gradient =
@@ -146,11 +145,11 @@ void backward(const EditRequest& request, const EditScene& scene,
                                        gradient.size(0));
         guidance.latents.backward(gradient / request.plan.batch);
     } else {
-        // Points of the others' pictures may be this process's.
+        // Other processes' images may contain points of this process.
         pictures.images.backward(at::zeros_like(pictures.images));
     }
     color_regularizer.backward(processes, state);
-    // Once for all: by a process that has no picture, if there is one.
+    // Once in total, on the last process, which may have no image.
     if (state.light && processes.rank() + 1 == processes.size())
         state.light->regularization().backward();
     sum_gradients(processes, state.optimizer.parameters());
@@ -165,8 +164,8 @@ void set_learning_rates(const EditPlan& plan, EditState& state) {
         state.optimizer.options("light").learning_rate = factor * plan.light_learning_rate;
 }
 
-/// The first process's numbers: when an edit has converged must be the same for all, and another
-/// kind of CPU rounds otherwise.
+/// Appends the first process's numbers on all: convergence must be the same everywhere, and CPUs of
+/// other kinds round differently.
 void record_step(const ProcessGroup& processes, const GuidanceOutput& guidance, EditState& state) {
     at::Tensor curves = at::zeros({2});
     if (processes.first()) curves = at::tensor({guidance.direction_length, guidance.source_loss});
@@ -215,7 +214,7 @@ IterationTimes optimize(const EditRequest& request, const EditScene& scene, Edit
         const double start = seconds_now();
         try {
             step();
-        } catch (const Interrupted&) {  // while a caption was written
+        } catch (const Interrupted&) {  // during a caption
             interrupt(request, state);
         }
         times.adjust += seconds_now() - start;

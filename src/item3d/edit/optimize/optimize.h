@@ -1,4 +1,4 @@
-// The loop: cameras -> render -> guidance -> backward -> step.
+// The optimisation loop: cameras -> render -> guidance -> backward -> step.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// Sums over the iterations that this run did, in seconds.
+/// Total seconds of this run's iterations, by stage.
 struct IterationTimes {
     std::int64_t iterations = 0;
     double render = 0;
@@ -17,12 +17,12 @@ struct IterationTimes {
     double unet = 0;
     double backward = 0;
     double step = 0;
-    double adjust = 0;    ///< pictures and captions of DirectionAdjustment
-    double exchange = 0;  ///< with other processes, waiting included; a part of the others
+    double adjust = 0;    ///< images and captions of DirectionAdjustment
+    double exchange = 0;  ///< exchange between processes, waiting included; contained in the others
 };
 
-/// Runs the remaining iterations, or as many as the edit takes to converge; writes checkpoints and
-/// previews as it goes. Throws Interrupted after writing the checkpoint.
+/// Runs the remaining iterations, or fewer where the edit converges; writes checkpoints and
+/// previews meanwhile. Throws Interrupted after writing the checkpoint.
 IterationTimes optimize(const EditRequest& request, const EditScene& scene, EditState& state);
 
 }  // namespace item3d

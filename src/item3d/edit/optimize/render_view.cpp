@@ -14,7 +14,7 @@
 namespace item3d {
 namespace {
 
-constexpr int optimized_light_size = 32;  ///< edge of the cube that a light is optimised on
+constexpr int optimized_light_size = 32;  ///< edge of an optimised light's cube, texels
 constexpr float background_gray = 0.75f;  ///< linear
 
 at::Tensor offsets(const at::Tensor& positions, const EditScene& scene, const EditPlan& plan,
@@ -26,7 +26,7 @@ at::Tensor offsets(const at::Tensor& positions, const EditScene& scene, const Ed
     return options.spread * pixel * directions.to(positions.device());
 }
 
-/// How bright the light is does not change what a surface emits.
+/// Removes emission, which does not depend on the light's brightness.
 MaterialSample without_emission(MaterialSample material) {
     material.emissive = at::Tensor();
     return material;

@@ -1,4 +1,4 @@
-// Pictures of the model with its neural texture: for the prior, from the cameras of an iteration,
+// Renders of the model with its neural texture: for the prior, from the cameras of an iteration,
 // and for people and captioners.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace item3d {
 
-/// The part of N views that does not depend on the field, on R' x R' pixels: R or finer.
+/// The field-independent part of N views, on R' x R' pixels with R' >= R.
 struct GBuffer {
     Raster raster;
     Surface surface;
@@ -24,53 +24,52 @@ struct GBuffer {
 GBuffer rasterize_views(const EditScene& scene, const EditPlan& plan,
                         const std::vector<Camera>& cameras);
 
-/// Where some of the N views of an iteration are this process's to hand to the prior. With fewer
-/// views than processes, each process shades a part of all their points (ViewOptions::processes).
+/// The share of an iteration's N views that this process hands to the prior. With fewer views than
+/// processes, each process shades a part of all their points (ViewOptions::processes).
 struct ViewShare {
     int total = 0;  ///< N
     Share own;
     bool by_points = false;
-    /// Of the G-buffer: all views where points are shared out, this process's otherwise.
+    /// Views of the G-buffer: all where points are shared out, else this process's.
     Share drawn() const { return by_points ? Share{0, total} : own; }
 };
 ViewShare share_views(const ProcessGroup& processes, int total);
 
 struct EditView {
-    at::Tensor images;    ///< [N, 3, R, R] sRGB, differentiable in the field
-    at::Tensor coverage;  ///< [N, 1, R, R] 0 .. 1, how much of each pixel the model covers
-    MaterialSample
-        material;     ///< at the surface points of the picture, this process's share of them
-    Surface surface;  ///< those points, where the material was looked up
-    Share points;     ///< their places among the G-buffer's
+    at::Tensor images;        ///< [N, 3, R, R] sRGB, differentiable in the field
+    at::Tensor coverage;      ///< [N, 1, R, R] 0 to 1, covered part of each pixel
+    MaterialSample material;  ///< at this process's share of the surface points
+    Surface surface;          ///< points of the material's lookup
+    Share points;             ///< indices of those points in the G-buffer
 };
 
 struct ViewOptions {
-    std::int64_t iteration = 0;  ///< draws light and background, with the settings' seed
-    /// Offsets of the points where the material is looked up, in pixels (standard deviation), so
-    /// that what is learnt from one picture covers its pixels and not a point in each.
+    std::int64_t iteration = 0;  ///< seed of light and background, with the settings' seed
+    /// Standard deviation of random offsets of the lookup points, in pixels, so that one image
+    /// trains all of a pixel's area and not one point of it.
     float spread = 0;
-    std::uint64_t spread_draw = 0;            ///< another draw of those offsets
-    const EnvironmentLight* light = nullptr;  ///< null: what the scene's lights have for it
-    /// Processes that share out the points of the pictures; each gets the pictures, whose backward
-    /// pass all must call together (gather_rows()).
+    std::uint64_t spread_draw = 0;            ///< index of the draw of those offsets
+    const EnvironmentLight* light = nullptr;  ///< null: the scene's light for the iteration
+    /// Processes that share out the points of the images. Each gets the whole images, whose
+    /// backward pass all must call together (gather_rows()).
     ProcessGroup processes = {};
-    int first_view = 0;   ///< of the G-buffer's views among the iteration's
-    int total_views = 0;  ///< of the iteration; 0: those of the G-buffer
+    int first_view = 0;   ///< index of the G-buffer's first view among the iteration's
+    int total_views = 0;  ///< number of the iteration's views; 0: those of the G-buffer
 };
 
 EditView render_view(const EditScene& scene, const EditPlan& plan, NeuralTexture& field,
                      const GBuffer& gbuffer, const ViewOptions& options);
 
-/// A light that is optimised, as the renderer takes it; differentiable in its parameters.
+/// Prefilters a light that is optimised; differentiable in its parameters.
 EnvironmentLight prefilter_light(const EditScene& scene, const LightModel& light);
 
-/// The light as it is now: the one that is optimised, or the first of the scene's. No graph.
+/// Returns the current light without a graph: the optimised one, or the scene's first.
 EnvironmentLight current_light(const EditScene& scene, const EditState& state);
 
-/// `count` cameras around the model, a little above it.
+/// Returns `count` cameras around the model, slightly above it.
 std::vector<Camera> field_cameras(const EditScene& scene, int count);
 
-/// The field as it is: [N, size, size, 3] sRGB in [0, 1], a light grey behind. No graph.
+/// Renders the current field: [N, size, size, 3] sRGB in [0, 1], on light grey. No graph.
 at::Tensor draw_field(const EditScene& scene, NeuralTexture& field, const EnvironmentLight& light,
                       const std::vector<Camera>& cameras, int size);
 

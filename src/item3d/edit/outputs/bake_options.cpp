@@ -3,7 +3,7 @@
 namespace item3d {
 namespace {
 
-/// See BakeOptions::blotch: of an edit that changes the same thing everywhere.
+/// BakeOptions::blotch of an edit that makes the same change everywhere.
 constexpr float recoloured_blotch = 10.0f / 255;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What an edit's plan says of its bake.
+// Options of the bake, from an edit's plan.
 #pragma once
 
 #include "item3d/edit/plan.h"
@@ -6,10 +6,10 @@
 
 namespace item3d {
 
-/// channels: those that the edit changed.
+/// channels: the edited ones.
 BakeOptions bake_options(const EditPlan& plan, const ChannelMask& channels);
 
-/// Which UV maps are baked into.
+/// Returns the policy for the UV maps that the bake uses.
 UvPolicy baked_uvs(const EditPlan& plan);
 
 }  // namespace item3d

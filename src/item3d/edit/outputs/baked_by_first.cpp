@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder that goes with all that is in it.
+/// A temporary folder, removed with its content by the destructor.
 class TemporaryFolder {
   public:
     TemporaryFolder()
@@ -32,7 +32,7 @@ class TemporaryFolder {
     fs::path path_;
 };
 
-/// The model of these bytes, where the scene's is.
+/// Reads a model from bytes onto the scene's device.
 Model read_model(const EditRequest& request, const EditScene& scene, std::string_view bytes) {
     const TemporaryFolder folder;
     const fs::path path = folder.path() / model_file_name(request.model);

@@ -1,13 +1,13 @@
-// The edited model on all processes, of which the first one bakes it.
+// Baking by the first of several processes.
 #pragma once
 
 #include "item3d/edit/outputs/baked_files.h"
 
 namespace item3d {
 
-/// bake_and_save() on the request's first process; the others get the model from it, without its
-/// textures' thumbnails. Throws as that does, and InputError where a temporary file cannot be
-/// written.
+/// Calls bake_and_save() on the request's first process and sends the model to the others, without
+/// its textures' thumbnails. Throws as bake_and_save(), and InputError where a temporary file
+/// cannot be written.
 EditedModel bake_by_first(const EditRequest& request, const EditScene& scene, EditState& state);
 
 }  // namespace item3d

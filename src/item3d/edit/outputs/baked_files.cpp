@@ -26,7 +26,7 @@
 namespace item3d {
 namespace {
 
-/// Pixels of the report's pictures of textures, along the longest edge.
+/// Longest edge of the report's images of textures, in pixels.
 constexpr int thumbnail_edge = 512;
 
 Bytes source_thumbnail(const Model& model, int texture) {
@@ -35,7 +35,8 @@ Bytes source_thumbnail(const Model& model, int texture) {
     return image.empty() ? Bytes() : encode_webp(thumbnail(image, thumbnail_edge));
 }
 
-/// Writes what was baked into textures/, a picture once, beside the source's for the report.
+/// Writes the baked images into textures/, each once, and pairs them with the source's for the
+/// report.
 class TextureFolder {
   public:
     TextureFolder(std::filesystem::path folder, const Model& source,
@@ -67,7 +68,7 @@ void note_vertex_colors(const Model& model, const ModelEdit& edit) {
     }
 }
 
-/// For a bake of colours that were painted: a field that changes nothing, and is soon asked.
+/// Returns a small field for a bake of painted colours: it changes nothing and evaluates quickly.
 NeuralTexture empty_field() {
     NeuralTextureOptions options;
     options.levels = 1;

@@ -1,4 +1,4 @@
-// The files that an edited model is in: model.glb, its layer, textures/, and its light.
+// The files of an edited model: model.glb, its layer, textures/, and its light.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -14,22 +14,23 @@
 
 namespace item3d {
 
-/// model.glb as it was written and read back: pictures and scores are of this, not of the field.
+/// The edited model, read back from model.glb: images and scores show it, not the field.
 struct EditedModel {
     Model model;
-    bool is_as_read = false;  ///< model is what load_model() makes of its file
+    bool is_as_read = false;  ///< model equals load_model() of its file
     std::vector<TexturePair> textures;
-    std::optional<Image> light;  ///< the new one, where the light was optimised
+    std::optional<Image> light;  ///< the optimised light, if any
 };
 
 /// Name of the edited model's file: "model.glb", or "model.vrm" for an avatar.
 std::string model_file_name(const std::filesystem::path& source);
 
-/// The picture of a light that was optimised, as it is written.
+/// Returns the image of an optimised light, as it is written.
 Image new_light(const LightModel& light);
 
-/// Writes model.glb, layer.safetensors and textures/; where the texture is not edited, model.glb
-/// alone, with all its bytes. Where the light is, light.hdr and light.exr.
+/// Writes model.glb, layer.safetensors and textures/. Where the texture is not edited, writes
+/// model.glb alone, with the source's bytes. Where the light is edited, writes light.hdr and
+/// light.exr too.
 EditedModel bake_and_save(const EditRequest& request, const EditScene& scene, EditState& state);
 
 }  // namespace item3d

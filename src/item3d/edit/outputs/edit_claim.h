@@ -1,4 +1,4 @@
-// What an edit says of itself in what it writes.
+// The provenance claim of an edit.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -7,10 +7,10 @@
 
 namespace item3d {
 
-/// Sentences, method, prior, input and date of an edit. Reads the input for its hash.
+/// Returns sentences, method, prior, input and date of an edit. Reads the input for its hash.
 EditClaim claim_of(const EditRequest& request, const EditState& state);
 
-/// The same with the request's key; nothing where the plan is silent.
+/// Returns the claim with the request's key; empty where the plan disables provenance.
 Provenance provenance_of(const EditRequest& request, const EditState& state);
 
 }  // namespace item3d

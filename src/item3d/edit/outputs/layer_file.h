@@ -1,4 +1,4 @@
-// The layer that an edit leaves: what it changed, to be applied again at any strength.
+// The layer file of an edit: its change, which can be applied again at any strength.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -10,7 +10,7 @@
 
 namespace item3d {
 
-/// Writes layer.safetensors (docs/formats.md) into the edit's folder. unedited: of the bake.
+/// Writes layer.safetensors (docs/formats.md) into the edit's folder. unedited: result of the bake.
 void write_layer_file(const EditRequest& request, const EditScene& scene, const EditState& state,
                       const ModelEdit& edit, const std::map<int, UneditedPictures>& unedited);
 

@@ -1,4 +1,4 @@
-// A count of what an edit of a region changed outside of it.
+// The count of texels that an edit of a region changed outside of the region.
 #pragma once
 
 #include "item3d/edit/scene.h"
@@ -11,11 +11,11 @@ namespace item3d {
 /// Texels of edited textures whose weight in the region is 0.
 struct OutsideTexels {
     std::int64_t compared = 0;
-    std::int64_t changed = 0;  ///< of those, not the source's to the bit
+    std::int64_t changed = 0;  ///< compared texels whose bits differ from the source's
 };
 
-/// edited: the model as it was read back. Textures that the source lacks, that are multiplied by a
-/// factor, or have another size now, have no texels to compare.
+/// Compares the model, as read back, with its source. Skips textures that the source lacks, that
+/// have a factor, or whose size has changed.
 OutsideTexels compare_outside(const EditScene& scene, const Model& edited);
 
 }  // namespace item3d

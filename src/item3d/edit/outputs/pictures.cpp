@@ -45,7 +45,7 @@ std::vector<ReportImage> to_report(const std::vector<Image>& pictures) {
     return images;
 }
 
-/// ModelDrawing::draw(), of which each process draws a part.
+/// Calls ModelDrawing::draw() for a part of the views on each process, and gathers the images.
 at::Tensor draw_together(const ProcessGroup& processes, const ModelDrawing& drawing,
                          const std::vector<Camera>& cameras, int pixels, at::Device device) {
     return compute_rows(processes, static_cast<std::int64_t>(cameras.size()), {pixels, pixels, 4},
@@ -66,13 +66,13 @@ at::Tensor pictures_before(const EditRequest& request, const EditScene& scene,
                                     request.picture_pixels, scene.device);
 }
 
-/// Of the first process; of the others it has no bytes.
+/// Returns the turntable on the first process; an image without bytes on the others.
 ReportImage draw_turntable(const EditRequest& request, const EditScene& scene,
                            const ModelDrawing& drawing) {
     const ProcessGroup& processes = request.processes;
     const auto cameras = picture_cameras(scene.model, turntable_frames);
     std::vector<Image> frames;
-    // As many at a time as there are processes, to keep memory low.
+    // One batch of as many frames as there are processes, to keep memory low.
     for (auto next = cameras.begin(); next != cameras.end();) {
         const auto end = next + std::min<std::ptrdiff_t>(processes.size(), cameras.end() - next);
         const at::Tensor drawn = draw_together(processes, drawing, {next, end},

@@ -1,4 +1,4 @@
-// Pictures of a model before and after its edit, and the scores that are taken of them.
+// Renders of a model before and after its edit, and their scores.
 #pragma once
 
 #include "item3d/edit/outputs/baked_files.h"
@@ -16,20 +16,20 @@ namespace item3d {
 struct Pictures {
     std::vector<ReportImage> before;
     std::vector<ReportImage> after;
-    std::vector<ReportImage> region;  ///< of the same views; empty where all was to change
+    std::vector<ReportImage> region;  ///< of the same views; empty where the edit has no region
     OutsideTexels outside;
-    std::optional<ReportImage> turntable;  ///< where the request wants one
+    std::optional<ReportImage> turntable;  ///< set where the request asks for one
     SurfaceMeans means_before;
     SurfaceMeans means_after;
     double detail_kept = 0;  ///< correlation of luminance detail before and after, see detail.h
     std::optional<ClipScores> clip;
 };
 
-/// Draws the same views of both models, each in its light; writes before.png, after.png,
-/// region.png where there is a region, and turntable.webp. With `clip`, scores them too. Pictures
-/// that the session has of the model are not drawn again; those of the edited one are left there.
-/// The request's processes share out what is drawn of whole models; only the first one returns
-/// pictures and writes.
+/// Renders the same views of both models, each in its light; writes before.png, after.png,
+/// region.png where there is a region, and turntable.webp. With `clip`, computes CLIP scores too.
+/// Reuses the session's renders of the unedited model, and leaves those of the edited one there.
+/// The request's processes share out the renders of whole models; only the first one returns images
+/// and writes.
 Pictures render_pictures(const EditRequest& request, const EditScene& scene,
                          const EditedModel& edited, const Clip* clip, EditSession& session);
 

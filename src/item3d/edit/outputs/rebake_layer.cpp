@@ -19,7 +19,7 @@
 namespace item3d {
 namespace {
 
-/// Of the diagonal of what was edited: how far its corners may lie from where they were.
+/// Largest distance between old and new corners of the edited part, relative to its diagonal.
 constexpr float moved_too_far = 0.02f;
 
 EditPlan plan_of(const EditLayer& layer, int texture_size) {
@@ -33,7 +33,7 @@ EditPlan plan_of(const EditLayer& layer, int texture_size) {
     }
 }
 
-/// The edited materials by their indices in this model, rising.
+/// Returns the indices of the edited materials in this model, rising.
 std::vector<int> materials_of(const EditLayer& layer, const Model& model) {
     std::vector<int> materials;
     for (const auto& [index, material] : layer.materials)
@@ -57,7 +57,7 @@ void require_same_place(const EditLayer& layer, const NeuralTextureOptions& fiel
                      "apply it to a model of the same shape in the same place");
 }
 
-/// The region that the edit was of, on this model.
+/// The edit's region, rebuilt on this model.
 class RegionAgain {
   public:
     RegionAgain(const EditLayer& layer, const Model& model, const Geometry& geometry,

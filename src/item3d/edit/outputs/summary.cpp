@@ -186,7 +186,7 @@ std::vector<Chart> charts_of(const EditPlan& plan, const EditState& state) {
     return charts;
 }
 
-/// The first caption stands for all of them; the rest is in edit.json.
+/// Makes a timeline entry with the first caption only; edit.json has all.
 TimelineEntry entry_of(const AdjustmentRecord& record) {
     TimelineEntry entry;
     entry.title = record.iteration == 0 ? "start" : fmt::format("step {}", record.iteration);
@@ -203,7 +203,7 @@ TimelineEntry entry_of(const AdjustmentRecord& record) {
     return entry;
 }
 
-/// No more than fit on a page, the first and the last among them.
+/// Returns at most max_entries entries, among them the first and the last.
 std::vector<TimelineEntry> timeline_of(const std::vector<AdjustmentRecord>& records) {
     constexpr std::size_t max_entries = 12;
     const std::size_t count = std::min(records.size(), max_entries);
@@ -231,7 +231,7 @@ std::vector<TimelineEntry> painted_views(const ViewPainter& painter) {
 TableRows settings_rows(const json& summary) {
     TableRows rows;
     for (const auto& [key, value] : summary["settings"].items()) {
-        // No list of materials means that all of them may change.
+        // An empty list of materials means all.
         const bool all = key == "material" && value.empty();
         rows.emplace_back(key, all ? "all" : readable(value));
     }

@@ -13,7 +13,7 @@
 
 namespace item3d {
 
-/// Writes report.html and edit.json; returns the latter's content.
+/// Writes report.html and edit.json. Returns the content of edit.json.
 nlohmann::json write_summary(const EditRequest& request, const EditScene& scene,
                              const EditState& state, const StageTimes& times,
                              const IterationTimes& iteration_times, const EditedModel& edited,

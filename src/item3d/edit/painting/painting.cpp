@@ -19,9 +19,9 @@
 namespace item3d {
 namespace {
 
-/// As TEXTure's texture. Pictures of a prior tell no more.
+/// Longest edge of a painted texture, as in TEXTure; images of a prior resolve no more.
 constexpr int largest_painted_edge = 1024;
-/// As SyncMVD's latent texture.
+/// Longest edge of a latent texture, as in SyncMVD.
 constexpr int largest_latent_edge = 512;
 
 std::unique_ptr<PaintingScene> painting_scene(const EditRequest& request, const EditScene& scene) {
@@ -96,7 +96,7 @@ void paint_views(const EditRequest& request, const EditScene& scene, EditState& 
     while (state.iteration < total) {
         try {
             state.painter->step(state.iteration);
-        } catch (const Interrupted&) {  // within a view, which is painted anew then
+        } catch (const Interrupted&) {  // during a view, which is painted again on resume
             interrupt(request, state);
         }
         ++state.iteration;

@@ -1,5 +1,5 @@
-// An edit by a method that paints texels view after view (baselines/view_painter.h), in place of
-// the neural texture's loop.
+// Edits by methods that paint texels view after view (baselines/view_painter.h), in place of the
+// neural texture's loop.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -9,15 +9,15 @@
 
 namespace item3d {
 
-/// The painter before its first step, or as the checkpoint in the output folder has it when the
-/// request says resume and one is there. scene.atlas must have its UVs.
+/// Returns the painter before its first step, or from the checkpoint in the output folder when the
+/// request resumes and one exists. scene.atlas must have its UVs.
 EditState begin_painting(const EditRequest& request, const EditScene& scene);
 
-/// Takes the remaining steps; checkpoints and previews as it goes, each view as views/NN.png.
-/// Throws Interrupted after writing the checkpoint.
+/// Runs the remaining steps; writes checkpoints, previews and each view as views/NN.png. Throws
+/// Interrupted after writing the checkpoint.
 void paint_views(const EditRequest& request, const EditScene& scene, EditState& state);
 
-/// The file of a painted view, relative to the output folder.
+/// Returns the file of a painted view, relative to the output folder.
 std::string painted_view_file(std::size_t index);
 
 }  // namespace item3d

@@ -16,15 +16,15 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t compared_points = 1 << 15;
-constexpr double least_overlap = 0.005;  ///< of the smaller region
+constexpr double least_overlap = 0.005;  ///< share of the smaller region
 
 class RegionCheck {
   public:
     explicit RegionCheck(const Model& model)
         : model_(model), geometry_(Geometry::from_model(model)) {}
 
-    /// The region's weights at points of the whole surface, [P]; undefined where it depends on
-    /// textures, or all is meant.
+    /// Returns the region's weights at points of the whole surface, [P]; undefined where it depends
+    /// on textures, or covers everything.
     at::Tensor weights_of(const EditRequest& edit) {
         const std::vector<int> materials = select_materials(model_, edit.plan.material);
         if (!edit.plan.edits_texture) return {};
@@ -40,7 +40,7 @@ class RegionCheck {
                 if (!text.starts_with("words=") && text != "auto") make_selector(text, scene);
             return {};
         }
-        // "All but" without further selectors is of the colour that the sentences name.
+        // "All but" without further selectors refers to the colour that the sentences name.
         if (request.include.empty()) return {};
         const Region region(request, scene);
         RegionViews(region.points(), model_, geometry_);

@@ -1,4 +1,4 @@
-// A look at the regions of a plan's edits before the first of them takes its minutes.
+// A check of the regions of a plan's edits before the first edit starts.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -9,14 +9,14 @@
 
 namespace item3d {
 
-/// Makes those regions that do not depend on textures, which earlier edits change, and reads the
-/// selectors of the others. Notes which regions overlap. model: that of the first edit. Throws
-/// InputError "PLAN: edit N: ..." for names that the model has not, pictures that cannot be used,
-/// places outside of the model, and regions in which nothing is, or that no camera sees.
+/// Builds the regions that do not depend on textures (which earlier edits change), and parses the
+/// selectors of the others. Notes which regions overlap. model: input of the first edit. Throws
+/// InputError "PLAN: edit N: ..." for names that the model lacks, unusable images, points outside
+/// of the model, and regions that are empty or that no camera sees.
 void check_regions(const std::string& plan, const std::vector<EditRequest>& edits,
                    const Model& model);
 
-/// The place of an edit in messages: "PLAN: edit 2", of index 1.
+/// Returns the name of an edit in messages: "PLAN: edit 2" for index 1.
 std::string edit_name(const std::string& plan, std::size_t index);
 
 }  // namespace item3d

@@ -63,7 +63,7 @@ class SequenceRun {
 
     json question(std::size_t index) {
         json asked = question_of(edits_[index], prior_weights_.get());
-        // The others are made of what the one before left.
+        // The inputs of later edits follow from the first.
         if (index == 0) asked["model"] = hash_of_file(sequence_.model);
         return asked;
     }
@@ -75,7 +75,7 @@ class SequenceRun {
                (!edit.draws_turntable || fs::exists(edit.output / "turntable.webp"));
     }
 
-    /// What can be told before the first edit takes its minutes.
+    /// Checks everything that can be checked before the first edit starts.
     void look_ahead() {
         const auto load = [&](const EditRequest& edit) {
             return load_model(sequence_.model, {.texture_folders = edit.texture_folders,

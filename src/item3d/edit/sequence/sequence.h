@@ -1,4 +1,4 @@
-// Several edits of one model, each of what the one before left: item3d edit --plan.
+// A sequence of edits, each applied to the result of the previous one: item3d edit --plan.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -12,23 +12,23 @@
 namespace item3d {
 
 struct EditSequence {
-    std::string plan;  ///< its file, for messages
-    /// In order, not empty. model, output, resume, checkpoint and draws_turntable are set anew: the
-    /// first is of `model`, the others of the model that the one before made.
+    std::string plan;  ///< file of the plan, for messages
+    /// In order, not empty. model, output, resume, checkpoint and draws_turntable are overwritten:
+    /// the first edit's model is `model`, that of the others the result of the previous edit.
     std::vector<EditRequest> edits;
     std::filesystem::path model;
-    std::filesystem::path output;  ///< folder, made when it is not there
+    std::filesystem::path output;  ///< folder, created if missing
     bool resume = false;
 };
 
-/// Makes the edits in the folders OUTPUT/1, OUTPUT/2, ...: each with the bytes that it has when it
-/// is made by itself of OUTPUT/N-1/model.glb. Networks, lights, and the model between two edits
-/// are loaded once (session.h), and regions are checked before the first begins (region_check.h).
-/// OUTPUT/plan_state.json and OUTPUT/checkpoint.safetensors hold how far the plan is; resume: edits
-/// that are done stay, until the first that was made with other settings or of another model, and
-/// one that was interrupted goes on. Then writes the last one's model, report.html, which shows
-/// all, and edit.json ("edits": that of each) to OUTPUT. Returns the latter. Throws as edit_model()
-/// does; InputError names the edit: "PLAN: edit N: ...".
+/// Runs the edits in the folders OUTPUT/1, OUTPUT/2, ...: each gives the bytes of a separate edit
+/// of OUTPUT/N-1/model.glb. Networks, lights, and the model between two edits are loaded once
+/// (session.h), and regions are checked before the first begins (region_check.h).
+/// OUTPUT/plan_state.json and OUTPUT/checkpoint.safetensors hold the progress. resume: finished
+/// edits are kept, up to the first whose settings or model differ, and an interrupted one
+/// continues. Then writes the last edit's model, report.html, which shows all edits, and edit.json
+/// ("edits": that of each) to OUTPUT. Returns the content of edit.json. Throws as edit_model();
+/// InputError names the edit: "PLAN: edit N: ...".
 nlohmann::json edit_in_sequence(const EditSequence& sequence);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// The page of a plan: report.html with all its edits.
+// The report of a plan: report.html with all its edits.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -10,7 +10,8 @@
 
 namespace item3d {
 
-/// record: edit.json of the plan; edits: as they were made. Reads the pictures in their folders.
+/// Returns the page. record: edit.json of the plan; edits: as they were run. Reads the images in
+/// their folders.
 std::string sequence_page(const nlohmann::json& record, const std::vector<EditRequest>& edits);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// How far a plan of edits is, in a file beside its results.
+// The progress of a plan of edits, in a file beside its results.
 #pragma once
 
 #include "item3d/edit/request.h"
@@ -11,19 +11,19 @@
 
 namespace item3d {
 
-/// OUTPUT/plan_state.json: what each edit was asked, in order, of those that were begun, and how
-/// many are done. Questions are compared: an edit that is asked another thing is made anew.
+/// OUTPUT/plan_state.json: the question (inputs) of each edit that was begun, in order, and the
+/// number of finished edits. An edit whose question has changed is run again.
 class SequenceState {
   public:
-    /// resume: takes what the file says.
+    /// resume: reads the file.
     SequenceState(std::filesystem::path path, bool resume);
 
-    /// Whether edit `index` was asked this and is done, and so are all before it.
+    /// True if edit `index` has this question and is finished, and so are all before it.
     bool is_done(std::size_t index, const nlohmann::json& question) const;
-    /// Whether it was asked this and is the one that was interrupted.
+    /// True if the edit has this question and was interrupted.
     bool is_begun(std::size_t index, const nlohmann::json& question) const;
 
-    /// Forgets what was behind it, and writes the file.
+    /// Drops all later edits, and writes the file.
     void begin(std::size_t index, const nlohmann::json& question);
     void finish(std::size_t index);
 
@@ -36,7 +36,7 @@ class SequenceState {
     std::size_t done_ = 0;
 };
 
-/// All that decides an edit's result but the model that it is made of.
+/// Returns all that determines an edit's result except its input model.
 nlohmann::json question_of(const EditRequest& edit, const std::string& prior_weights);
 
 }  // namespace item3d

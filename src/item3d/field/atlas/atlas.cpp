@@ -15,7 +15,7 @@ namespace {
 constexpr int largest_texture = 4096;
 constexpr int default_texture = 1024;
 
-/// The first triangle of each primitive in Geometry.
+/// Returns the index of each primitive's first triangle in Geometry.
 std::vector<std::size_t> first_triangles(const Model& model) {
     std::vector<std::size_t> first;
     std::size_t count = 0;
@@ -26,7 +26,7 @@ std::vector<std::size_t> first_triangles(const Model& model) {
     return first;
 }
 
-/// Whether vertex colours differ from place to place.
+/// True if vertex colours vary over the surface.
 bool has_vertex_colors(const Model& model, const TextureSet& set) {
     std::optional<Vec4> first;
     for (const int index : set.primitives) {
@@ -124,7 +124,7 @@ void add_new_uvs(const Model& model, const FieldSpace& space, int texture_size, 
             for (std::size_t i = 0; i < model.primitives.size(); ++i) {
                 if (space.first_instance()[i] != set.primitives[k]) continue;
                 PrimitiveEdit edit = edits[k];
-                // A mirrored copy lists its triangles' corners in the other order.
+                // A mirrored instance lists its triangles' corners in reverse order.
                 if (model.primitives[i].is_mirrored != parts[k]->is_mirrored) {
                     for (std::size_t t = 0; t + 2 < edit.indices.size(); t += 3)
                         std::swap(edit.indices[t + 1], edit.indices[t + 2]);

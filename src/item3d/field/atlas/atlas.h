@@ -1,4 +1,4 @@
-// Which UVs an edited material is baked into: the input's own wherever there are any.
+// The choice of UV maps for baking: the input's own wherever possible.
 #pragma once
 
 #include "item3d/field/atlas/texture_set.h"
@@ -12,52 +12,52 @@
 
 namespace item3d {
 
-/// --uv names the first three, in this order.
+/// Policies of the choice of UV maps; --uv names the first three, in this order.
 enum class UvPolicy {
-    automatic,  ///< keep for a material with textures, own_texels for one without
-    keep,       ///< own UVs wherever there are any
+    automatic,  ///< keep for a material with textures, own_texels without
+    keep,       ///< own UVs where they exist
     make_new,
-    /// As automatic, and keep for materials without textures too: of a change of colour alone
-    /// each place shows the same, whatever texels it shares. Vertex colours are such places'
-    /// own, so where these differ the UVs are as of own_texels.
+    /// Same as automatic, but keep for materials without textures too: points that share a texel
+    /// all get the same change of colour, so sharing does no harm. Where vertex colours of such
+    /// points differ, same as own_texels.
     recolored,
-    own_texels,  ///< own UVs where each place of the surface has texels of its own, else new ones
+    own_texels,  ///< own UVs where no two surface points share a texel, else new ones
 };
 
 struct Atlas {
-    /// One a triangle of Geometry. Zeros for triangles that are not baked: those of materials that
-    /// are not edited, and of all instances of a primitive but the first.
+    /// One for each triangle of Geometry. Zeros for triangles that are not baked: those of unedited
+    /// materials, and of all instances of a primitive but the first.
     std::vector<UvTriangle> triangles;
     std::vector<TextureSet> sets;
-    /// New UVs of all primitives of remade sets (instances all have the same).
+    /// New UVs of all primitives in remade sets (the same for all instances).
     std::map<int, PrimitiveEdit> primitives;
 
     bool has_shared_texels() const;
 };
 
-/// Width and height of the picture that a material is baked to: longest edge `texture_size`, or as
-/// its base colour texture for 0; 1024 x 1024 without one; at most 4096. With a new UV map it is
-/// square, and for 0 at least 1024: a small texture that was tiled or shared needs more texels when
-/// each place of the surface gets its own.
+/// Returns width and height of a material's baked image: longest edge `texture_size`, or for 0 the
+/// size of its base colour texture; 1024 x 1024 without one; at most 4096. With a new UV map the
+/// image is square, and for 0 at least 1024: a small texture that was tiled or shared needs more
+/// texels when each surface point gets its own.
 std::pair<int, int> atlas_size(const Model& model, int material, int texture_size,
                                bool has_new_uvs = false);
 
-/// How the material's textures show what lies beyond [0, 1]; repeating for a material without.
+/// Returns the wrap modes of the material's textures; repeat for a material without textures.
 UvWrap wrap_of(const Model& model, int material);
 
-/// Decides for each texture set, and says in a note what is not as usual. Sets that are to have new
-/// UVs have none yet.
+/// Chooses UVs for each texture set, and logs a note of unusual choices. Leaves new UVs to
+/// add_new_uvs().
 Atlas choose_uvs(const Model& model, const FieldSpace& space, const std::vector<int>& materials,
                  UvPolicy policy);
 
-/// Has xatlas make the new UVs that were decided for. Throws InputError where it cannot.
+/// Computes the chosen new UVs with xatlas. Throws InputError where xatlas fails.
 void add_new_uvs(const Model& model, const FieldSpace& space, int texture_size, Atlas& atlas);
 
-/// Both.
+/// Calls choose_uvs() and add_new_uvs().
 Atlas make_atlas(const Model& model, const FieldSpace& space, const std::vector<int>& materials,
                  int texture_size = 0, UvPolicy policy = UvPolicy::own_texels);
 
-/// The primitive with new UVs: vertices split at the seams, tangents dropped.
+/// Returns the primitive with new UVs: vertices split at the seams, tangents dropped.
 Primitive apply(const PrimitiveEdit& edit, const Primitive& primitive);
 
 }  // namespace item3d

@@ -8,13 +8,13 @@
 namespace item3d {
 namespace {
 
-/// A row of the table of places:
+/// Number of columns in the table of representatives:
 ///   0..8    the position at (u, v) in [0, 1]^2: (P0, P1, P2) = u * [0..2] + v * [3..5] + [6..8]
-///   9..14   corners of the triangle's box, which the position does not leave
+///   9..14   corners of the triangle's box, to which the position is clamped
 ///   15      the distance within which a point keeps its own position
 constexpr std::size_t place_width = 16;
 constexpr int largest_grid = 2048;
-/// Texels around an island that look up what its border does.
+/// Width in texels of the margin around an island that maps to its border.
 constexpr int margin = 2;
 
 double uv_area(const UvTriangle& uv) {
@@ -22,7 +22,7 @@ double uv_area(const UvTriangle& uv) {
     return 0.5 * std::abs(static_cast<double>(a.x) * b.y - static_cast<double>(a.y) * b.x);
 }
 
-/// Slope and offset of the way from [0, 1] to a repetition of the texture.
+/// Slope and offset of the map from [0, 1] to a repetition of the texture.
 struct Unwrapping {
     float slope, offset;
 
@@ -56,12 +56,12 @@ void append_place(std::vector<float>& places, const UvTriangle& uv,
     append(places, glm::min(corners[0], glm::min(corners[1], corners[2])));
     append(places, glm::max(corners[0], glm::max(corners[1], corners[2])));
     const double face = 0.5 * glm::length(glm::cross(along_a, along_b));
-    // Two texels: neighbours on one island, where the grid has the other's row.
+    // Two texels: neighbours on one island, where the grid may have the other's row.
     places.push_back(is_smaller ? 0.0f
                                 : static_cast<float>(2.0 * std::sqrt(face * texel / uv_area(uv))));
 }
 
-/// Gives texels without a row that of a neighbour, `margin` times.
+/// Copies rows to adjacent texels without one, `margin` times.
 void dilate(std::vector<std::int64_t>& owner, int width, int height) {
     for (int layer = 0; layer < margin; ++layer) {
         const std::vector<std::int64_t> before = owner;
@@ -104,7 +104,7 @@ SharedTexels::SharedTexels(const Model& model, const Atlas& atlas, int texture_s
                                primitive.positions[primitive.indices[i + 1]],
                                primitive.positions[primitive.indices[i + 2]]});
     }
-    std::vector<float> places(place_width, 0.0f);  // row 0: nobody's
+    std::vector<float> places(place_width, 0.0f);  // row 0: unowned
     for (const TextureSet& set : atlas.sets) {
         if (!set.shared.empty()) add(model, atlas, set, texture_size, corners, places);
     }

@@ -1,5 +1,5 @@
-// Surface points that share a texel share a place in the neural texture: what is optimised is then
-// what can be baked.
+// Identification of surface points that share a texel: they share a position in the neural texture,
+// so that the optimised result can be baked.
 #pragma once
 
 #include "item3d/field/atlas/atlas.h"
@@ -13,18 +13,19 @@
 
 namespace item3d {
 
-/// Moves points of the texture sets that share texels to the place that represents their texel: the
-/// point of the first triangle of the atlas that shows it.
+/// Maps points of texture sets with shared texels to the representative of their texel: the point
+/// of the atlas's first triangle that shows it.
 class SharedTexels {
   public:
-    /// Moves nothing.
+    /// The identity.
     SharedTexels() = default;
-    /// texture_size: as for make_atlas. device: of the surfaces to come.
+    /// texture_size: as for make_atlas(). device: that of the surfaces passed later.
     SharedTexels(const Model& model, const Atlas& atlas, int texture_size, at::Device device);
 
     bool empty() const { return grids_.empty(); }
 
-    /// [P, 3]: `positions` [P, 3] of `surface` in the space of the first instances, moved.
+    /// Returns [P, 3] representatives of `positions` [P, 3] of `surface`, both in the space of the
+    /// first instances.
     at::Tensor representatives(const Surface& surface, const at::Tensor& positions) const;
 
   private:
@@ -33,7 +34,7 @@ class SharedTexels {
         std::vector<int> materials;
         int width = 0, height = 0;
         UvWrap wrap;
-        at::Tensor owner;  ///< [height * width] int64, a row of `places`; 0: nobody's
+        at::Tensor owner;  ///< [height * width] int64, a row of `places`; 0: unowned
     };
 
     void add(const Model& model, const Atlas& atlas, const TextureSet& set, int texture_size,

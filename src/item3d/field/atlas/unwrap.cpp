@@ -31,8 +31,8 @@ std::vector<PrimitiveEdit> unwrap(const std::vector<const Primitive*>& primitive
     double area = 0.0;
     for (const Primitive* primitive : primitives)
         area += surface_area(*primitive);
-    // xatlas treats small triangles as degenerate in absolute terms and loses digits far from the
-    // origin: work at a size and place of its liking.
+    // xatlas treats small triangles as degenerate by an absolute threshold, and loses precision far
+    // from the origin: rescale and centre the mesh.
     Vec3 low(std::numeric_limits<float>::max()), high(-std::numeric_limits<float>::max());
     for (const Primitive* primitive : primitives) {
         for (const Vec3& p : primitive->positions)
@@ -68,8 +68,8 @@ std::vector<PrimitiveEdit> unwrap(const std::vector<const Primitive*>& primitive
     xatlas::PackOptions options;
     options.padding = static_cast<std::uint32_t>(std::max(2, size / 256));
     options.texelsPerUnit = static_cast<float>(size * std::sqrt(0.7 / 100.0));
-    // Without a fixed resolution all charts go into one atlas, as large as it takes: shrink the
-    // charts until that is about the picture's size.
+    // Without a fixed resolution all charts go into one atlas of the required size: shrink the
+    // charts until it is about the image's size.
     for (int attempt = 0; attempt < 5; ++attempt) {
         xatlas::PackCharts(atlas.get(), options);
         const float ratio =

@@ -11,12 +11,12 @@ namespace item3d {
 namespace {
 
 constexpr int overlap_resolution = 1024;
-/// Below these shares of the surface a flaw costs less than the UV map's loss would.
+/// Shares of the surface below which a flaw is better than the loss of the UV map.
 constexpr double tolerated_overlap = 0.005;
 constexpr double tolerated_collapse = 0.01;
-/// How far beyond [0, 1] a UV may lie: rounding, or half a texel of a small texture.
+/// Tolerance for UVs beyond [0, 1]: rounding, or half a texel of a small texture.
 constexpr float tolerated_margin = 1e-3f;
-/// Farther out floats no longer tell texels apart.
+/// Repetition beyond which floats cannot resolve texels.
 constexpr float farthest_repetition = 16.0f;
 
 std::string percent(double share) {
@@ -24,7 +24,7 @@ std::string percent(double share) {
     return (whole == 0 ? std::string("less than 1") : std::to_string(whole)) + " %";
 }
 
-/// Whether all textures of the material repeat along an axis; those that an edit adds do.
+/// Axes along which all textures of the material repeat; textures that an edit adds do.
 struct Repetition {
     bool u = true, v = true;
 };
@@ -39,8 +39,8 @@ Repetition repetition_of(const Model& model, const Material& material) {
     return repeats;
 }
 
-/// A triangle that shows each of its texels once: inside the unit square, or across the border of
-/// one that repeats.
+/// True if a triangle shows each of its texels once: inside the unit square, or across its border
+/// where the texture repeats.
 bool is_placed(const UvTriangle& uv, Repetition repeats) {
     const Vec2 low = glm::min(uv[0], glm::min(uv[1], uv[2]));
     const Vec2 high = glm::max(uv[0], glm::max(uv[1], uv[2]));
@@ -106,7 +106,7 @@ std::string find_uv_problem(const Model& model, const std::vector<int>& primitiv
             return places[i][0] * b.x + places[i][1] * b.y + places[i][2] * (1.0f - b.x - b.y);
         };
         if (glm::length(place(first) - place(second)) > same_place) ++overlaps;
-        // Enough is enough: a thousand faces may each show the whole texture.
+        // Stop early: a thousand faces may each show the whole texture.
         return static_cast<double>(overlaps) <= tolerated_overlap * texel_count;
     };
     const UvRaster raster =

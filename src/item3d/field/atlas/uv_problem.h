@@ -1,4 +1,4 @@
-// Whether a UV map gives each place of a surface texels of its own.
+// The test of whether a UV map gives each surface point its own texel.
 #pragma once
 
 #include "item3d/scene/model.h"
@@ -8,10 +8,11 @@
 
 namespace item3d {
 
-/// Why the UVs of primitives that share a texture can't be baked into, in words ("it has no UV
-/// map", "its UV map overlaps itself", ...); empty when they can. UVs beyond [0, 1] are no problem
-/// by themselves where the texture repeats: what counts is whether each texel shows one place. Nor
-/// do triangles overlap that lie on each other in space as well, such as both sides of a leaf.
+/// Returns the reason, in words, for which the UVs of primitives that share a texture cannot be
+/// baked into ("it has no UV map", "its UV map overlaps itself", ...); empty when they can. UVs
+/// beyond [0, 1] are valid where the texture repeats and each texel shows one surface point.
+/// Triangles that also coincide in space, such as both sides of a leaf, do not count as
+/// overlapping.
 std::string find_uv_problem(const Model& model, const std::vector<int>& primitives);
 
 }  // namespace item3d

@@ -7,11 +7,11 @@ namespace item3d {
 namespace {
 
 constexpr std::int64_t subtexels = 256;
-/// Farther out float UVs no longer tell texels apart.
+/// UV beyond which floats cannot resolve texels.
 constexpr float farthest_uv = 4096.0f;
-/// Repetitions of the texture, along an axis, in which a triangle is sampled.
+/// Largest number of the texture's repetitions, along an axis, in which a triangle is sampled.
 constexpr std::int64_t most_tiles = 6;
-/// Bilinear weight from which a texel belongs to a triangle smaller than a texel.
+/// Smallest bilinear weight at which a texel belongs to a triangle smaller than a texel.
 constexpr float least_weight = 1.0f / 64;
 
 struct Point {
@@ -22,8 +22,8 @@ std::int64_t edge(Point a, Point b, Point p) {
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-/// 0 for edges whose own points belong to the triangle, -1 for the others: of two triangles at an
-/// edge, which run along it in opposite directions, one has it.
+/// Returns 0 for edges whose own points belong to the triangle, -1 for the others: the two
+/// triangles at an edge traverse it in opposite directions, so exactly one owns it.
 std::int64_t edge_bias(Point a, Point b) {
     const bool owns = b.y > a.y || (b.y == a.y && b.x < a.x);
     return owns ? 0 : -1;
@@ -50,7 +50,7 @@ WrappedTexel wrap_texel(std::int64_t texel, int count, Wrap wrap) {
     return {reversed ? count - 1 - inside : inside, tile};
 }
 
-/// Texels [first, last] of a triangle's box along an axis, fewer where it shows many repetitions.
+/// Texels [first, last] of a triangle's box along an axis, cut where it shows many repetitions.
 struct Span {
     std::int64_t first, last;
 
@@ -64,7 +64,7 @@ struct Span {
 };
 
 bool is_usable(const UvTriangle& triangle) {
-    return std::all_of(triangle.begin(), triangle.end(), [](Vec2 uv) {  // NaN: false
+    return std::all_of(triangle.begin(), triangle.end(), [](Vec2 uv) {  // false for NaN
         return std::abs(uv.x) < farthest_uv && std::abs(uv.y) < farthest_uv;
     });
 }
@@ -155,7 +155,7 @@ void claim_texels(UvRaster& raster, std::span<const UvTriangle> triangles) {
         if (has_texels[t] || !is_usable(triangle)) continue;
         if (edge_of(triangle, false) * static_cast<float>(raster.width) > 2.0f ||
             edge_of(triangle, true) * static_cast<float>(raster.height) > 2.0f)
-            continue;  // others cover what it shows
+            continue;  // other triangles cover its texels
         const Vec2 middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0f;
         const float x = middle.x * static_cast<float>(raster.width) - 0.5f;
         const float y = middle.y * static_cast<float>(raster.height) - 0.5f;

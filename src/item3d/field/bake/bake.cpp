@@ -20,7 +20,7 @@ namespace item3d {
 namespace {
 
 const Vec3 luminance_weights(0.2126f, 0.7152f, 0.0722f);
-/// Longest edge of a new texture when it is tried.
+/// Longest edge of the first attempt at a new texture.
 constexpr int tried_edge = 256;
 
 bool shows_alpha(const Image& image) {
@@ -44,11 +44,11 @@ using Size = TextureSize;
 /// Bakes the images of one texture set.
 class SetBaker {
   public:
-    /// unedited: null where nobody asks for it.
+    /// unedited: may be null.
     SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOptions& options,
              UneditedPictures* unedited);
 
-    /// on_progress: takes the share that is done.
+    /// on_progress: receives the finished share.
     MaterialEdit run(NeuralTexture& fitted, NeuralTexture& now,
                      const std::function<void(double)>& on_progress);
 
@@ -82,13 +82,13 @@ class SetBaker {
     UneditedPictures* unedited_;
     int index_;
     const Material& material_;
-    bool in_part_;  ///< a part of the surface alone is edited
+    bool in_part_;  ///< the edit has a region
     bool has_uvs_ = true;
     bool has_vertex_colors_ = false, has_vertex_alpha_ = false;
     std::atomic<bool> normal_changed_ = false;
     bool keeps_occlusion_ = false;
     Slot base_color_, orm_, normal_;
-    /// Source texels to copy; null: samples are used.
+    /// Source texels to copy; null: use samples.
     const Image* base_color_texels_ = nullptr;
     const Image* orm_texels_ = nullptr;
     const Image* occlusion_texels_ = nullptr;
@@ -116,7 +116,7 @@ SetBaker::SetBaker(const BakeScene& scene, const TextureSet& set, const BakeOpti
     }
 }
 
-/// Without a size from the user each image keeps its own.
+/// Returns the image's size; without a size from the user that of the source.
 Size SetBaker::slot_size(int own_texture) const {
     const Texture* own = texture(own_texture);
     if (options_.texture_size > 0 || !set_.is_own() || own == nullptr || own->image.empty()) {
@@ -128,7 +128,7 @@ Size SetBaker::slot_size(int own_texture) const {
             std::max(1, static_cast<int>(std::lround(own->image.height * scale)))};
 }
 
-/// The source image if its texels are the baked image's texels.
+/// Returns the source image if its texels map one to one to the baked image's.
 const Image* SetBaker::texels_of(int texture_index, int uvs, Size size) const {
     const Texture* own = texture(texture_index);
     const bool same = own != nullptr && set_.is_own() && uvs == 0 &&
@@ -136,7 +136,7 @@ const Image* SetBaker::texels_of(int texture_index, int uvs, Size size) const {
     return same ? &own->image : nullptr;
 }
 
-/// Whether no image of this size is resampled from the source.
+/// True if no image of this size is resampled from the source.
 bool SetBaker::copies_texels(Size size) const {
     const auto is_copied = [&](const Slot& slot, const Image* texels, int source) {
         return !slot.is_baked_at(size) || texels != nullptr || texture(source) == nullptr;
@@ -148,7 +148,7 @@ bool SetBaker::copies_texels(Size size) const {
            is_copied(normal_, normal_texels_, material_.normal_texture);
 }
 
-/// Whether an image of this size takes values of the source that are no texels of its own.
+/// True if an image of this size needs resampled values of the source.
 bool SetBaker::needs_source(Size size) const {
     const auto lacks = [&](const Slot& slot, const Image* texels) {
         return slot.is_baked_at(size) && texels == nullptr;
@@ -157,7 +157,7 @@ bool SetBaker::needs_source(Size size) const {
            (!keeps_occlusion_ && lacks(orm_, occlusion_texels_)) || lacks(normal_, normal_texels_);
 }
 
-/// Whether without the edit the image has the source's texels and factors, as it is started.
+/// True if the image without the edit equals the source's texels times the factors, as initialised.
 bool SetBaker::shows_source(const Slot& slot) const {
     const auto is_copied = [&](const Image* texels, int source) {
         return texels != nullptr || texture(source) == nullptr;
@@ -181,13 +181,13 @@ void SetBaker::open(Slot& slot, int texture_index, Size size) {
 
 void SetBaker::plan() {
     const BakedChannels& edited = options_.channels;
-    // Occlusion with a UV map of its own stays in its own picture: the others may repeat.
+    // Occlusion with its own UV map stays in its own image: the other maps may repeat.
     keeps_occlusion_ =
         material_.occlusion_texture >= 0 && material_.occlusion_uvs != 0 && !edited.occlusion;
     if (edited.base_color)
         open(base_color_, material_.base_color_texture, slot_size(material_.base_color_texture));
     if (edited.occlusion || edited.roughness || edited.metallic) {
-        // One image takes two slots' channels; it has the texels of one that must not change.
+        // One image holds both slots' channels, at the resolution of one that must not change.
         const bool occlusion_rules =
             !keeps_occlusion_ && (material_.metallic_roughness_texture < 0 ||
                                   (material_.occlusion_texture >= 0 && !edited.occlusion &&
@@ -196,7 +196,7 @@ void SetBaker::plan() {
              slot_size(occlusion_rules ? material_.occlusion_texture
                                        : material_.metallic_roughness_texture));
     }
-    // Tangent space needs a UV map in the source: without one the field's normals mean nothing.
+    // Tangent space needs a UV map in the source: without one the field's normals are undefined.
     if (edited.normal && has_uvs_)
         open(normal_, material_.normal_texture, slot_size(material_.normal_texture));
 }
@@ -215,7 +215,7 @@ void SetBaker::start_base_color() {
     base_color_texels_ = texels_of(material_.base_color_texture, 0, base_color_.size);
     if (has_vertex_colors_ || has_vertex_alpha_) base_color_texels_ = nullptr;
     const Texture* source = texture(material_.base_color_texture);
-    // Without, the alpha factor stays a factor.
+    // Without an alpha channel, the alpha factor stays a factor.
     const bool has_alpha = (has_vertex_alpha_ && material_.alpha != Material::Alpha::opaque) ||
                            (source != nullptr && shows_alpha(source->image));
     base_color_.open(has_alpha ? 4 : 3, in_part_);
@@ -230,7 +230,7 @@ void SetBaker::start_orm() {
                             orm_.size);
     occlusion_texels_ = texels_of(material_.occlusion_texture, material_.occlusion_uvs, orm_.size);
     if (orm_texels_ != nullptr && orm_texels_->channels < 3) orm_texels_ = nullptr;
-    // Where the material has no occlusion red is 1: other values would switch it on.
+    // Red is 1 without occlusion: other values would enable it.
     const bool fills_occlusion =
         occlusion_texels_ == nullptr && material_.occlusion_texture >= 0 && !keeps_occlusion_;
     orm_.filled_channels = (fills_occlusion ? 1u : 0u) | (orm_texels_ != nullptr ? 0u : 6u);
@@ -332,7 +332,7 @@ void SetBaker::bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
     }
     for (std::size_t i = 0; i < sizes.size(); ++i) {
         const auto [width, height] = sizes[i];
-        // Copied texels take only the sampled change, which is smooth.
+        // Copied texels use only the sampled change, which is smooth.
         const int samples = copies_texels(sizes[i]) ? 1 : options_.supersampling;
         const TexelEvaluator evaluator(
             scene_, set_, width, height, samples,
@@ -354,14 +354,14 @@ void SetBaker::bake_wanted(NeuralTexture& fitted, NeuralTexture& now,
     }
 }
 
-/// A texture that the source lacks, of a size that nobody asks for.
+/// True for a texture that the source lacks and whose size is not requested.
 bool SetBaker::is_new(const Slot& slot) const {
     const bool holds_occlusion = &slot == &orm_ && material_.occlusion_texture >= 0;
     return texture(slot.texture) == nullptr && !holds_occlusion && options_.texture_size == 0 &&
            !in_part_;
 }
 
-/// False: it was tried too small.
+/// Returns false if the texture was tried too small.
 bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
     const Image* texels = &slot == &base_color_ ? base_color_texels_ : orm_texels_;
     if (texels != nullptr && &slot != &normal_ && !(painted_ && &slot == &base_color_))
@@ -383,7 +383,7 @@ bool SetBaker::finish(Slot& slot, EditedTexture& edited) {
     return true;
 }
 
-/// Pictures without the edit, and the weight, for the caller that asked for them.
+/// Passes the images without the edit, and the weight, to the caller.
 void SetBaker::hand_over(Slot& slot, const EditedTexture& edited) {
     if (unedited_ == nullptr || !edited) return;
     Image& picture = &slot == &base_color_ ? unedited_->base_color

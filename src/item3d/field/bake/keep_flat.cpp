@@ -8,7 +8,8 @@
 namespace item3d {
 namespace {
 
-/// A photograph has more, a drawing with soft edges fewer.
+/// Largest number of colours in a flat texture; a photograph has more, a drawing with soft edges
+/// fewer.
 constexpr std::size_t most_colors = 1024;
 
 struct Statistics {

@@ -1,4 +1,4 @@
-// Textures of few colours stay such.
+// Preservation of flat colours in textures of few colours.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -8,10 +8,10 @@
 
 namespace item3d {
 
-/// Where the source has few colours, as what is painted by hand, covered texels of one of them
-/// become one colour again: their mean, in `channels` (bit c: channel c), unless the edit tells
-/// them apart by a root mean square of `blotch` or more. Values in [0, 1]; both images are of one
-/// size, covered: [height * width].
+/// Sets covered texels that have one colour in the source to their mean, in `channels` (bit c:
+/// channel c), unless the edit makes them differ by a root mean square of `blotch` or more. Does
+/// nothing where the source has many colours, unlike hand-painted textures. Values in [0, 1]; both
+/// images have the same size, covered: [height * width].
 void keep_flat(Image& image, const Image& source, const std::vector<std::uint8_t>& covered,
                unsigned channels, float blotch);
 

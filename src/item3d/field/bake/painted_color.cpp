@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-/// Texels on both sides of a place on one axis, and how much the second one counts.
+/// The two texels around a position on one axis, and the weight of the second.
 struct Between {
     int first, second;
     float share;

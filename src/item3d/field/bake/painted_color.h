@@ -1,4 +1,4 @@
-// Base colours that were painted into UV space, at the texels of a texture of another size.
+// Lookup of base colours that were painted in UV space, for a texture of another size.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -7,9 +7,8 @@
 
 namespace item3d {
 
-/// The bilinear colour of `painted` (three channels or more) at the middle of texel (x, y) of a
-/// texture of `size`, clamped to [0, 1]: where both have one size the texel's own. Beyond the
-/// middle of the outermost texels their values go on.
+/// Returns the bilinear colour of `painted` (three channels or more) at the centre of texel (x, y)
+/// of a texture of `size`, clamped to [0, 1]; for equal sizes the texel's own. Clamps to the edge.
 Vec3 color_at_texel(const Image& painted, int x, int y, TextureSize size);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// Which of the source's fine detail still has a place after an edit.
+// The factor by which the source's fine detail is kept in an edit.
 #pragma once
 
 #include "item3d/field/bake/bake.h"
@@ -7,18 +7,18 @@
 
 namespace item3d {
 
-/// Around each texel the edit is taken for a linear change of what was there (He et al. 2010,
+/// Fits the edit around each texel by a linear function of the previous colour (He et al. 2010,
 /// "Guided Image Filtering"): now = gain * fitted + offset in the least squares of a window, with
-/// gain in [0, 1]. The remainder source - fitted follows the same law. Where the edit wiped a
-/// marking out the gain is near 0, and the marking's crisp outline, which the field could not hold,
-/// goes with it; where the source was flat (grain, fine print) it is 1.
+/// gain in [0, 1]. The gain also scales the residual source - fitted. Where the edit removed a
+/// marking the gain is near 0, and the marking's crisp outline, which the field cannot represent,
+/// disappears too; where the source was flat (grain, fine print) it is 1.
 class RemainderGain {
   public:
-    /// width, height: of the texture that is baked.
+    /// width, height: of the baked texture.
     RemainderGain(const BakeScene& scene, const TextureSet& set, int width, int height,
                   NeuralTexture& fitted, NeuralTexture& now);
 
-    /// At the texel's centre.
+    /// Returns the gain at the texel's centre.
     float at(int x, int y) const;
 
   private:

@@ -25,7 +25,7 @@ Image halve(const Image& image) {
     return half;
 }
 
-/// The two texels that a lookup at a larger image's texel mixes along an axis.
+/// The two texels that a lookup at a larger image's texel interpolates along an axis.
 struct Mix {
     int first, second;
     float weight;  ///< of the second
@@ -45,7 +45,7 @@ struct Mix {
     }
 };
 
-/// Whether lookups in `small` give the texels of `image`.
+/// True if lookups in `small` reproduce the texels of `image`.
 bool shows(const Image& small, const Image& image, UvWrap wrap, float tolerance) {
     std::vector<double> squares(static_cast<std::size_t>(image.channels), 0.0);
     for (int y = 0; y < image.height; ++y) {

@@ -1,4 +1,4 @@
-// One image of a material while it is baked. Internal to baking.
+// One image of a material during a bake. Internal to baking.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -13,30 +13,30 @@ namespace item3d {
 using TextureSize = std::pair<int, int>;  ///< width, height
 
 struct Slot {
-    int texture = -1;     ///< of the source
-    bool wanted = false;  ///< in this pass
-    /// In this pass. A texture that the source lacks is tried small first: most are of one colour.
+    int texture = -1;     ///< texture of the source
+    bool wanted = false;  ///< baked in this pass
+    /// Size in this pass. A texture that the source lacks is tried small first: most have one
+    /// colour.
     TextureSize size{0, 0};
     TextureSize full_size{0, 0};
     Image image;
     std::vector<std::uint8_t> covered;
-    /// Bit c: channel c is baked or resampled, so texels beyond the triangles are filled too.
+    /// Bit c: channel c is baked or resampled, so its uncovered texels are filled too.
     std::atomic<unsigned> filled_channels = 0;
-    /// The image without the edit, where it is kept; else empty.
+    /// The image without the edit, if kept; else empty.
     Image source;
-    /// Where a part of the surface alone is edited: how much of the edit each texel takes, one
-    /// channel. Else empty.
+    /// Weight of the edit at each texel, one channel, for edits of a region. Else empty.
     Image weight;
 
-    /// An image of `channels` channels; nothing is covered. in_part: with a weight.
+    /// Starts an uncovered image of `channels` channels. in_part: with a weight.
     void open(int channels, bool in_part);
-    /// The image as it is becomes what there is without the edit.
+    /// Copies the current image to `source`.
     void keep_source();
     bool is_baked_at(TextureSize pass) const { return wanted && size == pass; }
     void cover(int x, int y, float edited);
-    /// Puts the source back where nothing is edited, to the bit, and blends at the border. Texels
-    /// beyond the triangles go with those that they continue. is_copied: source has all texels of a
-    /// picture, not only covered ones. padding: see fill_uncovered().
+    /// Restores the source bit for bit where nothing is edited, and blends at the region's border.
+    /// Padding follows the texels that it continues. is_copied: source has all texels of an image,
+    /// not only covered ones. padding: see fill_uncovered().
     void blend_with_source(bool is_copied, int padding);
 };
 

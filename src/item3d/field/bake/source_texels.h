@@ -1,4 +1,4 @@
-// Texels of a source's textures as the pictures of an edit have them: factors multiplied in.
+// Conversion of a source's texels to an edit's images: multiplied by their factors.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -7,21 +7,21 @@
 
 namespace item3d {
 
-/// The image is RGB, or RGBA, whose alpha takes its factor (1 where the texels have none), of the
-/// texels' size; all values sRGB-encoded. A factor of 1 leaves texels to the bit.
+/// image: RGB, or RGBA whose alpha gets its factor (1 where the texels have no alpha), of the
+/// texels' size; all values sRGB-encoded. A factor of 1 copies texels bit for bit.
 void copy_base_color(const Image& texels, const Vec4& factor, Image& image);
 
-/// The source of an image with occlusion, roughness and metallic. Null: none, or not of its size.
+/// Source texels for an image of occlusion, roughness and metallic. Null: none, or of another size.
 struct OrmTexels {
     const Image* occlusion = nullptr;
     const Image* roughness_metallic = nullptr;  ///< three channels or more
     float occlusion_strength = 1;
 };
 
-/// Red is 1 without texels of occlusion; green and blue stay without texels of theirs.
+/// Sets red to 1 without occlusion texels; keeps green and blue without texels of theirs.
 void copy_orm(const OrmTexels& texels, const Material& material, Image& image);
 
-/// Null: flat everywhere. The texels have three channels or more.
+/// Sets a flat normal map for null. The texels have three channels or more.
 void copy_normal(const Image* texels, Image& image);
 
 }  // namespace item3d

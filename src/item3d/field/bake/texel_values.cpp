@@ -15,7 +15,7 @@ namespace {
 constexpr int packed_width = 10;
 constexpr int samples_at_once = 16384;
 
-/// [P, 3, 3] with rows tangent, bitangent, normal of glTF's tangent space.
+/// Returns [P, 3, 3] with rows tangent, bitangent, normal of glTF's tangent space.
 at::Tensor tangent_frame(const at::Tensor& normal, const at::Tensor& tangent) {
     const auto unit = [](const at::Tensor& v) {
         return v / at::sqrt(v.square().sum(1, true)).clamp_min(1e-12);
@@ -47,7 +47,7 @@ TexelEvaluator::TexelEvaluator(const BakeScene& scene, const TextureSet& set, in
                            wrap_of(scene.model, material));
     if (!set.shared.empty()) claim_texels(raster_, triangles_);
     if (samples_ == 1) widen(raster_);
-    // The source's normals may be in the tangent space of another UV map than the atlas's.
+    // The source's normals may be in the tangent space of a UV map other than the atlas's.
     const bool moves =
         !set.is_own() || scene.model.materials[static_cast<std::size_t>(material)].normal_uvs != 0;
     if (needs.normals && moves) {
@@ -120,7 +120,7 @@ std::vector<TexelValue> TexelEvaluator::rows(int first, int last, NeuralTexture&
     std::vector<TexelValue> texels;
     std::vector<std::int64_t> triangle;
     std::vector<float> barycentrics;
-    std::vector<std::size_t> first_sample;  // of each texel
+    std::vector<std::size_t> first_sample;  // by texel
     for (int y = first; y < last; ++y) {
         for (int x = 0; x < width_; ++x) {
             const std::size_t before = triangle.size();

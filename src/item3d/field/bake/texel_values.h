@@ -1,4 +1,4 @@
-// Materials averaged over the texels of an atlas: the source's, and those of two neural textures.
+// Material averages over the texels of an atlas: the source's, and those of two neural textures.
 // Internal to baking.
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace item3d {
 
-/// Averages over a texel's samples: linear base colour (vertex colours included), orm,
-/// tangent-space normal (not unit), alpha.
+/// Means over a texel's samples: linear base colour (vertex colours included), orm, tangent-space
+/// normal (not unit), alpha.
 struct TexelMaterial {
     Vec3 base_color{0.0f};
     Vec3 orm{0.0f};
@@ -25,21 +25,21 @@ struct TexelValue {
     float weight = 1.0f;  ///< BakeScene::weight
 };
 
-/// The values that a bake asks of each texel besides the base colour and orm of both fields.
+/// Values of each texel that a bake needs besides the base colour and orm of both fields.
 struct TexelNeeds {
     bool source = false;
     bool normals = false;  ///< in the tangent space of the atlas
 };
 
-/// Samples of one texture set's triangles on a grid of width x height texels.
+/// Evaluator of one texture set's triangles on a grid of width x height texels.
 class TexelEvaluator {
   public:
     TexelEvaluator(const BakeScene& scene, const TextureSet& set, int width, int height,
                    int supersampling, TexelNeeds needs);
 
-    /// Calls take(texels) with the covered texels of some rows at a time, on several threads where
-    /// the scene is on the CPU. on_progress(share), if any, is called on one thread at a time.
-    /// Throws Interrupted after Ctrl-C.
+    /// Calls take(texels) with the covered texels of several rows at a time, on several threads
+    /// where the scene is on the CPU. on_progress(share), if any, is called on one thread at a
+    /// time. Throws Interrupted after Ctrl-C.
     void for_rows(NeuralTexture& fitted, NeuralTexture& now,
                   const std::function<void(const std::vector<TexelValue>&)>& take,
                   const std::function<void(double)>& on_progress = {}) const;
@@ -49,8 +49,7 @@ class TexelEvaluator {
                                  NeuralTexture& now) const;
     int rows_at_once() const;
     TexelMaterial read(const float* row) const;
-    /// [P, 10] on the CPU, of a sample at `surface`; rotation [P, 3, 3] or undefined goes to the
-    /// normals.
+    /// Returns [P, 10] on the CPU. rotation: [P, 3, 3], applied to the normals, or undefined.
     at::Tensor pack(const MaterialSample& sample, const at::Tensor& rotation) const;
     at::Tensor frame_change(const Surface& surface, const at::Tensor& triangle,
                             const at::Tensor& barycentrics) const;
@@ -59,9 +58,9 @@ class TexelEvaluator {
     int width_, height_, samples_;
     TexelNeeds needs_;
     std::vector<UvTriangle> triangles_;
-    const std::vector<std::int32_t>& model_triangles_;  ///< of each of triangles_
+    const std::vector<std::int32_t>& model_triangles_;  ///< by index in triangles_
     UvRaster raster_;
-    /// The model with the atlas's UVs, for its tangents; where they differ from the source's.
+    /// The model with the atlas's UVs, for its tangents; set where they differ from the source's.
     std::optional<Geometry> atlas_geometry_;
 };
 

@@ -5,7 +5,7 @@
 namespace item3d::cuda {
 namespace {
 
-/// The one of four launches that is for the grid's number of features.
+/// Calls the launch that is compiled for the grid's number of features.
 int by_width(const HashGridParameters& p, std::int64_t count, Stream stream,
              Kernel<HashGridParameters> one, Kernel<HashGridParameters> two,
              Kernel<HashGridParameters> four, Kernel<HashGridParameters> eight) {
@@ -23,14 +23,14 @@ int by_width(const HashGridParameters& p, std::int64_t count, Stream stream,
     }
 }
 
-/// A line of ITEM3D_HASH_GRID_KERNELS: a launch for each number of features, and the one of them
-/// that is for the grid's. hash_grid becomes
-/// template <int F>
-/// int hash_grid_of(const HashGridParameters& p, std::int64_t count, Stream stream) {...}
-/// int hash_grid(const HashGridParameters& p, std::int64_t count, Stream stream) {
-///     return by_width(p, count, stream, hash_grid_of<1>, hash_grid_of<2>, hash_grid_of<4>,
-///                     hash_grid_of<8>);
-/// }
+/// A line of ITEM3D_HASH_GRID_KERNELS: a launch for each number of features, and the one that
+/// selects the grid's. hash_grid becomes
+///   template <int F>
+///   int hash_grid_of(const HashGridParameters& p, std::int64_t count, Stream stream) {...}
+///   int hash_grid(const HashGridParameters& p, std::int64_t count, Stream stream) {
+///       return by_width(p, count, stream, hash_grid_of<1>, hash_grid_of<2>, hash_grid_of<4>,
+///                       hash_grid_of<8>);
+///   }
 #define HASH_GRID_DEFINITION(entry, Parameters, body, name)                            \
     template <int F>                                                                   \
     ITEM3D_KERNEL_DEFINITION(entry##_of, Parameters, body, name)                       \

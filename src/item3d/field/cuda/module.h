@@ -1,4 +1,4 @@
-// The neural texture's kernels on CUDA devices.
+// Access to the neural texture's kernels on CUDA devices.
 #pragma once
 
 #include "item3d/field/cuda/table.h"
@@ -6,7 +6,7 @@
 
 namespace item3d::cuda {
 
-/// The neural texture's entries; throws as find_table does.
+/// Returns the neural texture's kernels. Throws as find_table().
 inline const FieldTable& field_table() {
     static const auto* const table =
         reinterpret_cast<const FieldTable*>(find_table("item3d_cuda_field", sizeof(FieldTable)));

@@ -1,4 +1,5 @@
-// What libitem3d_cuda.so offers to the neural texture (item3d/render/cuda/table.h has the rules).
+// The table of the neural texture's kernels in libitem3d_cuda.so (item3d/render/cuda/table.h has
+// the rules).
 #pragma once
 
 #include "item3d/field/kernels/adam.h"
@@ -8,8 +9,9 @@
 
 namespace item3d::cuda {
 
-/// Kernels of the hash grid, compiled for each number of features F of an entry. hash_grid and
-/// hash_grid_table_backward take a count of levels * points, hash_grid_points_backward of points.
+/// Kernels of the hash grid, compiled for each number of features F of an entry. count is a number
+/// of levels * points for hash_grid and hash_grid_table_backward, and of points for
+/// hash_grid_points_backward.
 #define ITEM3D_HASH_GRID_KERNELS(X)                                                              \
     X(hash_grid, HashGridParameters, item3d::hash_grid_forward<F>(p, i), "hash_grid_encode")     \
     X(hash_grid_points_backward, HashGridParameters, item3d::hash_grid_points_backward<F>(p, i), \
@@ -17,13 +19,14 @@ namespace item3d::cuda {
     X(hash_grid_table_backward, HashGridParameters, item3d::hash_grid_table_backward<F>(p, i),   \
       "hash_grid_table_backward")
 
-/// The others. adam_step takes a count of the gradient's rows, the activation one of values.
+/// The other kernels. count is a number of gradient rows for adam_step, and of values for the
+/// activation.
 #define ITEM3D_PLAIN_KERNELS(X)                                             \
     X(adam_step, AdamParameters, adam_step_row(p, i), "adam_step")          \
     X(bounded, BoundedParameters, item3d::bounded_forward(p, i), "bounded") \
     X(bounded_backward, BoundedParameters, item3d::bounded_backward(p, i), "bounded backward")
 
-/// All of them, in the order of FieldTable.
+/// All kernels, in the order of FieldTable.
 #define ITEM3D_FIELD_KERNELS(X) \
     ITEM3D_HASH_GRID_KERNELS(X) \
     ITEM3D_PLAIN_KERNELS(X)

@@ -1,4 +1,4 @@
-// The arithmetic of a step of Adam, one row of a parameter at a time.
+// A step of Adam for one row of a parameter.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// What one step needs beyond the gradient; rates are already bias corrected.
+/// Coefficients of one step; rates are bias corrected.
 struct AdamRates {
     float beta1, beta2, epsilon;
     float step_size;       ///< learning_rate / (1 - beta1^t)
@@ -16,15 +16,15 @@ struct AdamRates {
 };
 
 struct AdamParameters {
-    const std::int64_t* rows;  ///< [R] rows of the parameter, no row twice; null: all in order
+    const std::int64_t* rows;  ///< [R] distinct rows of the parameter; null: all in order
     const float* gradient;     ///< [R, width]
     std::int64_t width;
     float* parameter;          ///< [*, width]
     float* momentum;           ///< [*, width]
     float* variance;           ///< [*, width]
     std::int32_t* updates;     ///< [*]
-    const float* row_factors;  ///< [*] of the step size; null: all 1
-    const AdamRates* rates;    ///< by the row's number of updates, this one included
+    const float* row_factors;  ///< [*] factors of the step size; null: 1
+    const AdamRates* rates;    ///< by the row's number of updates, including this one
 };
 
 ITEM3D_HOST_DEVICE inline void adam_update(float& parameter, float& momentum, float& variance,

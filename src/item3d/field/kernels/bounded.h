@@ -1,4 +1,4 @@
-// The last activation of the neural texture: a sigmoid that overshoots a range, clamped to it.
+// The output activation of the neural texture: a sigmoid that overshoots a range, clamped to it.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -8,15 +8,15 @@
 
 namespace item3d {
 
-/// How far the sigmoid overshoots each end of a range before the clamp. Black and white lie on its
-/// slope instead of at its infinite ends, so an edit can leave them again.
+/// Overshoot of the sigmoid beyond each end of the range, before the clamp. Black and white then
+/// lie on its slope instead of at its infinite ends, so an edit can leave them.
 inline constexpr float sigmoid_overshoot = 0.05f;
 
 struct BoundedParameters {
     const float* in;        ///< [count] rows of `width`
     const float* low;       ///< [width]
     const float* high;      ///< [width]
-    const float* gradient;  ///< [count] of the result; read by the backward kernel alone
+    const float* gradient;  ///< [count] with respect to the result; backward kernel only
     std::int64_t width;
     float* out;  ///< [count] the result, or the gradient of `in`
 };
@@ -30,7 +30,7 @@ ITEM3D_HOST_DEVICE inline void bounded_forward(const BoundedParameters& p, std::
     p.out[i] = wide < low ? low : wide > high ? high : wide;
 }
 
-/// The clamp lets the gradient through.
+/// The gradient passes through the clamp.
 ITEM3D_HOST_DEVICE inline void bounded_backward(const BoundedParameters& p, std::int64_t i) {
     const float span = p.high[i % p.width] - p.low[i % p.width];
     const float sigmoid = 1.0f / (1.0f + std::exp(-p.in[i]));

@@ -1,10 +1,10 @@
-// The arithmetic of a multi-resolution hash grid, one point and one level at a time (Mueller et al.
-// 2022, "Instant Neural Graphics Primitives"). No torch here: the same functions run on the CPU's
+// A multi-resolution hash grid, one point and one level at a time (Mueller et al. 2022, "Instant
+// Neural Graphics Primitives"). Independent of LibTorch: the same functions run on the CPU's
 // threads and in CUDA grids.
 //
 // A level is a lattice of (resolution + 1)^3 vertices over the unit cube with F features each.
-// Coarse levels store every vertex; where that would be more than the table holds, vertices share
-// entries by a spatial hash and the network that follows sorts out the collisions.
+// Coarse levels store every vertex; where that would exceed the table, vertices share entries by a
+// spatial hash, and the network that follows resolves the collisions.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -23,13 +23,13 @@ struct HashGridLevel {
     bool hashed = false;
 };
 
-/// Where a point lies in one level: the lattice cell and the position in it.
+/// Cell of a point in one level, and the position in the cell.
 struct HashGridCell {
     int x = 0, y = 0, z = 0;
     Vec3 fraction{0.0f};
     Vec3 slope{0.0f};  ///< d fraction / d point; 0 along axes on which the point was clamped
 
-    /// Whether another point's corners are these too.
+    /// True if both cells have the same corners.
     ITEM3D_HOST_DEVICE bool is_same_cell(const HashGridCell& other) const {
         return x == other.x && y == other.y && z == other.z;
     }
@@ -57,7 +57,7 @@ ITEM3D_HOST_DEVICE inline HashGridCell locate(const HashGridLevel& level, Vec3 p
     return cell;
 }
 
-/// Entries of the cell's eight corners, relative to the level's first. Corner c lies at
+/// Writes the entries of the cell's eight corners, relative to the level's first. Corner c lies at
 /// (c & 1, c >> 1 & 1, c >> 2 & 1).
 ITEM3D_HOST_DEVICE inline void corner_entries(const HashGridLevel& level, const HashGridCell& cell,
                                               std::uint32_t entries[8]) {
@@ -65,7 +65,7 @@ ITEM3D_HOST_DEVICE inline void corner_entries(const HashGridLevel& level, const 
     const std::uint32_t y = static_cast<std::uint32_t>(cell.y);
     const std::uint32_t z = static_cast<std::uint32_t>(cell.z);
     if (level.hashed) {
-        // The primes of Mueller et al., equation 4.
+        // Primes of Mueller et al. 2022, equation 4.
         const std::uint32_t hash_y[2] = {y * 2654435761u, (y + 1) * 2654435761u};
         const std::uint32_t hash_z[2] = {z * 805459861u, (z + 1) * 805459861u};
         const std::uint32_t mask = level.entries - 1;
@@ -81,7 +81,7 @@ ITEM3D_HOST_DEVICE inline void corner_entries(const HashGridLevel& level, const 
     }
 }
 
-/// Trilinear weights of the corners; they sum to 1.
+/// Writes the trilinear weights of the corners; they sum to 1.
 ITEM3D_HOST_DEVICE inline void corner_weights(const HashGridCell& cell, float weights[8]) {
     const Vec3 f = cell.fraction;
     const float x[2] = {1.0f - f.x, f.x};
@@ -91,7 +91,7 @@ ITEM3D_HOST_DEVICE inline void corner_weights(const HashGridCell& cell, float we
         weights[c] = x[c & 1] * yz[c >> 1];
 }
 
-/// out[F] = interpolated features. table: the level's own entries, [entries, F].
+/// Sets out[F] to the interpolated features. table: the level's own entries, [entries, F].
 template <int F>
 ITEM3D_HOST_DEVICE inline void encode_level(const HashGridLevel& level, const float* table,
                                             Vec3 point, float* out) {
@@ -110,7 +110,7 @@ ITEM3D_HOST_DEVICE inline void encode_level(const HashGridLevel& level, const fl
         out[f] = sum[f];
 }
 
-/// Gradient of dot(encode_level(point), grad[F]) with respect to the point.
+/// Returns the gradient of dot(encode_level(point), grad[F]) with respect to the point.
 template <int F>
 ITEM3D_HOST_DEVICE inline Vec3 encode_level_point_gradient(const HashGridLevel& level,
                                                            const float* table, Vec3 point,
@@ -138,7 +138,7 @@ ITEM3D_HOST_DEVICE inline Vec3 encode_level_point_gradient(const HashGridLevel& 
 
 inline constexpr int most_hash_grid_levels = 32;
 
-/// A whole grid over P points, for launches that take one index for each level and point.
+/// Parameters of a whole grid over P points, for launches with one index for each level and point.
 struct HashGridParameters {
     HashGridLevel levels[most_hash_grid_levels];
     int level_count;      ///< L
@@ -148,18 +148,18 @@ struct HashGridParameters {
     const float* table;   ///< [entries, F]
     float* features;      ///< [P, L * F]
 
-    // Backward.
+    // Backward pass.
     const float* feature_gradient;  ///< [P, L * F]
     float* point_gradient;          ///< [P, 3]
     Accumulator table_gradient;     ///< [entries, F]
-    std::uint8_t* touched;          ///< [entries], set to 1 where a point reads
+    std::uint8_t* touched;          ///< [entries], set to 1 for entries that a point reads
 };
 
 ITEM3D_HOST_DEVICE inline Vec3 hash_grid_point(const HashGridParameters& p, std::int64_t i) {
     return Vec3(p.points[3 * i], p.points[3 * i + 1], p.points[3 * i + 2]);
 }
 
-/// index: level * P + point, so that threads beside each other read one level's table.
+/// index: level * P + point, so that adjacent threads read one level's table.
 template <int F>
 ITEM3D_HOST_DEVICE inline void hash_grid_forward(const HashGridParameters& p, std::int64_t index) {
     const std::int64_t l = index / p.count, i = index % p.count;
@@ -168,7 +168,7 @@ ITEM3D_HOST_DEVICE inline void hash_grid_forward(const HashGridParameters& p, st
                     hash_grid_point(p, i), p.features + (i * p.level_count + l) * F);
 }
 
-/// index: of the point.
+/// index: that of the point.
 template <int F>
 ITEM3D_HOST_DEVICE inline void hash_grid_points_backward(const HashGridParameters& p,
                                                          std::int64_t index) {
@@ -183,7 +183,7 @@ ITEM3D_HOST_DEVICE inline void hash_grid_points_backward(const HashGridParameter
         p.point_gradient[3 * index + c] = sum[c];
 }
 
-/// index: level * P + point. Adds what one point gives to its eight entries, and marks them.
+/// Adds one point's gradients to its eight entries, and marks them. index: level * P + point.
 template <int F>
 ITEM3D_HOST_DEVICE inline void hash_grid_table_backward(const HashGridParameters& p,
                                                         std::int64_t index) {

@@ -36,7 +36,7 @@ bool is_unsigned(ComponentType type) {
     return type == ComponentType::u8 || type == ComponentType::u16 || type == ComponentType::u32;
 }
 
-// `count` elements of `size` bytes, `stride` bytes apart, from `offset` on.
+// Checks a range of `count` elements of `size` bytes, `stride` bytes apart, from `offset` on.
 void check_range(const GltfObject& object, std::size_t available, std::size_t offset,
                  std::size_t stride, std::size_t size, std::size_t count) {
     if (count == 0) return;
@@ -190,7 +190,7 @@ Accessor read_accessor(const SourceDocument& document, std::size_t index) {
                         view.data() + offset + i * stride, accessor.element_size);
         }
     } else {
-        // Zeros: nothing in the file speaks for the size, so it may not be large.
+        // Zeros: the file's data do not limit this size, so its own size must.
         std::size_t size_of_file = 0;
         for (const Bytes& buffer : document.buffers)
             size_of_file += buffer.size();

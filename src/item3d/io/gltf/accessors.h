@@ -1,4 +1,4 @@
-// Typed lists in glTF buffers. Internal to io.
+// Typed arrays (accessors) in glTF buffers. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"
@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// glTF's numbers for component types.
+/// glTF's codes of component types.
 enum class ComponentType : int {
     i8 = 5120,
     u8 = 5121,
@@ -19,29 +19,29 @@ enum class ComponentType : int {
 
 std::size_t component_size(ComponentType type);
 
-/// The elements of an accessor, packed without gaps, sparse substitutions made.
+/// The elements of an accessor, tightly packed, with sparse substitutions applied.
 struct Accessor {
     ComponentType component_type = ComponentType::f32;
     std::string type;              ///< "SCALAR", "VEC3", "MAT4", ...
-    std::size_t components = 1;    ///< in an element
+    std::size_t components = 1;    ///< number in an element
     std::size_t element_size = 4;  ///< bytes, with the padding of small matrices
     std::size_t count = 0;
     bool normalized = false;
     Bytes bytes;  ///< count * element_size
 
-    /// As stored.
+    /// Returns the stored value.
     double raw(std::size_t element, std::size_t component) const;
-    /// With normalised integers mapped to [0, 1] or [-1, 1].
+    /// Returns the value with normalised integers mapped to [0, 1] or [-1, 1].
     float value(std::size_t element, std::size_t component) const;
 };
 
-/// All but the bytes. Throws InputError.
+/// Reads everything but the bytes. Throws InputError.
 Accessor accessor_shape(const SourceDocument& document, std::size_t index);
 
-/// Everything is checked against the buffers before memory is taken. Throws InputError.
+/// Reads an accessor. Checks all sizes against the buffers before allocating. Throws InputError.
 Accessor read_accessor(const SourceDocument& document, std::size_t index);
 
-/// Reads an accessor that must have one of these component counts.
+/// Reads an accessor with least_components to most_components components.
 Accessor read_vectors(const SourceDocument& document, std::size_t index,
                       std::size_t least_components, std::size_t most_components);
 std::vector<std::uint32_t> read_indices(const SourceDocument& document, std::size_t index);

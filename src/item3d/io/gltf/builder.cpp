@@ -15,7 +15,7 @@ namespace {
 constexpr int array_buffer = 34962;
 constexpr int element_array_buffer = 34963;
 
-// Integers stay integers; floats are written so that they read back the same.
+// Converts integers to integers, and floats so that they read back exactly.
 Json to_json_number(const Accessor& accessor, double value) {
     if (accessor.component_type == ComponentType::f32) return Json(value);
     return Json(static_cast<std::int64_t>(value));
@@ -99,7 +99,7 @@ std::size_t GltfBuilder::add_floats(std::span<const float> values, std::size_t c
 
 std::size_t GltfBuilder::add_indices(std::span<const std::uint32_t> indices,
                                      std::size_t vertex_count) {
-    // The largest value of a type would mean a restart.
+    // The largest value of a type means primitive restart.
     const bool is_short = vertex_count <= 65535;
     Bytes bytes(indices.size() * (is_short ? 2 : 4));
     for (std::size_t i = 0; i < indices.size(); ++i) {

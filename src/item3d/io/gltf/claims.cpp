@@ -24,7 +24,7 @@ std::optional<std::size_t> packet_index(const Json& json) {
     return number < packets->size() ? std::optional(number) : std::nullopt;
 }
 
-/// How many objects of the document refer to a packet.
+/// Returns the number of the document's objects that refer to a packet.
 int count_uses(const Json& value, std::size_t packet) {
     if (!value.is_structured()) return 0;
     const Json* own = find_path(value, {"extensions", packets_extension, "packet"});
@@ -40,7 +40,7 @@ Json& object_at(Json& parent, const char* key) {
     return value;
 }
 
-/// The asset's own packet: what it had stays in it, and what others share is copied.
+/// Returns the asset's own packet: keeps its content, and copies a packet that is shared.
 Json& own_packet(const SourceDocument& written, Json& json) {
     const auto index = packet_index(json);
     Json packet{{"@context", Json::object()}};
@@ -78,7 +78,7 @@ std::set<std::size_t> image_views(const Json& json) {
     return views;
 }
 
-/// A buffer view by what it holds: where its bytes lie in which buffer is left out.
+/// Returns a buffer view by its content, without the location of its bytes.
 Json content_of_view(const SourceDocument& document, Json view, const std::string& where) {
     try {
         view["sha256"] = sha256(byte_range(document, GltfObject(document, view, where)));
@@ -172,7 +172,7 @@ std::string document_sha256(const SourceDocument& document,
             (*views)[i] = images.contains(i)
                               ? Json()
                               : content_of_view(document, (*views)[i], number_text(i));
-        // An image in a file of its own has no view: those at the end make no difference.
+        // An image in its own file has no view: drop trailing empty views.
         while (!views->empty() && views->back().is_null())
             views->erase(views->size() - 1);
     }
@@ -181,7 +181,7 @@ std::string document_sha256(const SourceDocument& document,
     for (const SourceDocument::Chunk& chunk : document.other_chunks)
         chunks.push_back({chunk.type, sha256(chunk.bytes)});
     json["chunks"] = std::move(chunks);
-    // By sorted keys.
+    // With sorted keys.
     const nlohmann::json sorted = json;
     return sha256(sorted.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

@@ -1,4 +1,4 @@
-// Claims in glTF documents (KHR_xmp_json_ld). Internal to io.
+// Provenance claims in glTF documents (KHR_xmp_json_ld). Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"
@@ -12,24 +12,24 @@ namespace item3d {
 
 inline constexpr const char* packets_extension = "KHR_xmp_json_ld";
 
-/// The packet of the document's asset; null: none.
+/// Returns the packet of the document's asset; null: none.
 const Json* asset_packet(const Json& json);
 
-/// The asset's packet, the claim in it among the rest. Nothing where there is none.
+/// Reads the asset's packet, including its claim. Returns empty facts where there is none.
 PacketFacts read_asset_packet(const Json& json);
 
-/// The XMP packet of the picture that a material's texture shows; empty: it has none.
+/// Returns the XMP packet of a material texture's image; empty: none.
 std::string packet_of_texture(const SourceDocument& document, const GltfObject& texture_info);
 
-/// image_sha256() of every image; empty for those that cannot be read.
+/// Returns image_sha256() of every image; empty for unreadable ones.
 std::vector<std::string> image_hashes(const SourceDocument& document);
 
-/// SHA-256 of all of a document but the claim and the bytes of the images that the claim lists: the
-/// JSON, what buffer views hold, and other chunks.
+/// Returns SHA-256 of a document without its claim and the bytes of the images that the claim
+/// lists: of the JSON, the content of buffer views, and other chunks.
 std::string document_sha256(const SourceDocument& document, const std::vector<ImageClaim>& claimed);
 
-/// Puts a claim of `provenance`, after the source's own, into the asset's packet of `written`: the
-/// document as it will stand in its file. Edited images are those that the source does not have.
+/// Adds a claim of `provenance`, after the source's own, to the asset's packet of `written`, the
+/// document as it will be in its file. Images that the source lacks count as edited.
 void put_claim(const Provenance& provenance, const SourceDocument& source, SourceDocument& written);
 
 }  // namespace item3d

@@ -16,7 +16,7 @@ std::string dumped(const Json& value) {
     return sorted.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Indices of images in a texture: its own and those of its extensions.
+/// Calls f for the indices of images in a texture: its own and those of its extensions.
 void for_each_source(Json& texture, const std::function<void(Json&)>& f) {
     if (texture.contains("source")) f(texture["source"]);
     if (!texture.contains("extensions")) return;
@@ -28,7 +28,7 @@ std::string uv_attribute(std::size_t set) {
     return "TEXCOORD_" + std::to_string(set);
 }
 
-/// Position and texture coordinate of each vertex.
+/// Returns position and texture coordinate of each vertex.
 std::set<std::string> placed_uvs(const SourceDocument& document, const Json& attributes,
                                  const std::string& uvs) {
     const Accessor position = read_accessor(document, attributes.at("POSITION").get<std::size_t>());
@@ -131,7 +131,7 @@ std::optional<std::size_t> moved_uv_set(const SourceDocument& source, const Json
     std::size_t sets = 0;
     while (now.contains(uv_attribute(sets)))
         ++sets;
-    // The highest: a primitive whose map stayed has it twice.
+    // The highest set, because a primitive whose map stayed has it twice.
     for (std::size_t set = sets; set-- > 0;) {
         const std::set<std::string> after = placed_uvs(edited, now, uv_attribute(set));
         if (std::includes(before.begin(), before.end(), after.begin(), after.end())) return set;

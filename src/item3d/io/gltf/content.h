@@ -1,5 +1,4 @@
-// Parts of glTF documents by their content, so that those of two documents can be compared.
-// Internal to io.
+// Content hashes of parts of glTF documents, for comparing two documents. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"
@@ -17,23 +16,23 @@ namespace item3d {
 /// Calls f for every index of a texture in a material.
 void for_each_texture_index(Json& material, const std::function<void(Json&)>& f);
 
-/// Hashes of images, textures, materials and geometry of one document, each made once.
+/// Hashes of images, textures, materials and geometry of one document, computed on demand.
 class DocumentContent {
   public:
-    /// The document must live as long.
+    /// The document must outlive this.
     explicit DocumentContent(const SourceDocument& document);
 
     const SourceDocument& document() const { return document_; }
 
-    /// image_sha256(); empty where it cannot be read.
+    /// Returns image_sha256(); empty for an unreadable image.
     const std::string& image(std::size_t index) const { return images_.at(index); }
-    /// Sampler and images of a texture.
+    /// Returns the hash of a texture's sampler and images.
     std::string texture(std::size_t index) const;
-    /// All of a material but its name.
+    /// Returns the hash of a material without its name.
     std::string material(std::size_t index) const;
-    /// Everything of an accessor but its place.
+    /// Returns the hash of an accessor, independent of its location.
     const std::string& accessor(std::size_t index);
-    /// Vertices, triangles and morph targets of a primitive.
+    /// Returns the hash of a primitive's vertices, triangles and morph targets.
     const std::string& geometry(std::size_t mesh, std::size_t primitive);
 
   private:
@@ -44,8 +43,8 @@ class DocumentContent {
     std::map<std::pair<std::size_t, std::size_t>, std::string> geometry_;
 };
 
-/// The set of texture coordinates of an edited primitive that the source's TEXCOORD_0 became; no
-/// value where the source has none, or nothing of it is left.
+/// Returns the texture coordinate set to which an edited primitive moved the source's TEXCOORD_0;
+/// no value where the source has none, or it was dropped.
 std::optional<std::size_t> moved_uv_set(const SourceDocument& source, const Json& primitive,
                                         const SourceDocument& edited, const Json& edited_primitive);
 

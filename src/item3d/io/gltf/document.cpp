@@ -24,8 +24,9 @@ std::uint32_t read_u32(const Bytes& bytes, std::size_t offset) {
     return value;
 }
 
-// Chunks start at multiples of four, but some programs write them without padding: behind a length
-// that is no multiple of four the next begins at once, if what is there can be the BIN chunk.
+// Returns the offset of the next chunk. Chunks start at multiples of four, but some programs write
+// them without padding: after an unaligned length the next chunk begins immediately, if it can be
+// the BIN chunk.
 std::size_t next_chunk(const Bytes& bytes, std::size_t end, std::size_t length) {
     const bool is_unpadded = end % 4 != 0 && end + 8 <= length &&
                              read_u32(bytes, end + 4) == binary_chunk &&
@@ -79,7 +80,7 @@ std::string_view read_container(const Bytes& bytes, SourceDocument& document,
     return text;
 }
 
-// Copying and writing JSON recurses, so documents that nest without end must not come in.
+// True if the JSON nests too deeply to be copied and written by recursion.
 bool nests_deeper_than(std::string_view text, int limit) {
     int depth = 0;
     bool in_string = false;
@@ -126,7 +127,7 @@ void read_buffers(SourceDocument& document, std::optional<Bytes> binary) {
             bytes = std::move(*binary);
             document.has_binary_chunk = true;
         } else {
-            // Some extensions leave a buffer empty; whoever uses it is told.
+            // Some extensions leave a buffer empty; its use is an error.
             document.buffers.emplace_back();
             continue;
         }

@@ -1,5 +1,5 @@
-// A glTF document in memory: the JSON as it stands in the file and the bytes of its buffers. Kept
-// beside the model so that an edited copy can be written by patching it. Internal to io.
+// A glTF document in memory: its JSON and the bytes of its buffers, kept beside the model so that
+// an edited copy can be written by patching it. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -19,10 +19,10 @@
 
 namespace item3d {
 
-/// Keeps the order of keys.
+/// JSON that keeps the order of keys.
 using Json = nlohmann::ordered_json;
 
-/// What to try when compressed data cannot be read.
+/// Advice for unreadable compressed data.
 inline constexpr const char* damaged_data =
     "the file is damaged; export it again without compression";
 
@@ -30,18 +30,18 @@ class SourceDocument {
   public:
     std::filesystem::path path;
     Json json;
-    /// One for each of json["buffers"]; exactly as in the files, so perhaps longer than byteLength.
+    /// One for each of json["buffers"]; as in the files, so possibly longer than byteLength.
     std::vector<Bytes> buffers;
-    /// Compressed data, as it reads: buffer views by index (gltf_meshopt.h), and the packed
-    /// elements of accessors by index (gltf_draco.h).
+    /// Decompressed data: buffer views by index (meshopt.h), and packed elements of accessors by
+    /// index (draco.h).
     std::map<std::size_t, Bytes> decoded_views;
     std::map<std::size_t, Bytes> decoded_accessors;
-    /// GltfObject::where() of the primitives that these accessors are of.
+    /// GltfObject::where() of the primitives of decoded_accessors.
     std::set<std::string> decoded_primitives;
-    /// By (mesh, primitive), where the model's vertices are not the document's: the document's
-    /// vertex that each copies (flat_normals.h).
+    /// Source vertex in the document of each of the model's vertices, by (mesh, primitive), where
+    /// they differ (make_flat() of scene/normals.h).
     std::map<std::pair<int, int>, std::vector<std::uint32_t>> split_vertices;
-    /// buffers[0] is the BIN chunk of a .glb.
+    /// True if buffers[0] is the BIN chunk of a .glb.
     bool has_binary_chunk = false;
     /// LoadOptions::texture_folders.
     std::vector<std::filesystem::path> texture_folders;
@@ -56,8 +56,8 @@ class SourceDocument {
 /// Reads the container, the JSON and all buffers. Throws InputError.
 std::shared_ptr<SourceDocument> parse_gltf(const std::filesystem::path& path, const Bytes& bytes);
 
-/// A JSON object of the document with its place in it ("meshes[0].primitives[1]"): every access is
-/// checked, and what is wrong is an InputError that names the file and the place.
+/// A JSON object of the document with its location ("meshes[0].primitives[1]"): every access is
+/// checked, and errors are InputErrors that name the file and the location.
 class GltfObject {
   public:
     GltfObject(const SourceDocument& document, const Json& json, std::string where);
@@ -69,18 +69,18 @@ class GltfObject {
     std::string text(const char* key, const std::string& otherwise) const;
     double number(const char* key, double otherwise) const;
     bool boolean(const char* key, bool otherwise) const;
-    /// A non-negative integer below 2^53.
+    /// Returns a non-negative integer below 2^53.
     std::size_t integer(const char* key, std::size_t otherwise) const;
     std::size_t integer(const char* key) const;
-    /// Exactly `count` numbers; empty when the key is missing.
+    /// Returns exactly `count` numbers; empty when the key is missing.
     std::vector<double> numbers(const char* key, std::size_t count) const;
-    /// Zero when the key is missing.
+    /// Returns zero when the key is missing.
     std::size_t list_size(const char* key) const;
-    /// An object of a list.
+    /// Returns an object of a list.
     GltfObject item(const char* key, std::size_t index) const;
-    /// An integer of a list, below `limit`.
+    /// Returns an integer of a list, below `limit`.
     std::size_t index_item(const char* key, std::size_t index, std::size_t limit) const;
-    /// An index into a list of `limit` things; no value when the key is missing.
+    /// Returns an index below `limit`; no value when the key is missing.
     std::optional<std::size_t> index(const char* key, std::size_t limit) const;
 
     [[noreturn]] void fail(const std::string& problem, const std::string& hint = "") const;
@@ -94,21 +94,22 @@ class GltfObject {
     std::string where_;
 };
 
-/// The document's root object.
+/// Returns the document's root object.
 GltfObject root_of(const SourceDocument& document);
 
-/// The encoded bytes of an image (from its URI, data URI or buffer view). Throws InputError.
+/// Returns the encoded bytes of an image (from its URI, data URI or buffer view). Throws
+/// InputError.
 Bytes read_image_bytes(const SourceDocument& document, std::size_t image,
                        Forgiving forgiving = Forgiving::with_note);
 
-/// The bytes of a buffer that an object with buffer, byteOffset and byteLength names. Throws
-/// InputError.
+/// Returns the bytes of a buffer that an object with buffer, byteOffset and byteLength denotes.
+/// Throws InputError.
 std::span<const std::uint8_t> byte_range(const SourceDocument& document, const GltfObject& object);
 
-/// The bytes that a buffer view covers, decompressed. Throws InputError.
+/// Returns the bytes of a buffer view, decompressed. Throws InputError.
 std::span<const std::uint8_t> buffer_view_bytes(const SourceDocument& document, std::size_t view);
 
-/// json[a][b]...; null where that is not there.
+/// Returns json[a][b]...; null where it does not exist.
 const Json* find_path(const Json& json, std::initializer_list<const char*> keys);
 
 }  // namespace item3d

@@ -15,7 +15,7 @@
 namespace item3d {
 namespace {
 
-/// What a mesh may hold; checked while it is decoded, before memory is taken.
+/// Limits of a mesh, checked before each allocation of decoding.
 struct Limits {
     std::size_t points;
     std::size_t faces;
@@ -23,8 +23,7 @@ struct Limits {
     std::size_t attribute_bytes;
 };
 
-/// Either decoder of the library, which takes the stream's own word for how much there is, with
-/// checks between its steps.
+/// A decoder of the library, which trusts the sizes in its stream, with checks between its steps.
 template <typename Decoder>
 class BoundedDecoder : public Decoder {
   public:
@@ -69,7 +68,7 @@ draco::Status decode_mesh(std::span<const std::uint8_t> bytes, const Limits& lim
     draco::DracoHeader header;
     const draco::Status status = draco::PointCloudDecoder::DecodeHeader(&ahead, &header);
     if (!status.ok()) return status;
-    // The extension is for this version alone; older ones begin differently.
+    // The extension requires this version; older ones begin differently.
     if (header.encoder_type != draco::TRIANGULAR_MESH || header.version_major != 2 ||
         header.version_minor != 2) {
         return draco::Status(draco::Status::UNSUPPORTED_VERSION,
@@ -161,7 +160,8 @@ class DracoPrimitive {
         return *index;
     }
 
-    // All that the file's primitives decompress to: in good files some dozens of times their size.
+    // Returns the remaining budget of decompressed bytes; in valid files they are some dozens of
+    // times the file's size.
     std::size_t bytes_left() const {
         std::size_t size_of_file = 0, taken = 0;
         for (const Bytes& buffer : document_.buffers)
@@ -191,7 +191,7 @@ class DracoPrimitive {
                             points, faces, status.error_msg()),
                 damaged_data);
         }
-        // The encoder leaves out triangles without area, and some exporters count them still.
+        // The encoder drops triangles without area, which some exporters still count.
         if (mesh.num_points() != points || mesh.num_faces() > faces) {
             extension_.fail(fmt::format("its Draco data has {} vertices and {} triangles, the "
                                         "accessors {} and {}",
@@ -257,8 +257,8 @@ class DracoPrimitive {
         return bytes;
     }
 
-    // Accessors of compressed attributes are one primitive's own: there is no other place that
-    // says what is in them.
+    // Stores a compressed attribute. Its accessor must belong to one primitive, since nothing else
+    // defines its content.
     void put(std::size_t accessor, Bytes bytes) {
         const auto [place, is_new] = document_.decoded_accessors.try_emplace(accessor);
         if (!is_new && place->second != bytes) {
@@ -308,8 +308,8 @@ void decode_draco_primitive(SourceDocument& document, const GltfObject& primitiv
     }
 }
 
-// What was renamed or dropped in the primitive must be in the extension too, and what is plain and
-// new must not be in it, where the compressed values would be taken in its stead.
+// Renames and drops in the extension the attributes that were renamed and dropped in the primitive,
+// and removes new uncompressed ones, which the compressed values would override.
 void match_draco(const Json& original, Json& primitive) {
     if (!has_draco(primitive)) return;
     Json& extension = primitive["extensions"][draco_extension];
@@ -326,5 +326,5 @@ void match_draco(const Json& original, Json& primitive) {
     extension["attributes"] = std::move(ids);
 }
 
-// A viewer without Draco may show the model then.
+// Viewers without Draco may then show the model.
 }  // namespace item3d

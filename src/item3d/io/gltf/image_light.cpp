@@ -18,13 +18,13 @@ namespace item3d {
 namespace {
 
 constexpr float gamma = 2.2f;
-constexpr float largest_rgbd = 255;  ///< that RGBD holds
+constexpr float largest_rgbd = 255;  ///< maximum of RGBD
 
 float brightest(const Image& image) {
     return *std::max_element(image.pixels.begin(), image.pixels.end());
 }
 
-/// A square of `row`, divided by `intensity`.
+/// Returns one square face of `row`, divided by `intensity`.
 Image to_rgbd(const Image& row, int face, float intensity) {
     const int size = row.height;
     Image rgbd(size, size, 4);
@@ -43,7 +43,7 @@ Image to_rgbd(const Image& row, int face, float intensity) {
     return rgbd;
 }
 
-/// Four channels are RGBD, three are as bright as they look.
+/// Decodes a pixel: four channels are RGBD, three are linear radiance.
 Vec3 decoded(const Image& image, int x, int y) {
     Vec3 radiance;
     for (int c = 0; c < 3; ++c)
@@ -52,7 +52,7 @@ Vec3 decoded(const Image& image, int x, int y) {
                                : radiance;
 }
 
-/// The extension's light of the document: of its scene, else the first.
+/// Returns the light of the document's scene, else the first one.
 GltfObject chosen_light(const GltfObject& root, const GltfObject& lights) {
     std::size_t index = 0;
     if (root.list_size("scenes") > 0) {
@@ -64,7 +64,7 @@ GltfObject chosen_light(const GltfObject& root, const GltfObject& lights) {
     return lights.item("lights", index);
 }
 
-/// Level 0 as six faces in a row.
+/// Returns level 0 as six faces in a row.
 Image read_faces(const SourceDocument& document, const GltfObject& light) {
     const auto levels = light.json().find("specularImages");
     if (levels == light.json().end() || !levels->is_array() || levels->empty() ||
@@ -99,7 +99,7 @@ Image read_faces(const SourceDocument& document, const GltfObject& light) {
 
 std::size_t add_image_based_light(GltfBuilder& builder, const ImageBasedLight& light) {
     ITEM3D_CHECK(light.specular.size() > 1, "an image-based light has several levels");
-    // A sun keeps all of its light: the dark parts have fewer steps instead.
+    // A sun keeps its full radiance, at the cost of precision in dark parts.
     float intensity = 1;
     for (const Image& level : light.specular)
         intensity = std::max(intensity, brightest(level) / largest_rgbd);

@@ -1,4 +1,4 @@
-// Vertices and triangles of one glTF document taken over into another. Internal to io.
+// The import of vertices and triangles from one glTF document into another. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/builder.h"
@@ -10,13 +10,14 @@
 
 namespace item3d {
 
-/// What is equal is added once.
+/// Importer of geometry; adds equal content once.
 class GeometryImport {
   public:
     explicit GeometryImport(GltfBuilder& builder) : builder_(builder) {}
 
     /// Gives `primitive`, of the builder's document, the vertices, triangles and morph targets of
-    /// `edited`, a plain one of `content`'s document. uv_set: where what looked at set 0 finds it.
+    /// `edited`, an uncompressed one of `content`'s document. uv_set: new set for textures that
+    /// used set 0.
     void replace(DocumentContent& content, const Json& edited, std::size_t uv_set, Json& primitive);
 
   private:

@@ -1,4 +1,4 @@
-// Materials of one glTF document taken over into another. Internal to io.
+// The import of materials from one glTF document into another. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/builder.h"
@@ -11,18 +11,17 @@
 
 namespace item3d {
 
-/// Takes over materials with their textures and images; what the document has already, by content,
-/// is not added again.
+/// Importer of materials with their textures and images; reuses those of equal content.
 class MaterialImport {
   public:
-    /// builder: of the document that `own` is the content of, and into which all goes.
+    /// builder: destination, whose document `own` describes.
     MaterialImport(const DocumentContent& own, GltfBuilder& builder);
 
-    /// The index of a material of `content`'s document in the builder's. uv_set: where textures
-    /// that look at set 0 find it now. name: of a material that is added.
+    /// Returns the index in the builder's document of a material of `content`'s. uv_set: new set
+    /// for textures that used set 0. name: for a material that is added.
     std::size_t add(const DocumentContent& content, std::size_t material, std::size_t uv_set,
                     const std::string& name);
-    /// The same for glTF's default material.
+    /// Returns the index of glTF's default material.
     std::size_t add_default();
 
   private:
@@ -32,7 +31,7 @@ class MaterialImport {
 
     GltfBuilder& builder_;
     std::map<std::string, std::size_t> materials_, textures_, images_;
-    std::map<std::size_t, std::string> own_;  ///< content of the document's own materials
+    std::map<std::size_t, std::string> own_;  ///< content of the document's own materials, by index
     std::optional<std::size_t> default_;
 };
 

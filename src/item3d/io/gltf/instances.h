@@ -1,4 +1,4 @@
-// EXT_mesh_gpu_instancing: nodes that show their mesh many times. Internal to io.
+// EXT_mesh_gpu_instancing: nodes with several instances of their mesh. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/nodes.h"
@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// Instance to world, one a copy of the node's mesh; no value for a node that shows its mesh once.
-/// Throws InputError.
+/// Returns the instance-to-world matrices of a node's mesh; no value for a node without the
+/// extension. Throws InputError.
 std::optional<std::vector<glm::dmat4>> read_instances(const SourceDocument& document,
                                                       const NodeTree& nodes, std::size_t node);
 

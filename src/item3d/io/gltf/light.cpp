@@ -32,8 +32,8 @@ bool refers_to_files(const Json& json) {
     return false;
 }
 
-/// x, y, z, w: turns +Z towards `direction`, so that a light, which shines along -Z, comes from
-/// there.
+/// Returns the quaternion x, y, z, w that turns +Z towards `direction`, so that a light, which
+/// shines along -Z, comes from there.
 Json rotation_towards(Vec3 direction) {
     if (direction.z < -0.99999f) return Json{0, 1, 0, 0};
     const Vec3 axis = glm::cross(Vec3(0, 0, 1), direction);
@@ -41,7 +41,7 @@ Json rotation_towards(Vec3 direction) {
     return Json{q.x, q.y, q.z, q.w};
 }
 
-/// The nodes that are no node's children.
+/// Returns the nodes without parents.
 Json root_nodes(const Json& json) {
     std::set<std::size_t> children;
     for (const Json& node : json["nodes"]) {
@@ -55,7 +55,7 @@ Json root_nodes(const Json& json) {
     return roots;
 }
 
-/// Without scenes viewers show what they like; the loader took all nodes.
+/// Returns the default scene. Without scenes, creates one of all nodes, as the loader does.
 Json& default_scene(Json& json) {
     if (!json.contains("scenes") || json["scenes"].empty()) {
         json["scenes"] = Json::array({Json{{"nodes", root_nodes(json)}}});

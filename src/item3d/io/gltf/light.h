@@ -1,4 +1,4 @@
-// Models written as they are, together with a light.
+// Export of unedited models together with lights.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -11,25 +11,25 @@
 
 namespace item3d {
 
-/// Light from very far away.
+/// A directional light at infinity.
 struct DirectionalLight {
     Vec3 direction{0, 1, 0};  ///< unit, towards the light, in world space
-    Vec3 irradiance{1};       ///< on a plane that faces it, linear RGB, of radiance 1 = white
+    Vec3 irradiance{1};       ///< on a perpendicular plane, linear RGB; radiance 1 is white
 };
 
-/// What shines on a model.
+/// Lights of a model.
 struct ModelLights {
-    /// Becomes a node of the default scene with a directional light (KHR_lights_punctual), its
-    /// intensity the irradiance: what viewers that shade a white surface with intensity / pi need
-    /// to show it as item3d does.
+    /// Becomes a node of the default scene with a directional light (KHR_lights_punctual) whose
+    /// intensity is the irradiance: viewers that shade a white surface with intensity / pi then
+    /// match item3d.
     std::optional<DirectionalLight> sun;
     /// Becomes the default scene's image-based light (EXT_lights_image_based).
     std::optional<ImageBasedLight> surroundings;
 };
 
-/// Writes a .glb in which geometry, materials and the bytes of all pictures are those of the
-/// model's glTF. Without lights a .glb that refers to no other file is copied byte for byte; models
-/// of other formats are written anew. provenance: of the lights; a file with lights carries it.
+/// Writes a .glb with the geometry, materials and image bytes of the model's glTF. Without lights,
+/// copies a self-contained .glb byte for byte; converts models of other formats. provenance: of the
+/// lights; a file with lights carries it.
 void save_lit_model(const std::filesystem::path& path, const Model& model,
                     const ModelLights& lights = {}, const Provenance& provenance = {});
 

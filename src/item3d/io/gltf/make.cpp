@@ -82,7 +82,7 @@ class GltfMaker {
         return info;
     }
 
-    // The texture goes in unless there is none, or the edit brings another.
+    // True if the texture exists and the edit does not replace it.
     bool wants(int index, bool is_edited) const {
         return index >= 0 && !is_edited &&
                !model_.textures[static_cast<std::size_t>(index)].image.empty();
@@ -156,7 +156,8 @@ class GltfMaker {
                wants(material.emissive_texture, false);
     }
 
-    // Texture coordinates that an edit replaces stay only where a texture still looks at them.
+    // Returns the texture coordinates; those that an edit replaces only if a texture still uses
+    // them.
     std::vector<Vec2> uvs_of(int index, const Primitive& primitive) const {
         const bool is_needed = has_textures_left(primitive.material);
         const bool is_first_of_many = !primitive.further_uvs.empty();

@@ -1,4 +1,4 @@
-// A new glTF document for a model that came from elsewhere. Internal to io.
+// The conversion of a model of another format to a new glTF document. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"
@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// Mesh i, primitive 0, node i are Model::primitives[i]; materials keep their indices. Textures and
-/// texture coordinates that `edit` replaces are left out.
+/// Returns the document: mesh i, primitive 0, node i are Model::primitives[i]; materials keep their
+/// indices. Textures and texture coordinates that `edit` replaces are left out.
 std::shared_ptr<SourceDocument> make_gltf(const Model& model, const ModelEdit& edit);
 
 }  // namespace item3d

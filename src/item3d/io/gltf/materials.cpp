@@ -43,7 +43,7 @@ class MaterialReader {
     MaterialReader(const SourceDocument& document, Model& model)
         : document_(document), root_(root_of(document)), model_(model) {}
 
-    /// use: without primitives, textures are left out.
+    /// Reads a material. use: without primitives, textures are skipped.
     Material read(const GltfObject& source, const MaterialUse& use) {
         Material material;
         material.name = source.text("name", "");
@@ -123,7 +123,7 @@ class MaterialReader {
             material.occlusion_strength = unit(slots.occlusion->number("strength", 1.0));
     }
 
-    // The address of a texture's picture, its name, or its place in the document.
+    // Returns the URI of a texture's image, its name, or its location in the document.
     std::string picture_name(const GltfObject& info) const {
         const auto texture = info.index("index", root_.list_size("textures"));
         if (!texture) return info.where();
@@ -135,8 +135,8 @@ class MaterialReader {
         return uri.empty() || is_data_uri(uri) ? object.text("name", object.where()) : uri;
     }
 
-    // Replaces base colour, metallic and roughness by what the older model's specular colour makes
-    // of them. Files without one mean a dielectric, though its default is white.
+    // Replaces base colour, metallic and roughness by a conversion of the older model's specular
+    // colour. Files without one mean a dielectric, although the default is white.
     void convert_glossiness(const GltfObject& source, const GltfObject& old, const MaterialUse& use,
                             Material& material) {
         const auto info = old.object("specularGlossinessTexture");
@@ -178,7 +178,7 @@ class MaterialReader {
         add(converted.metallic_roughness, material.metallic_roughness_texture);
     }
 
-    // Warns of texture coordinates that a texture looks at and meshes do not have.
+    // Warns of texture coordinates that a texture uses and meshes lack.
     bool has_uv_map(const GltfObject& info, const UvLayout& layout, const MaterialUse& use) const {
         const auto found = use.with_uv_map.find(layout.tex_coord);
         const std::size_t count = found == use.with_uv_map.end() ? 0 : found->second;
@@ -193,7 +193,7 @@ class MaterialReader {
         return count > 0;
     }
 
-    // -1 when the picture cannot be read.
+    // Returns -1 when the image cannot be read.
     int read_texture(const GltfObject& info) {
         const auto index = info.index("index", root_.list_size("textures"));
         if (!index) info.fail("index is missing");

@@ -1,4 +1,4 @@
-// Materials and textures of a glTF. Internal to io.
+// Reading of a glTF's materials and textures. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"
@@ -9,18 +9,17 @@
 
 namespace item3d {
 
-/// What the primitives that are shown have for one material.
+/// Use of one material by the visible primitives.
 struct MaterialUse {
     std::size_t primitives = 0;
-    std::map<std::size_t, std::size_t> with_uv_map;  ///< number of them by TEXCOORD_n
+    std::map<std::size_t, std::size_t> with_uv_map;  ///< number of primitives by TEXCOORD_n
 };
 
-/// The default of glTF, for primitives that name no material.
+/// Returns glTF's default material, for primitives without one.
 Material default_gltf_material();
 
-/// Reads all factors of all materials into the model; textures only of those that are used (`uses`
-/// by material). Pictures that cannot be read, and texture coordinates that are not there, are
-/// warnings.
+/// Reads the factors of all materials into the model, and the textures of used ones (`uses` by
+/// material). Warns of unreadable images and of missing texture coordinates.
 void read_gltf_materials(const SourceDocument& document, const std::vector<MaterialUse>& uses,
                          Model& model);
 

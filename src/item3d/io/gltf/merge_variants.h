@@ -1,4 +1,5 @@
-// Edited copies of a glTF document as looks of one (KHR_materials_variants). Internal to io.
+// The merge of edited copies of a glTF document as variants of one (KHR_materials_variants).
+// Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/builder.h"
@@ -13,16 +14,16 @@ namespace item3d {
 /// An edited copy of the document.
 struct EditedDocument {
     const SourceDocument* document = nullptr;
-    std::string name;  ///< of the look that it becomes
-    std::string look;  ///< the variant of it that the edit shows; empty: what it shows by itself
+    std::string name;  ///< name of its new variant
+    std::string look;  ///< variant of the copy to show; empty: its default
 };
 
-/// Makes `builder`'s JSON, a copy of document.json, offer the look of every edited copy as a
-/// variant behind those that it has. original: name of a variant for what it shows by itself;
-/// empty: none is made. Vertices and triangles stay as they are, but where edits gave a primitive
-/// the same new UV map: then that is everyone's, and the source's textures follow to where their
-/// own coordinates went. Throws InputError for a document that is no edited copy, and where UV maps
-/// of edits differ.
+/// Adds every edited copy as a variant to `builder`'s JSON, a copy of document.json, after existing
+/// variants. original: name of a variant for the document's default materials; empty: none.
+/// Vertices and triangles stay unchanged, except for a primitive that edits gave a new UV map:
+/// all variants then use that map, and the source's textures use the moved coordinates. Throws
+/// InputError for a document that is no edited copy, and where edits' UV maps of a primitive
+/// differ.
 void merge_variants(const SourceDocument& document, const std::vector<EditedDocument>& edits,
                     const std::string& original, GltfBuilder& builder);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* extension_name = "EXT_meshopt_compression";
 
-/// What the extension says of one buffer view.
+/// Properties of one buffer view in the extension.
 struct CompressedView {
     std::span<const std::uint8_t> bytes;
     std::size_t stride;
@@ -20,7 +20,7 @@ struct CompressedView {
     std::string filter;
 };
 
-// The library takes these as given, so they are checked here.
+// Checks the values that the library does not check.
 void check_shape(const GltfObject& extension, const CompressedView& view) {
     const auto require = [&](bool is_right, const std::string& rule) {
         if (is_right) return;
@@ -46,8 +46,8 @@ void check_shape(const GltfObject& extension, const CompressedView& view) {
         require(view.filter == "NONE" || view.filter == "EXPONENTIAL",
                 "the filter must be NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL");
     }
-    // The densest that the formats allow: of attributes two bits for 16 bytes, of triangles and of
-    // lone indices a byte each.
+    // Highest compression of the formats: for attributes two bits for 16 bytes, for triangles and
+    // for indices one byte each.
     const std::size_t most_elements = view.mode == "ATTRIBUTES"
                                           ? view.bytes.size() * 64 / view.stride
                                       : view.mode == "TRIANGLES" ? view.bytes.size() * 3
@@ -109,7 +109,7 @@ Bytes decode(const GltfObject& extension, const CompressedView& view) {
 
 void decode_meshopt_views(SourceDocument& document) {
     const GltfObject root = root_of(document);
-    // Views may share their compressed bytes, so their sum is bounded as well.
+    // Views may share their compressed bytes, so their sum is bounded too.
     std::size_t left = 0;
     for (const Bytes& buffer : document.buffers)
         left += 64 * buffer.size();

@@ -34,7 +34,7 @@ glm::dmat4 local_matrix(const GltfObject& node) {
     return matrix;
 }
 
-/// A hidden node hides what hangs on it.
+/// True if the node is hidden, and with it its descendants.
 bool is_hidden(const GltfObject& node) {
     const auto visibility = find_extension(node, "KHR_node_visibility");
     return visibility && !visibility->boolean("visible", true);
@@ -64,7 +64,7 @@ NodeTree read_nodes(const SourceDocument& document) {
         }
     }
 
-    // Parents before children; what is not reached hangs on a cycle.
+    // Parents before children; unreached nodes are part of a cycle.
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < count; ++i) {
         if (parents[i] == none) order.push_back(i);

@@ -8,10 +8,10 @@
 namespace item3d {
 
 struct NodeTree {
-    /// Node to world, for every node of the document.
+    /// Node-to-world matrix of every node of the document.
     std::vector<glm::dmat4> world;
-    /// Nodes of the default scene in depth-first order (of all nodes when there is no scene),
-    /// without those that KHR_node_visibility hides.
+    /// Nodes of the default scene in depth-first order (all nodes when there is no scene), without
+    /// those that KHR_node_visibility hides.
     std::vector<std::size_t> scene;
 };
 

@@ -20,12 +20,12 @@ std::string uv_name(std::size_t set) {
     return fmt::format("TEXCOORD_{}", set);
 }
 
-/// What happens to one primitive of one mesh.
+/// Changes of one primitive of one mesh.
 struct PrimitiveChange {
     int primitive;
-    int material;                               ///< into GltfPatch::plans_ and edits
-    std::shared_ptr<const PrimitiveEdit> edit;  ///< null: vertices stay
-    const std::vector<Vec2>* uvs;               ///< of the primitive as it is
+    int material;                               ///< index into GltfPatch::plans_ and edits
+    std::shared_ptr<const PrimitiveEdit> edit;  ///< null: unchanged vertices
+    const std::vector<Vec2>* uvs;               ///< of the original primitive
     std::size_t vertex_count;
 
     bool operator==(const PrimitiveChange& other) const {
@@ -82,7 +82,8 @@ class GltfPatch {
                              [static_cast<std::size_t>(primitive)];
     }
 
-    // New texture coordinates of one primitive concern its material, and so all that share it.
+    // New texture coordinates of one primitive affect its material, and so all primitives that
+    // share it.
     void make_plan(const PrimitiveUse& use) {
         if (!edit_.primitives.contains(use.index)) return;
         const int material = material_of(use);
@@ -100,7 +101,7 @@ class GltfPatch {
         }
         for (const std::size_t lod : own_lod_materials(material))
             stays = stays || is_shown_elsewhere(static_cast<int>(lod), material);
-        // Viewers know set 0 best. Where others may look at the old set 0, it stays.
+        // Viewers support set 0 best, but the old set 0 stays where other materials may use it.
         plan.new_set = stays ? sets : 0;
         plan.moved_set.reset();
         if (!stays && sets > 0) plan.moved_set = sets;
@@ -115,7 +116,8 @@ class GltfPatch {
         return lod_materials(document_, static_cast<std::size_t>(material));
     }
 
-    /// Whether a material is shown by itself, or instead of another one than `owner`.
+    /// True if a material is used directly, or replaces a material other than `owner` at a
+    /// distance.
     bool is_shown_elsewhere(int material, int owner) const {
         if (std::any_of(uses_.begin(), uses_.end(),
                         [&](const PrimitiveUse& use) { return material_of(use) == material; }))
@@ -152,7 +154,7 @@ class GltfPatch {
         if (edit == edit_.materials.end()) return;
         std::string name = material.value("name", std::string());
         if (name.empty()) name = fmt::format("material_{}", index);
-        // Adding textures does not move the material, but a copy is safe from every addition.
+        // Adding textures does not move the material, but a copy is independent of all additions.
         Json copy = material;
         const Json original = is_default
                                   ? Json::object()
@@ -179,7 +181,7 @@ class GltfPatch {
             .tex_coord;
     }
 
-    /// A new normal texture looks at other coordinates than the old one did.
+    /// True if a new normal texture uses other coordinates than the old one did.
     bool moves_normal(int material) const {
         const auto edit = edit_.materials.find(material);
         if (edit == edit_.materials.end() || !edit->second.normal || material == default_material_)
@@ -191,7 +193,7 @@ class GltfPatch {
                (normal && read_uv_layout(*normal) != material_uv_layout(source));
     }
 
-    // A texture must have coordinates to look at, and be they all the same.
+    // True if textured primitives have no coordinates, and need dummy ones.
     bool lacks_uvs(const PrimitiveUse& use) const {
         const int material = material_of(use);
         const auto edit = edit_.materials.find(material);
@@ -221,7 +223,7 @@ class GltfPatch {
                 for (std::uint32_t& vertex : edit.source_vertices)
                     vertex = split->at(vertex);
             }
-            // The file's triangles are wound for the mesh, not for the mirrored node.
+            // The file's triangles have the mesh's winding, not that of the mirrored node.
             for (std::size_t t = 0; use.is_mirrored && t + 2 < edit.indices.size(); t += 3) {
                 std::swap(edit.indices[t + 1], edit.indices[t + 2]);
             }
@@ -230,10 +232,10 @@ class GltfPatch {
         return change;
     }
 
-    // Nodes that share a mesh go on sharing it when their changes are the same; else the second
-    // change gets a copy of the mesh.
+    // Applies changes to meshes. Nodes that share a mesh still share it where their changes are
+    // equal; other changes get a copy of the mesh.
     void change_meshes() {
-        std::map<std::pair<int, int>, std::vector<PrimitiveChange>> by_node;  // (mesh, node)
+        std::map<std::pair<int, int>, std::vector<PrimitiveChange>> by_node;  // by (mesh, node)
         std::vector<std::pair<int, int>> order;
         for (const PrimitiveUse& use : uses_) {
             const std::pair key(use.mesh, use.node);
@@ -279,7 +281,7 @@ class GltfPatch {
         return found == document_.split_vertices.end() ? nullptr : &found->second;
     }
 
-    // As the document numbers its vertices.
+    // Returns the coordinates in the document's order of vertices.
     std::vector<Vec2> document_uvs(const PrimitiveChange& change, int mesh) const {
         std::vector<Vec2> uvs = *change.uvs;
         uvs.resize(change.vertex_count, Vec2(0.0f));
@@ -312,7 +314,7 @@ class GltfPatch {
             if (plan.moved_set && primitive.contains("extensions"))
                 move_texture_coordinates(primitive["extensions"], *plan.moved_set);
         }
-        // A tangent frame follows the coordinates of its normal map.
+        // The tangent frame depends on the coordinates of the normal map.
         if (moves_normal(change.material)) drop_attribute("TANGENT", primitive);
         if (drops_colors(change.material)) drop_colors(primitive);
         match_draco(source_primitive(mesh_index, change.primitive), primitive);
@@ -332,7 +334,7 @@ class GltfPatch {
             drop_attribute("COLOR_0", primitive);
             return;
         }
-        // Sets must count from 0 without a gap: white stands in.
+        // Sets must count from 0 without a gap: insert white.
         Accessor white;
         white.component_type = ComponentType::u8;
         white.type = "VEC4";
@@ -397,7 +399,7 @@ class GltfPatch {
         }
         primitive["indices"] = builder_.add_indices(edit.indices, edit.source_vertices.size());
         primitive.erase("mode");
-        // The plain vertices are new, the compressed copy of the old ones goes.
+        // The new vertices are uncompressed; drop the compressed copy of the old ones.
         const std::string draco = draco_extension;
         if (!primitive.contains("extensions") || !primitive["extensions"].contains(draco)) return;
         primitive["extensions"].erase(draco);

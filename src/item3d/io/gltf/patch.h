@@ -1,4 +1,4 @@
-// Edits of materials and texture coordinates, made in a copy of a glTF's JSON. Internal to io.
+// Edits of materials and texture coordinates in a copy of a glTF's JSON. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/builder.h"
@@ -9,20 +9,20 @@
 
 namespace item3d {
 
-/// Where a primitive of the model stands in the document.
+/// Location of a model's primitive in the document.
 struct PrimitiveUse {
     int index;  ///< into Model::primitives
     int mesh;
     int primitive;
     int node;      ///< -1: none
-    int material;  ///< of the document, -1: glTF's default
+    int material;  ///< index in the document, -1: glTF's default
     bool is_mirrored;
     const std::vector<Vec2>* uvs;
     std::size_t vertex_count;
 };
 
-/// Patches `builder`'s JSON, a copy of document.json. Materials in `edit` count from 0 as the
-/// document's do; the number of the document's materials means glTF's default material.
+/// Patches `builder`'s JSON, a copy of document.json. Material indices in `edit` equal the
+/// document's; the document's number of materials denotes glTF's default material.
 void patch_gltf(const SourceDocument& document, std::span<const PrimitiveUse> uses,
                 const ModelEdit& edit, GltfBuilder& builder);
 

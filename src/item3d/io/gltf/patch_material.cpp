@@ -21,7 +21,7 @@ const Json* find(const Json& object, const char* key) {
     return found == object.end() ? nullptr : &*found;
 }
 
-// Not 1 throughout.
+// True if any value differs from 1.
 bool has_occlusion(const Image& image) {
     for (std::size_t i = 0; i < image.pixels.size();
          i += static_cast<std::size_t>(image.channels)) {
@@ -30,7 +30,7 @@ bool has_occlusion(const Image& image) {
     return false;
 }
 
-/// Points texture infos at new textures, keeping what else they hold.
+/// Sets the texture of texture infos and keeps their other properties.
 class InfoWriter {
   public:
     InfoWriter(const UvPlan& plan, const UvLayout& layout, Json& json)
@@ -98,8 +98,8 @@ void drop_emission(Json& material) {
     drop_extension(material, "KHR_materials_emissive_strength");
 }
 
-/// Points texture infos of a material's extensions, and its emission, at the new texture where they
-/// show the picture that it replaced in the same place.
+/// Updates texture infos of a material's extensions, and its emission, if they show the replaced
+/// image with the same UV layout.
 class Follower {
   public:
     Follower(const SourceDocument& document, const UvLayout& layout,
@@ -159,7 +159,7 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
     };
     const Json* old_pbr = find(original, "pbrMetallicRoughness");
     if (edit.base_color || edit.metallic_roughness) {
-        // Viewers that know this older model would prefer it to the edited values.
+        // Viewers that support the older model would prefer it to the edited values.
         const bool is_older = !has_metallic_roughness(GltfObject(document, original, "material"));
         if (is_older && material.contains("extensions") &&
             material["extensions"].contains("KHR_materials_pbrSpecularGlossiness")) {
@@ -178,7 +178,7 @@ std::vector<ReplacedTexture> patch_material(const SourceDocument& document, cons
             }
         }
         drop_extension(material, "KHR_materials_pbrSpecularGlossiness");
-        // What was edited is a surface in light, and what was never seen does not begin to glow.
+        // Edited materials are lit, and emission that was invisible so far must stay so.
         const Json* extensions = find(original, "extensions");
         if (extensions && extensions->contains("KHR_materials_unlit")) drop_emission(material);
         drop_extension(material, "KHR_materials_unlit");

@@ -1,4 +1,4 @@
-// Edits of one material, made in a copy of a glTF's JSON. Internal to io.
+// The edit of one material in a copy of a glTF's JSON. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/builder.h"
@@ -12,18 +12,18 @@
 
 namespace item3d {
 
-/// How the texture coordinates of an edited material change.
+/// Changes of an edited material's texture coordinates.
 struct UvPlan {
     bool has_new_uvs = false;
-    /// The set that edited textures look at.
+    /// Set for edited textures.
     std::size_t new_set = 0;
-    /// The set that the old TEXCOORD_0 moves to when new_set is 0, else unused.
+    /// New set of the old TEXCOORD_0 when new_set is 0, else unused.
     std::optional<std::size_t> moved_set;
 };
 
 /// Writes the textures of one edit into `material`, which was `original` before its texture
-/// coordinates moved. What else in the material shows the replaced pictures follows. Returns what
-/// was replaced.
+/// coordinates moved. Updates other uses of the replaced images in the material. Returns the
+/// replaced textures.
 std::vector<ReplacedTexture> patch_material(const SourceDocument& document, const Json& original,
                                             const MaterialEdit& edit, const UvPlan& plan,
                                             const std::string& name, Json& material,

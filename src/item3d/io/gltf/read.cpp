@@ -1,6 +1,6 @@
 // glTF 2.0 (Khronos, ISO/IEC 12113:2022) to a Model: one primitive for each triangle primitive of
-// each node of the default scene, in world space, at rest (default morph weights, nodes as they
-// are).
+// each node of the default scene, in world space, in the rest pose (default morph weights,
+// untransformed nodes).
 #include "item3d/io/gltf/read.h"
 
 #include "item3d/core/error.h"
@@ -29,7 +29,8 @@
 namespace item3d {
 namespace {
 
-// Extensions that a file may require and that are read, or that change nothing that is read here.
+// Supported extensions that a file may require, including those without effect on the data that is
+// read.
 constexpr std::string_view known_extensions[] = {
     "KHR_mesh_quantization",      "KHR_texture_transform", "KHR_lights_punctual",
     "KHR_animation_pointer",      "KHR_xmp_json_ld",       "EXT_meshopt_compression",
@@ -67,7 +68,7 @@ class GltfReader {
 
   private:
     void add_meshes();
-    /// world: of the mesh, where it has no skin.
+    /// world: matrix of the mesh, where it has no skin.
     void add_mesh(std::size_t mesh, std::optional<std::size_t> node, const glm::dmat4& world);
     void add_node(std::size_t node);
     void add_primitive(const GltfObject& mesh, const GltfObject& source, Primitive primitive,
@@ -93,16 +94,17 @@ class GltfReader {
     GltfObject root_;
     NodeTree nodes_;
     Model model_;
-    glm::dvec3 low_{std::numeric_limits<double>::max()};  ///< of all positions, in the world
+    glm::dvec3 low_{std::numeric_limits<double>::max()};  ///< of all positions, in world space
     glm::dvec3 high_{std::numeric_limits<double>::lowest()};
     std::set<std::string> warnings_;
     std::optional<std::size_t> variant_;
     std::vector<std::set<int>> variant_materials_;
     std::size_t vertex_count_ = 0;
-    std::vector<MaterialUse> uses_;  ///< of each material, then of the default one
+    std::vector<MaterialUse> uses_;  ///< by material, the default one last
 };
 
-// A few nodes can repeat a mesh without end; what the file holds bounds what is taken.
+// Returns the limit of vertices. A few nodes can repeat a mesh many times, so the file's size
+// limits it.
 std::size_t GltfReader::most_vertices() const {
     std::size_t size_of_file = 0;
     for (const Bytes& buffer : document_->buffers)
@@ -128,7 +130,7 @@ std::vector<double> GltfReader::morph_weights(const GltfObject& mesh, const Gltf
     return weights;
 }
 
-// matrices: one for all vertices, or one a vertex.
+// matrices: one for all vertices, or one for each.
 void GltfReader::place(const Vertices& vertices, const std::vector<glm::dmat4>& matrices,
                        Primitive& primitive) {
     const std::size_t count = vertices.positions.size();
@@ -246,7 +248,7 @@ void GltfReader::read_triangles(const GltfObject& source, std::size_t mode,
         primitive.indices = std::move(corners);
     } else {
         for (std::size_t i = 2; i < corners.size(); ++i) {
-            // Strips change their winding with every triangle, fans share their first corner.
+            // Strips alternate their winding, fans share their first corner.
             const std::size_t odd = mode == 5 ? i % 2 : 0;
             const std::size_t first = mode == 5 ? i - 2 : 0;
             primitive.indices.insert(primitive.indices.end(),
@@ -293,7 +295,7 @@ void GltfReader::add_primitive(const GltfObject& mesh, const GltfObject& source,
     apply_morph_targets(*document_, source, morph_weights(mesh, source, node), vertices);
     std::vector<glm::dmat4> matrices{world};
     if (node && attributes->has("JOINTS_0")) {
-        // The node's own transform does not count for a skinned mesh.
+        // The node's own transform does not apply to a skinned mesh.
         const auto skin = root_.item("nodes", *node).index("skin", root_.list_size("skins"));
         if (skin && !vertices.positions.empty()) {
             matrices =
@@ -367,7 +369,7 @@ void GltfReader::add_meshes() {
     for (const std::size_t node : nodes_.scene)
         add_node(node);
     if (nodes_.world.empty()) {
-        // A library of meshes.
+        // A mesh library without nodes.
         for (std::size_t mesh = 0; mesh < meshes; ++mesh)
             add_mesh(mesh, std::nullopt, glm::dmat4(1.0));
     }
@@ -378,7 +380,7 @@ Model GltfReader::read() {
     nodes_ = read_nodes(*document_);
     const std::size_t meshes = root_.list_size("meshes");
     add_meshes();
-    // Few models are far from the origin: those are read once more, with it taken off.
+    // The few models far from the origin are read again, with the origin subtracted.
     model_.origin = far_origin(low_, high_);
     if (model_.origin != glm::dvec3(0.0)) add_meshes();
     for (const std::string& warning : warnings_)

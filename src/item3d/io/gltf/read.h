@@ -1,4 +1,4 @@
-// glTF 2.0 files to models. Internal to io.
+// Reading of glTF 2.0 files as models. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -10,7 +10,7 @@
 
 namespace item3d {
 
-/// glTF 2.0, binary or JSON. Throws InputError.
+/// Reads glTF 2.0, binary or JSON. Throws InputError.
 Model read_gltf(const std::filesystem::path& path, const Bytes& bytes,
                 const LoadOptions& options = {});
 

@@ -1,4 +1,4 @@
-// Skinned meshes at rest. Internal to io.
+// Skinned meshes in their rest pose. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/nodes.h"
@@ -11,7 +11,8 @@ namespace item3d {
 void check_count(const GltfObject& attributes, const char* name, std::size_t count,
                  std::size_t expected);
 
-/// One matrix a vertex, `count` in all: the weighted mean of its joints'. Throws InputError.
+/// Returns one matrix for each of `count` vertices: the weighted mean of its joints' matrices.
+/// Throws InputError.
 std::vector<glm::dmat4> blend_joints(const SourceDocument& document, const NodeTree& nodes,
                                      const GltfObject& attributes, std::size_t skin,
                                      std::size_t count);

@@ -17,8 +17,8 @@ float perceived_brightness(const Vec3& color) {
     return std::sqrt(glm::dot(color * color, Vec3(0.299f, 0.587f, 0.114f)));
 }
 
-/// From diffuse = base (1 - dielectric) (1 - m) and specular = lerp(dielectric, base, m), as the
-/// extension's own conversion has it.
+/// Solves diffuse = base (1 - dielectric) (1 - m) and specular = lerp(dielectric, base, m) for m,
+/// as in the extension's own conversion.
 float solve_metallic(float diffuse, float specular, float one_minus_specular) {
     if (specular <= dielectric) return 0.0f;
     const float b = diffuse * one_minus_specular / (1.0f - dielectric) + specular - 2 * dielectric;
@@ -39,7 +39,7 @@ MetalPoint convert(const Vec3& diffuse, const Vec3& specular) {
     return {glm::clamp(glm::mix(of_diffuse, of_specular, m * m), 0.0f, 1.0f), m};
 }
 
-/// A texel of a picture at the centre of another's.
+/// Returns an image's texel at the position of a texel (x, y) in an image of width x height.
 const float* texel_at(const Image& image, int x, int y, int width, int height) {
     const int column = std::min(image.width - 1, (2 * x + 1) * image.width / (2 * width));
     const int row = std::min(image.height - 1, (2 * y + 1) * image.height / (2 * height));

@@ -1,4 +1,4 @@
-// KHR_materials_pbrSpecularGlossiness as metallic-roughness. Internal to io.
+// Conversion of KHR_materials_pbrSpecularGlossiness to metallic-roughness. Internal to io.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -8,8 +8,8 @@
 
 namespace item3d {
 
-/// Linear values of the older model; pictures as they are in files (sRGB colours, alpha and
-/// glossiness linear).
+/// Linear values of the older model; images as in files (sRGB colours, alpha and glossiness
+/// linear).
 struct SpecularGlossiness {
     Vec4 diffuse_factor{1.0f};
     Vec3 specular_factor{1.0f};
@@ -18,19 +18,19 @@ struct SpecularGlossiness {
     const Image* specular_glossiness = nullptr;  ///< RGBA
 };
 
-/// The metallic-roughness material that reflects as much: factors, and pictures where the values
-/// differ from texel to texel.
+/// A metallic-roughness material of the same reflectance: factors, and images where values vary.
 struct MetallicRoughness {
     Vec4 base_color_factor{1.0f};
     float metallic_factor = 0.0f;
     float roughness_factor = 1.0f;
-    /// Not set: the diffuse picture serves as it is.
+    /// Not set: the diffuse image is used unchanged.
     std::optional<Image> base_color;
     std::optional<Image> metallic_roughness;
 };
 
-/// A dielectric keeps its diffuse colour; where the specular colour is brighter than that of any
-/// (0.04), the material is metal to the degree that gives diffuse and specular colour back.
+/// Converts a material. A dielectric keeps its diffuse colour; where the specular colour is
+/// brighter than a dielectric's (0.04), the material is metallic to the degree that reproduces both
+/// colours.
 MetallicRoughness to_metallic_roughness(const SpecularGlossiness& source);
 
 }  // namespace item3d

@@ -10,7 +10,7 @@
 namespace item3d {
 namespace {
 
-/// In the order in which a viewer that knows them all prefers them.
+/// Extensions in a viewer's order of preference.
 constexpr const char* read_texture_extensions[] = {"KHR_texture_basisu", "EXT_texture_webp"};
 constexpr const char* texture_extensions[] = {"KHR_texture_basisu", "EXT_texture_webp",
                                               "EXT_texture_avif", "MSFT_texture_dds"};
@@ -19,7 +19,7 @@ Texture read_picture(const SourceDocument& document, std::size_t index) {
     const GltfObject image = root_of(document).item("images", index);
     const std::string subject = document.path.string() + ": " + image.where();
     Texture texture = decode_texture(read_image_bytes(document, index), subject);
-    texture.file.reset();  // the document has it
+    texture.file.reset();  // already in the document
     texture.name = image.text("name", "");
     return texture;
 }
@@ -65,7 +65,7 @@ Texture read_texture_source(const SourceDocument& document, const GltfObject& te
         try {
             Texture result = read_picture(document, sources[i]);
             result.name = texture.text("name", result.name);
-            // Viewers without the extension look at the other picture, so that format will do.
+            // Viewers without the extension use the other image, so its format is suitable.
             if (plain && sources[i] != *plain) {
                 const ImageFormat format =
                     detect_image_format(read_image_bytes(document, *plain, Forgiving::silently));

@@ -1,4 +1,4 @@
-// The pictures of a glTF's textures, of which extensions may name several. Internal to io.
+// Images of glTF textures, which extensions may offer in several formats. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"
@@ -6,12 +6,13 @@
 
 namespace item3d {
 
-/// Name and picture of a texture: the first that can be read of KHR_texture_basisu's,
-/// EXT_texture_webp's and its own, whatever format each is in. Throws InputError where none can be.
+/// Reads name and image of a texture: the first readable one of KHR_texture_basisu's,
+/// EXT_texture_webp's and its own, whatever their formats. Throws InputError where none is
+/// readable.
 Texture read_texture_source(const SourceDocument& document, const GltfObject& texture);
 
-/// Makes the texture extensions in the lists of used and required extensions those that textures
-/// have; required: those of which some texture has no other picture.
+/// Sets the lists of used and required extensions to those that textures use; required: extensions
+/// without which some texture has no image.
 void list_texture_extensions(Json& json);
 
 }  // namespace item3d

@@ -20,7 +20,8 @@ bool is_index(const Json& value) {
     return value.is_number_integer() && value.get<std::int64_t>() >= 0;
 }
 
-// Materials refer to textures by objects with an index, whatever the key; elsewhere the key tells.
+// True if an object refers to a texture: in materials by an index under any key, elsewhere by its
+// key.
 bool is_texture_reference(std::string_view key, const Json& object, bool in_material) {
     const auto index = object.find("index");
     if (index == object.end() || !is_index(*index)) return false;
@@ -76,7 +77,7 @@ void for_each_index(Json& root, const OnIndex& f) {
     }
 }
 
-// Whether all extensions refer to textures and buffer views in the ways that for_each_index knows.
+// True if for_each_index() supports the references of all extensions in the document.
 bool has_known_references(const Json& value) {
     static const std::set<std::string_view> known = {
         "EXT_texture_webp",
@@ -119,7 +120,7 @@ std::map<std::size_t, int> count_indices(Json& root, IndexKind kind) {
     return counts;
 }
 
-// Erases the items of a list and makes all indices of that kind follow.
+// Erases the items of a list and updates all indices of that kind.
 void erase_items(Json& root, const char* list, IndexKind kind, const std::set<std::size_t>& dead) {
     if (dead.empty()) return;
     for_each_index(root, [&](IndexKind found, Json& index) {
@@ -139,7 +140,7 @@ void erase_items(Json& root, const char* list, IndexKind kind, const std::set<st
     }
 }
 
-// Those of a list's first `size` items that were referred to before and are not now.
+// Returns the items among a list's first `size` that were used before and are no longer.
 std::set<std::size_t> lost_items(const std::map<std::size_t, int>& before,
                                  const std::map<std::size_t, int>& now, std::size_t size) {
     std::set<std::size_t> lost;
@@ -169,7 +170,7 @@ void for_each_range(Json& root, std::size_t buffer, const std::function<void(Jso
     }
 }
 
-// Takes the bytes of dead views out of the buffer, in steps of eight so that all stays aligned.
+// Removes the bytes of dead views from the buffer, in steps of eight to preserve alignment.
 void cut_bytes(GltfBuilder& builder, const std::vector<ByteRange>& dead) {
     Json& root = builder.json();
     std::vector<ByteRange> live;

@@ -1,4 +1,4 @@
-// Which texture coordinates the textures of a glTF material look at. Internal to io.
+// The texture coordinates that a glTF material's textures use. Internal to io.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// A UV map and how it is transformed before a texture looks at it (KHR_texture_transform):
-/// uv = offset + rotate(rotation) * (scale * TEXCOORD_n).
+/// A UV map with its transform for a texture (KHR_texture_transform): uv = offset +
+/// rotate(rotation) * (scale * TEXCOORD_n).
 struct UvLayout {
     std::size_t tex_coord = 0;
     Vec2 offset{0.0f};
@@ -24,28 +24,27 @@ struct UvLayout {
 
 UvLayout read_uv_layout(const GltfObject& texture_info);
 
-/// The texture infos of a material by what they are for; of KHR_materials_pbrSpecularGlossiness
-/// without metallic-roughness beside it, diffuse as base colour and specular-glossiness as
-/// metallic-roughness.
+/// Texture infos of a material by purpose; for KHR_materials_pbrSpecularGlossiness without
+/// metallic-roughness, diffuse as base colour and specular-glossiness as metallic-roughness.
 struct TextureSlots {
     std::optional<GltfObject> base_color, metallic_roughness, normal, occlusion, emissive;
 
     explicit TextureSlots(const GltfObject& material);
 };
 
-/// Whether pbrMetallicRoughness says anything: some exporters write an empty one beside
+/// True if pbrMetallicRoughness is not empty: some exporters write an empty one beside
 /// KHR_materials_pbrSpecularGlossiness.
 bool has_metallic_roughness(const GltfObject& material);
 
-/// An extension of an object, if it has it.
+/// Returns an extension of an object, if present.
 std::optional<GltfObject> find_extension(const GltfObject& object, const char* name);
 
-/// The different layouts of a material's textures, in the order base colour, metallic-roughness,
-/// normal, occlusion, emissive; at least one. Primitive::uvs are in the first, further_uvs in the
-/// others.
+/// Returns the distinct layouts of a material's textures, in the order base colour,
+/// metallic-roughness, normal, occlusion, emissive; at least one. Primitive::uvs use the first,
+/// further_uvs the others.
 std::vector<UvLayout> material_uv_layouts(const GltfObject& material);
 
-/// The first of them: edited textures are in it.
+/// Returns the first layout, which edited textures use.
 UvLayout material_uv_layout(const GltfObject& material);
 
 }  // namespace item3d

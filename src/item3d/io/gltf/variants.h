@@ -1,4 +1,4 @@
-// KHR_materials_variants: several looks in one file. Internal to io.
+// KHR_materials_variants: several appearances in one file. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"
@@ -9,13 +9,13 @@
 
 namespace item3d {
 
-/// Names in the file's order; empty where it has no variants.
+/// Returns names in the file's order; empty where it has no variants.
 std::vector<std::string> variant_names(const SourceDocument& document);
 
-/// The number of the variant of this name. Throws InputError that lists those that there are.
+/// Returns the index of the named variant. Throws InputError that lists the variants.
 std::size_t find_variant(const SourceDocument& document, const std::string& name);
 
-/// The material that a primitive has in a variant; no value where it keeps that of its own.
+/// Returns a primitive's material in a variant; no value where it keeps its default.
 std::optional<std::size_t> material_in_variant(const SourceDocument& document,
                                                const GltfObject& primitive, std::size_t variant);
 

@@ -1,4 +1,4 @@
-// Positions, normals and tangents of a glTF's primitives. Internal to io.
+// Positions, normals and tangents of glTF primitives. Internal to io.
 #pragma once
 
 #include "item3d/io/gltf/document.h"
@@ -19,7 +19,7 @@ struct Vertices {
 /// Throws InputError where numbers of elements differ.
 Vertices read_vertices(const SourceDocument& document, const GltfObject& attributes);
 
-/// Adds the offsets of the primitive's morph targets, each by its weight. Throws InputError.
+/// Adds the weighted offsets of the primitive's morph targets. Throws InputError.
 void apply_morph_targets(const SourceDocument& document, const GltfObject& source,
                          const std::vector<double>& weights, Vertices& vertices);
 

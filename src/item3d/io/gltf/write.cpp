@@ -23,7 +23,8 @@ namespace item3d {
 namespace fs = std::filesystem;
 namespace {
 
-// All buffers become one, the BIN chunk; views follow. Buffers without data (of extensions) stay.
+// Merges all buffers into one, the BIN chunk, and updates views. Keeps buffers without data (of
+// extensions).
 Bytes pack_buffers(const SourceDocument& document, Json& json) {
     if (document.buffers.empty()) return {};
     if (document.has_binary_chunk && document.buffers.size() == 1) return document.buffers[0];
@@ -72,7 +73,7 @@ std::string mime_type_of(const Bytes& bytes, const Json& image) {
     return "image/png";
 }
 
-// A .glb stands alone, so pictures in files and data URIs go into it.
+// Moves images in files and data URIs into a .glb, which must be self-contained.
 void embed_images(const SourceDocument& document, GltfBuilder& builder) {
     if (!document.json.contains("images")) return;
     const std::size_t count = document.json["images"].size();
@@ -89,7 +90,7 @@ void embed_images(const SourceDocument& document, GltfBuilder& builder) {
     }
 }
 
-// Files that `json` still refers to, copied beside the new one under the names that they have.
+// Copies files that `json` still refers to beside the new one, under the same names.
 void copy_files(const SourceDocument& document, const std::map<std::string, Bytes>& new_files,
                 Json& json, const fs::path& folder) {
     const std::string subject = document.path.string();
@@ -106,7 +107,7 @@ void copy_files(const SourceDocument& document, const std::map<std::string, Byte
                 const fs::path root =
                     fs::weakly_canonical(source.empty() ? fs::path(".") : source, code);
                 const fs::path relative = from.lexically_relative(root);
-                // A name that had to be forgiven is spelled as the file's.
+                // Corrects an inexact name to the file's.
                 if (!fs::exists(root / percent_decode(uri), code))
                     item["uri"] = path_to_uri(relative);
                 const fs::path to = folder / percent_decode(item["uri"].get<std::string>());
@@ -121,7 +122,8 @@ void copy_files(const SourceDocument& document, const std::map<std::string, Byte
     }
 }
 
-// What an edit leaves in the document as a whole: no picture twice, true lists, who wrote it.
+// Cleans an edited document: removes unused textures, updates lists of extensions, and sets the
+// generator.
 void tidy(const SourceDocument& document, GltfBuilder& builder) {
     remove_unused_textures(document, builder);
     list_texture_extensions(builder.json());
@@ -134,7 +136,7 @@ void tidy(const SourceDocument& document, GltfBuilder& builder) {
     }
 }
 
-/// The text of a .gltf whose other files lie there already.
+/// Returns the text of a .gltf whose other files are already written.
 std::string claimed_gltf(const fs::path& path, const Json& json, const SourceDocument& document,
                          const Provenance& provenance) {
     const auto text_of = [](const Json& root) {
@@ -233,7 +235,7 @@ void write_patched(const fs::path& path, const SourceDocument& document,
                    const std::function<void(GltfBuilder&)>& patch, const Provenance& provenance) {
     const bool is_binary = to_lower(path.extension().string()) != ".gltf";
     Json json = document.json;
-    // New data goes to the end of the BIN chunk, or to a buffer of its own.
+    // New data goes to the end of the BIN chunk, or to a new buffer.
     const bool own_buffer = !is_binary && !document.has_binary_chunk;
     Bytes binary;
     if (is_binary) {
@@ -255,7 +257,7 @@ void write_patched(const fs::path& path, const SourceDocument& document,
         return;
     }
     const fs::path folder = path.parent_path();
-    // Before the new files, which no name in the document is that of.
+    // Before the new files, whose names are new to the document.
     copy_files(document, builder.files(), json, folder);
     if (!builder.binary().empty()) {
         const std::string name = builder.unused_file_name(path.stem().string(), ".bin");

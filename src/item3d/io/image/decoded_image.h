@@ -1,4 +1,4 @@
-// What the picture formats are decoded to, and how large it may be. Internal to io.
+// The result of decoding an image, and limits of its size. Internal to io.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -12,13 +12,13 @@ namespace item3d {
 struct DecodedImage {
     Image image;
     int bits_per_channel = 8;  ///< 8, 16 or 32
-    /// How a changed copy is written where it is to be of the same kind: PNG for kinds that are not
-    /// written, JPEG for those of them with losses.
+    /// Coding of a changed copy in the same format: PNG for formats that cannot be written, JPEG
+    /// for lossy ones among them.
     ImageCoding coding = {};
 };
 
-/// Refuses pictures that are too large (2^28 values) or that `available` bytes cannot hold even
-/// when every byte stands for `most_pixels_per_byte` pixels, before anything is allocated.
+/// Throws InputError, before anything is allocated, for images that are too large (2^28 values) or
+/// that `available` bytes cannot hold even if every byte encodes `most_pixels_per_byte` pixels.
 void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t channels,
                       std::uint64_t available, std::uint64_t most_pixels_per_byte,
                       const std::string& subject);

@@ -1,4 +1,4 @@
-// Formats that are known by name alone, for messages. Internal to io.
+// Formats that are recognised but not read, for messages. Internal to io.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace item3d {
 
-/// "a DDS texture" and the like; nullptr where the bytes are none of these.
+/// Returns "a DDS texture" and the like; nullptr for other bytes.
 const char* foreign_format(std::span<const std::uint8_t> bytes);
 
 }  // namespace item3d

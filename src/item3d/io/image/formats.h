@@ -1,4 +1,4 @@
-// The picture formats, told apart by content. Internal to io.
+// Image formats, detected by content. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -13,16 +13,16 @@ namespace item3d {
 
 enum class ImageFormat { unknown, png, jpeg, webp, ktx2, bmp, tga, gif, tiff, radiance, openexr };
 
-/// By the first bytes of the file.
+/// Detects the format by the first bytes of the file.
 ImageFormat detect_image_format(std::span<const std::uint8_t> bytes);
 
-/// "image/png" and the like; nullptr where there is none.
+/// Returns "image/png" and the like; nullptr where there is none.
 const char* mime_type(ImageFormat format);
 
-/// Decodes by content. `subject` names the picture in errors and warnings. Throws InputError.
+/// Decodes by content. subject: name of the image in errors and warnings. Throws InputError.
 DecodedImage decode_image(std::span<const std::uint8_t> bytes, const std::string& subject);
 
-/// The same as a texture without a name, that keeps `bytes` where they can be written as they are.
+/// Decodes to a texture without a name, which keeps `bytes` if they can be embedded unchanged.
 Texture decode_texture(Bytes bytes, const std::string& subject);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// JPEG through libjpeg(-turbo), which reports errors by a call that must not return: longjmp.
+// JPEG by libjpeg(-turbo), which reports errors by a call that must not return: longjmp.
 #include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
@@ -28,14 +28,14 @@ void on_error(j_common_ptr codec) {
     std::longjmp(errors->target, 1);
 }
 
-// Data that ends early or runs into a marker is an error, other oddities are let pass.
+// Treats data that ends early or runs into a marker as an error, and ignores other irregularities.
 void on_message(j_common_ptr codec, int level) {
     if (level >= 0) return;
     const int code = codec->err->msg_code;
     if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER) on_error(codec);
 }
 
-// A small progressive file can ask for thousands of passes over a large picture.
+// Limits passes: a small progressive file can request thousands over a large image.
 void on_progress(j_common_ptr codec) {
     if (codec->is_decompressor &&
         reinterpret_cast<j_decompress_ptr>(codec)->input_scan_number > 200) {
@@ -143,10 +143,10 @@ bool write_rows(JpegWriter& writer, std::uint8_t* pixels, int width, int height,
     return true;
 }
 
-// The quality at which a picture that was changed loses little to the losses that it has already:
-// the error of a step grows with its square, so steps of 0.35 add an eighth, half a decibel.
+// Returns the quality at which re-encoding a changed image adds little error: the error of a
+// quantisation step grows with its square, so steps of 0.35 add an eighth, half a decibel.
 int quality_for_changes(const jpeg_decompress_struct& codec) {
-    constexpr double luminance_sum = 3688;  // of the table that quality 50 stands for
+    constexpr double luminance_sum = 3688;  // for the table of quality 50
     const JQUANT_TBL* table = codec.quant_tbl_ptrs[0];
     if (!table) return 95;
     double sum = 0;

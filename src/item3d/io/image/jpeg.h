@@ -1,4 +1,4 @@
-// JPEG pictures. Internal to io.
+// JPEG images. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -10,10 +10,10 @@
 
 namespace item3d {
 
-/// `subject` names the picture in errors. Throws InputError.
+/// subject: name of the image in errors. Throws InputError.
 DecodedImage decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& subject);
 
-/// 4:4:4, quality 95; an alpha channel is dropped.
+/// Encodes 4:4:4; drops an alpha channel.
 Bytes encode_jpeg(const Image& image, int quality = 95);
 
 }  // namespace item3d

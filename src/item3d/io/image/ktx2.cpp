@@ -1,4 +1,4 @@
-// Khronos KTX 2.0; every offset is checked here, because the transcoder adds without looking for
+// Khronos KTX 2.0. Every offset is checked here, because the transcoder adds without checks for
 // overflow.
 #include "item3d/io/image/ktx2.h"
 
@@ -31,8 +31,8 @@ class Ktx2Header {
     std::uint32_t supercompression() const { return number<std::uint32_t>(44); }
     std::uint64_t uncompressed_size() const { return number<std::uint64_t>(ktx2_header_size + 16); }
 
-    /// Throws InputError where the file is no two-dimensional picture of Basis Universal, or names
-    /// bytes that it has not.
+    /// Throws InputError where the file is not a two-dimensional image of Basis Universal, or
+    /// refers to bytes beyond its end.
     void check() const {
         if (vulkan_format() != 0) {
             throw InputError(subject_,
@@ -58,7 +58,7 @@ class Ktx2Header {
         }
         check_range(number<std::uint32_t>(48), number<std::uint32_t>(52));
         check_range(number<std::uint64_t>(64), number<std::uint64_t>(72));
-        // One descriptor of 20 bytes for each picture.
+        // One descriptor of 20 bytes for each image.
         if (supercompression() == 1 && layers * faces * levels > bytes_.size() / 20)
             fail("its header is damaged");
     }
@@ -85,7 +85,7 @@ class Ktx2Header {
     const std::string& subject_;
 };
 
-// Grey, or the colour alone, where the others say nothing.
+// Returns the number of channels with information: 3, or 4 with alpha.
 int channels_of(const basist::ktx2_transcoder& transcoder) {
     return transcoder.get_has_alpha() ? 4 : 3;
 }
@@ -97,16 +97,16 @@ DecodedImage decode_ktx2(std::span<const std::uint8_t> bytes, const std::string&
     std::call_once(tables, basist::basisu_transcoder_init);
     const Ktx2Header header(bytes, subject);
     header.check();
-    // Codebooks make a block of 16 pixels out of less than a bit, and so does Zstandard.
+    // Codebooks encode a block of 16 pixels in less than a bit, and so does Zstandard.
     check_image_size(header.width(), header.height(), 4, bytes.size(), 1ull << 16, subject);
     const std::uint64_t blocks =
         ((header.width() + 3ull) / 4) * ((header.height() + 3ull) / 4) * 16;
-    // Cube maps and arrays hold a few pictures a level.
+    // Cube maps and arrays have a few images in each level.
     if (header.supercompression() == 2 && header.uncompressed_size() > 64 * blocks)
         header.fail("its header is damaged");
     if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) header.fail("it is too large");
 
-    // Keys and values say nothing that is needed here.
+    // Keys and values are not needed here.
     std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
     std::fill_n(copy.begin() + 56, 8, std::uint8_t{0});
     basist::ktx2_transcoder transcoder;
@@ -123,7 +123,7 @@ DecodedImage decode_ktx2(std::span<const std::uint8_t> bytes, const std::string&
 
     const int channels = channels_of(transcoder);
     DecodedImage result{Image(width, height, channels), 8, {}};
-    // Not written here: what every viewer reads takes its place.
+    // A changed copy is a JPEG, which every viewer reads.
     result.coding = {ImageEncoding::jpeg, false, 85};
     for (std::size_t i = 0; i < pixels; ++i) {
         for (int c = 0; c < channels; ++c) {

@@ -1,5 +1,4 @@
-// KTX2 pictures of Basis Universal: ETC1S and UASTC, as KHR_texture_basisu has them. Internal to
-// io.
+// KTX2 images of Basis Universal: ETC1S and UASTC, as in KHR_texture_basisu. Internal to io.
 #pragma once
 
 #include "item3d/io/image/decoded_image.h"
@@ -10,8 +9,8 @@
 
 namespace item3d {
 
-/// The largest level of the first layer and face, Zstandard taken off. `subject` names the picture
-/// in errors. Throws InputError.
+/// Decodes the largest level of the first layer and face, including Zstandard. subject: name of the
+/// image in errors. Throws InputError.
 DecodedImage decode_ktx2(std::span<const std::uint8_t> bytes, const std::string& subject);
 
 }  // namespace item3d

@@ -1,4 +1,4 @@
-// The interface of libitem3d_ktx2.so: the encoder of Basis Universal, which most edits do without.
+// The interface of libitem3d_ktx2.so: the encoder of Basis Universal, which most edits do not need.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,14 @@ struct Ktx2Picture {
     int height;
     bool has_alpha;
     bool is_srgb;
-    /// UASTC and Zstandard; else ETC1S, of a fifth of the bytes and more error.
+    /// UASTC and Zstandard; else ETC1S, a fifth of the size with more error.
     bool is_precise;
-    int quality;  ///< of ETC1S, 1 to 255
+    int quality;  ///< for ETC1S, 1 to 255
     int threads;
 };
 
-/// The function item3d_encode_ktx2. Appends the file, with all its mip levels; false: it failed.
+/// Signature of item3d_encode_ktx2. Appends the file, with all its mip levels; returns false on
+/// failure.
 using Ktx2Encode = bool(const Ktx2Picture& picture, std::vector<std::uint8_t>& file);
 inline constexpr const char* ktx2_encode_name = "item3d_encode_ktx2";
 

@@ -1,4 +1,4 @@
-// OpenEXR through its library, from and to memory.
+// OpenEXR by its library, from and to memory.
 #include "item3d/io/image/openexr.h"
 
 #include "item3d/core/error.h"
@@ -73,9 +73,9 @@ struct Window {
           height(static_cast<std::int64_t>(box.max.y) - box.min.y + 1) {}
 };
 
-// The library takes memory for attributes by the sizes that they declare before it reads them, and
-// reads some types without regard to that size. So the attributes are walked first: each must lie
-// in the file and be as long as its type says.
+// Validation of attributes. The library allocates attributes by their declared sizes before it
+// reads them, and reads some types regardless of that size. Therefore each attribute must lie in
+// the file and have its type's size.
 class AttributeWalk {
   public:
     AttributeWalk(std::span<const std::uint8_t> bytes, const std::string& subject)
@@ -84,7 +84,7 @@ class AttributeWalk {
     void check(bool several_parts) {
         for (bool is_first = true;; is_first = false) {
             std::string_view name = read_name();
-            if (name.empty() && !is_first) return;  // the end of the list of headers
+            if (name.empty() && !is_first) return;  // end of the list of headers
             for (; !name.empty(); name = read_name())
                 check_attribute();
             if (!several_parts) return;
@@ -176,7 +176,7 @@ class AttributeWalk {
     std::size_t at_ = 8;
 };
 
-// InputFile allocates tables by what the header says: look at the header alone first.
+// Checks the headers alone, because InputFile allocates tables by their values.
 void check_headers(std::span<const std::uint8_t> bytes, const std::string& subject) {
     MemoryInput stream(bytes, subject);
     char words[8];
@@ -210,8 +210,8 @@ void check_headers(std::span<const std::uint8_t> bytes, const std::string& subje
     } while (true);
 }
 
-// The channels that make the picture: R G B (A), else Y (A), else those of the first layer that has
-// them, else the only channel.
+// Returns the image's channels: R G B (A), else Y (A), else those of the first layer that has them,
+// else the only channel.
 std::vector<std::string> choose_channels(const Imf::ChannelList& channels,
                                          const std::string& subject) {
     std::vector<std::string> names;
@@ -244,8 +244,7 @@ std::vector<std::string> choose_channels(const Imf::ChannelList& channels,
                      "export the colour channels");
 }
 
-// The display window where that is of reasonable size (the picture as it was framed), else the data
-// window.
+// Returns the display window if its size is plausible (the image as framed), else the data window.
 Window picture_window(const Window& data, const Window& display) {
     const bool sane = display.width > 0 && display.height > 0 && display.width <= 4 * data.width &&
                       display.height <= 4 * data.height && display.left < data.left + data.width &&
@@ -319,7 +318,7 @@ DecodedImage read_openexr(std::span<const std::uint8_t> bytes, const std::string
         }
         all_half = all_half && channel.type == Imf::HALF;
         planes[i].resize(static_cast<std::size_t>(data.width * data.height));
-        // A slice's base is where pixel (0, 0) would be, in the data window or not.
+        // A slice's base is the address of pixel (0, 0), in the data window or not.
         const auto base =
             reinterpret_cast<std::uintptr_t>(planes[i].data()) -
             static_cast<std::uintptr_t>(data.left + data.top * data.width) * sizeof(float);
@@ -374,7 +373,7 @@ Bytes encode_openexr(const Image& image, int bits_per_channel) {
     Imf::FrameBuffer frame;
     for (int c = 0; c < image.channels; ++c) {
         header.channels().insert(names[c], Imf::Channel(type));
-        // Imf::Slice serves reading too, so it wants a pointer that is not const.
+        // Imf::Slice also serves for reading, so it takes a non-const pointer.
         frame.insert(
             names[c],
             Imf::Slice(type, const_cast<char*>(values) + value_size * static_cast<std::size_t>(c),

@@ -1,4 +1,4 @@
-// OpenEXR pictures. Internal to io.
+// OpenEXR images. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -10,10 +10,10 @@
 
 namespace item3d {
 
-/// `subject` names the picture in errors. Throws InputError.
+/// subject: name of the image in errors. Throws InputError.
 DecodedImage decode_openexr(std::span<const std::uint8_t> bytes, const std::string& subject);
 
-/// bits_per_channel 16: half, else float; ZIP compressed.
+/// Encodes with ZIP compression. bits_per_channel 16: half, else float.
 Bytes encode_openexr(const Image& image, int bits_per_channel);
 
 }  // namespace item3d

@@ -1,5 +1,5 @@
-// PNG through libpng. libpng reports errors by longjmp, so the functions between setjmp and libpng
-// hold nothing that needs a destructor.
+// PNG by libpng, which reports errors by longjmp, so the functions between setjmp and libpng hold
+// nothing that needs a destructor.
 #include "item3d/io/image/png.h"
 
 #include "item3d/core/error.h"
@@ -55,7 +55,7 @@ void read_from_memory(png_structp png, png_bytep out, png_size_t count) {
 bool read_header(PngReader& reader) {
     if (setjmp(png_jmpbuf(reader.png))) return false;
     png_set_read_fn(reader.png, &reader, read_from_memory);
-    // A wrong checksum alone does not make a picture unusable; say so and go on.
+    // An image with a wrong checksum may be usable: warn and continue.
     png_set_crc_action(reader.png, PNG_CRC_WARN_USE, PNG_CRC_WARN_DISCARD);
     png_read_info(reader.png, reader.info);
     png_set_expand(reader.png);  // palettes to RGB, 1, 2, 4 bits to 8, tRNS to alpha

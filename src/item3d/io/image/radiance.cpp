@@ -1,5 +1,5 @@
-// Radiance pictures (Ward, "Real Pixels", Graphics Gems II): RGBE and XYZE, flat, old and new run
-// lengths, EXPOSURE and COLORCORR undone, all eight orientations.
+// Radiance images (Ward, "Real Pixels", Graphics Gems II): RGBE and XYZE, uncompressed, old and new
+// run-length coding, EXPOSURE and COLORCORR undone, all eight orientations.
 #include "item3d/io/image/radiance.h"
 
 #include "item3d/core/error.h"
@@ -21,8 +21,8 @@ struct RadianceHeader {
     int width = 0;
     int height = 0;
     bool columns_first = false;  ///< scanlines are columns ("+X 3 -Y 2")
-    bool flip_x = false;         ///< from right to left
-    bool flip_y = false;         ///< from bottom to top
+    bool flip_x = false;         ///< right to left
+    bool flip_y = false;         ///< bottom to top
     bool is_xyz = false;
     std::array<double, 3> scale{1, 1, 1};
     std::size_t data_offset = 0;
@@ -35,7 +35,7 @@ class RadianceReader {
 
     RadianceHeader read_header() {
         RadianceHeader header;
-        read_line();  // the magic
+        read_line();  // magic number
         for (std::string_view line = read_line(); !line.empty(); line = read_line()) {
             double values[3];
             const std::string text(line);
@@ -67,7 +67,7 @@ class RadianceReader {
         const int x = header.columns_first ? 0 : 1;
         header.flip_x = signs[x] == '-';
         header.flip_y = signs[1 - x] == '+';
-        // Old run lengths can stand for any number of pixels; new ones for 127 in two bytes.
+        // Old run lengths can encode any number of pixels; new ones 127 in two bytes.
         check_image_size(static_cast<std::uint64_t>(sizes[x]),
                          static_cast<std::uint64_t>(sizes[1 - x]), 3, bytes_.size(), 64, subject_);
         header.width = static_cast<int>(sizes[x]);
@@ -170,7 +170,7 @@ std::array<float, 3> radiance_of(const Rgbe& pixel, const RadianceHeader& header
             static_cast<float>(value[2] * header.scale[2])};
 }
 
-// Rounds to nearest (Radiance itself truncates, and adds half a step back when it reads).
+// Rounds to nearest (Radiance itself truncates, and adds half a step when it reads).
 Rgbe to_rgbe(const float* rgb, int channels) {
     std::array<double, 3> value;
     for (int c = 0; c < 3; ++c) {

@@ -1,4 +1,4 @@
-// Radiance HDR pictures. Internal to io.
+// Radiance HDR images. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -10,10 +10,10 @@
 
 namespace item3d {
 
-/// `subject` names the picture in errors. Throws InputError.
+/// subject: name of the image in errors. Throws InputError.
 DecodedImage decode_radiance(std::span<const std::uint8_t> bytes, const std::string& subject);
 
-/// Run-length coded RGBE; an alpha channel is dropped, one channel becomes three.
+/// Encodes run-length coded RGBE; drops an alpha channel and repeats a single channel three times.
 Bytes encode_radiance(const Image& image);
 
 }  // namespace item3d

@@ -26,11 +26,11 @@
 namespace item3d {
 namespace {
 
-/// stb_image fills its buffer by 128 bytes, which a file need not have; other sizes are what it
-/// needs.
+/// Bytes that stb_image reads ahead, which a file need not have; other reads are of the size that
+/// it needs.
 constexpr int stb_buffer_size = 128;
 
-/// What is left to read. Where a file ends early stb_image goes on with zeros, so that is noted.
+/// Unread bytes. stb_image continues with zeros where a file ends early, so that is recorded.
 struct StbSource {
     std::span<const std::uint8_t> bytes;
     std::size_t position = 0;
@@ -73,7 +73,7 @@ bool looks_like_tga(std::span<const std::uint8_t> bytes) {
     const int image_type = bytes[2];
     const int bits = bytes[16];
     const bool has_size = (bytes[12] | bytes[13]) != 0 && (bytes[14] | bytes[15]) != 0;
-    // The two highest bits of the descriptor were never used.
+    // The two highest bits of the descriptor are always 0.
     if (!has_size || map_type > 1 || (bytes[17] & 0xc0) != 0) return false;
     if (image_type == 1 || image_type == 9) {
         const int entry = bytes[7];
@@ -97,7 +97,7 @@ DecodedImage decode_with_stb(std::span<const std::uint8_t> bytes, const std::str
     StbSource source{bytes};
     if (!stbi_info_from_callbacks(&stb_callbacks, &source, &width, &height, &channels))
         fail("its header is damaged, or of a kind that is not known");
-    // GIF and TGA repeat; rows of a BMP lie there whole, but for its rare run lengths.
+    // GIF and TGA compress repetition; rows of a BMP are complete, except for rare run lengths.
     check_image_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 4,
                      bytes.size(), 1ull << 12, subject);
     source = StbSource{bytes};

@@ -1,4 +1,4 @@
-// BMP, TGA and GIF pictures, by stb_image. Internal to io.
+// BMP, TGA and GIF images, decoded by stb_image. Internal to io.
 #pragma once
 
 #include "item3d/io/image/decoded_image.h"
@@ -9,10 +9,10 @@
 
 namespace item3d {
 
-/// Whether the bytes begin with a header of TGA, which has no magic number.
+/// True if the bytes begin with a plausible header of TGA, which has no magic number.
 bool looks_like_tga(std::span<const std::uint8_t> bytes);
 
-/// Of a GIF the first picture. `format` ("BMP") and `subject` are for errors. Throws InputError.
+/// Decodes an image, of a GIF the first. format ("BMP") and subject: for errors. Throws InputError.
 DecodedImage decode_with_stb(std::span<const std::uint8_t> bytes, const std::string& format,
                              const std::string& subject);
 

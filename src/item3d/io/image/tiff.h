@@ -1,4 +1,4 @@
-// TIFF pictures. Internal to io.
+// TIFF images. Internal to io.
 #pragma once
 
 #include "item3d/io/image/decoded_image.h"
@@ -9,8 +9,8 @@
 
 namespace item3d {
 
-/// The first picture, in 8 bits, or in 16 where it is grey or RGB in rows. `subject` names the
-/// picture in errors. Throws InputError.
+/// Decodes the first image, to 8 bits, or to 16 where it is grey or RGB in strips. subject: name of
+/// the image in errors. Throws InputError.
 DecodedImage decode_tiff(std::span<const std::uint8_t> bytes, const std::string& subject);
 
 }  // namespace item3d

@@ -32,7 +32,7 @@ const char* webp_problem(VP8StatusCode status) {
                      "export it again");
 }
 
-// The picture alone of an animation's first frame; `bytes` themselves where it is none.
+// Returns the image data of an animation's first frame; `bytes` itself for a still image.
 std::span<const std::uint8_t> first_frame(std::span<const std::uint8_t> bytes,
                                           const WebPBitstreamFeatures& features,
                                           const std::string& subject) {
@@ -76,12 +76,12 @@ DecodedImage decode_webp(std::span<const std::uint8_t> bytes, const std::string&
         if (status != VP8_STATUS_OK) throw_webp_error(status, subject);
     }
     const int channels = features.has_alpha ? 4 : 3;
-    // A picture of one colour has no size: four bytes were seen to hold any number of pixels.
+    // An image of one colour has no minimum size: four bytes can hold any number of pixels.
     check_image_size(static_cast<std::uint64_t>(features.width),
                      static_cast<std::uint64_t>(features.height),
                      static_cast<std::uint64_t>(channels), frame.size(), 1ull << 28, subject);
     DecodedImage result{Image(features.width, features.height, channels), 8, {}};
-    // 1: with losses, 2: without.
+    // 1: lossy, 2: lossless.
     result.coding = {ImageEncoding::webp, features.format == 2, 95};
     std::vector<std::uint8_t> raw(result.image.pixels.size());
     WebPDecoderConfig config;

@@ -1,4 +1,4 @@
-// WebP pictures. Internal to io.
+// WebP images. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -10,16 +10,16 @@
 
 namespace item3d {
 
-/// The first picture of an animation. `subject` names the picture in errors and warnings. Throws
-/// InputError.
+/// Decodes the first image of an animation. subject: name of the image in errors and warnings.
+/// Throws InputError.
 DecodedImage decode_webp(std::span<const std::uint8_t> bytes, const std::string& subject);
 
-/// The longest edge that a WebP can have.
+/// Longest edge of a WebP.
 inline constexpr int largest_webp_edge = 16383;
 
-/// 8 bits; 1 to 4 channels (grey becomes RGB), edges up to largest_webp_edge; values are clamped to
-/// [0, 1], NaN is 0. is_lossless keeps the colours of transparent pixels too. quality: 1 to 100, of
-/// a picture with losses.
+/// Encodes 8 bits of 1 to 4 channels (grey becomes RGB), edges up to largest_webp_edge; values are
+/// clamped to [0, 1], NaN becomes 0. is_lossless: also keeps the colours of transparent pixels.
+/// quality: 1 to 100, for lossy images.
 Bytes encode_webp_texture(const Image& image, bool is_lossless, int quality);
 
 }  // namespace item3d

@@ -33,7 +33,7 @@ void ObjLibraries::read(const std::string& name) {
     any_was_read_ = true;
 }
 
-// One name with blanks, or several names; a "#" may belong to a name, or begin a remark.
+// Reads one name with blanks, or several names; a "#" may belong to a name, or begin a comment.
 void ObjLibraries::read_statement(const std::string& statement,
                                   std::vector<std::string>& problems) {
     const std::string bare(without_remark(statement));
@@ -63,7 +63,8 @@ void ObjLibraries::read_statement(const std::string& statement,
     problems.insert(problems.end(), said.begin(), said.end());
 }
 
-// Many programs look for no other library, so that anything may stand behind mtllib.
+// Reads the library with the OBJ file's name: many programs read only that one, so mtllib may name
+// anything.
 std::string ObjLibraries::read_own_name(const ObjFile& file) {
     const bool wants_materials = std::any_of(file.material_names.begin(), file.material_names.end(),
                                              [](const std::string& name) { return !name.empty(); });

@@ -13,7 +13,7 @@ namespace item3d {
 namespace fs = std::filesystem;
 namespace {
 
-/// Bilinear between texel centres, edges held; the image itself when the size is right already.
+/// Resamples bilinearly with clamped edges; returns the image itself for an equal size.
 Image resample(const Image& image, int width, int height) {
     if (image.width == width && image.height == height) return image;
     Image result(width, height, image.channels);
@@ -40,7 +40,8 @@ Image resample(const Image& image, int width, int height) {
     return result;
 }
 
-// Tangent-space normal maps are bluish on average; pictures of heights are grey.
+// True if the image looks like tangent-space normals, which are bluish on average; heights are
+// grey.
 bool looks_like_normals(const Image& image) {
     if (image.channels < 3) return false;
     double sums[3] = {0, 0, 0};
@@ -66,7 +67,7 @@ bool is_same_picture(const std::optional<MtlMap>& a, const std::optional<MtlMap>
     return a && b && picture_key(*a) == picture_key(*b);
 }
 
-/// The channel that -imfchan names, or `otherwise`, of a picture that has so many.
+/// Returns the channel that -imfchan names if the image has it, else `otherwise`.
 int channel_of(const MtlMap& map, const Image& image, int otherwise) {
     const std::size_t named = std::string_view("rgb").find(map.channel);
     const int colors = image.channels < 3 ? 1 : 3;
@@ -76,7 +77,7 @@ int channel_of(const MtlMap& map, const Image& image, int otherwise) {
     return std::min(otherwise, image.channels - 1);
 }
 
-/// One channel: what -imfchan says, else alpha where it varies, else the mean of the colours.
+/// Returns one channel: that of -imfchan, else alpha if it varies, else the mean of the colours.
 Image opacity_values(const MtlMap& map, const Image& image) {
     Image result(image.width, image.height, 1);
     const auto value = [&](std::size_t pixel, int c) {
@@ -146,7 +147,7 @@ int ObjMaterials::add_texture(const Texture& texture, const MtlMap& map) {
     return added_[key] = static_cast<int>(model_.textures.size()) - 1;
 }
 
-// The larger of the two pictures gives the size.
+// Adds a base colour with alpha, in the size of the larger image.
 int ObjMaterials::add_cut_out(const Texture* base, const Texture& opacity,
                               const MtlMaterial& source) {
     const bool base_is_larger = base && base->image.width >= opacity.image.width;
@@ -202,7 +203,7 @@ void ObjMaterials::set_metallic_roughness(const MtlMaterial& source, Material& m
     int height = 0;
     for (const Texture* part : {roughness, metallic, occlusion}) {
         if (!part) continue;
-        // The largest of the pictures gives the size.
+        // The largest image determines the size.
         if (part->image.pixels.size() / part->image.channels >
             static_cast<std::size_t>(width) * height) {
             width = part->image.width;

@@ -1,4 +1,4 @@
-// MTL materials to the model's metallic-roughness ones. Internal to io.
+// Conversion of MTL materials to metallic-roughness. Internal to io.
 #pragma once
 
 #include "item3d/io/obj/mtl.h"
@@ -12,33 +12,31 @@
 
 namespace item3d {
 
-/// Adds materials and textures to a model; pictures that cannot be read are warnings.
+/// Adds materials and textures to a model; warns of unreadable images.
 ///
-/// Kd is linear and is replaced by map_Kd where there is one, as Blender and nvdiffrec do. Without
+/// Kd is linear and is replaced by map_Kd where there is one, as in Blender and nvdiffrec. Without
 /// Pr, roughness follows Ns as in Blender (1 - sqrt(Ns / 1000)), else it is 0.5; without Pm,
-/// metallic is 0. map_Pr and map_Pm that name one colour picture are its G and B, else grey
-/// pictures. In nvdiffrec's dialect ("bsdf pbr") Ks and map_Ks are (occlusion, roughness,
-/// metallic), of which occlusion counts the other way round and is left out. A bump map that is a
-/// picture of heights is left out with a warning, one that is a normal map is used. d is opacity,
-/// and counts before Tr, transparency; map_d of a picture of its own becomes the alpha of the base
-/// colour's texture.
+/// metallic is 0. If map_Pr and map_Pm name one colour image, they are its G and B, else grey
+/// images. In nvdiffrec's dialect ("bsdf pbr") Ks and map_Ks are (occlusion, roughness, metallic),
+/// where occlusion is inverted and ignored. A bump map with heights is ignored with a warning, one
+/// with normals is used. d is opacity, and overrides Tr, transparency; a map_d in its own image
+/// becomes the alpha of the base colour's texture.
 class ObjMaterials {
   public:
-    /// folder: of the model, where pictures are looked for after that of the MTL file; subject: the
-    /// OBJ file, for warnings.
-    /// allowed: LoadOptions::texture_folders.
+    /// folder: of the model, searched for images after that of the MTL file; subject: the OBJ file,
+    /// for warnings; allowed: LoadOptions::texture_folders.
     ObjMaterials(Model& model, std::filesystem::path folder, std::string subject,
                  std::vector<std::filesystem::path> allowed);
 
     /// Returns the index of the new material in the model.
     int add(const MtlMaterial& source);
 
-    /// Comes last. Where all materials are wholly transparent they are taken as opaque, with a
-    /// warning: many programs write Tr 1 or d 0 for that. One among others is a warning.
+    /// Call last. Makes all materials opaque, with a warning, if all are wholly transparent: many
+    /// programs write Tr 1 or d 0 for opaque ones. Warns if only some are.
     void make_visible();
 
   private:
-    /// The picture, read once per name; null when it cannot be read.
+    /// Returns the image, which is read once for each name; null when it cannot be read.
     const Texture* read(const MtlMap& map);
     std::filesystem::path find_picture_file(const MtlMap& map) const;
     int add_texture(const Texture& texture, const MtlMap& map);
@@ -53,7 +51,7 @@ class ObjMaterials {
     std::string subject_;
     std::map<std::string, std::optional<Texture>> pictures_;
     std::map<std::pair<std::string, bool>, int> added_;
-    std::vector<bool> has_opacity_map_;  ///< of the materials, in their order
+    std::vector<bool> has_opacity_map_;  ///< by material
 };
 
 }  // namespace item3d

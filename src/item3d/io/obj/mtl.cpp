@@ -15,7 +15,8 @@ std::optional<float> read_number(std::string_view text) {
     return static_cast<float>(*value);
 }
 
-// "Kd 0.5" is grey; "Kd spectral ..." and "Kd xyz ..." are not numbers and are left out.
+// Reads a colour. "Kd 0.5" is grey; "Kd spectral ..." and "Kd xyz ..." are not numbers and are
+// ignored.
 std::optional<Vec3> read_color(std::string_view text) {
     Vec3 color(0.0f);
     for (int c = 0; c < 3; ++c) {
@@ -27,7 +28,7 @@ std::optional<Vec3> read_color(std::string_view text) {
     return color;
 }
 
-// How many words may follow an option; numeric ones may be fewer than that.
+// Largest number of words after an option; numeric ones may have fewer.
 struct OptionShape {
     std::string_view name;
     int most_words;
@@ -48,7 +49,8 @@ const OptionShape* option_shape(std::string_view word) {
     return nullptr;
 }
 
-// Takes an option and its words off the text; false, and nothing taken, where none begins it.
+// Removes an option and its words from the start of the text; returns false, without change, if
+// there is none.
 bool take_option(std::string_view& text, MtlMap& map) {
     std::string_view rest = text;
     const OptionShape* shape = option_shape(take_word(rest));
@@ -79,7 +81,7 @@ bool take_option(std::string_view& text, MtlMap& map) {
     return true;
 }
 
-// Takes options off that some programs write behind the name.
+// Removes options that some programs write after the name.
 std::string_view without_trailing_options(std::string_view name, MtlMap& map) {
     for (std::size_t at = name.find(" -"); at != std::string_view::npos;
          at = name.find(" -", at + 1)) {
@@ -99,7 +101,7 @@ std::string_view without_quotes(std::string_view text) {
     return is_quoted ? text.substr(1, text.size() - 2) : text;
 }
 
-// Everything after the options is the name: it may hold blanks.
+// Reads a map. The whole text after the options is the name, which may contain blanks.
 std::optional<MtlMap> read_map(std::string_view text) {
     MtlMap map;
     text = trim(text);

@@ -1,4 +1,4 @@
-// Material libraries of OBJ files. Internal to io.
+// Material libraries (MTL) of OBJ files. Internal to io.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -12,19 +12,19 @@
 
 namespace item3d {
 
-/// A picture with the options that stood before its name, or behind it.
+/// An image with the options before or after its name.
 struct MtlMap {
     std::string file;              ///< as written, any separators
-    std::string file_and_comment;  ///< the same, where a "#" might belong to the name; else empty
+    std::string file_and_comment;  ///< with a "#" that may belong to the name; else empty
     std::filesystem::path folder;  ///< of the MTL file
     Vec2 scale{1.0f};
     Vec2 offset{0.0f};
     bool clamp = false;
     float bump_multiplier = 1.0f;
-    char channel = 0;  ///< of -imfchan: r, g, b, m(atte), l(uminance); 0: not said
+    char channel = 0;  ///< of -imfchan: r, g, b, m(atte), l(uminance); 0: unset
 };
 
-/// What a newmtl block says; members are empty where it says nothing.
+/// Values of a newmtl block; members are empty where it sets nothing.
 struct MtlMaterial {
     std::string name;
     std::optional<Vec3> diffuse, specular, emission;
@@ -37,13 +37,13 @@ struct MtlMaterial {
     std::optional<MtlMap> emission_map, normal_map, bump_map, opacity_map;
 };
 
-/// By name, as written behind newmtl. `names`: files and materials that it may speak of, by which
-/// its encoding is told. Throws InputError when the file cannot be read; lines it does not know are
-/// skipped.
+/// Returns materials by name, as written after newmtl. names: files and materials that it may
+/// contain, for detecting its encoding. Throws InputError when the file cannot be read; skips
+/// unknown lines.
 std::map<std::string, MtlMaterial> read_mtl(const std::filesystem::path& path,
                                             std::vector<std::string> names);
 
-/// The text up to a "#" that begins it or follows a blank, without blanks at its ends.
+/// Returns the text before a comment, trimmed; a "#" begins one at the start or after a blank.
 std::string_view without_remark(std::string_view text);
 
 }  // namespace item3d

@@ -16,7 +16,7 @@
 namespace item3d {
 namespace {
 
-/// Something wrong in several lines, of which the first is named.
+/// An error that occurs on several lines, of which the first is reported.
 struct Flaw {
     int line = 0;
     std::size_t count = 0;
@@ -25,7 +25,7 @@ struct Flaw {
     }
 };
 
-/// An index beyond every list: of something that the file does not have.
+/// Index beyond every list, for missing elements.
 constexpr std::int32_t no_such_index = std::numeric_limits<std::int32_t>::max();
 
 class ObjParser {
@@ -98,7 +98,7 @@ class ObjParser {
             }
         }
         file_.positions.emplace_back(values[0], values[1], values[2]);
-        // x y z w has a weight, which is for curves; x y z r g b (a) has a colour.
+        // x y z w has a weight, for curves; x y z r g b (a) has a colour.
         if (count >= 6) {
             file_.colors.resize(file_.positions.size() - 1, Vec4(1.0f));
             file_.colors.emplace_back(color_channel(values[3]), color_channel(values[4]),
@@ -116,8 +116,8 @@ class ObjParser {
         return srgb_to_linear(std::clamp(static_cast<float>(value), 0.0f, 1.0f));
     }
 
-    // Up to three numbers, 0 for those that are missing. All are 0 where one of them is no number:
-    // a texture coordinate or a normal that is half right is wrong.
+    // Reads up to three numbers, 0 for missing ones. Returns 0 for all if one is not a number: a
+    // partly invalid texture coordinate or normal is wrong.
     Vec3 read_vector(std::string_view words, Flaw& flaw) {
         Vec3 value(0.0f);
         for (int c = 0; c < 3; ++c) {
@@ -215,7 +215,7 @@ class ObjParser {
         if (is_new) file_.material_names.emplace_back(name);
     }
 
-    // Lists may go on behind the faces that use them, so this comes last.
+    // Checks indices, at the end because lists may continue after the faces that use them.
     void check_indices() {
         for (const ObjFace& face : file_.faces) {
             for (std::uint32_t i = 0; i < face.corner_count; ++i) {

@@ -1,4 +1,4 @@
-// The statements of an OBJ file, before they are made a model. Internal to io.
+// Parsing of an OBJ file's statements. Internal to io.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -11,7 +11,7 @@
 
 namespace item3d {
 
-/// Indices from 0 into the file's lists, -1: not given.
+/// Indices from 0 into the file's lists, -1: unset.
 struct ObjCorner {
     std::int32_t position = -1;
     std::int32_t uv = -1;
@@ -24,9 +24,9 @@ struct ObjFace {
     std::uint32_t corner_count;
     int material;  ///< into ObjFile::material_names
     int line;
-    /// What "s" says: above 0 a group, 0 "off", unsaid_smoothing where there is no such statement.
+    /// Value of "s": a group above 0, 0 for "off", unsaid_smoothing without a statement.
     std::int64_t smoothing;
-    int group;  ///< into ObjFile::groups; -1: in none
+    int group;  ///< index into ObjFile::groups; -1: none
 };
 
 inline constexpr std::int64_t unsaid_smoothing = std::int64_t{1} << 40;
@@ -35,17 +35,17 @@ struct ObjFile {
     std::vector<glm::dvec3> positions;
     std::vector<Vec4> colors;  ///< linear; as long as positions, or empty
     std::vector<Vec2> uvs;
-    std::vector<Vec3> normals;  ///< unit length, or zero where the file's is no direction
+    std::vector<Vec3> normals;  ///< unit length; zero for an invalid one
     std::vector<ObjCorner> corners;
-    std::vector<ObjFace> faces;               ///< all corners of all faces are within the lists
-    std::vector<std::string> material_names;  ///< as written; "" for faces before any usemtl
+    std::vector<ObjFace> faces;                    ///< all corner indices are valid
+    std::vector<std::string> material_names;       ///< as written; "" for faces before any usemtl
     std::vector<std::vector<std::string>> groups;  ///< names of the object and of the groups
-    std::vector<std::string> libraries;            ///< what stands behind each mtllib
+    std::vector<std::string> libraries;            ///< text after each mtllib
 };
 
-/// Warns, once for each kind, of what it leaves out: faces of one or two corners, values that are
-/// not finite, normals and texture coordinates that are not there. `subject` names the file. Throws
-/// InputError with the line of what cannot be used.
+/// Parses a file. Warns, once for each kind, of what it skips: faces of one or two corners,
+/// non-finite values, missing normals and texture coordinates. subject: name of the file. Throws
+/// InputError with the line of an error.
 ObjFile parse_obj(std::string_view text, const std::string& subject);
 
 }  // namespace item3d

@@ -31,10 +31,10 @@ struct CornerHash {
     }
 };
 
-/// The triangles of one material.
+/// Triangles of one material.
 struct ObjTriangles {
-    std::vector<ObjCorner> corners;    ///< three a triangle
-    std::vector<std::int64_t> groups;  ///< of smoothing, one a triangle
+    std::vector<ObjCorner> corners;    ///< three for each triangle
+    std::vector<std::int64_t> groups;  ///< smoothing groups, one for each triangle
     std::vector<int> named_groups;     ///< Primitive::triangle_groups
 };
 
@@ -53,7 +53,7 @@ class ObjReader {
     }
 
   private:
-    // Stray vertices that no face uses do not count.
+    // Sets the origin and the positions; ignores stray vertices that no face uses.
     void place() {
         glm::dvec3 low(file_.positions[file_.corners[0].position]);
         glm::dvec3 high = low;
@@ -72,7 +72,7 @@ class ObjReader {
         std::vector<Vec3> outline;
         for (std::size_t f = 0; f < file_.faces.size(); ++f) {
             const ObjFace& face = file_.faces[f];
-            // Each flat face is a group of its own, negative so that the file has no such number.
+            // Each flat face is its own group, with a negative number that the file cannot have.
             const std::int64_t group =
                 face.smoothing == 0 ? -1 - static_cast<std::int64_t>(f) : face.smoothing;
             outline.clear();
@@ -89,7 +89,7 @@ class ObjReader {
         model_.groups = file_.groups;
     }
 
-    // Over the whole file, so that materials do not part them.
+    // Computes missing normals over the whole file, so that edges between materials stay smooth.
     void complete_normals() {
         const auto lacks_normal = [&](const ObjCorner& corner) {
             return corner.normal < 0 || file_.normals[corner.normal] == Vec3(0.0f);
@@ -122,7 +122,7 @@ class ObjReader {
         std::map<const MtlMaterial*, std::size_t> slots;
         ObjMaterials materials(model_, path_.parent_path(), path_.string(),
                                options_.texture_folders);
-        // Names that mean one material: its triangles are one primitive.
+        // Merge names of one material: its triangles are one primitive.
         std::vector<std::pair<MtlMaterial, ObjTriangles>> parts;
         for (std::size_t m = 0; m < file_.material_names.size(); ++m) {
             const std::string& name = file_.material_names[m];
@@ -186,7 +186,7 @@ class ObjReader {
     ObjFile file_;
     ObjLibraries libraries_;
     LoadOptions options_;
-    std::vector<Vec3> positions_;          ///< without the origin
+    std::vector<Vec3> positions_;          ///< with the origin subtracted
     std::vector<ObjTriangles> triangles_;  ///< by name of the material
     Model model_;
 };

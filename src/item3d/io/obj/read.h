@@ -1,4 +1,4 @@
-// Wavefront OBJ files to models. Internal to io.
+// Reading of Wavefront OBJ files as models. Internal to io.
 #pragma once
 
 #include "item3d/core/files.h"
@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// Wavefront OBJ with its MTL files, one primitive a material. Throws InputError.
+/// Reads Wavefront OBJ with its MTL files, with one primitive for each material. Throws InputError.
 Model read_obj(const std::filesystem::path& path, const Bytes& bytes,
                const LoadOptions& options = {});
 

@@ -16,7 +16,7 @@ std::vector<DVec2> project(std::span<const Vec3> corners) {
         const DVec3 b = DVec3(corners[(i + 1) % corners.size()]) - origin;
         normal += glm::cross(a, b);
     }
-    // Dropping the largest component keeps the orientation when the axes are taken in turn.
+    // Dropping the largest component keeps the orientation if the axes are taken cyclically.
     const DVec3 size = glm::abs(normal);
     const int drop = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
     const int u = (drop + 1) % 3;
@@ -36,7 +36,7 @@ double turn(const DVec2& a, const DVec2& b, const DVec2& c) {
 }
 
 bool is_convex(std::span<const DVec2> points) {
-    // Every corner turns left, and the outline goes around once: its direction in x changes twice.
+    // Every corner turns left, and the outline turns once: its direction in x changes twice.
     int changes = 0;
     double last = 0.0;
     double first = 0.0;
@@ -70,7 +70,7 @@ class EarClipper {
         std::vector<std::uint32_t> triangles;
         std::uint32_t at = 0;
         for (std::size_t left = points_.size(); left > 3; --left) {
-            // A polygon that crosses itself may have no ear: then any corner goes.
+            // A polygon that crosses itself may have no ear: then cut any corner.
             for (std::size_t tries = 0; tries < left && !ear_[at]; ++tries)
                 at = next_[at];
             const std::uint32_t before = previous_[at];

@@ -1,4 +1,4 @@
-// Polygons to triangles. Internal to io.
+// Triangulation of polygons. Internal to io.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -9,10 +9,10 @@
 
 namespace item3d {
 
-/// Triangles of one polygon, three indices into `corners` each, always corners.size() - 2 of them
-/// and wound as the polygon is. Convex polygons become fans; others are cut by ear clipping in the
-/// plane of the polygon's Newell normal (O'Rourke, Computational Geometry in C, 2nd ed., 1.4:
-/// quadratic time); polygons of more than 4096 corners become fans whatever their shape.
+/// Returns triangles of one polygon, three indices into `corners` each, always corners.size() - 2
+/// of them with the polygon's winding. Convex polygons become fans; others are cut by ear clipping
+/// in the plane of the polygon's Newell normal (O'Rourke, Computational Geometry in C, 2nd ed.,
+/// 1.4: quadratic time); polygons of more than 4096 corners always become fans.
 std::vector<std::uint32_t> triangulate_polygon(std::span<const Vec3> corners);
 
 }  // namespace item3d

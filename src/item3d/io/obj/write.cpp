@@ -1,6 +1,5 @@
-// OBJ and MTL in world space. Metallic-roughness goes into Pm, Pr, map_Pm and map_Pr (grey
-// pictures), normals into norm, occlusion into map_AO, which this project reads back and others
-// skip.
+// OBJ and MTL in world space. Metallic-roughness becomes Pm, Pr, map_Pm and map_Pr (grey images),
+// normals norm, and occlusion map_AO, which this program reads and others ignore.
 #include "item3d/io/obj/write.h"
 
 #include "item3d/core/error.h"
@@ -27,7 +26,7 @@ Image channel_of(const Image& image, int channel) {
     return result;
 }
 
-// Texture values times a factor, for maps that replace their factor.
+// Multiplies texture values by a factor, for maps that replace their factor.
 Image scaled(Image image, float factor) {
     if (factor != 1.0f) {
         for (float& value : image.pixels)
@@ -67,7 +66,7 @@ class ObjWriter {
         const auto box = model_.bounds();
         const float side =
             std::max({box[1].x - box[0].x, box[1].y - box[0].y, box[1].z - box[0].z});
-        // Two more than float32 tells apart within the model.
+        // Two decimals more than float32 resolves within the model.
         decimals_ = std::clamp(8 - static_cast<int>(std::floor(std::log10(side))), 0, 17);
         fmt::format_to(std::back_inserter(obj_), "# item3d\nmtllib {}.mtl\n", stem_);
         for (std::size_t i = 0; i < model_.primitives.size(); ++i)
@@ -102,14 +101,14 @@ class ObjWriter {
         return name;
     }
 
-    // Materials that share a picture share its file.
+    // Saves an image once for all materials that share it.
     std::string save(const EditedTexture& picture, const std::string& material, const char* what) {
         std::string& file = edited_files_[picture.identity()];
         if (file.empty()) file = save(picture.encoded(), picture.coding().encoding, material, what);
         return file;
     }
 
-    // The file that it came from, where the material shows it as it is.
+    // Saves a texture; copies the original file where the material shows it unchanged.
     std::string save(const Texture& texture, const Vec4& factor, const std::string& material,
                      const char* what) {
         if (texture.file && factor == Vec4(1.0f))
@@ -138,7 +137,7 @@ class ObjWriter {
         const Vec4& factor = material.base_color_factor;
         const Texture* base = texture(material.base_color_texture);
         const bool has_alpha = material.alpha != Material::Alpha::opaque;
-        // map_d of the same picture says that its alpha counts.
+        // map_d of the same image enables its alpha.
         const auto write_base = [&](const std::string& picture, int channels) {
             line("Kd 1 1 1\nmap_Kd " + picture);
             if (has_alpha && channels % 2 == 0) line("map_d " + picture);
@@ -270,7 +269,7 @@ class ObjWriter {
     std::map<const void*, std::string> edited_files_;  ///< by EditedTexture::identity
     std::string obj_;
     std::string mtl_;
-    int decimals_ = 0;  ///< of positions far from the origin
+    int decimals_ = 0;  ///< for positions far from the origin
     std::size_t vertices_ = 0;
     std::size_t normals_ = 0;
     std::size_t uvs_ = 0;

@@ -1,4 +1,4 @@
-// Models to Wavefront OBJ files. Internal to io.
+// Writing of models as Wavefront OBJ. Internal to io.
 #pragma once
 
 #include "item3d/io/save.h"
@@ -8,7 +8,7 @@
 
 namespace item3d {
 
-/// .obj with .mtl and PNGs beside it, in world space.
+/// Writes .obj with .mtl and PNGs beside it, in world space.
 void write_obj(const std::filesystem::path& path, const Model& model, const ModelEdit& edit);
 
 }  // namespace item3d

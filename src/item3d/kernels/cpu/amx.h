@@ -1,6 +1,5 @@
-// Products of bfloat16 on a processor's matrix units (AMX: tiles of 16 rows of 64 bytes). For the
-// files that are compiled for them alone; nothing here may be called where matrix_units_run() says
-// no.
+// bfloat16 matrix products on AMX (tiles of 16 rows of 64 bytes). Only for files that are compiled
+// for it; requires matrix_units_run().
 #pragma once
 
 #include "item3d/kernels/cpu/bfloat16.h"
@@ -12,14 +11,14 @@
 
 namespace item3d::units {
 
-/// Of a tile, and multiplied at a time: two tiles.
+/// Rows of a tile, and rows multiplied at a time (two tiles).
 constexpr int tile_rows = 16, rows = 2 * tile_rows;
 
 inline std::int64_t whole_rows(std::int64_t count) {
     return (count + rows - 1) / rows * rows;
 }
 
-/// While it lives, this thread's tiles are all of full size.
+/// RAII configuration of this thread's tiles, all of full size.
 class Tiles {
   public:
     Tiles() {
@@ -37,11 +36,11 @@ class Tiles {
     Tiles& operator=(const Tiles&) = delete;
 };
 
-/// sums [count, 64] = (or +=, with `add`) a [count, depth] times b [depth / 2, 64, 2]; count is a
-/// multiple of `rows`, depth of 32. Rows of a are told by tiles: tile_at(i) is the first of
-/// sixteen, each `depth` numbers after the one before. `next` is the b of the call after this one:
-/// it is fetched meanwhile, for processors do not foresee what tiles will read, and to wait for it
-/// takes as long again as multiplying.
+/// Computes sums [count, 64] = (or +=, with `add`) a [count, depth] times b [depth / 2, 64, 2].
+/// count is a multiple of `rows`, depth of 32. tile_at(i) returns the first of the sixteen rows of
+/// a's tile i, each `depth` numbers after the previous one. next: b of the following call, which is
+/// prefetched, since processors do not predict tile loads, and waiting for them takes as long as
+/// multiplying.
 template <typename TileAt>
 void multiply(const TileAt& tile_at, std::int64_t count, std::int64_t depth, const BrainFloat* b,
               const BrainFloat* next, float* sums, bool add) {

@@ -1,4 +1,4 @@
-// Floating-point numbers of 16 bits for files that know nothing of LibTorch.
+// 16-bit floating-point numbers for files without LibTorch.
 #pragma once
 
 #include <cstdint>

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array<std::string_view, 5> levels{"none", "avx2", "avx512", "bf16", "amx"};
 
-/// Whether kernels of this level may run: ITEM3D_CPU, where it names a level, is the highest.
+/// True if kernels of this level may run: ITEM3D_CPU, if it names a level, is the highest.
 bool is_allowed(std::string_view level) {
     static const auto highest = [] {
         const char* wanted = std::getenv("ITEM3D_CPU");
@@ -54,7 +54,7 @@ bool matrix_units_run() {
         const bool there = is_allowed("amx") &&
                            instructions_for<BrainFloat>() == Instructions::avx512 &&
                            __builtin_cpu_supports("amx-tile") && __builtin_cpu_supports("amx-bf16");
-        // Linux saves the tiles of programs that ask for them: ARCH_REQ_XCOMP_PERM, XTILEDATA.
+        // Linux saves the tiles only of programs that request it: ARCH_REQ_XCOMP_PERM, XTILEDATA.
         return there && ::syscall(SYS_arch_prctl, 0x1023, 18) == 0;
     }();
     return runs;

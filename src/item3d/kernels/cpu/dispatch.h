@@ -1,4 +1,4 @@
-// Kernels are compiled for several sets of a processor's instructions; which of them run here.
+// Dispatch of kernels, which are compiled for several instruction sets, to the processor's.
 #pragma once
 
 #include "item3d/kernels/cpu/bfloat16.h"
@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// Numbers that kernels take at a time.
+/// Number of floats that kernels process at a time.
 constexpr std::int64_t register_numbers = 16;
 
 inline std::int64_t whole_registers(std::int64_t count) {
@@ -18,12 +18,12 @@ inline std::int64_t whole_registers(std::int64_t count) {
 
 enum class Instructions {
     none,
-    avx2,    ///< with FMA and F16C: kernels for float, and for HalfFloat as floats
-    avx512,  ///< F, BW, VL and DQ; BF16 too where BrainFloat is multiplied
+    avx2,    ///< with FMA and F16C: float kernels, and HalfFloat ones that compute in float
+    avx512,  ///< F, BW, VL and DQ; also BF16 for products of BrainFloat
 };
 
-/// What this processor has for kernels of float or BrainFloat, up to the level that ITEM3D_CPU
-/// names in the environment: none, avx2, avx512, bf16 or amx. Results differ by rounding.
+/// Returns this processor's level for kernels of float or BrainFloat, limited by the environment
+/// variable ITEM3D_CPU: none, avx2, avx512, bf16 or amx. Levels differ in rounding.
 template <typename Number>
 Instructions instructions_for();
 template <>
@@ -31,11 +31,11 @@ Instructions instructions_for<float>();
 template <>
 Instructions instructions_for<BrainFloat>();
 
-/// Whether it has matrix units for bfloat16 (AMX) and the system lets programs use them.
+/// True if the processor has AMX for bfloat16, and the operating system enables it.
 bool matrix_units_run();
 
-/// What make.operator()<instructions>() gives for this processor's, asked once; nothing where it
-/// has none. make: a lambda that captures nothing.
+/// Returns the result of make.operator()<instructions>() for this processor's level, cached;
+/// nothing if it has none. make: a lambda without captures.
 template <typename Number, typename Make>
 const auto& kernel_for_this_processor([[maybe_unused]] const Make& make) {
     using Kernel = decltype(make.template operator()<Instructions::avx512>());

@@ -1,6 +1,7 @@
-// Sixteen floats at a time, and float, BrainFloat and HalfFloat in memory, with the instructions
-// that a file is compiled for. The files that include this are compiled once for each
-// (src/CMakeLists.txt), and what they define lies in a namespace of its own, ITEM3D_INSTRUCTIONS.
+// SIMD operations on sixteen floats, and loads and stores of float, BrainFloat and HalfFloat, for
+// the instruction set that a file is compiled for. Files that include this are compiled once for
+// each set (src/CMakeLists.txt), with their definitions in a separate namespace,
+// ITEM3D_INSTRUCTIONS.
 #pragma once
 
 #include "item3d/kernels/cpu/bfloat16.h"
@@ -14,14 +15,14 @@
 
 namespace item3d::ITEM3D_INSTRUCTIONS {
 
-/// Numbers of a register, or of two that are used as one.
+/// Number of floats in a register, or in a pair that is used as one.
 constexpr int lanes = 16;
 static_assert(lanes == register_numbers);
 
 #ifdef __AVX512F__
 
 using Lanes = __m512;
-using Mask = __mmask16;  ///< some of the lanes
+using Mask = __mmask16;  ///< one bit for each lane
 
 inline Lanes zero() {
     return _mm512_setzero_ps();
@@ -31,17 +32,17 @@ inline Lanes all(float value) {
     return _mm512_set1_ps(value);
 }
 
-/// a b + c, rounded once.
+/// Returns a b + c, rounded once.
 inline Lanes multiply_add(Lanes a, Lanes b, Lanes c) {
     return _mm512_fmadd_ps(a, b, c);
 }
 
-/// a b - c, rounded once.
+/// Returns a b - c, rounded once.
 inline Lanes multiply_subtract(Lanes a, Lanes b, Lanes c) {
     return _mm512_fmsub_ps(a, b, c);
 }
 
-/// c - a b, rounded once.
+/// Returns c - a b, rounded once.
 inline Lanes subtract_product(Lanes c, Lanes a, Lanes b) {
     return _mm512_fnmadd_ps(a, b, c);
 }
@@ -58,12 +59,12 @@ inline Lanes absolute(Lanes x) {
     return _mm512_abs_ps(x);
 }
 
-/// To the nearest whole number.
+/// Rounds to the nearest integer.
 inline Lanes nearest(Lanes x) {
     return _mm512_roundscale_ps(x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
 }
 
-/// x 2^n for whole n; 0 where that is too small for a float.
+/// Returns x 2^n for integral n; 0 on underflow.
 inline Lanes scaled(Lanes x, Lanes n) {
     return _mm512_scalef_ps(x, n);
 }
@@ -84,7 +85,7 @@ inline float sum_of(Lanes x) {
     return _mm512_reduce_add_ps(x);
 }
 
-/// The first `count` lanes, or all.
+/// Returns a mask of the first `count` lanes, or all.
 inline Mask first_lanes(std::int64_t count) {
     return static_cast<Mask>(count >= lanes ? 0xffff : (1 << count) - 1);
 }
@@ -93,7 +94,7 @@ inline Lanes load(const float* from) {
     return _mm512_loadu_ps(from);
 }
 
-/// The first `count` numbers, or all, and 0 in the other lanes; nothing more is read.
+/// Loads the first `count` numbers, or all, and 0 in the other lanes; reads nothing beyond.
 inline Lanes load_first(const float* from, std::int64_t count) {
     return _mm512_maskz_loadu_ps(first_lanes(count), from);
 }
@@ -102,7 +103,7 @@ inline void store(float* to, Lanes value) {
     _mm512_storeu_ps(to, value);
 }
 
-/// The first `count` lanes, or all; nothing more is written.
+/// Stores the first `count` lanes, or all; writes nothing beyond.
 inline void store_first(float* to, std::int64_t count, Lanes value) {
     _mm512_mask_storeu_ps(to, first_lanes(count), value);
 }
@@ -128,13 +129,13 @@ inline Lanes load(const HalfFloat* from) {
     return _mm512_cvtph_ps(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
 }
 
-/// To the nearest; exact for numbers that were HalfFloat.
+/// Rounds to nearest; exact for values that came from HalfFloat.
 inline void store(HalfFloat* to, Lanes value) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
                         _mm512_cvtps_ph(value, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC));
 }
 
-/// to [lanes] += value.
+/// Adds the lanes to to[0] .. to[lanes - 1].
 inline void add_to(double* to, Lanes value) {
     const __m512d low = _mm512_cvtps_pd(_mm512_castps512_ps256(value));
     const __m512d high = _mm512_cvtps_pd(_mm512_extractf32x8_ps(value, 1));
@@ -142,7 +143,7 @@ inline void add_to(double* to, Lanes value) {
     _mm512_storeu_pd(to + 8, _mm512_loadu_pd(to + 8) + high);
 }
 
-/// to[i step] = the i-th lane.
+/// Stores lane i to to[i step].
 inline void scatter(float* to, int step, Lanes value) {
     const __m512i places =
         _mm512_mullo_epi32(_mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
@@ -150,7 +151,7 @@ inline void scatter(float* to, int step, Lanes value) {
     _mm512_i32scatter_ps(to, places, value, sizeof(float));
 }
 
-/// The i-th lane = from[i step].
+/// Loads lane i from from[i step].
 inline Lanes gather(const float* from, int step) {
     const __m512i places =
         _mm512_mullo_epi32(_mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
@@ -160,7 +161,7 @@ inline Lanes gather(const float* from, int step) {
 
 #else
 
-/// AVX2, FMA and F16C. BrainFloat is read alone: those who want it have better instructions for it.
+/// AVX2, FMA and F16C. BrainFloat can only be loaded: processors with fast bfloat16 have AVX-512.
 struct Lanes {
     __m256 low, high;
 };
@@ -231,7 +232,7 @@ inline Lanes nearest(Lanes x) {
     return {_mm256_round_ps(x.low, way), _mm256_round_ps(x.high, way)};
 }
 
-/// x 2^n for whole n; 0 from n = -127 on, and never more than 2^127 times.
+/// Returns x 2^n for integral n; 0 for n <= -127, at most 2^127 x.
 inline Lanes scaled(Lanes x, Lanes n) {
     const Lanes kept = larger(smaller(n, all(127)), all(-127));
     const auto power = [](__m256 of) {
@@ -288,7 +289,7 @@ inline void store(float* to, Lanes value) {
 
 inline void store_first(float* to, std::int64_t count, Lanes value) {
     if (count >= lanes) return store(to, value);
-    // Instead of stores with masks, which are slow on AMD's processors.
+    // Instead of masked stores, which are slow on AMD's processors.
     float numbers[lanes];
     store(numbers, value);
     std::memcpy(to, numbers, static_cast<std::size_t>(count) * sizeof(float));
@@ -343,7 +344,7 @@ inline Lanes gather(const float* from, int step) {
 /// For functions of Lanes, which must not pass them through memory.
 #define ITEM3D_INLINE [[gnu::always_inline]] inline
 
-/// e^x to float's precision: 2^n e^r with |r| <= ln(2) / 2, e^r by its Taylor series.
+/// Returns e^x to float's precision: 2^n e^r with |r| <= ln(2) / 2, e^r by its Taylor series.
 ITEM3D_INLINE Lanes exponential(Lanes x) {
     const Lanes n = nearest(x * all(1.44269504f));
     const Lanes high = subtract_product(x, n, all(0.693359375f));

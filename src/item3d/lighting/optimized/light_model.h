@@ -1,4 +1,4 @@
-// A light that is optimised: numbers in, radiance from all around out.
+// The interface of an optimised light: parameters in, environment radiance out.
 #pragma once
 
 #include "item3d/lighting/description.h"
@@ -14,37 +14,38 @@
 namespace item3d {
 
 enum class LightKind { physical, texels };
-/// Their names, in their order.
+/// Returns the names, in order.
 const std::vector<std::string>& light_kind_names();
 
 class LightModel {
   public:
     virtual ~LightModel() = default;
-    /// [6, size, size, 3] linear radiance, faces as of EnvironmentLight; differentiable in the
-    /// parameters.
+    /// Returns [6, size, size, 3] linear radiance, faces as in EnvironmentLight; differentiable in
+    /// the parameters.
     virtual at::Tensor cube(int size) const = 0;
-    /// The same as an equirectangular map, height x 2 height x 3, without a graph.
+    /// Returns the same as an equirectangular map, height x 2 height x 3, without a graph.
     virtual Image image(int height) const = 0;
-    /// What keeps the light plausible where guidance says little: a scalar, differentiable in the
-    /// parameters, that is added as it is to the loss whose gradient by the latents is g
-    /// (docs/method.md).
+    /// Returns the regularisation that keeps the light plausible where guidance determines little:
+    /// a scalar, differentiable in the parameters, for addition without a factor to the loss whose
+    /// gradient with respect to the latents is g (docs/method.md).
     virtual at::Tensor regularization() const = 0;
-    /// Leaves that require gradients, of about unit scale, by the names that a checkpoint has.
+    /// Returns leaf tensors that require gradients, of about unit scale, by their names in a
+    /// checkpoint.
     virtual NamedTensors named_parameters() const = 0;
-    /// The same without names.
+    /// Returns the same without names.
     std::vector<at::Tensor> parameters() const;
 };
 
 struct LightModelOptions {
     LightKind kind = LightKind::physical;
-    /// Where the light must come from: words said so. The brightest lobe is held there.
+    /// Fixed direction of the brightest lobe, as words specify it.
     std::optional<SkyAngles> from;
-    /// Mean base colour of what is lit, linear RGB: colours that the light is not to take on.
+    /// Mean base colour of the lit object, linear RGB: colours that the light should not take on.
     Vec3 object_color{0.5f};
 };
 
-/// Starts at `light` (height x width x 3, equirectangular), or as near to it as the model can be.
-/// Throws InputError on a black light.
+/// Makes a light that starts at `light` (height x width x 3, equirectangular), or its best
+/// approximation. Throws InputError on a black light.
 std::unique_ptr<LightModel> make_light_model(const Image& light, const LightModelOptions& options);
 
 }  // namespace item3d

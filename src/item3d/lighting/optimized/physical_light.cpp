@@ -16,28 +16,29 @@ constexpr std::int64_t number_count = 8;
 struct Bounds {
     float low, high;
 };
-/// Of all but the azimuth, which has none: stops, a share, mired, mired, ratios, degrees.
+/// Ranges of all parameters but the azimuth, which is unbounded: stops, a share, mired, mired,
+/// ratios, degrees.
 constexpr std::array<Bounds, 7> bounds{
     {{-3, 0.75f}, {0.03f, 0.85f}, {-110, 330}, {-110, 250}, {0.05f, 1}, {0, 3}, {3, 85}}};
-/// How hard each is held to its start. The sky is, so that it is the sun that grows warm, and what
-/// hardly any word says.
+/// Weight of the pull of each parameter to its start. Large for the sky, so that the sun becomes
+/// warm instead, and for parameters that few words determine.
 constexpr std::array<float, number_count> firmness{3, 1, 2, 4, 1, 0.3f, 10, 10};
-/// What is as warm as a low sun is still day, and what is dark without being warm is the moon's
-/// light and the night sky's, which is cold. Without this, a small prior for which evenings are
-/// mostly dark makes them nights, and its nights are grey.
+/// Range of exposure for a warm light. A light as warm as a low sun is day, and a dark light that
+/// is not warm is moonlight and the night sky's, which is cold. Otherwise a small prior, whose
+/// evenings are mostly dark, makes them nights, and its nights grey.
 constexpr Bounds warm_exposure{-1.2f, 0.75f};
 constexpr float dusk = -1.3f;  ///< stops
 constexpr float moonlight_mired = -60;
-/// A sun as warm as this many mired from white has come through twice the air.
+/// Mired from white at which a sun's path through the air is twice the shortest.
 constexpr float warmth_of_low_sun = 40;
-/// A lobe that words asked for shall be seen to be there.
+/// Smallest share of a lobe that words asked for, so that it is visible.
 constexpr float min_spoken_share = 0.25f;
 
-constexpr float lobe_radius = 5 * pi / 180;  ///< a few texels of the cube that is optimised on
+constexpr float lobe_radius = 5 * pi / 180;  ///< a few texels of the cube in the optimisation
 constexpr float horizon_softness = 0.06f;
 constexpr float glow_height = 0.25f;
 constexpr float white_mired = 1e6f / 6504;
-/// Natural logarithm of RGB per mired: c2 / lambda at 610, 550 and 465 nm, less green's.
+/// Natural logarithm of RGB per mired: c2 / lambda at 610, 550 and 465 nm, relative to green.
 constexpr std::array<float, 3> log_color_per_mired{2.573e-3f, 0.0f, -4.782e-3f};
 
 at::Tensor bounded(const at::Tensor& number, Bounds range) {
@@ -45,12 +46,12 @@ at::Tensor bounded(const at::Tensor& number, Bounds range) {
 }
 
 float unbounded(float value, Bounds range) {
-    // The ends themselves have no number; a tenth of the way there has some slope left.
+    // The ends have no finite number; near them some slope is left.
     const float part = std::clamp((value - range.low) / (range.high - range.low), 0.05f, 0.95f);
     return std::log(part / (1 - part));
 }
 
-/// [3] linear RGB of luminance 1.
+/// Returns [3] linear RGB of luminance 1.
 at::Tensor color_of(const at::Tensor& mired_from_white) {
     const at::Tensor slope =
         at::tensor({log_color_per_mired[0], log_color_per_mired[1], log_color_per_mired[2]});
@@ -100,7 +101,7 @@ at::Tensor PhysicalLight::sun_direction() const {
 at::Tensor PhysicalLight::radiance(const at::Tensor& directions) const {
     const auto value = [&](Number number) { return bounded(numbers_[number], bounds[number]); };
     const at::Tensor sun = sun_direction();
-    // What follows from the numbers is no way to move them, hence the constants.
+    // Constants, because derived quantities must not move the parameters.
     const at::Tensor warm = at::sigmoid((value(sun_warmth) - 50) / 20).detach();
     const at::Tensor dark = at::sigmoid((dusk - value(exposure)) / 0.3f).detach();
     const at::Tensor moonlight = (1 - warm) * dark * moonlight_mired;
@@ -111,7 +112,7 @@ at::Tensor PhysicalLight::radiance(const at::Tensor& directions) const {
 
     const at::Tensor facing = (directions * sun).sum(-1, true);
     const at::Tensor up = directions.select(-1, 1).unsqueeze(-1);
-    // Of the sky's light near the horizon, what has come the long way through the air.
+    // Share of the sky's light near the horizon, which has a long path through the air.
     const at::Tensor low =
         at::exp(-up.clamp_min(0) / glow_height) * (0.25f + 0.1875f * (1 + facing).square());
     const at::Tensor sky = (sky_color * (1 - low) + sun_color * low) * (1 + value(glow) * low);
@@ -120,7 +121,7 @@ at::Tensor PhysicalLight::radiance(const at::Tensor& directions) const {
     const at::Tensor above = at::sigmoid(up / horizon_softness);
     const at::Tensor ambient = above * sky + (1 - above) * earth;
 
-    // A Gaussian in the angle, as much energy as a mean radiance of 1.
+    // A Gaussian in the angle, with the energy of a mean radiance of 1.
     const float spread = 1 / (lobe_radius * lobe_radius);
     const at::Tensor lobe = (4 * spread) * at::exp(2 * spread * (facing - 1)) * sun_color;
     const at::Tensor stops =

@@ -12,13 +12,13 @@ namespace item3d {
 namespace {
 
 constexpr int change_height = 32, change_width = 64;
-// Of the squares in the regularisation; found by looking at the lights that came out.
+// Weights of the squares in the regularisation, tuned by eye.
 constexpr float smoothness_weight = 9;
 constexpr float start_weight = 0.006f;
 constexpr float green_weight = 2;
 constexpr float object_weight = 2;
-constexpr float min_color = 0.02f;  ///< of the object, before its logarithm is taken
-/// In log RGB, across the way that light takes from warm to cool (physical_light.h).
+constexpr float min_color = 0.02f;  ///< of the object, before the logarithm
+/// In log RGB, perpendicular to the path of light from warm to cool (physical_light.h).
 const Vec3 green_direction = glm::normalize(Vec3(-0.65f, 1.0f, -0.35f));
 
 at::Tensor as_direction(const Vec3& v) {
@@ -47,7 +47,7 @@ TexelLight::TexelLight(const Image& light, const LightModelOptions& options)
 
 at::Tensor TexelLight::radiance(int height) const {
     const int width = 2 * height;
-    // The interpolation would stop at the map's left and right ends, which are neighbours.
+    // The map's left and right ends are neighbours, across which the interpolation must wrap.
     const at::Tensor around =
         at::cat({change_.narrow(3, change_width - 1, 1), change_, change_.narrow(3, 0, 1)}, 3);
     const int margin = width / change_width;

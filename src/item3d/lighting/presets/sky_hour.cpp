@@ -20,7 +20,7 @@ constexpr float sunset = 4;
 constexpr float dusk = -1;  // from here on the moon takes over
 constexpr float night = -7;
 
-/// 0 at `from`, 1 at `to`, clamped.
+/// Returns 0 at `from`, 1 at `to`, clamped.
 float progress(float value, float from, float to) {
     return std::clamp((value - from) / (to - from), 0.0f, 1.0f);
 }

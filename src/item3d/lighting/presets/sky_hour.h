@@ -1,4 +1,4 @@
-// The sky by the clock.
+// The sky by time of day.
 #pragma once
 
 #include "item3d/core/math.h"
@@ -6,15 +6,15 @@
 
 namespace item3d {
 
-/// Where the sun stands at `hour` (0 to 24, solar time) on an equinox at 45 degrees north: it rises
-/// in the east (+X) at 6, stands 45 degrees high in the south (+Z) at 12, and sets in the west
-/// at 18.
+/// Returns the sun's direction at `hour` (0 to 24, solar time) on an equinox at 45 degrees north:
+/// it rises in the east (+X) at 6, stands 45 degrees high in the south (+Z) at 12, and sets in the
+/// west at 18.
 Vec3 sun_direction_at(float hour);
 
-/// A clear sky at that hour (sky_model.h), hazier the lower the sun is; through dusk it passes into
-/// the moonlit preset "night". Scaled like the presets: the brightest white surface has radiance 1
-/// by day, 0.7 with the sun 4 degrees high, 0.15 by night. height x 2*height x 3. Throws InputError
-/// for hours out of [0, 24].
+/// Returns a clear sky at that hour (sky_model.h), hazier for a lower sun; through dusk it blends
+/// into the moonlit preset "night". Scaled like the presets: the brightest white surface has
+/// radiance 1 by day, 0.7 with the sun 4 degrees high, 0.15 by night. height x 2*height x 3. Throws
+/// InputError for hours outside [0, 24].
 Image make_sky_at(float hour, int height = 256);
 
 }  // namespace item3d

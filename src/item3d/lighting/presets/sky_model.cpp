@@ -15,7 +15,7 @@ namespace {
 
 using Double3 = glm::dvec3;
 
-// Lengths are kilometres. Coefficients at 680, 550 and 440 nm (Bruneton and Neyret 2008; ozone:
+// Lengths are in kilometres. Coefficients at 680, 550 and 440 nm (Bruneton and Neyret 2008; ozone:
 // Hillaire 2020).
 constexpr double ground_radius = 6360.0;
 constexpr double top_radius = 6460.0;
@@ -30,11 +30,11 @@ const Double3 ozone_absorption(0.650e-3, 1.881e-3, 0.085e-3);
 constexpr double ozone_centre = 25.0;
 constexpr double ozone_half_width = 15.0;
 
-/// Along the longest ray that the observer sees (1100 km) the zenith turns by 10 degrees, so the
-/// cosine of the sun's zenith angle stays within this of the observer's.
+/// Largest change of the cosine of the sun's zenith angle along the observer's longest ray (1100
+/// km), over which the zenith turns by 10 degrees.
 constexpr double mu_sun_reach = 0.2;
 
-/// What a small volume of air does to light, per kilometre.
+/// Scattering and extinction of air, per kilometre.
 struct Medium {
     Double3 rayleigh;
     double mie;
@@ -56,7 +56,7 @@ double rayleigh_phase(double cosine) {
     return 3.0 / (16.0 * M_PI) * (1.0 + cosine * cosine);
 }
 
-/// Cornette and Shanks 1992.
+/// Mie phase function of Cornette and Shanks 1992.
 double mie_phase(double cosine) {
     const double g = mie_asymmetry;
     const double base = 1.0 + g * g - 2.0 * g * cosine;
@@ -64,8 +64,9 @@ double mie_phase(double cosine) {
            ((2.0 + g * g) * base * std::sqrt(base));
 }
 
-/// Distance to the sphere of radius `sphere` from inside or outside along a ray that starts at
-/// distance `radius` from the planet's centre with cosine `mu` to the zenith; negative: missed.
+/// Returns the distance to the sphere of radius `sphere` from inside or outside along a ray that
+/// starts at distance `radius` from the planet's centre with cosine `mu` to the zenith; negative:
+/// missed.
 double distance_to_sphere(double radius, double mu, double sphere, bool far_side) {
     const double discriminant = radius * radius * (mu * mu - 1.0) + sphere * sphere;
     if (discriminant < 0) return -1;
@@ -80,7 +81,7 @@ double radius_along(double radius, double mu, double distance) {
     return std::sqrt(distance * distance + 2.0 * radius * mu * distance + radius * radius);
 }
 
-/// A table over [0, 1]^2, bilinear between samples that lie on the borders too.
+/// A table over [0, 1]^2, bilinear between samples that include the borders.
 class Table {
   public:
     Table(int width, int height)
@@ -107,8 +108,8 @@ class Table {
     std::vector<Double3> values_;
 };
 
-/// Bruneton and Neyret's parameters (their section 4): samples gather at the horizon, where the
-/// transmittance changes fastest.
+/// Bruneton and Neyret's parameters (their section 4): samples concentrate at the horizon, where
+/// the transmittance changes fastest.
 const double horizon_span = std::sqrt(top_radius * top_radius - ground_radius * ground_radius);
 
 double height_parameter(double radius) {
@@ -128,7 +129,8 @@ class Atmosphere {
         fill_multiple_scattering();
     }
 
-    /// Part of the light that passes from a point to the top of the atmosphere, away from ground.
+    /// Returns the transmittance from a point to the top of the atmosphere, for rays that miss the
+    /// ground.
     Double3 transmittance(double radius, double mu) const {
         const double rho = height_parameter(radius) * horizon_span;
         const double distance = std::max(0.0, distance_to_sphere(radius, mu, top_radius, true));
@@ -138,7 +140,8 @@ class Atmosphere {
                                      rho / horizon_span);
     }
 
-    /// The same towards the sun, times the part of its disk that stands above the ground.
+    /// Returns the transmittance towards the sun, times the visible part of its disk above the
+    /// ground.
     Double3 sun_transmittance(double radius, double mu) const {
         const double sine = ground_radius / radius;
         const double horizon = -std::sqrt(std::max(0.0, 1.0 - sine * sine));
@@ -150,13 +153,13 @@ class Atmosphere {
     }
 
     struct Ray {
-        Double3 radiance{0};       ///< per unit of sun irradiance
+        Double3 radiance{0};       ///< relative to the sun's irradiance
         Double3 transmittance{1};  ///< of the whole ray
-        Double3 isotropic{0};      ///< light scattered once more if it came evenly from all around
+        Double3 isotropic{0};      ///< scattered radiance for uniform unit radiance
     };
 
-    /// Integrates along a ray up to the ground or the top. `cosine`: between ray and sun; mu_sun:
-    /// cosine of the sun's zenith angle where the ray starts.
+    /// Integrates along a ray up to the ground or the top. cosine: between ray and sun; mu_sun:
+    /// cosine of the sun's zenith angle at the ray's start.
     Ray integrate(double radius, double mu, double mu_sun, double cosine, int steps,
                   bool single_only) const {
         const bool ground = hits_ground(radius, mu);
@@ -167,7 +170,7 @@ class Atmosphere {
         Ray ray;
         double start = 0;
         for (int step = 0; step < steps; ++step) {
-            // Steps grow with distance: the air near the observer is the densest.
+            // Steps grow with distance: the air near the observer is densest.
             const double end = length * std::pow((step + 1.0) / steps, 2.0);
             const double delta = end - start;
             const double middle = 0.5 * (start + end);
@@ -227,8 +230,8 @@ class Atmosphere {
             1);
     }
 
-    /// Hillaire 2020, section 5.5: the second order from all around a point, and the geometric
-    /// series of the orders after it.
+    /// Computes Hillaire 2020, section 5.5: the second order from all directions around a point,
+    /// and the geometric series of all further orders.
     void fill_multiple_scattering() {
         constexpr int directions = 8;
         parallel_for(

@@ -1,4 +1,4 @@
-// A clear sky computed from the physics of air: Rayleigh and Mie scattering and ozone in a
+// A clear sky from a physical model of the atmosphere: Rayleigh and Mie scattering and ozone in a
 // spherical atmosphere, single scattering integrated along the ray (Nishita et al. 1993), all
 // further orders by the isotropic approximation of Hillaire 2020 ("A Scalable and Production Ready
 // Sky and Atmosphere Rendering Technique").
@@ -11,16 +11,16 @@ namespace item3d {
 
 struct SkyOptions {
     Vec3 sun_direction{0, 1, 0};  ///< unit, towards the sun (or the moon), +Y up
-    Vec3 sun_irradiance{1.0f};    ///< above the atmosphere, on a plane that faces the sun
+    Vec3 sun_irradiance{1.0f};    ///< above the atmosphere, on a plane perpendicular to the sun
     /// Amount of aerosol: 1 is clear air (visibility about 100 km), 5 is hazy.
     float haze = 1.0f;
     Vec3 ground_albedo{0.2f};
     /// Angular radius of the disk, radians. Its irradiance does not depend on it: the true sun
-    /// (0.00465) is a single texel that no prefiltered map can hold, so it is drawn larger.
+    /// (0.00465) is a single texel that no prefiltered map can represent, so it is drawn larger.
     float sun_radius = 0.0349f;
 };
 
-/// Linear RGB radiance seen from near the ground, height x 2*height x 3 (conventions of
+/// Returns linear RGB radiance seen from near the ground, height x 2*height x 3 (conventions of
 /// environment.h). Below the horizon lies a Lambertian plain lit by that sky.
 Image make_clear_sky(const SkyOptions& options, int height);
 

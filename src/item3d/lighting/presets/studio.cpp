@@ -19,7 +19,7 @@ constexpr float half_width = 4.5f;
 constexpr float floor_height = -1.7f;
 constexpr float ceiling_height = 3.3f;
 
-/// A rectangle that shines towards the origin.
+/// A rectangular light that faces the origin.
 struct SoftBox {
     Vec3 centre;
     float width;
@@ -29,7 +29,7 @@ struct SoftBox {
     Vec3 up{0};
     Vec3 facing{0};
     std::array<Vec3, 4> vertices;
-    float reach = 0;  ///< angle around `centre` that holds the box
+    float reach = 0;  ///< angle around `centre` that contains the box
 
     SoftBox(Vec3 at, float box_width, float box_height, Vec3 light)
         : centre(at), width(box_width), height(box_height), radiance(light) {
@@ -46,18 +46,18 @@ struct SoftBox {
 };
 
 const std::vector<SoftBox>& soft_boxes() {
-    // Much dark stands between the boxes: metal shows what it reflects, so it needs both.
+    // Large dark gaps between the boxes, because metal needs bright and dark reflections.
     static const std::vector<SoftBox> boxes = {
         {Vec3(2.7f, 1.7f, 2.5f), 2.0f, 1.7f, Vec3(20.0f, 18.8f, 17.2f)},    // key
         {Vec3(-3.5f, 0.6f, 1.5f), 1.3f, 2.6f, Vec3(5.0f, 5.6f, 6.4f)},      // fill
-        {Vec3(-1.5f, 1.1f, -3.6f), 0.5f, 2.8f, Vec3(15.0f, 15.0f, 16.0f)},  // strip behind
-        {Vec3(3.3f, 0.7f, -2.3f), 0.45f, 2.4f, Vec3(9.0f, 9.0f, 9.4f)},     // strip at the side
-        {Vec3(0.0f, 2.9f, 0.0f), 1.8f, 1.8f, Vec3(6.5f, 6.5f, 6.5f)},       // top
+        {Vec3(-1.5f, 1.1f, -3.6f), 0.5f, 2.8f, Vec3(15.0f, 15.0f, 16.0f)},  // strip light behind
+        {Vec3(3.3f, 0.7f, -2.3f), 0.45f, 2.4f, Vec3(9.0f, 9.0f, 9.4f)},  // strip light at the side
+        {Vec3(0.0f, 2.9f, 0.0f), 1.8f, 1.8f, Vec3(6.5f, 6.5f, 6.5f)},    // top
     };
     return boxes;
 }
 
-/// Irradiance from a polygon of radiance 1 on the side of `point` that `normal` names.
+/// Returns the irradiance from a polygon of radiance 1 on the side of `point` given by `normal`.
 float polygon_irradiance(Vec3 point, Vec3 normal, const std::array<Vec3, 4>& polygon) {
     std::array<Vec3, 8> clipped;
     int count = 0;
@@ -120,7 +120,7 @@ RoomPoint room_point(Vec3 direction) {
     return point;
 }
 
-/// What the walls pass on to one another after the first bounce, as an even irradiance.
+/// Returns the walls' interreflection after the first bounce, as uniform irradiance.
 Vec3 indirect_irradiance() {
     Vec3 first_bounce(0);
     double weights = 0;
@@ -140,12 +140,13 @@ Vec3 indirect_irradiance() {
     return first_bounce / static_cast<float>(weights) / (1 - mean_albedo);
 }
 
-/// A soft box is brightest before its lamp and falls off towards its frame.
+/// Returns the relative radiance of a soft box, brightest at its lamp and falling off towards its
+/// frame.
 float box_profile(float x, float y) {
     return 1.12f - 0.36f * (x * x + y * y);
 }
 
-/// Of the nearest box in this direction, if there is one.
+/// Returns the radiance of the nearest box in this direction, if any.
 std::optional<Vec3> box_radiance(Vec3 direction) {
     float nearest = std::numeric_limits<float>::max();
     Vec3 seen(0);
@@ -163,7 +164,7 @@ std::optional<Vec3> box_radiance(Vec3 direction) {
     return std::nullopt;
 }
 
-/// Whether a box may be seen within an angle around this direction.
+/// True if a box may be visible within an angle around this direction.
 bool near_a_box(Vec3 direction, float angle) {
     for (const SoftBox& box : soft_boxes())
         if (glm::dot(direction, -box.facing) > std::cos(box.reach + angle)) return true;
@@ -186,7 +187,7 @@ Image make_studio(int height) {
         "studio", height,
         [&](std::int64_t y) {
             for (int x = 0; x < image.width; ++x) {
-                // Boxes have sharp edges; what lies behind them changes slowly, and costs more.
+                // Supersample the boxes' sharp edges; the background varies slowly, and costs more.
                 Vec3 sum(0);
                 int behind = 0;
                 const auto direction = [&](float column, float row) {

@@ -1,5 +1,5 @@
-// How a .cu file launches a kernel function over indices, and what it makes of a list of kernels
-// (table.h). For nvcc alone.
+// The launch of a kernel function over indices, and the macros that expand a list of kernels
+// (table.h). Only for .cu files, compiled by nvcc.
 #pragma once
 
 #include "item3d/render/cuda/table.h"
@@ -20,10 +20,9 @@ __global__ void for_each_index(std::int64_t count, F f) {
         f(i);
 }
 
-/// Calls f(i) for every i in [0, count) on the device of `stream`, which must be the current one;
-/// returns a cudaError_t. `name` is what a profiler shows (NVTX). Blocks have the size that keeps
-/// most threads resident; where items outnumber a few times the device's threads, each thread
-/// takes several.
+/// Calls f(i) for every i in [0, count) on the device of `stream`, which must be the current one.
+/// Returns a cudaError_t. name: shown by profilers (NVTX). The block size maximises occupancy;
+/// where items far outnumber the device's threads, each thread takes several.
 template <typename F>
 int launch(const char* name, std::int64_t count, const F& f, Stream stream) {
     if (count <= 0) return cudaSuccess;
@@ -41,7 +40,7 @@ int launch(const char* name, std::int64_t count, const F& f, Stream stream) {
     return cudaGetLastError();
 }
 
-// What a line of a list becomes. For the one that table.h shows:
+// Expansions of a line of a list, shown for the example of table.h:
 
 /// int shade(const kernels::ShadeParameters& p, std::int64_t count, Stream stream);
 #define ITEM3D_KERNEL_PROTOTYPE(entry, Parameters, ...) \

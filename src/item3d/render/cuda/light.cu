@@ -1,4 +1,4 @@
-// Prefiltering of environments.
+// Kernels that prefilter environments.
 #include "item3d/render/cuda/launch.h"
 
 namespace item3d::cuda {

@@ -18,8 +18,8 @@ constexpr const char* file_name = "libitem3d_cuda.so";
     throw ResourceError(c10::str("cannot compute on CUDA: ", reason, "; use --device cpu"));
 }
 
-/// LibTorch before 2.12 gives no way to a CUDA stream but through libtorch_cuda's own headers;
-/// there, all but the default stream, which is what the program uses, are refused.
+/// Returns the CUDA stream. LibTorch before 2.12 exposes it only through libtorch_cuda's own
+/// headers; there, all streams but the default one, which the program uses, are refused.
 template <typename S>
 Stream native_handle(const S& stream) {
     if constexpr (requires { stream.native_handle(); }) {
@@ -38,7 +38,7 @@ Stream current_stream(at::Device device) {
 
 bool cuda_available() {
     static const bool available = [] {
-        // Without a driver, loading a gigabyte of LibTorch would be for nothing.
+        // Without a driver, loading a gigabyte of LibTorch would be useless.
         if (dlopen("libcuda.so.1", RTLD_NOW | RTLD_GLOBAL) == nullptr) return false;
         if (dlopen("libtorch_cuda.so", RTLD_NOW | RTLD_GLOBAL) == nullptr) return false;
         return torch::cuda::is_available();
@@ -53,7 +53,7 @@ bool deterministic_sums() {
 const TableHeader* find_table(const char* symbol, std::uint32_t size) {
     static const Module module = open_module(file_name, "make cuda");
     if (module.handle == nullptr) cannot_use(module.problem);
-    // POSIX has dlsym's pointer hold functions as well.
+    // POSIX lets dlsym's pointer hold a function.
     const auto function = reinterpret_cast<const TableHeader* (*)()>(dlsym(module.handle, symbol));
     if (function == nullptr) cannot_use(c10::str(file_name, " has no ", symbol));
     const TableHeader* table = function();
@@ -63,7 +63,7 @@ const TableHeader* find_table(const char* symbol, std::uint32_t size) {
 }
 
 const RenderTable& render_table() {
-    // A header is a table's first member, so both have one address.
+    // The header is the table's first member, so both have the same address.
     static const auto* const table =
         reinterpret_cast<const RenderTable*>(find_table("item3d_cuda_render", sizeof(RenderTable)));
     return *table;

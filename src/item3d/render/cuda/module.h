@@ -1,5 +1,5 @@
-// The way to the kernels on CUDA devices. They are in libitem3d_cuda.so, which is opened at first
-// use, so that the program starts and works on machines without any library of NVIDIA's.
+// Access to the CUDA kernels in libitem3d_cuda.so, which is opened on first use, so that the
+// program runs on machines without NVIDIA's libraries.
 #pragma once
 
 #include "item3d/render/cuda/table.h"
@@ -11,31 +11,31 @@
 
 namespace item3d::cuda {
 
-/// Whether LibTorch can compute on a CUDA device here. The first call loads LibTorch's CUDA half if
-/// there are a driver and libtorch_cuda.so (scripts/setup.sh fetches the CPU half alone; a LibTorch
-/// of the machine's own, ITEM3D_TORCH_ROOT, may have both). LibTorch looks for it only once, so ask
-/// here, and not torch::cuda::is_available() before.
+/// True if LibTorch can compute on a CUDA device. The first call loads LibTorch's CUDA half if a
+/// driver and libtorch_cuda.so exist (scripts/setup.sh installs the CPU half only; a LibTorch of
+/// the machine's own, ITEM3D_TORCH_ROOT, may have both). LibTorch looks for CUDA only once, so call
+/// this before torch::cuda::is_available().
 bool cuda_available();
 
-/// Whether sums on devices must not depend on the order in which threads come: LibTorch's own
-/// switch, at::globalContext().setDeterministicAlgorithms().
+/// True if sums on devices must not depend on the order of threads: LibTorch's own switch,
+/// at::globalContext().setDeterministicAlgorithms().
 bool deterministic_sums();
 
-/// The table that libitem3d_cuda.so exports under `symbol`. Opens the module, which lies beside the
-/// program or in ../lib/item3d. Throws ResourceError, in one line, when it is not there, cannot be
-/// opened, or comes from another build.
+/// Returns the table that libitem3d_cuda.so exports under `symbol`. Opens the module, which lies
+/// beside the program or in ../lib/item3d. Throws ResourceError, in one line, when the module is
+/// missing, cannot be opened, or comes from another build.
 const TableHeader* find_table(const char* symbol, std::uint32_t size);
 
-/// The renderer's entries; throws as find_table does.
+/// Returns the renderer's kernels. Throws as find_table().
 const RenderTable& render_table();
 
-/// Launches on the device's current stream. Throws ResourceError with CUDA's reason when the
-/// launch fails; what fails later, LibTorch reports when it next waits for the device.
+/// Launches on the device's current stream. Throws ResourceError with CUDA's reason when the launch
+/// fails; LibTorch reports later failures at its next synchronisation.
 template <typename Parameters>
 void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t count,
          at::Device device);
 
-/// What run() is made of: makes a device the current one while it lives.
+/// RAII guard of run(): makes a device the current one for its lifetime.
 class Launch {
   public:
     explicit Launch(at::Device device);
@@ -54,9 +54,9 @@ void run(Kernel<Parameters> kernel, const Parameters& parameters, std::int64_t c
     launch.check(kernel(parameters, count, launch.stream()));
 }
 
-/// [elements] float32 on `device`: the sums of what add(accumulator) adds by launches of its own.
-/// It is called once, or twice for sums that do not depend on the order of threads. most_terms: of
-/// one sum.
+/// Returns [elements] float32 on `device`: the sums that add(accumulator) accumulates by its own
+/// launches. Calls it once, or twice for sums that must not depend on the order of threads.
+/// most_terms: largest number of terms of one sum.
 template <typename Add>
 at::Tensor sum_on_device(std::int64_t elements, std::int64_t most_terms, at::Device device,
                          const Add& add) {

@@ -1,4 +1,4 @@
-// Kernels over surface points and texels, and the table of all of the renderer's.
+// Kernels over surface points and texels, and the table of all of the renderer's kernels.
 #include "item3d/render/cuda/launch.h"
 
 namespace item3d::cuda {

@@ -1,6 +1,7 @@
-// What libitem3d_cuda.so offers to the renderer: one entry for each kernel launch. No torch here,
-// because nvcc reads this too. Entries take pointers to memory of one device, which must be the
-// current one, launch on `stream` (a cudaStream_t) without waiting, and return a cudaError_t.
+// The table of the renderer's kernels in libitem3d_cuda.so: one entry for each launch. Includes no
+// torch header, because nvcc compiles this too. Entries take pointers to memory of one device,
+// which must be the current one, launch on `stream` (a cudaStream_t) without blocking, and return a
+// cudaError_t.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -27,36 +28,36 @@ using Stream = void*;
 template <typename Parameters>
 using Kernel = int (*)(const Parameters& parameters, std::int64_t count, Stream stream);
 
-/// What every table begins with, so that a module of another build is noticed.
+/// Header of every table, which identifies modules of another build.
 struct TableHeader {
-    std::uint32_t version;  ///< table_version of the sources that the module was built from
-    std::uint32_t size;     ///< of the whole table in bytes
+    std::uint32_t version;  ///< table_version of the module's sources
+    std::uint32_t size;     ///< size of the whole table in bytes
 };
 
-/// To be raised by whoever changes a table or the parameters of one of its kernels.
+/// Version to increment with every change of a table or of its kernels' parameters.
 inline constexpr std::uint32_t table_version = 7;
 
-/// A texture lookup and its gradients, with what each of them reads and writes.
+/// Parameters of a texture lookup and its gradients.
 struct TextureLaunchParameters {
     kernels::TextureParameters texture;
     float* values;                ///< [P, C]
     const float* value_gradient;  ///< [P, C]
     float* uv_gradient;           ///< [P, 2]
-    Accumulator texel_gradient;   ///< of all levels
+    Accumulator texel_gradient;   ///< for all levels
 };
 
-// The renderer's kernels, each on one line of a list for each .cu file. All else comes from the
-// lists: the table's members, the functions that launch (launch.h) and the table itself. To add a
-// kernel, write its function and its line here; raise table_version. A line,
+// The renderer's kernels, one line each in a list for each .cu file. The lists generate the table's
+// members, the launching functions (launch.h) and the table itself. To add a kernel, write its
+// function and its line here, and raise table_version. A line,
 //     X(shade, kernels::ShadeParameters, kernels::shade_forward(p, i), "shade"),
-// has the entry's name in the table, the type of p, what is done for an index i in [0, count), and
-// the name that a profiler shows. As ITEM3D_KERNEL_MEMBER it is
+// has the entry's name in the table, the type of p, the expression for an index i in [0, count),
+// and the name for profilers. ITEM3D_KERNEL_MEMBER expands it to
 //     Kernel<kernels::ShadeParameters> shade;
-// and as ITEM3D_KERNEL_DEFINITION, in launch.h, all that launches it.
+// and ITEM3D_KERNEL_DEFINITION, in launch.h, to the function that launches it.
 
-/// exact.cu: kernels that decide (inside or outside, nearer or farther, crossed or not). That file
-/// is compiled with -fmad=false (cmake/Cuda.cmake): without fused products they decide as the CPU
-/// does, to the bit.
+/// exact.cu: kernels with decisions (inside or outside, nearer or farther, crossed or not). It is
+/// compiled with -fmad=false (cmake/Cuda.cmake): without fused products the decisions equal the
+/// CPU's bit for bit.
 #define ITEM3D_EXACT_KERNELS(X)                                                                   \
     X(project_vertices, kernels::ProjectParameters, kernels::project_vertex(p, i),                \
       "project_vertices")                                                                         \
@@ -68,8 +69,8 @@ struct TextureLaunchParameters {
     X(antialias_backward, kernels::BlendParameters, kernels::blend_pixel_backward(p, i),          \
       "antialias backward")
 
-/// surface.cu: kernels over surface points and texels. scatter_background takes a count of pixels,
-/// scatter_values one of values.
+/// surface.cu: kernels over surface points and texels. count is a number of pixels for
+/// scatter_background, and a number of values for scatter_values.
 #define ITEM3D_SURFACE_KERNELS(X)                                                                  \
     X(interpolate_surface, kernels::SurfaceParameters, kernels::interpolate_surface_point(p, i),   \
       "interpolate_surface")                                                                       \
@@ -97,8 +98,8 @@ struct TextureLaunchParameters {
     X(occlusion, kernels::OcclusionParameters, kernels::occlusion_at(p, i), "occlusion")           \
     X(finish_sums, FinishSumsParameters, finish_sum(p, i), "finish_sums")
 
-/// texture.cu: texture lookups and mip levels. halve_texture and its gradient take a count of
-/// coarse texels.
+/// texture.cu: texture lookups and mip levels. count is a number of coarse texels for halve_texture
+/// and its gradient.
 #define ITEM3D_TEXTURE_KERNELS(X)                                                              \
     X(texture, TextureLaunchParameters, kernels::texture_forward(p.texture, i, p.values),      \
       "sample_texture")                                                                        \
@@ -142,7 +143,7 @@ struct TextureLaunchParameters {
       kernels::sum_bright<kernels::device_bright_run>(p, i), "bright_irradiance backward")      \
     X(set_bright, kernels::BrightParameters, kernels::set_bright(p, i), "set_bright")
 
-/// All of them, in the order of RenderTable.
+/// All kernels, in the order of RenderTable.
 #define ITEM3D_RENDER_KERNELS(X) \
     ITEM3D_EXACT_KERNELS(X)      \
     ITEM3D_SURFACE_KERNELS(X)    \

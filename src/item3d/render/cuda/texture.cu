@@ -1,4 +1,4 @@
-// Texture lookups and mip levels.
+// Kernels of texture lookups and mip levels.
 #include "item3d/render/cuda/launch.h"
 
 namespace item3d::cuda {

@@ -1,6 +1,6 @@
-// Where silhouette edges cross between two neighbouring pixel centres (Laine et al. 2020, section
-// 3.4). The paper looks at the edges of the triangle seen at the nearer pixel; here the search
-// walks on over inner edges to the triangles beside it, so that meshes finer than pixels are
+// Crossings of silhouette edges between two neighbouring pixel centres (Laine et al. 2020, section
+// 3.4). The paper tests the edges of the triangle seen at the nearer pixel; here the search
+// continues over inner edges into the adjacent triangles, so that meshes finer than pixels are
 // smoothed too.
 #pragma once
 
@@ -22,7 +22,8 @@ struct AntialiasParameters {
     std::int64_t vertices;           ///< V
     int width;
     int height;
-    /// Triangles that are looked at between two centres; 1, as in the paper: the nearer one alone.
+    /// Largest number of triangles visited between two centres; 1: the nearer one only, as in the
+    /// paper.
     int most_steps = 256;
 };
 
@@ -30,17 +31,18 @@ struct AntialiasParameters {
 struct Crossing {
     std::int64_t foreground, background;  ///< pixels, indices into N*H*W
     std::int64_t first, second;           ///< ends of the edge, indices into N*V
-    float distance;          ///< of the edge from the foreground's centre, in pixels, [0, 1]
-    std::int16_t vertical;   ///< whether the pair is a column
+    float distance;          ///< from the foreground's centre to the edge, in pixels, [0, 1]
+    std::int16_t vertical;   ///< 1 if the pair is vertical
     std::int16_t direction;  ///< +1: the background is to the right or below
 };
 
-/// A vertex relative to the foreground's centre, in pixels: u towards the background, v across.
+/// Position of a vertex relative to the foreground's centre, in pixels: u towards the background, v
+/// perpendicular to it.
 struct PairCoordinates {
     float u, v;
 };
 
-/// Where a pair of pixels is.
+/// Coordinate frame of a pixel pair.
 struct PairFrame {
     float centre_x, centre_y;  ///< of the foreground, in pixels
     float half_width, half_height;
@@ -64,14 +66,15 @@ struct PairFrame {
     }
 };
 
-/// Orientation of a triangle on the screen; the sign is right behind the camera as well.
+/// Returns twice the signed area of a triangle on the screen, up to a positive factor; the sign
+/// also holds for vertices behind the camera.
 ITEM3D_HOST_DEVICE inline double orientation(const float* a, const float* b, const float* c) {
     const double bx = b[0], by = b[1], bw = b[3], cx = c[0], cy = c[1], cw = c[3];
     return a[0] * (by * cw - bw * cy) + a[1] * (bw * cx - bx * cw) + a[3] * (bx * cy - by * cx);
 }
 
-/// Looks between `pixel` and the next one to the right or below; false when no silhouette edge
-/// crosses there.
+/// Finds the silhouette edge between `pixel` and the next one to the right or below. Returns false
+/// when none crosses there.
 ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::int64_t pixel,
                                              bool vertical, Crossing& crossing) {
     const std::int64_t other = pixel + (vertical ? p.width : 1);
@@ -89,8 +92,8 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
     const PairFrame frame(p, crossing);
     std::int64_t t = near_here ? here : there;
     const std::int64_t last = near_here ? there : here;
-    int entered = -1;                 // the corner that faces the edge through which the walk came
-    std::int32_t edge[2] = {-1, -1};  // that edge's ends
+    int entered = -1;                 // corner opposite the edge through which the walk entered
+    std::int32_t edge[2] = {-1, -1};  // ends of that edge
     PairCoordinates edge_at[2] = {};
     for (int step = 0; step < p.most_steps; ++step) {
         const std::int32_t* corners = p.triangles + 3 * t;
@@ -107,7 +110,7 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
                 at[k] = frame.at(v[k]);
             }
         }
-        // The edge through which the line v = 0 leaves the triangle.
+        // Find the edge through which the line v = 0 leaves the triangle.
         int leaves = -1;
         float farthest = -1e30f;
         for (int k = 0; k < 3; ++k) {
@@ -146,14 +149,14 @@ ITEM3D_HOST_DEVICE inline bool find_crossing(const AntialiasParameters& p, std::
         edge_at[0] = at[first];
         edge_at[1] = at[second];
         t = neighbour / 3;
-        // One surface from centre to centre, as nearly everywhere on fine meshes.
+        // The surface is continuous between the centres, as nearly everywhere on fine meshes.
         if (t == last) return false;
         entered = neighbour % 3;
     }
     return false;
 }
 
-/// The pixel that a crossing changes, and by how much it takes on the other's colour.
+/// Pixel that a crossing changes, and the weight of the other's colour in it.
 struct Blend {
     std::int64_t pixel, other;
     float weight;
@@ -164,7 +167,8 @@ ITEM3D_HOST_DEVICE inline Blend blend_of(const Crossing& crossing) {
                       : Blend{crossing.foreground, crossing.background, -beyond};
 }
 
-/// Adds the gradient by a crossing's distance to the edge's ends; clip_gradient [N, V, 4].
+/// Adds the gradient of a crossing's distance with respect to the edge's ends; clip_gradient: [N,
+/// V, 4].
 ITEM3D_HOST_DEVICE inline void crossing_backward(const AntialiasParameters& p,
                                                  const Crossing& crossing, float gradient,
                                                  const Accumulator& clip_gradient) {
@@ -193,7 +197,7 @@ ITEM3D_HOST_DEVICE inline void crossing_backward(const AntialiasParameters& p,
     }
 }
 
-/// Adds what a crossing changes to a copy of the image [N, H, W, C]. Crossings are to be blended in
+/// Adds the change by a crossing to a copy of the image [N, H, W, C]. Crossings must be blended in
 /// the order of their pixels, by one thread.
 inline void blend_crossing(const Crossing& crossing, const float* image, std::int64_t channels,
                            float* blended) {
@@ -205,7 +209,7 @@ inline void blend_crossing(const Crossing& crossing, const float* image, std::in
 }
 
 /// Moves a crossing's share of image_gradient, a copy of `gradient` [N, H, W, C], between its
-/// pixels, and adds the gradient by the edge's ends where clip_gradient is wanted.
+/// pixels, and adds the gradient with respect to the edge's ends if clip_gradient is wanted.
 inline void blend_crossing_backward(const AntialiasParameters& p, const Crossing& crossing,
                                     const float* image, const float* gradient,
                                     std::int64_t channels, float* image_gradient,
@@ -222,19 +226,19 @@ inline void blend_crossing_backward(const AntialiasParameters& p, const Crossing
     if (clip_gradient.wanted()) crossing_backward(p, crossing, by_distance, clip_gradient);
 }
 
-/// For threads that own a pixel each and gather, instead of going over a list of crossings.
+/// Parameters of the gathering version, in which each thread owns a pixel.
 struct BlendParameters {
     AntialiasParameters raster;
     const float* image;         ///< [N, H, W, C]
     std::int64_t channels;      ///< C
     float* blended;             ///< [N, H, W, C]
-    const float* gradient;      ///< [N, H, W, C] by `blended`
+    const float* gradient;      ///< [N, H, W, C] with respect to `blended`
     float* image_gradient;      ///< [N, H, W, C]
     Accumulator clip_gradient;  ///< [N, V, 4]
 };
 
-/// Calls f(crossing, own) for the crossings that a pixel takes part in, in the order of a list that
-/// goes by pixels; own: the pair belongs to this pixel, not to the one on the left or above.
+/// Calls f(crossing, own) for the crossings of a pixel, in the order of a list sorted by pixels.
+/// own: the pair belongs to this pixel, not to its left or upper neighbour.
 template <typename F>
 ITEM3D_HOST_DEVICE inline void for_each_crossing_at(const AntialiasParameters& p,
                                                     std::int64_t pixel, const F& f) {

@@ -1,5 +1,5 @@
-// Barycentrics at a pixel's centre as functions of a triangle's clip-space vertices: how they
-// change from a pixel to the next, and their gradients.
+// Barycentrics at a pixel's centre as functions of a triangle's clip-space vertices: their slopes
+// between pixels, and their gradients.
 //
 // The weights are b_i = e_i / (e_0 + e_1 + e_2), with the edge functions e_0 = q . (p_1 x p_2) and
 // so on over clip-space (x, y, w) and the pixel q = (x, y, 1).
@@ -14,7 +14,7 @@ namespace item3d::kernels {
 
 using DVec3 = glm::dvec3;
 
-/// A triangle's vertices as (x, y, w) of clip space.
+/// Vertices of a triangle as (x, y, w) of clip space.
 struct ClipTriangle {
     DVec3 v[3];
 
@@ -27,12 +27,12 @@ struct ClipTriangle {
     }
 };
 
-/// The centre of pixel x, y in normalized device coordinates, and 1.
+/// Returns the centre of pixel x, y in normalized device coordinates, with 1 as third component.
 ITEM3D_HOST_DEVICE inline DVec3 pixel_centre(int x, int y, int width, int height) {
     return DVec3((x + 0.5) * 2.0 / width - 1.0, 1.0 - (y + 0.5) * 2.0 / height, 1.0);
 }
 
-/// d(b_0, b_1) by a pixel to the right, then by one down.
+/// Slopes d(b_0, b_1) for one pixel to the right (by_x) and for one down (by_y).
 struct WeightSlopes {
     double by_x[2], by_y[2];
 };
@@ -53,9 +53,9 @@ ITEM3D_HOST_DEVICE inline WeightSlopes weight_slopes(const ClipTriangle& triangl
     return slopes;
 }
 
-/// Sets the gradients by the vertices' (x, y, w) of what has the gradients weight_gradient by the
-/// weights and, unless null, slope_gradient by their slopes. Returns false, and no gradients, for a
-/// triangle without area on the screen.
+/// Sets the gradients with respect to the vertices' (x, y, w), from weight_gradient with respect to
+/// the weights and, unless null, slope_gradient with respect to their slopes. Returns false without
+/// gradients for a triangle without area on the screen.
 ITEM3D_HOST_DEVICE inline bool weights_backward(const ClipTriangle& triangle, DVec3 q,
                                                 const float* weights, const double* weight_gradient,
                                                 const WeightSlopes* slope_gradient, int width,

@@ -8,12 +8,12 @@
 
 namespace item3d::kernels {
 
-/// Steps of n.v, and of roughness, of the table that the build computes
+/// Number of steps in n.v and in roughness of the table that the build computes
 /// (tools/write_bsdf_table.cpp).
 inline constexpr int bsdf_table_size = 256;
 
-/// The rule of quadrature: `azimuths` equal steps over half a turn, where the integrand is periodic
-/// and even, and `size` abscissae and weights on [0, 1] along the cap.
+/// Quadrature rule: `azimuths` equal steps over half a turn, where the integrand is periodic and
+/// even, and `size` abscissae and weights on [0, 1] along the cap.
 struct BsdfRule {
     const float* azimuth_cosines;
     int azimuths;
@@ -22,10 +22,10 @@ struct BsdfRule {
     int size;
 };
 
-/// Scale and bias of F0 for one n.v and perceptual roughness. Visible normals are sampled as caps
-/// of the hemisphere (Dupuy and Benyoub 2023), which leaves the smooth weight G2/G1. A cap's height
-/// u is replaced by u = tanh^2(x), which spreads out both of its ends, and each azimuth is
-/// integrated up to where the reflected direction sets.
+/// Returns scale and bias of F0 for one n.v and perceptual roughness. Visible normals are sampled
+/// as caps of the hemisphere (Dupuy and Benyoub 2023), which leaves the smooth weight G2/G1. A
+/// cap's height u is replaced by u = tanh^2(x), which spreads out both of its ends, and each
+/// azimuth is integrated up to the angle where the reflected direction drops below the horizon.
 ITEM3D_HOST_DEVICE inline Vec2 bsdf_scale_bias(float n_dot_v, float roughness,
                                                const BsdfRule& rule) {
     const float alpha = roughness * roughness, alpha2 = alpha * alpha;
@@ -39,7 +39,8 @@ ITEM3D_HOST_DEVICE inline Vec2 bsdf_scale_bias(float n_dot_v, float roughness,
     Vec2 total(0.0f);
     for (int i = 0; i < rule.azimuths; ++i) {
         const float cosine = rule.azimuth_cosines[i], sine2 = 1 - cosine * cosine;
-        // The half vector (alpha x, alpha y, z) of a cap's height, not normalised; y squared.
+        // Half vector (alpha x, alpha y, z) at a cap's height, not normalised; its y holds y
+        // squared.
         const auto half_vector = [&](float height) {
             const float radius2 = height * height < 1 ? 1 - height * height : 0.0f;
             return Vec3(std::sqrt(radius2) * cosine + stretched.x, radius2 * sine2,

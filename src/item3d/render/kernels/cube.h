@@ -1,4 +1,4 @@
-// Cube maps: OpenGL's face order and orientation, and bilinear lookups without seams.
+// Cube maps: OpenGL's face order and orientation, and seamless bilinear lookups.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -10,7 +10,8 @@
 
 namespace item3d::kernels {
 
-/// Direction of face coordinates s, t in [-1, 1] (s grows to the right, t downwards); not unit.
+/// Returns the direction, not unit, of face coordinates s, t in [-1, 1] (s grows to the right, t
+/// downwards).
 ITEM3D_HOST_DEVICE inline Vec3 cube_direction(int face, float s, float t) {
     switch (face) {
         case 0:
@@ -45,7 +46,7 @@ ITEM3D_HOST_DEVICE inline int cube_face(Vec3 d) {
     return d.z < 0 ? 5 : 4;
 }
 
-/// Centre of texel i of `size`, in [-1, 1].
+/// Returns the centre of texel i of `size`, in [-1, 1].
 ITEM3D_HOST_DEVICE inline float texel_centre(int i, int size) {
     return (2 * i + 1) / static_cast<float>(size) - 1.0f;
 }
@@ -56,10 +57,10 @@ struct CubeTaps {
     float weight[4];
     // For cube_direction_gradient():
     int face;
-    int corner;  ///< the tap outside of a cube's corner, whose weight the others share; -1: none
-    float s, t;  ///< face coordinates of the direction
-    float x, y;  ///< fractions towards the right and down
-    float texels_by;  ///< texels on the face for a unit of direction along s or t
+    int corner;       ///< the tap beyond a cube's corner, whose weight the others share; -1: none
+    float s, t;       ///< face coordinates of the direction
+    float x, y;       ///< fractions towards the right and down
+    float texels_by;  ///< texels on the face per unit of direction along s or t
 };
 
 /// Face coordinates of a direction, times `major`.
@@ -84,7 +85,7 @@ ITEM3D_HOST_DEVICE inline FaceCoordinates face_coordinates(int face, Vec3 d) {
     }
 }
 
-/// The texel beyond the edge of a face: x or y (not both) is -1 or size.
+/// Returns the index of the texel beyond the edge of a face: x or y (not both) is -1 or size.
 ITEM3D_HOST_DEVICE inline std::int32_t texel_over_edge(const CubeFrame& frame, int x, int y,
                                                        int size) {
     // Its centre lies one unit along the axis that was left, half a texel below the edge.
@@ -103,11 +104,11 @@ ITEM3D_HOST_DEVICE inline std::int32_t texel_over_edge(const CubeFrame& frame, i
     return (face * size + row) * size + column;
 }
 
-/// Where a direction leaves the cube: what lookups at all sizes share.
+/// Intersection of a direction with the cube, shared by lookups at all sizes.
 struct CubePoint {
     int face;
     float s, t;
-    float inverse;  ///< length of a unit of direction along s or t, on the face
+    float inverse;  ///< face coordinates per unit of direction along s or t
 };
 
 ITEM3D_HOST_DEVICE inline CubePoint cube_point(Vec3 d) {
@@ -155,7 +156,7 @@ ITEM3D_HOST_DEVICE inline CubeTaps cube_taps(const CubePoint& point, int size) {
         }
     }
     if (taps.corner >= 0) {
-        // Three texels meet at a cube's corner; the fourth is their mean.
+        // Three texels meet at a cube's corner; the fourth tap is their mean.
         const float share = taps.weight[taps.corner] / 3;
         for (int i = 0; i < 4; ++i)
             taps.weight[i] = i == taps.corner ? 0.0f : taps.weight[i] + share;
@@ -172,7 +173,7 @@ ITEM3D_HOST_DEVICE inline Vec3 cube_value(const float* map, const CubeTaps& taps
     return value;
 }
 
-/// Gradient by the direction of dot(gradient, cube_value).
+/// Returns the gradient of dot(gradient, cube_value) with respect to the direction.
 ITEM3D_HOST_DEVICE inline Vec3 cube_direction_gradient(const float* map, const CubeTaps& taps,
                                                        Vec3 gradient) {
     float value[4], total = 0;
@@ -189,7 +190,7 @@ ITEM3D_HOST_DEVICE inline Vec3 cube_direction_gradient(const float* map, const C
            (by_x * (frame.s - taps.s * frame.normal) + by_y * (frame.t - taps.t * frame.normal));
 }
 
-/// first: where the map's gradient begins in `sums`.
+/// first: index of the map's gradient in `sums`.
 ITEM3D_HOST_DEVICE inline void cube_add_gradient(const Accumulator& sums, std::int64_t first,
                                                  const CubeTaps& taps, Vec3 gradient) {
     for (int i = 0; i < 4; ++i)

@@ -1,4 +1,4 @@
-// Cube maps as planes with halos: for stencils and sums that run along rows.
+// Cube maps as planes with halos, for stencils and sums along rows.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -9,20 +9,20 @@
 
 namespace item3d::kernels {
 
-/// Three colours of six faces, [6, 3, S, S], and perhaps a 19th plane: a quantity that is the same
-/// on all faces, however they are turned. Around each plane lies a halo of the neighbouring faces'
-/// texels, unfolded over its edges; beyond its corners there is nothing (0).
+/// Three colours of six faces, [6, 3, S, S], and optionally a 19th plane, shared by all faces: a
+/// quantity that is the same on each, in any orientation. Around each plane lies a halo of the
+/// neighbouring faces' texels, unfolded over its edges; beyond its corners it is 0.
 template <typename Float>
 struct BasicPlanes {
     static constexpr int halo = 8;
 
-    Float* values;  ///< of plane 0, texel (0, 0)
+    Float* values;  ///< texel (0, 0) of plane 0
     int size, count;
 
-    /// Floats from a row to the next.
+    /// Returns the number of floats between rows.
     ITEM3D_HOST_DEVICE std::int64_t row_step() const { return size + 2 * halo; }
-    /// Floats from a plane to the next; not a multiple of a page, for which all would compete for
-    /// the same lines of a processor's cache.
+    /// Returns the number of floats between planes; not a multiple of a page, which would map all
+    /// planes to the same lines of a processor's cache.
     ITEM3D_HOST_DEVICE std::int64_t plane_step() const { return row_step() * row_step() + 80; }
     ITEM3D_HOST_DEVICE Float* row(int plane, int y) const {
         return values + plane * plane_step() + y * row_step();
@@ -31,12 +31,12 @@ struct BasicPlanes {
 using Planes = BasicPlanes<float>;
 using ConstPlanes = BasicPlanes<const float>;
 
-/// Adjacent texels of a row: what one index of a kernel stands for. Processors take long runs, and
-/// devices short ones.
+/// Adjacent texels of a row, which one index of a kernel processes: many on processors, few on
+/// devices.
 struct Run {
     int plane, row, begin, end;
 };
-/// length: of a run; divides size.
+/// Returns run `index`. length: texels of a run; divides size.
 ITEM3D_HOST_DEVICE inline Run run_of(std::int64_t index, int size, int length) {
     const std::int64_t runs = size / length, rows = index / runs;
     const int begin = static_cast<int>(index % runs) * length;
@@ -48,8 +48,8 @@ ITEM3D_HOST_DEVICE inline Vec3 unit_direction(int face, int row, int column, int
         cube_direction(face, texel_centre(column, size), texel_centre(row, size)));
 }
 
-/// Direction of a texel beyond a face's edge, not unit. side: left, right, above, below; along:
-/// texels along the edge; beyond: 1, 2, ..
+/// Returns the direction, not unit, of a texel beyond a face's edge. side: 0 left, 1 right, 2
+/// above, 3 below; along: position along the edge; beyond: distance from it, 1, 2, ..., in texels.
 ITEM3D_HOST_DEVICE inline Vec3 halo_direction(int face, int side, int along, int beyond, int size) {
     const CubeFrame frame = cube_frame(face);
     const Vec3 over = side < 2 ? frame.s : frame.t, edge = side < 2 ? frame.t : frame.s;
@@ -57,7 +57,7 @@ ITEM3D_HOST_DEVICE inline Vec3 halo_direction(int face, int side, int along, int
            texel_centre(beyond - 1, size) * frame.normal;
 }
 
-/// A texel's index in a row-major face.
+/// Face, row and column of a texel.
 struct FaceTexel {
     int face, row, column;
 };
@@ -70,12 +70,12 @@ ITEM3D_HOST_DEVICE inline FaceTexel face_texel(Vec3 d, int size) {
 
 struct HaloParameters {
     Planes planes;
-    int depth;  ///< of what is filled
+    int depth;  ///< filled texels of the halo
     int length;
 };
 
-/// Copies the neighbours' texels beyond an edge. index: a run along it, of each row of the halo, of
-/// each side, of each plane.
+/// Copies the neighbours' texels beyond an edge. index: a run along it, for each row of the halo,
+/// each side and each plane.
 ITEM3D_HOST_DEVICE inline void fill_halo_side(const HaloParameters& p, std::int64_t index) {
     const int size = p.planes.size;
     const std::int64_t runs = size / p.length, strip = index / runs;
@@ -97,14 +97,14 @@ ITEM3D_HOST_DEVICE inline void fill_halo_side(const HaloParameters& p, std::int6
         out[i * out_step] = in[i * step];
 }
 
-/// Fills what is diagonally off a corner, when the sides are there: two by two texels become means
-/// over the three faces that meet there; that, and 0 beyond, makes restricting the transpose of
+/// Fills the halo diagonally beyond a corner, after its sides: two by two texels become means over
+/// the three faces that meet there, and the rest 0, which makes restriction the transpose of
 /// upsampling at corners too. index: a corner of a plane.
 ITEM3D_HOST_DEVICE inline void fill_halo_corner(const HaloParameters& p, std::int64_t index) {
     const int plane = static_cast<int>(index / 4), right = static_cast<int>(index % 2),
               below = static_cast<int>(index / 2 % 2), last = p.planes.size - 1;
     const std::int64_t row = p.planes.row_step();
-    // From the corner on, outwards: across its edges mirrored, then over both.
+    // From the corner outwards: mirrored across its edges, then across both.
     const std::int64_t over = right != 0 ? 1 : -1, under = below != 0 ? row : -row;
     float* at = p.planes.row(plane, below != 0 ? last : 0) + (right != 0 ? last : 0);
     for (int j = 0; j < p.depth; ++j)
@@ -116,13 +116,13 @@ ITEM3D_HOST_DEVICE inline void fill_halo_corner(const HaloParameters& p, std::in
         }
 }
 
-/// Going from a resolution to the next finer one: the parabola through a texel and its two
-/// neighbours, in both directions, a quarter of a texel off its middle.
+/// Weights of upsampling: the parabola through a texel and its two neighbours, in both directions,
+/// a quarter of a texel off the texel's middle.
 inline constexpr float weight_toward = 5.0f / 32, weight_middle = 30.0f / 32,
                        weight_away = -3.0f / 32;
 
-/// Twice as fine a plane: Length texels from (row, column) on. coarse: its texel (0, 0), with a
-/// halo of at least one texel.
+/// Upsamples to twice the resolution: Length texels from (row, column) on. coarse: texel (0, 0),
+/// with a halo of at least one texel.
 template <int Length>
 ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline void upsample_run(const float* coarse,
                                                                  std::int64_t coarse_row, int row,
@@ -142,17 +142,17 @@ ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline void upsample_run(const float* co
     }
 }
 
-/// Fine texels that a device's thread resizes.
+/// Number of fine texels for each device thread.
 inline constexpr int device_resized_run = 2;
 
-/// Between a map and one of half its size.
+/// Parameters of resizing between a map and one of half its size.
 struct ResizeParameters {
     ConstPlanes from;
     Planes to;
-    bool add;  ///< to what is there; upsampling alone
+    bool add;  ///< upsampling only: add to the present values
 };
 
-/// index: a run of the finer map's texels.
+/// Upsamples a run. index: a run of the finer map's texels.
 template <int Length>
 ITEM3D_HOST_DEVICE inline void upsample(const ResizeParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.to.size, Length);
@@ -163,7 +163,7 @@ ITEM3D_HOST_DEVICE inline void upsample(const ResizeParameters& p, std::int64_t 
         out[i] = p.add ? out[i] + fine[i] : fine[i];
 }
 
-/// The transpose of upsampling. from: its halo at least two texels deep. index: a run of Length / 2
+/// Transpose of upsampling. from: with a halo of at least two texels. index: a run of Length / 2
 /// texels of the coarser map.
 template <int Length>
 ITEM3D_HOST_DEVICE inline void restrict_run(const ResizeParameters& p, std::int64_t index) {
@@ -183,17 +183,17 @@ ITEM3D_HOST_DEVICE inline void restrict_run(const ResizeParameters& p, std::int6
     }
 }
 
-/// [6, S, S, 3], with any steps, -> planes.
+/// Parameters of the conversion from [6, S, S, 3], with any strides, to planes.
 struct MapToPlanesParameters {
     const float* map;
     std::int64_t step[4];
-    const float* weight;  ///< [S, S], the same on each face
+    const float* weight;  ///< [S, S], the same for each face
     Planes planes;
     int length;
 };
 
-/// map * weight -> planes, and the weights themselves -> the shared plane, where there is one.
-/// index: a run of each of six faces, or seven.
+/// Sets planes = map * weight, and the shared plane, if present, to the weights. index: a run of
+/// each of six faces, or of seven with the shared plane.
 ITEM3D_HOST_DEVICE inline void map_to_planes(const MapToPlanesParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.planes.size, p.length);
     const float* weight = p.weight + static_cast<std::int64_t>(run.row) * p.planes.size;
@@ -218,7 +218,7 @@ struct PlanesToMapParameters {
     int length;
 };
 
-/// planes * weight -> map. index: a run of each of six faces.
+/// Sets map = planes * weight. index: a run of each of six faces.
 ITEM3D_HOST_DEVICE inline void planes_to_map(const PlanesToMapParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.planes.size, p.length);
     const std::int64_t size = p.planes.size;
@@ -231,15 +231,15 @@ ITEM3D_HOST_DEVICE inline void planes_to_map(const PlanesToMapParameters& p, std
     }
 }
 
-/// Where means of radiance go.
+/// Parameters of the means of radiance.
 struct MeansParameters {
     float* map;             ///< [6, S, S, 3]
     float* inverse_weight;  ///< [S, S]
-    ConstPlanes sums;       ///< the shared plane has those of solid angle
+    ConstPlanes sums;       ///< the shared plane has the sums of solid angle
     int length;
 };
 
-/// Sums of radiance over those of solid angle. sums: the run's first texel of plane 0.
+/// Divides the sums of radiance by those of solid angle. sums: first texel of the run in plane 0.
 ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline void store_means(const MeansParameters& p,
                                                                 const Run& run, const float* sums,
                                                                 std::int64_t plane_step) {
@@ -259,7 +259,7 @@ ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline void store_means(const MeansParam
     }
 }
 
-/// index: a run of one face, for all six.
+/// index: a run of one face; processes all six faces.
 ITEM3D_HOST_DEVICE inline void planes_to_means(const MeansParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.sums.size, p.length);
     store_means(p, run, p.sums.row(0, run.row) + run.begin, p.sums.plane_step());

@@ -1,4 +1,4 @@
-// Equirectangular maps resampled onto cube texels.
+// Resampling of equirectangular maps onto cube texels.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -24,8 +24,8 @@ struct EquirectangularParameters {
     Accumulator map_gradient;    ///< [H, W, 3]
 };
 
-/// Calls f(texel of the map, weight) for what a cube texel (index into [6, S, S]) is the mean of:
-/// bilinear samples weighted by their solid angle, close enough together that no texel is missed.
+/// Calls f(map texel, weight) for the samples whose weighted mean is a cube texel (index into [6,
+/// S, S]): bilinear samples weighted by their solid angle, dense enough to miss no texel.
 template <typename F>
 ITEM3D_HOST_DEVICE inline void for_each_equirectangular_tap(const EquirectangularParameters& p,
                                                             std::int64_t index, const F& f) {

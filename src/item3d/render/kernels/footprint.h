@@ -1,4 +1,4 @@
-// How far UV coordinates change from a pixel to the next.
+// Footprints: changes of UV coordinates between adjacent pixels.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -17,10 +17,10 @@ struct FootprintParameters {
     std::int64_t vertices;          ///< V
     int width;
     int height;
-    float* footprint;  ///< [P, 4] d(u, v) by a pixel to the right, then by one down
+    float* footprint;  ///< [P, 4] d(u, v) for one pixel to the right, then for one down
 };
 
-/// uv = sum e_i uv_i / sum e_i with edge functions e_i that are linear in the picture's plane.
+/// uv = sum e_i uv_i / sum e_i with edge functions e_i that are linear on the image plane.
 ITEM3D_HOST_DEVICE inline void uv_footprint(const FootprintParameters& p, std::int64_t index) {
     const std::int64_t pixel = p.pixel[index];
     const std::int64_t in_view = pixel % (static_cast<std::int64_t>(p.width) * p.height);

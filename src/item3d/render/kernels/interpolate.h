@@ -55,15 +55,15 @@ ITEM3D_HOST_DEVICE inline void store3(float* p, Vec3 v) {
     p[1] = v.y;
     p[2] = v.z;
 }
-/// Zero stays zero.
+/// Returns the unit vector; zero for zero.
 ITEM3D_HOST_DEVICE inline Vec3 safe_normalize(Vec3 v) {
     const float squared = glm::dot(v, v);
     return squared > 1e-30f ? v / std::sqrt(squared) : Vec3(0.0f);
 }
 
-/// The shading normal faces the same side of the triangle as the viewer does. The test takes the
-/// triangle's own plane, not the interpolated normal, so that normals that bend away near a
-/// silhouette are kept, and not its winding, so that wrongly wound meshes still look right.
+/// The shading normal is flipped to the viewer's side of the triangle. The test uses the triangle's
+/// own plane: not the interpolated normal, so that normals that bend away near a silhouette are
+/// kept, and not the winding, so that wrongly wound meshes look right.
 ITEM3D_HOST_DEVICE inline void interpolate_surface_point(const SurfaceParameters& p,
                                                          std::int64_t index) {
     const std::int64_t pixel = p.pixel[index];
@@ -93,10 +93,10 @@ ITEM3D_HOST_DEVICE inline void interpolate_surface_point(const SurfaceParameters
     if (!(glm::dot(normal, normal) > 1e-20f)) normal = face;
     normal = safe_normalize(normal);
     float* tangent = p.tangent + 4 * index;
-    // The handedness of a mirrored seam must not fade to zero between vertices.
+    // The handedness across a mirrored seam must not pass through zero between vertices.
     if (tangent[3] != 0) tangent[3] = tangent[3] < 0 ? -1.0f : 1.0f;
     if (glm::dot(normal, face) * glm::dot(view, face) < 0) {
-        // The whole tangent frame is turned, as glTF's double-sided materials ask for.
+        // The whole tangent frame flips, as glTF requires for double-sided materials.
         normal = -normal;
         for (int c = 0; c < 4; ++c)
             tangent[c] = -tangent[c];
@@ -136,8 +136,8 @@ ITEM3D_HOST_DEVICE inline void interpolate_forward(const InterpolateParameters& 
     }
 }
 
-/// Adds one pixel's gradients; the weights move with the vertices. On the CPU not safe for
-/// concurrent calls that share vertices.
+/// Adds one pixel's gradients, with respect to attributes and vertices. On the CPU, concurrent
+/// calls that share vertices are unsafe.
 ITEM3D_HOST_DEVICE inline void interpolate_backward(const InterpolateParameters& p,
                                                     std::int64_t index) {
     const std::int64_t pixel = p.pixel[index];

@@ -1,8 +1,8 @@
 // Sums of max(0, n.l) over cube maps.
 //
 // max(0, c) = (c + |c|) / 2. The sums of |c| are even, so half of the texels, folded onto their
-// opposites, and half of the outputs are enough: faces 0, 2 and 4. Those of c are linear in n: the
-// dot product with a vector a channel.
+// opposites, and half of the outputs suffice: faces 0, 2 and 4. Those of c are linear in n: the dot
+// product with one vector for each channel.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -12,10 +12,10 @@
 
 namespace item3d::kernels {
 
-/// Of an irradiance map. Bilinear lookups in a coarser one show where a sun sets.
+/// Edge of an irradiance map; bilinear lookups in a coarser one show artefacts where a sun sets.
 inline constexpr int irradiance_size = 128;
 
-/// A texel's index on the face opposite, where the direction is the negative.
+/// Row and column of a texel's antipode on the opposite face.
 struct Antipode {
     int row, column;
 };
@@ -30,7 +30,7 @@ struct FoldParameters {
     int length;
 };
 
-/// map(d) + map(-d); index: a run of each plane.
+/// Sets out = map(d) + map(-d). index: a run of each plane.
 ITEM3D_HOST_DEVICE inline void fold(const FoldParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.map.size, p.length);
     const int face = run.plane < 18 ? run.plane / 3 : 0;
@@ -44,10 +44,10 @@ ITEM3D_HOST_DEVICE inline void fold(const FoldParameters& p, std::int64_t index)
 
 struct MomentParameters {
     ConstPlanes map;
-    float* moments;  ///< [6 * S, 3 channels, 3] of the rows of all faces
+    float* moments;  ///< [6 * S, 3 channels, 3], by rows of all faces
 };
 
-/// Sums of value times direction; index: a row of each of six faces.
+/// Sums value times direction over a row. index: a row of each of six faces.
 ITEM3D_HOST_DEVICE inline void row_moments(const MomentParameters& p, std::int64_t index) {
     const int face = static_cast<int>(index / p.map.size);
     const int row = static_cast<int>(index % p.map.size);
@@ -63,13 +63,13 @@ ITEM3D_HOST_DEVICE inline void row_moments(const MomentParameters& p, std::int64
 }
 
 struct CosineParameters {
-    ConstPlanes even;      ///< sums of |n.l|, of the faces 0, 2 and 4, and perhaps a tenth plane
+    ConstPlanes even;      ///< sums of |n.l| for the faces 0, 2 and 4, and optionally a tenth plane
     const float* moments;  ///< [3 channels, 3]
     Planes out;
     int length;
 };
 
-/// Both halves together; index: a run of each of six faces, or seven with the shared plane.
+/// Adds both halves. index: a run of each of six faces, or of seven with the shared plane.
 ITEM3D_HOST_DEVICE inline void join_cosine(const CosineParameters& p, std::int64_t index) {
     const Run run = run_of(index, p.out.size, p.length);
     const int face = run.plane;
@@ -90,14 +90,14 @@ ITEM3D_HOST_DEVICE inline void join_cosine(const CosineParameters& p, std::int64
     }
 }
 
-/// Texels whose part of the irradiance is summed by itself.
+/// Parameters of the texels whose part of the irradiance is summed exactly.
 struct BrightParameters {
     const std::int64_t* texels;  ///< [count] indices into [6, S, S]; -1: none
     int count, size;             ///< size: S
-    ConstPlanes flux;            ///< with S texels
-    ConstPlanes gradient;        ///< of the irradiance's sums
-    Planes out;                  ///< what is added to, or set
-    const float* values;         ///< [count, 3] to be set; null: 0
+    ConstPlanes flux;            ///< S x S texels
+    ConstPlanes gradient;        ///< with respect to the irradiance's sums
+    Planes out;                  ///< planes to add to, or to set
+    const float* values;         ///< [count, 3] new values; null: 0
     float* partial_sums;         ///< [runs, count, 3]
 };
 
@@ -107,10 +107,10 @@ ITEM3D_HOST_DEVICE inline FaceTexel place_of(std::int64_t index, int size) {
             static_cast<int>(in_face % size)};
 }
 
-/// Normals that a device's thread sums over.
+/// Number of normals for each device thread.
 inline constexpr int device_bright_run = 32;
 
-/// max(0, n.l) of a run of the irradiance map's normals.
+/// max(0, n.l) for a run of the irradiance map's normals.
 template <int Length>
 struct RunCosines {
     float x[Length], y[Length], z[Length], cosine[Length];
@@ -132,7 +132,7 @@ struct RunCosines {
     }
 };
 
-/// Adds what the bright texels give to a run of irradiance; index: a run of each of six faces.
+/// Adds the bright texels' irradiance to a run. index: a run of each of six faces.
 template <int Length>
 ITEM3D_HOST_DEVICE inline void add_bright(const BrightParameters& p, std::int64_t index) {
     const Run run = run_of(index, irradiance_size, Length);
@@ -150,7 +150,7 @@ ITEM3D_HOST_DEVICE inline void add_bright(const BrightParameters& p, std::int64_
     }
 }
 
-/// The transpose's sums over a run; index as there.
+/// Sums the transpose over a run. index: as in add_bright().
 template <int Length>
 ITEM3D_HOST_DEVICE inline void sum_bright(const BrightParameters& p, std::int64_t index) {
     constexpr int lanes = Length < 8 ? Length : 8;
@@ -174,7 +174,7 @@ ITEM3D_HOST_DEVICE inline void sum_bright(const BrightParameters& p, std::int64_
     }
 }
 
-/// Sets the three colours of a bright texel; index: which.
+/// Sets the three colours of bright texel `index`.
 ITEM3D_HOST_DEVICE inline void set_bright(const BrightParameters& p, std::int64_t index) {
     if (p.texels[index] < 0) return;
     const FaceTexel at = place_of(p.texels[index], p.size);

@@ -1,6 +1,6 @@
-// Texture lookups as graphics hardware makes them: nearest, bilinear, or isotropic trilinear
-// between the levels of a mip map, in two dimensions or on a cube. The level is the logarithm of
-// the longer axis of a pixel's footprint in texels, and has gradients as all else.
+// Texture lookups as in graphics hardware: nearest, bilinear, or isotropic trilinear between the
+// levels of a mip map, in two dimensions or on a cube. The level is the logarithm of the longer
+// axis of a pixel's footprint in texels; it is differentiable too.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -17,23 +17,24 @@ enum class MipmapFilter : int { nearest, linear, linear_mipmap_nearest, linear_m
 enum class MipmapBoundary : int {
     wrap,
     clamp,
-    zero,  ///< outside of the texture there are zeros
+    zero,  ///< zeros outside of the texture
     cube,
 };
 
 struct MipmapParameters {
-    /// Each half as large as the one before; cubes: [6, H, W, C]. `first`: in `texel_gradient`.
+    /// Each half as large as the previous one; cubes: [6, H, W, C]. `first`: index in
+    /// `texel_gradient`.
     TextureLevel levels[max_texture_levels];
     int level_count;
-    bool shared;   ///< all views look up one texture; else levels are [N, ..], one a view
+    bool shared;   ///< true: one texture for all views; false: levels are [N, ..], one a view
     int channels;  ///< C
     MipmapFilter filter;
     MipmapBoundary boundary;
     std::int64_t pixels_per_view;
-    const float* uv;      ///< [P, 2], or on cubes directions [P, 3]
-    const float* slopes;  ///< [P, 4 or 6] by x and y, coordinate after coordinate; null: level 0
-    const float* bias;    ///< [P] added to the level, or null
-    float* values;        ///< [P, C]
+    const float* uv;              ///< [P, 2]; on cubes directions [P, 3]
+    const float* slopes;          ///< [P, 4 or 6] in x and y, by coordinate; null: level 0
+    const float* bias;            ///< [P] added to the level, or null
+    float* values;                ///< [P, C]
     const float* value_gradient;  ///< [P, C]
     float* uv_gradient;           ///< [P, 2 or 3], or null
     float* slope_gradient;        ///< [P, 4 or 6], or null
@@ -46,26 +47,26 @@ struct MipmapParameters {
     }
 };
 
-/// Four texels with weights; outside: -1.
+/// Four texels with weights; -1 outside.
 struct MipmapTaps {
     std::int64_t texel[4];
     float weight[4];
     float x, y;  ///< fractions towards the right and down
-    int corner;  ///< of a cube, the tap whose value is the others' mean; -1: none
+    int corner;  ///< on a cube, the tap whose value is the others' mean; -1: none
 };
 
-/// A point that lookups at all levels share.
+/// A lookup position, shared by all levels.
 struct MipmapPoint {
     bool valid;
-    float u, v;      ///< in two dimensions
-    CubePoint cube;  ///< on a cube
+    float u, v;      ///< two-dimensional textures only
+    CubePoint cube;  ///< cubes only
 };
 
 ITEM3D_HOST_DEVICE inline MipmapPoint mipmap_point(const MipmapParameters& p, std::int64_t index) {
     if (!p.is_cube()) return {true, p.uv[2 * index], p.uv[2 * index + 1], {}};
     const Vec3 d(p.uv[3 * index], p.uv[3 * index + 1], p.uv[3 * index + 2]);
     const float x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
-    // False for NaN as well.
+    // False also for NaN.
     const bool finite = x < 1e30f && y < 1e30f && z < 1e30f;
     if (!finite || !(x > 1e-30f || y > 1e-30f || z > 1e-30f)) return {false, 0, 0, {}};
     return {true, 0, 0, cube_point(d)};
@@ -112,12 +113,12 @@ ITEM3D_HOST_DEVICE inline MipmapTaps mipmap_taps(const MipmapParameters& p,
     return taps;
 }
 
-/// The one texel that the point lies in.
+/// Returns the single texel that contains the point.
 ITEM3D_HOST_DEVICE inline MipmapTaps nearest_mipmap_taps(const MipmapParameters& p,
                                                          const MipmapPoint& point) {
     MipmapTaps taps = mipmap_taps(p, point, 0);
     const int k = (taps.x >= 0.5f ? 1 : 0) + (taps.y >= 0.5f ? 2 : 0);
-    // A cube's corner itself lies in three texels.
+    // A cube's corner belongs to three texels.
     const std::int64_t texel = taps.texel[k == taps.corner ? k ^ 1 : k];
     taps.corner = -1;
     for (int i = 0; i < 4; ++i) {
@@ -127,11 +128,11 @@ ITEM3D_HOST_DEVICE inline MipmapTaps nearest_mipmap_taps(const MipmapParameters&
     return taps;
 }
 
-/// A pixel's footprint in texels of level 0 and the level that is as coarse.
+/// A pixel's footprint in texels of level 0, and the corresponding level.
 struct MipmapFootprint {
     float level;       ///< before the bias, not clamped
-    float a, b, c, d;  ///< of the columns: by x and y; a, b along the texture's x, c, d along y
-    float squared;     ///< of the longer axis
+    float a, b, c, d;  ///< Jacobian [[a, b], [c, d]] by the pixel's x and y
+    float squared;     ///< squared length of the longer axis
     float half, cross, spread;
 };
 
@@ -146,7 +147,7 @@ ITEM3D_HOST_DEVICE inline MipmapFootprint mipmap_footprint(float a, float b, flo
     return f;
 }
 
-/// Gradients of the level by a, b, c and d.
+/// Writes the gradients of the level with respect to a, b, c and d.
 ITEM3D_HOST_DEVICE inline void mipmap_level_gradient(const MipmapFootprint& f, float gradient,
                                                      float* out) {
     const float scale = f.squared > 1e-30f ? gradient * 0.72134752f / f.squared : 0.0f;
@@ -158,10 +159,10 @@ ITEM3D_HOST_DEVICE inline void mipmap_level_gradient(const MipmapFootprint& f, f
     out[3] = scale * (f.d - half * f.d + cross * f.b);
 }
 
-/// On a cube, d(texel on the face) / d(direction): rows of the Jacobian.
+/// Jacobian d(texel on the face) / d(direction) on a cube: its rows.
 struct CubeSlopes {
     Vec3 by_s, by_t, normal;
-    float inverse;  ///< of the direction's length along the face's normal
+    float inverse;  ///< 1 / component of the direction along the face's normal
 };
 
 ITEM3D_HOST_DEVICE inline CubeSlopes cube_slopes(const MipmapParameters& p,
@@ -172,12 +173,12 @@ ITEM3D_HOST_DEVICE inline CubeSlopes cube_slopes(const MipmapParameters& p,
             frame.normal, point.inverse};
 }
 
-/// The two levels between which a pixel is looked up.
+/// The two levels between which a lookup interpolates.
 struct MipmapLevels {
     MipmapFootprint footprint;
     int fine;
     float fraction;  ///< weight of fine + 1
-    bool moves;      ///< whether the value changes with the level
+    bool moves;      ///< true if the value depends on the level
 };
 
 ITEM3D_HOST_DEVICE inline MipmapLevels mipmap_levels(const MipmapParameters& p,
@@ -219,7 +220,7 @@ ITEM3D_HOST_DEVICE inline MipmapLevels mipmap_levels(const MipmapParameters& p,
     return levels;
 }
 
-/// Where a view's texels of a level begin.
+/// Returns the offset of a view's texels in a level.
 ITEM3D_HOST_DEVICE inline std::int64_t mipmap_offset(const MipmapParameters& p, std::int64_t index,
                                                      int level) {
     return p.shared ? 0 : index / p.pixels_per_view * p.texels(level) * p.channels;
@@ -248,7 +249,8 @@ ITEM3D_HOST_DEVICE inline void mipmap_forward(const MipmapParameters& p, std::in
     }
 }
 
-/// A lookup's value times the gradient, and its change by a texel to the right and down.
+/// Dot product of a lookup's value with the gradient, and its slopes for a texel to the right and
+/// down.
 struct MipmapSlope {
     float value, by_x, by_y;
 };
@@ -270,7 +272,8 @@ ITEM3D_HOST_DEVICE inline MipmapSlope mipmap_slope(const MipmapParameters& p,
             (1 - taps.x) * (at[2] - at[0]) + taps.x * (at[3] - at[1])};
 }
 
-/// Writes the gradients by a pixel's coordinates, slopes and bias, and adds those by texels.
+/// Writes the gradients with respect to a pixel's coordinates, slopes and bias, and adds those with
+/// respect to texels.
 ITEM3D_HOST_DEVICE inline void mipmap_backward(const MipmapParameters& p, std::int64_t index,
                                                const Accumulator& texel_gradient) {
     const int coordinates = p.is_cube() ? 3 : 2;
@@ -301,7 +304,7 @@ ITEM3D_HOST_DEVICE inline void mipmap_backward(const MipmapParameters& p, std::i
                 continue;
             }
             const CubeSlopes to_texels = cube_slopes(p, point.cube);
-            // Those are of level 0.
+            // The slopes are in texels of level 0.
             const float size =
                 static_cast<float>(map.width) / static_cast<float>(p.levels[0].width);
             by_direction +=

@@ -1,4 +1,4 @@
-// Occlusion stored on grids over triangles, looked up at a pixel.
+// Lookup of occlusion that is stored on grids over triangles.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -8,8 +8,8 @@
 
 namespace item3d::kernels {
 
-/// Where the point with `resolution` * barycentrics (i, j, resolution - i - j) is in a triangle's
-/// grid: rows of falling length, j the row.
+/// Returns the index of the point with `resolution` * barycentrics (i, j, resolution - i - j) in a
+/// triangle's grid: rows of decreasing length, j the row.
 ITEM3D_HOST_DEVICE inline std::int64_t grid_index(int resolution, int i, int j) {
     const std::int64_t row = j;
     return row * (resolution + 1) - row * (row - 1) / 2 + i;
@@ -19,7 +19,7 @@ struct OcclusionParameters {
     const float* normals;            ///< [V, 3]
     const float* positions;          ///< [V, 3]
     const std::int32_t* triangles;   ///< [T, 3]
-    const std::int64_t* first;       ///< [T] each triangle's first point
+    const std::int64_t* first;       ///< [T] first point of each triangle
     const std::int32_t* resolution;  ///< [T] steps along an edge
     /// [points, 2] openness in 1/255: on the normal's side and behind it
     const std::uint8_t* values;
@@ -34,7 +34,7 @@ ITEM3D_HOST_DEVICE inline Vec3 row3(const float* rows, std::int64_t row) {
     return Vec3(rows[3 * row], rows[3 * row + 1], rows[3 * row + 2]);
 }
 
-/// Linear within the grid's small triangle around the pixel's centre.
+/// Interpolates linearly within the grid cell around the pixel's centre.
 ITEM3D_HOST_DEVICE inline void occlusion_at(const OcclusionParameters& p, std::int64_t index) {
     const std::int64_t pixel = p.pixel[index];
     const std::int64_t t = p.triangle[pixel];
@@ -53,7 +53,7 @@ ITEM3D_HOST_DEVICE inline void occlusion_at(const OcclusionParameters& p, std::i
     const int resolution = p.resolution[t];
     const float x = b0 * resolution, y = b1 * resolution;
     int i = x > 0 ? static_cast<int>(x) : 0, j = y > 0 ? static_cast<int>(y) : 0;
-    // Rounding must not lead over the third edge.
+    // Rounding must not cross the third edge.
     i = i < resolution ? i : resolution - 1;
     j = j < resolution - i ? j : resolution - 1 - i;
     const float fx = x - i, fy = y - j;
@@ -61,7 +61,7 @@ ITEM3D_HOST_DEVICE inline void occlusion_at(const OcclusionParameters& p, std::i
     const auto at = [&](int column, int row) {
         return static_cast<float>(grid[2 * grid_index(resolution, column, row)]);
     };
-    // By differences, so that equal corners give their value and nothing beside it.
+    // By differences, so that equal corners give exactly their value.
     const bool lower = fx + fy <= 1 || i + j + 2 > resolution;
     const float right = at(i + 1, j), below = at(i, j + 1);
     const float corner = lower ? at(i, j) : at(i + 1, j + 1);

@@ -1,6 +1,6 @@
 // Rasters of four floats a pixel, as published renderers exchange them: the weights of a triangle's
-// vertices 0 and 1, depth, and the triangle's index + 1 (0: nothing). Attributes and gradients by
-// pixel, without a list of those that are covered.
+// vertices 0 and 1, depth, and the triangle's index + 1 (0: none). Attributes and gradients are
+// computed for every pixel, without a list of covered ones.
 #pragma once
 
 #include "item3d/core/accumulate.h"
@@ -11,10 +11,10 @@
 
 namespace item3d::kernels {
 
-/// The largest number of triangles whose index + 1 is a float without rounding.
+/// Largest number of triangles whose index + 1 is exact in float32.
 inline constexpr std::int64_t most_float_triangles = (1 << 24) - 1;
 
-/// Index of the triangle at a pixel of a raster [.., 4], or -1.
+/// Returns the index of the triangle at a pixel of a raster [.., 4], or -1.
 ITEM3D_HOST_DEVICE inline std::int64_t triangle_at(const float* raster, std::int64_t pixel) {
     const float id = raster[4 * pixel + 3];
     return id >= 1 && id <= static_cast<float>(most_float_triangles)
@@ -22,7 +22,7 @@ ITEM3D_HOST_DEVICE inline std::int64_t triangle_at(const float* raster, std::int
                : -1;
 }
 
-/// Where a pixel of N pictures lies.
+/// View and coordinates of a pixel of N images.
 struct PixelPlace {
     std::int64_t view;
     int x, y;
@@ -37,7 +37,7 @@ struct PixelPlace {
 
 struct RasterSlopeParameters {
     const float* positions_clip;    ///< [N, V, 4], or [V, 4]
-    std::int64_t view_stride;       ///< from one view's positions to the next one's: 4 V, or 0
+    std::int64_t view_stride;       ///< floats between the positions of two views: 4 V, or 0
     const std::int32_t* triangles;  ///< [T, 3]
     const float* raster;            ///< [N, H, W, 4]
     int width;
@@ -65,7 +65,7 @@ ITEM3D_HOST_DEVICE inline void raster_slopes(const RasterSlopeParameters& p, std
     }
 }
 
-/// Adds one pixel's gradients by the clip-space vertices. Depth and index have none.
+/// Adds one pixel's gradients with respect to the clip-space vertices. Depth and index have none.
 ITEM3D_HOST_DEVICE inline void raster_backward(const RasterSlopeParameters& p, std::int64_t pixel,
                                                const Accumulator& clip_gradient) {
     const std::int64_t t = triangle_at(p.raster, pixel);
@@ -106,10 +106,10 @@ struct PixelAttributeParameters {
     const std::int32_t* triangles;      ///< [T, 3]
     const float* raster;                ///< [N, H, W, 4]
     const float* slopes;                ///< [N, H, W, 4] of raster_slopes(), or null
-    const std::int64_t* sloped;         ///< [D] channels whose slopes are wanted
+    const std::int64_t* sloped;         ///< [D] channels with slopes
     int sloped_count;                   ///< D, 0 without slopes
     float* values;                      ///< [N, H, W, A]
-    float* value_slopes;                ///< [N, H, W, 2 D] by x and y, channel after channel
+    float* value_slopes;                ///< [N, H, W, 2 D] in x and y, channel after channel
     const float* value_gradient;        ///< [N, H, W, A]
     const float* value_slope_gradient;  ///< [N, H, W, 2 D]
     float* raster_gradient;             ///< [N, H, W, 4], or null
@@ -145,7 +145,8 @@ ITEM3D_HOST_DEVICE inline void pixel_attributes(const PixelAttributeParameters& 
     }
 }
 
-/// Writes the gradients by raster and slopes of one pixel, and adds those by attributes.
+/// Writes the gradients of one pixel with respect to raster and slopes, and adds those with respect
+/// to attributes.
 ITEM3D_HOST_DEVICE inline void pixel_attributes_backward(const PixelAttributeParameters& p,
                                                          std::int64_t pixel,
                                                          const Accumulator& attribute_gradient) {

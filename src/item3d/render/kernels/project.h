@@ -1,5 +1,6 @@
-// World-space vertices to clip space. Written out, not a matrix product of a library: vertices at
-// equal positions must come out equal to the last bit, or seams of the UV map would show cracks.
+// Projection of world-space vertices to clip space. Written out instead of a library's matrix
+// product: vertices at equal positions must be equal bit for bit, or seams of the UV map would show
+// cracks.
 #pragma once
 
 #include "item3d/core/host_device.h"

@@ -19,10 +19,10 @@ struct PixelBox {
     std::int16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// What makes one fragment nearer than another.
+/// Depth test.
 enum class DepthOrder : int {
-    w,         ///< a smaller w: depth is w, and nothing is too far away
-    z_over_w,  ///< a smaller z/w, OpenGL's: depth is z/w, and what z >= w is clipped
+    w,         ///< smaller w is nearer: depth is w, without a far plane
+    z_over_w,  ///< smaller z/w is nearer, as in OpenGL: depth is z/w, and z >= w is clipped
 };
 
 struct RasterParameters {
@@ -34,9 +34,9 @@ struct RasterParameters {
     int width;
     int height;
     float* barycentrics;     ///< [N, H, W, 2]
-    float* depth;            ///< [N, H, W]; nearness while rasterizing, 0: none
+    float* depth;            ///< [N, H, W]; nearness while rasterizing; 0: none
     std::int32_t* triangle;  ///< [N, H, W], -1: none
-    const float* behind;     ///< [N, H, W] depth that fragments must pass; null: none
+    const float* behind;     ///< [N, H, W] depth that fragments must exceed; null: no limit
     DepthOrder order = DepthOrder::w;
 };
 
@@ -50,7 +50,7 @@ struct BoxBuilder {
         low_y = y < low_y ? y : low_y;
         high_y = y > high_y ? y : high_y;
     }
-    /// Covers every pixel whose centre may lie inside, with a margin for rounding.
+    /// Returns all pixels whose centre may lie inside, with a margin for rounding.
     ITEM3D_HOST_DEVICE PixelBox pixels(int width, int height) const {
         constexpr float margin = 4e-3f;
         PixelBox box;
@@ -64,8 +64,8 @@ struct BoxBuilder {
     }
 
   private:
-    /// The smallest whole number above `value`, in [0, limit]. Conversions instead of ceil(), which
-    /// is a function call on old x86-64.
+    /// Returns the smallest integer above `value`, clamped to [0, limit]. Uses conversions instead
+    /// of ceil(), which is a function call on old x86-64.
     ITEM3D_HOST_DEVICE static std::int16_t first_above(float value, int limit) {
         if (!(value >= 0)) return 0;
         if (value >= static_cast<float>(limit)) return static_cast<std::int16_t>(limit);
@@ -86,7 +86,7 @@ ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std
     for (int i = 0; i < 3; ++i) {
         v[i] = clip + 4 * static_cast<std::int64_t>(corners[i]);
         near_distance[i] = v[i][2] + v[i][3];
-        // false for NaN as well
+        // also false for NaN
         finite = finite && std::fabs(v[i][0]) < 1e30f && std::fabs(v[i][1]) < 1e30f &&
                  std::fabs(near_distance[i]) < 1e30f;
         if (near_distance[i] >= 0 && v[i][3] > 0) {
@@ -98,7 +98,8 @@ ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std
     }
     PixelBox box;
     if (finite && in_front > 0 && unusual) {
-        // A vertex behind the eye that the near plane does not cut, as no camera has it.
+        // A vertex behind the eye that the near plane does not cut, which no regular camera
+        // produces.
         box.x1 = static_cast<std::int16_t>(p.width);
         box.y1 = static_cast<std::int16_t>(p.height);
     } else if (finite && in_front > 0) {
@@ -121,10 +122,10 @@ ITEM3D_HOST_DEVICE inline PixelBox bound_triangle(const RasterParameters& p, std
 /// Edge functions of one triangle, all positive inside.
 struct TriangleEdges {
     double a[3], b[3], c[3];  ///< e_i = a x + b y + c in normalized device coordinates
-    bool keeps_zero[3];       ///< whether e_i = 0 belongs to this triangle
-    double determinant;       ///< above 0; 1/w at a pixel = (e_0 + e_1 + e_2) / determinant
+    bool keeps_zero[3];       ///< true if e_i = 0 belongs to this triangle
+    double determinant;       ///< positive; 1/w at a pixel = (e_0 + e_1 + e_2) / determinant
 
-    /// False for triangles without area on the screen.
+    /// Returns false for triangles without area on the screen.
     ITEM3D_HOST_DEVICE bool set(const float* v0, const float* v1, const float* v2) {
         const float* v[3] = {v0, v1, v2};
         for (int i = 0; i < 3; ++i) {
@@ -152,8 +153,8 @@ struct TriangleEdges {
 };
 
 /// Calls visit(pixel, nearness, e, sum) for the pixels in rows [row_begin, row_end) whose centre
-/// lies in one triangle of one view; nearness: 1/w, or 1 - z/w by DepthOrder::z_over_w; e, sum: the
-/// three edge functions and their sum.
+/// lies in one triangle of one view. nearness: 1/w, or 1 - z/w for DepthOrder::z_over_w; e, sum:
+/// the three edge functions and their sum.
 template <typename Visit>
 ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std::int64_t view,
                                                  std::int64_t t, int row_begin, int row_end,
@@ -183,7 +184,7 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
         largest_w = v[i][3] > largest_w ? v[i][3] : largest_w;
     }
 
-    // Divisions wait for the first fragment: most of a million triangles have none.
+    // Divisions are deferred to the first fragment: most triangles of a dense mesh have none.
     double inverse_determinant = 0, low_nearness = 0, high_nearness = 0;
     const double step_x = 2.0 / p.width, step_y = 2.0 / p.height;
     const bool wide = box.x1 - box.x0 > 8;
@@ -193,7 +194,7 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
         int x0 = box.x0, x1 = box.x1;
         for (int i = 0; i < 3; ++i) {
             row[i] = edges.b[i] * ndc_y + edges.c[i];
-            // Skips to where the edge function changes sign; one pixel of slack for rounding.
+            // Skip to the sign change of the edge function; one pixel of slack for rounding.
             if (wide && edges.a[i] != 0) {
                 const double crossing = (1.0 - row[i] / edges.a[i]) * 0.5 * p.width - 0.5;
                 if (edges.a[i] > 0) {
@@ -251,22 +252,22 @@ ITEM3D_HOST_DEVICE inline void for_each_fragment(const RasterParameters& p, std:
     }
 }
 
-/// The depth of a fragment or pixel that something is seen at.
+/// Returns the depth of a fragment or covered pixel.
 ITEM3D_HOST_DEVICE inline float depth_of(const RasterParameters& p, float nearness) {
     return p.order == DepthOrder::z_over_w ? 1.0f - nearness : 1.0f / nearness;
 }
 
-/// Whether a fragment may be seen at a pixel.
+/// True if a fragment passes the `behind` limit of a pixel.
 ITEM3D_HOST_DEVICE inline bool passes_behind(const RasterParameters& p, std::int64_t pixel,
                                              float nearness) {
     if (p.order == DepthOrder::z_over_w)
         return p.behind == nullptr || depth_of(p, nearness) > p.behind[pixel];
-    // The margin keeps a fragment from being found again behind itself.
+    // The margin keeps a fragment from passing its own depth.
     return p.behind == nullptr || !(nearness * p.behind[pixel] > 1 - 1e-6f);
 }
 
-/// Whether all of a triangle whose box is one pixel lies behind what that has. Most of a million
-/// triangles are that small, and half of them hidden.
+/// True if a triangle whose box is one pixel lies wholly behind that pixel's fragment. Most
+/// triangles of a dense mesh are that small, and half of them hidden.
 ITEM3D_HOST_DEVICE inline bool hidden_in_one_pixel(const RasterParameters& p, std::int64_t view,
                                                    std::int64_t t) {
     const PixelBox box = p.boxes[view * p.triangle_count + t];
@@ -297,18 +298,18 @@ ITEM3D_HOST_DEVICE inline void rasterize_triangle(const RasterParameters& p, std
                       });
 }
 
-/// Turns the nearness that rasterize_triangle left into depth.
+/// Converts the nearness that rasterize_triangle() stored to depth.
 ITEM3D_HOST_DEVICE inline void finish_depth(const RasterParameters& p, std::int64_t pixel) {
     if (p.depth[pixel] > 0) p.depth[pixel] = depth_of(p, p.depth[pixel]);
 }
 
-/// For threads that draw triangles in any order: the nearest fragment of each pixel, and at equal
-/// depth that of the first triangle, is the largest key.
+/// Parameters for threads that draw triangles in any order: the largest key of a pixel is its
+/// nearest fragment and, at equal depth, that of the first triangle.
 struct KeyedRasterParameters {
     RasterParameters raster;
-    unsigned long long* keys;  ///< [N, H, W], zeros: bits of nearness, then of ~triangle
+    unsigned long long* keys;  ///< [N, H, W], zeros initially: bits of nearness, then of ~triangle
     std::int64_t views;        ///< N
-    std::int64_t bands;        ///< of rows; a thread draws a triangle into one of them
+    std::int64_t bands;        ///< bands of rows; a thread draws into one
 };
 
 /// index: (band * N + view) * T + triangle.
@@ -333,7 +334,7 @@ ITEM3D_HOST_DEVICE inline void rasterize_keys(const KeyedRasterParameters& p, st
         });
 }
 
-/// Fills in what a pixel's key stands for.
+/// Writes the outputs of a pixel from its key.
 ITEM3D_HOST_DEVICE inline void resolve_key(const KeyedRasterParameters& keyed, std::int64_t pixel) {
     const RasterParameters& p = keyed.raster;
     const unsigned long long key = keyed.keys[pixel];

@@ -1,4 +1,4 @@
-// Values at covered pixels into pictures.
+// Scattering of values at covered pixels into images.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -10,9 +10,9 @@ namespace item3d::kernels {
 struct ScatterParameters {
     const float* values;             ///< [P, C]
     const float* background;         ///< [pixels, C], or [C] for one colour
-    const std::int64_t* pixel;       ///< [P], no pixel twice
+    const std::int64_t* pixel;       ///< [P], distinct pixels
     std::int64_t channels;           ///< C
-    std::int64_t background_stride;  ///< from one pixel's background to the next one's: C, or 0
+    std::int64_t background_stride;  ///< floats between the backgrounds of two pixels: C, or 0
     float* picture;                  ///< [pixels, C]
 };
 
@@ -21,7 +21,7 @@ ITEM3D_HOST_DEVICE inline void scatter_background(const ScatterParameters& p, st
         p.picture[pixel * p.channels + c] = p.background[pixel * p.background_stride + c];
 }
 
-/// To be run after scatter_background() of all pixels.
+/// Run after scatter_background() of all pixels.
 ITEM3D_HOST_DEVICE inline void scatter_value(const ScatterParameters& p, std::int64_t index) {
     for (std::int64_t c = 0; c < p.channels; ++c)
         p.picture[p.pixel[index] * p.channels + c] = p.values[index * p.channels + c];

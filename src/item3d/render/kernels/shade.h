@@ -1,4 +1,4 @@
-// Split-sum shading of one surface point (Karis 2013), and its gradient by hand.
+// Split-sum shading of one surface point (Karis 2013), and its hand-written gradient.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -31,12 +31,13 @@ struct ShadeParameters {
     const float* specular[max_specular_levels];  ///< [6, S, S, 3] each
     int specular_size[max_specular_levels];
     float specular_log_roughness[max_specular_levels];  ///< ascending
-    /// Of the cubic through levels [first, first + 4): 1 / (differences of a node to the others).
+    /// Lagrange scales of the cubic through levels [first, first + 4): 1 / product of a node's
+    /// differences to the others.
     float specular_scale[max_specular_levels][4];
 
     float* radiance;  ///< [P, 3]
 
-    // Backward. Any of the gradients may be null.
+    // Backward pass. Any of the gradients may be null.
     const float* radiance_gradient;  ///< [P, 3]
     float* base_color_gradient;
     float* orm_gradient;
@@ -44,7 +45,8 @@ struct ShadeParameters {
     float* normal_gradient;
 };
 
-/// Where the light's gradients are added: the maps' first elements in `sums`, -1: not wanted.
+/// Destination of the light's gradients: indices of the maps' first elements in `sums`; -1: not
+/// wanted.
 struct LightGradient {
     Accumulator sums;
     std::int64_t diffuse = -1;
@@ -73,7 +75,7 @@ ITEM3D_HOST_DEVICE inline ShadingFrame shading_frame(const ShadeParameters& p, s
     f.handedness = p.tangent[4 * i + 3];
     Vec3 across = f.raw_tangent - f.surface * glm::dot(f.surface, f.raw_tangent);
     if (!(glm::dot(across, across) > 1e-12f)) {
-        // No UVs: any frame will do.
+        // No UVs: any frame is valid.
         f.raw_tangent = std::fabs(f.surface.x) < 0.7f ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
         f.handedness = 1;
         across = f.raw_tangent - f.surface * glm::dot(f.surface, f.raw_tangent);
@@ -119,15 +121,15 @@ ITEM3D_HOST_DEVICE inline BsdfValue bsdf_lookup(const float* table, int size, fl
     return {value[0], value[1], by_x[0], by_x[1], by_y[0], by_y[1]};
 }
 
-/// Four adjacent levels around a roughness, and their shares.
+/// Four adjacent levels around a roughness, and their weights.
 struct SpecularLevels {
     int first;
     float weight[4];
     float slope[4];  ///< d weight / d roughness
 };
 
-/// The cubic through the levels, by the logarithm of roughness: lobes keep their shape over it, so
-/// that few of them are enough. Constant beyond the chain's ends.
+/// Returns weights of the cubic through the levels over the logarithm of roughness: lobes keep
+/// their shape over it, so that few levels suffice. Constant beyond the chain's ends.
 ITEM3D_HOST_DEVICE inline SpecularLevels specular_levels(const ShadeParameters& p,
                                                          float roughness) {
     const float* nodes = p.specular_log_roughness;
@@ -148,9 +150,10 @@ ITEM3D_HOST_DEVICE inline SpecularLevels specular_levels(const ShadeParameters& 
              slope * scale[2] * (ab + d * (a + b)), slope * scale[3] * (ab + c * (a + b))}};
 }
 
-/// Rough lobes lean from the mirror direction towards the normal (Lagarde and de Rousiers 2014,
-/// "Moving Frostbite to PBR", section 4.9.3). value: how much of the mirror direction is left.
-/// Below roughness 0.25 leaning costs more than it gives (docs/renderer.md), so it is faded in.
+/// Lean of rough lobes from the mirror direction towards the normal (Lagarde and de Rousiers 2014,
+/// "Moving Frostbite to PBR", section 4.9.3). value: remaining weight of the mirror direction.
+/// Below roughness 0.25 the lean adds more error than it removes (docs/renderer.md), so it is faded
+/// in.
 struct DominantDirection {
     float value;
     float slope;  ///< d value / d roughness
@@ -170,7 +173,7 @@ ITEM3D_HOST_DEVICE inline DominantDirection dominant_direction(float roughness) 
     return {1 + fade * lean, fade * slope + fade_slope * lean};
 }
 
-/// All that forward and backward share.
+/// Intermediate values shared by forward and backward pass.
 struct ShadingPoint {
     ShadingFrame frame;
     Vec3 view, mirrored, reflected, base_color, f0;
@@ -257,7 +260,7 @@ ITEM3D_HOST_DEVICE inline void shade_backward(const ShadeParameters& p, std::int
     if (light.diffuse >= 0)
         cube_add_gradient(light.sums, light.diffuse, s.diffuse_taps, by_irradiance);
     Vec3 by_reflected(0.0f);
-    float by_roughness = 0;  // through the levels' shares
+    float by_roughness = 0;  // through the levels' weights
     for (int k = 0; k < 4; ++k) {
         const int level = s.levels.first + k;
         const Vec3 by_level = s.levels.weight[k] * by_specular;

@@ -1,5 +1,6 @@
-// The sRGB transfer function (IEC 61966-2-1) and its gradient, a value at a time: the result does
-// not depend on how values are shared out among threads, as a vector library's remainders do.
+// The sRGB transfer function (IEC 61966-2-1) and its gradient, one value at a time: the result does
+// not depend on the distribution of values among threads, unlike a vector library's remainder
+// loops.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -11,7 +12,7 @@ namespace item3d::kernels {
 
 struct CurveParameters {
     const float* in;        ///< [count]
-    const float* gradient;  ///< [count] of the result; read by the backward kernels alone
+    const float* gradient;  ///< [count] with respect to the result; backward kernels only
     float* out;             ///< [count] the result, or the gradient of `in`
 };
 

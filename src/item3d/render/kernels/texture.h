@@ -19,18 +19,18 @@ struct TextureLevel {
     const float* texels;  ///< [H, W, C]
     int height;
     int width;
-    std::int64_t first;  ///< where this level's gradients begin
+    std::int64_t first;  ///< index of this level's gradient
 };
 
 struct TextureParameters {
-    TextureLevel levels[max_texture_levels];  ///< each half as large as the one before
+    TextureLevel levels[max_texture_levels];  ///< each half as large as the previous one
     int level_count;
     int channels;            ///< C
     const float* uv;         ///< [P, 2], (0, 0) the top left corner
-    const float* footprint;  ///< [P, 4] d(u, v) by a pixel in x, then in y; null: level 0 alone
+    const float* footprint;  ///< [P, 4] d(u, v) for a pixel in x, then in y; null: level 0 only
     TextureWrap wrap_u;
     TextureWrap wrap_v;
-    bool nearest;  ///< of level 0 the texel itself where no pixel is larger than it
+    bool nearest;  ///< unfiltered level-0 texels where they are at least as large as a pixel
 };
 
 ITEM3D_HOST_DEVICE inline int wrap_texel(int i, int size, TextureWrap wrap) {
@@ -47,8 +47,7 @@ struct TextureTaps {
     float x, y;  ///< fractions towards the right and down
 };
 
-/// The largest whole number that is not above `value`, which must be far below 2^63 in size. Old
-/// x86-64 has no instruction for floor().
+/// Returns floor(value), for |value| far below 2^63. Old x86-64 has no instruction for floor().
 ITEM3D_HOST_DEVICE inline std::int64_t whole_below(double value) {
     const auto whole = static_cast<std::int64_t>(value);
     return whole - (value < static_cast<double>(whole) ? 1 : 0);
@@ -57,7 +56,7 @@ ITEM3D_HOST_DEVICE inline std::int64_t whole_below(double value) {
 ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureLevel& level, float u, float v,
                                                    TextureWrap wrap_u, TextureWrap wrap_v) {
     const auto coordinate = [](float value, int size) {
-        // Far outside, floats have no fraction left; and integers must not overflow.
+        // Far outside, floats have no fraction; and integers must not overflow.
         const float limit = 1e6f;
         value = value == value ? value : 0.0f;
         value = value < -limit ? -limit : (value > limit ? limit : value);
@@ -69,7 +68,7 @@ ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureLevel& level, fl
     const float fy = static_cast<float>(y - static_cast<double>(top));
     const auto wrapped = [](std::int64_t i, int size, TextureWrap wrap) {
         if (i >= 0 && i < size) return static_cast<int>(i);
-        // Reduced in 64 bits first: 32 cannot hold 1e6 repeats of a large texture.
+        // Reduce in 64 bits first: 32 bits cannot hold 1e6 repeats of a large texture.
         if (wrap == TextureWrap::clamp_to_edge)
             i = i < -1 ? -1 : (i > size ? size : i);
         else
@@ -88,10 +87,11 @@ ITEM3D_HOST_DEVICE inline TextureTaps texture_taps(const TextureLevel& level, fl
             fy};
 }
 
-/// How a pixel's footprint is covered: probes along its longer axis, each between two levels.
+/// Anisotropic filter of a pixel's footprint: probes along its longer axis, each between two
+/// levels.
 struct TextureFilter {
     int probes;
-    float step_u, step_v;  ///< from one probe to the next
+    float step_u, step_v;  ///< UV step between probes
     int level;
     float fraction;  ///< weight of level + 1
 };
@@ -103,7 +103,7 @@ ITEM3D_HOST_DEVICE inline TextureFilter texture_filter(const TextureParameters& 
     const float* f = p.footprint + 4 * index;
     const auto width = static_cast<float>(p.levels[0].width);
     const auto height = static_cast<float>(p.levels[0].height);
-    // Columns of the Jacobian in texels; its singular values are the ellipse's half axes.
+    // Columns of the Jacobian in texels; its singular values are the ellipse's semi-axes.
     const float ax = f[0] * width, ay = f[1] * height, bx = f[2] * width, by = f[3] * height;
     const float xx = ax * ax + bx * bx, yy = ay * ay + by * by, xy = ax * ay + bx * by;
     const float mean = 0.5f * (xx + yy), half = 0.5f * (xx - yy);
@@ -134,7 +134,7 @@ ITEM3D_HOST_DEVICE inline TextureFilter texture_filter(const TextureParameters& 
     return filter;
 }
 
-/// The one texel that the point lies in.
+/// Returns the single texel that contains the point.
 ITEM3D_HOST_DEVICE inline TextureTaps nearest_taps(const TextureParameters& p, std::int64_t index) {
     TextureTaps taps =
         texture_taps(p.levels[0], p.uv[2 * index], p.uv[2 * index + 1], p.wrap_u, p.wrap_v);
@@ -147,7 +147,7 @@ ITEM3D_HOST_DEVICE inline TextureTaps nearest_taps(const TextureParameters& p, s
     return taps;
 }
 
-/// Calls f(level, taps, weight) for each bilinear lookup whose weighted sum is the value.
+/// Calls f(level, taps, weight) for each bilinear lookup of the weighted sum.
 template <typename F>
 ITEM3D_HOST_DEVICE inline void for_each_lookup(const TextureParameters& p, std::int64_t index,
                                                const F& f) {
@@ -171,7 +171,7 @@ ITEM3D_HOST_DEVICE inline void for_each_lookup(const TextureParameters& p, std::
     }
 }
 
-/// Channels: their number where it is known when compiling, else 0.
+/// Channels: their number if known at compile time, else 0.
 template <int Channels>
 ITEM3D_HOST_DEVICE inline void texture_sum(const TextureParameters& p, std::int64_t index,
                                            float* values) {
@@ -201,12 +201,12 @@ ITEM3D_HOST_DEVICE inline void texture_forward(const TextureParameters& p, std::
     }
 }
 
-/// From a level to the next, whose texels are the means of 2 x 2.
+/// Parameters of halving: texels of the next level are means of 2 x 2.
 struct HalveParameters {
-    const float* in;  ///< the fine level [2H, 2W, C]; backwards the coarse one's gradient [H, W, C]
+    const float* in;  ///< the fine level [2H, 2W, C]; backward: the coarse one's gradient [H, W, C]
     int fine_width;   ///< 2W
     int channels;     ///< C
-    float* out;       ///< the coarse level; backwards the fine one's gradient
+    float* out;       ///< the coarse level; backward: the fine one's gradient
 };
 
 /// index: y * W + x of the coarse level.
@@ -220,7 +220,7 @@ ITEM3D_HOST_DEVICE inline void halve_texture(const HalveParameters& p, std::int6
         out[c] = 0.25f * ((above[c] + above[c + channels]) + (below[c] + below[c + channels]));
 }
 
-/// The gradient of the four texels that coarse texel `index` is the mean of.
+/// Writes the gradient of the four texels whose mean is coarse texel `index`.
 ITEM3D_HOST_DEVICE inline void halve_texture_backward(const HalveParameters& p,
                                                       std::int64_t index) {
     const int channels = p.channels;
@@ -232,7 +232,7 @@ ITEM3D_HOST_DEVICE inline void halve_texture_backward(const HalveParameters& p,
         above[c] = above[c + channels] = below[c] = below[c + channels] = 0.25f * in[c];
 }
 
-/// Adds to the levels' gradients, each from its `first` on.
+/// Adds to the levels' gradients, at the offsets `first`.
 ITEM3D_HOST_DEVICE inline void texture_backward(const TextureParameters& p, std::int64_t index,
                                                 const float* value_gradient,
                                                 const Accumulator& texel_gradient) {
@@ -245,7 +245,7 @@ ITEM3D_HOST_DEVICE inline void texture_backward(const TextureParameters& p, std:
     });
 }
 
-/// Writes uv_gradient [P, 2]; the footprint is held still.
+/// Writes uv_gradient [P, 2]; the footprint counts as constant.
 ITEM3D_HOST_DEVICE inline void texture_uv_backward(const TextureParameters& p, std::int64_t index,
                                                    const float* value_gradient,
                                                    float* uv_gradient) {

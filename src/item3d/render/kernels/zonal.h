@@ -1,13 +1,14 @@
-// Zonal kernels on the sphere: sums whose weight depends on the angle between directions alone.
+// Zonal kernels on the sphere: weighted sums whose weight depends only on the angle between
+// directions.
 //
 // Prefiltering for n = v = r (Karis 2013) weighs the radiance from l with D(h) (n.l), and there
 // (n.h)^2 = (1 + n.l) / 2, so GGX becomes such a zonal kernel: the sum over all texels within reach
-// can be written as a plain gather, and, the kernel being symmetric, so can its transpose. Wide
-// lobes on fine maps are summed over a pyramid: near texels at full resolution, the smooth rest on
-// coarser levels (multilevel summation, Brandt and Lubrecht 1990; Hardy et al. 2009).
+// is a plain gather, and, since the kernel is symmetric, so is its transpose. Wide lobes on fine
+// maps are summed over a pyramid: near texels at full resolution, the smooth rest on coarser levels
+// (multilevel summation, Brandt and Lubrecht 1990; Hardy et al. 2009).
 //
-// The sums of a texel, as a device's thread makes them. A processor's vectors make those of many
-// together: zonal_lanes.h.
+// This file has the sums of one texel, for a device's thread; zonal_lanes.h has those of several
+// texels at once, for a processor's vectors.
 #pragma once
 
 #include "item3d/core/host_device.h"
@@ -21,21 +22,22 @@ namespace item3d::kernels {
 
 inline constexpr int most_planes = 19;
 
-/// A kernel of the squared chord d = 2 (1 - n.l), so that narrow lobes keep their digits:
+/// A kernel over the squared chord d = 2 (1 - n.l), which keeps the precision of narrow lobes:
 ///   k(d) = max(0, profile(d) - floor), or within a cap d < inner the parabola `inner_cap`,
 ///          less the parabola `outer_cap`; 0 from `outer` on.
-/// profile is GGX times the cosine, and falls with d. The caps cut a kernel into a narrow
+///
+/// profile is GGX times the cosine, and decreases with d. The caps split a kernel into a narrow
 /// part for a fine grid and a smooth rest for a coarser one.
 struct ZonalKernel {
     bool cosine;         ///< k = |n.l| instead
     float alpha2;        ///< GGX: alpha^2
-    float floor;         ///< profile at the lobe's edge, so that the kernel ends without a step
-    float inner = -1;    ///< below 0: no cap there, whatever rounding makes of a chord of 0
+    float floor;         ///< profile at the lobe's edge, so that the kernel is continuous
+    float inner = -1;    ///< negative: no cap, whatever rounding makes of a chord of 0
     float inner_cap[3];  ///< coefficients of 1, d, d^2
     float outer;
     float outer_cap[3];
 
-    /// Real: float, or lanes of them.
+    /// Real: float, or a vector of floats.
     template <typename Real>
     ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE Real profile(Real d) const {
         const Real c = 1 - 0.5f * d;
@@ -50,23 +52,24 @@ struct ZonalKernel {
         const Real rest = outer_cap[0] + d * (outer_cap[1] + d * outer_cap[2]);
         return d < outer ? (d < inner ? cap : kernel) - rest : Real{};
     }
-    /// Half angle of the cone outside which k = 0.
+    /// Returns the half angle of the cone outside which k = 0.
     ITEM3D_HOST_DEVICE float reach() const {
         const float sine = 0.5f * std::sqrt(outer);
         return 2 * std::asin(sine < 1 ? sine : 1.0f);
     }
 };
 
-/// Half-open range of texels of a face whose coordinate can be within a cone. along, normal: the
-/// cone axis' components along that coordinate and the face's normal; sine: of the cone's half
-/// angle.
+/// Half-open range of texels of a face whose coordinate can be within a cone. along, normal:
+/// components of the cone's axis along that coordinate and along the face's normal; sine: of the
+/// cone's half angle.
 struct TexelRange {
     int begin, end;
 };
 ITEM3D_HOST_DEVICE inline TexelRange cone_range(float along, float normal, float sine, int size) {
     const float length2 = along * along + normal * normal;
     if (length2 <= sine * sine * 1.0001f) return {0, size};
-    // The axis in the plane of both, turned by the angle that the cone covers there to both sides.
+    // The axis projected onto the plane of both, turned to both sides by the cone's angle in that
+    // plane.
     const float turn_sine = sine / std::sqrt(length2);
     const float turn_cosine = std::sqrt(1 - turn_sine * turn_sine);
     const float low_normal = normal * turn_cosine + along * turn_sine;
@@ -85,19 +88,19 @@ ITEM3D_HOST_DEVICE inline TexelRange cone_range(float along, float normal, float
     if (low > 1 || high < -1) return {0, 0};
     low = low < -1 ? -1.0f : low;
     high = high > 1 ? 1.0f : high;
-    // Texels whose centre is inside, and a hundredth of a texel more.
+    // Texels whose centre is inside, plus a hundredth of a texel.
     const int begin = static_cast<int>((low + 1) * 0.5f * size + 0.49f);
     const int end = static_cast<int>((high + 1) * 0.5f * size + 0.51f);
     return {begin, end > size ? size : end};
 }
 
-/// Unit directions of the texels of face 0 and of its halo.
+/// Parameters of the unit directions of face 0's texels and halo.
 struct DirectionParameters {
     float* directions;  ///< [3, S + 2 halo, S + 2 halo]
     int size;
 };
 
-/// index: a texel, halos counted.
+/// index: a texel, halo included.
 ITEM3D_HOST_DEVICE inline void halo_texel_direction(const DirectionParameters& p,
                                                     std::int64_t index) {
     constexpr int halo = Planes::halo;
@@ -105,7 +108,7 @@ ITEM3D_HOST_DEVICE inline void halo_texel_direction(const DirectionParameters& p
     const std::int64_t row = size + 2 * halo;
     const int x = static_cast<int>(index % row) - halo, y = static_cast<int>(index / row) - halo;
     const bool off_x = x < 0 || x >= size, off_y = y < 0 || y >= size;
-    Vec3 d(0.0f);  // out of any near texel's reach
+    Vec3 d(0.0f);  // beyond the reach of near texels
     if (off_x && !off_y)
         d = halo_direction(0, x < 0 ? 0 : 1, y, x < 0 ? -x : x - size + 1, size);
     else if (off_y && !off_x)
@@ -117,17 +120,17 @@ ITEM3D_HOST_DEVICE inline void halo_texel_direction(const DirectionParameters& p
         p.directions[c * row * row + index] = d[c];
 }
 
-/// Sums of a kernel that reaches few texels, at the resolution of its source.
+/// Parameters of sums whose kernel reaches few texels, at the source's resolution.
 struct NearParameters {
     ZonalKernel kernel;
-    const float* directions;       ///< [3, ..] planes with halos: of face 0's texels, unit
-    std::int64_t direction_plane;  ///< floats from one of them to the next
-    ConstPlanes source;            ///< its halo filled
+    const float* directions;       ///< [3, ..] planes with halos: unit directions of face 0
+    std::int64_t direction_plane;  ///< floats between two of these planes
+    ConstPlanes source;            ///< with a filled halo
     float sine;                    ///< of the kernel's half angle
-    Planes out;                    ///< what a texel's sums are added to; unused by the lanes
+    Planes out;                    ///< planes to which sums are added; unused by zonal_lanes.h
 };
 
-/// Where those of texels [x, x + lanes) can lie: rows and columns from the first on.
+/// Window of the texels within reach of texels [x, x + lanes): offsets of rows and columns.
 struct NearWindow {
     TexelRange rows, columns;
 };
@@ -157,7 +160,7 @@ ITEM3D_HOST_DEVICE inline NearWindow near_window(const NearParameters& p, int ro
     return {inside(window.rows), inside(window.columns)};
 }
 
-/// One texel of all planes. index: row * S + column.
+/// Adds the sums at one texel of all planes. index: row * S + column.
 ITEM3D_HOST_DEVICE inline void add_near_sums(const NearParameters& p, std::int64_t index) {
     const int size = p.source.size;
     const int row = static_cast<int>(index / size), column = static_cast<int>(index % size);
@@ -185,10 +188,11 @@ ITEM3D_HOST_DEVICE inline void add_near_sums(const NearParameters& p, std::int64
         if (plane < p.source.count) p.out.row(plane, row)[column] += sums[plane];
 }
 
-/// Sums of a kernel of any reach between maps of any sizes.
+/// Parameters of sums with a kernel of any reach, between maps of any sizes.
 struct FarParameters {
     ZonalKernel kernel;
-    /// TurnedPlanes of the map: the kernel's values are then those of all of the output's faces.
+    /// Turned planes of the map (TurnParameters): the kernel's values then serve all faces of the
+    /// output.
     const float* source;
     int source_size;  ///< S, a multiple of 16
     int planes;       ///< at most 19
@@ -196,16 +200,17 @@ struct FarParameters {
     const float* centres;          ///< [S] texel_centre(i, S)
     const float* inverse_lengths;  ///< [S, S] of the texels' directions on a face
     float sine;                    ///< of the kernel's half angle, at most 1
-    float face_cut;  ///< faces whose centre is farther from n (cosine) are out of reach
+    float face_cut;  ///< smallest cosine between n and the centre of a face within reach
 };
 
-/// How the texels of a face lie when the cube is turned so that face `to` becomes face 0.
+/// Layout of a face's texels after a rotation of the cube that makes face `to` face 0.
 struct TurnedFace {
-    int face;  ///< where the texels come from
-    /// The source's index by a column and by a row of the turned face, and at its texel (0, 0).
+    int face;  ///< source of the texels
+    /// Steps of the source's index for a column and a row of the turned face, and index of texel
+    /// (0, 0).
     std::int64_t column_step, row_step, first;
 };
-/// row: floats from a row of the source to the next.
+/// row: floats between rows of the source.
 ITEM3D_HOST_DEVICE inline TurnedFace turned_face(int to, int face, int size, std::int64_t row) {
     const CubeFrame from = cube_frame(0), target = cube_frame(to), turned = cube_frame(face);
     const auto turn = [&](Vec3 d) {
@@ -215,7 +220,7 @@ ITEM3D_HOST_DEVICE inline TurnedFace turned_face(int to, int face, int size, std
     const Vec3 s = turn(turned.s), t = turn(turned.t), normal = turn(turned.normal);
     const int source = cube_face(normal);
     const CubeFrame frame = cube_frame(source);
-    // Each of these is -1, 0 or 1: the source's s and t by the turned face's.
+    // Derivatives, -1, 0 or 1, of the source's s and t with respect to the turned face's.
     const auto whole = [](float value) { return value > 0.5f ? 1 : (value < -0.5f ? -1 : 0); };
     const int ss = whole(glm::dot(frame.s, s)), st = whole(glm::dot(frame.s, t));
     const int ts = whole(glm::dot(frame.t, s)), tt = whole(glm::dot(frame.t, t));
@@ -223,8 +228,8 @@ ITEM3D_HOST_DEVICE inline TurnedFace turned_face(int to, int face, int size, std
     return {source, ss + ts * row, st + tt * row, first_row * row + first_column};
 }
 
-/// Floats from a row to the next, and from a plane to the next, of FarParameters::source: sizes are
-/// powers of two, and without padding all rows and planes would compete for the same lines of the
+/// Returns the floats between rows (far_row) and planes (far_plane) of FarParameters::source. Sizes
+/// are powers of two, and without padding all rows and planes would map to the same lines of the
 /// cache.
 ITEM3D_HOST_DEVICE inline std::int64_t far_row(int size) {
     return size + 16;
@@ -236,7 +241,7 @@ ITEM3D_HOST_DEVICE inline std::int64_t far_plane(int size) {
 struct TurnParameters {
     ConstPlanes map;
     float* turned;  ///< FarParameters::source
-    int faces;      ///< of the output, 6 or 3: in steps of 6 / faces
+    int faces;      ///< faces of the output, 6 or 3: in steps of 6 / faces
     int length;
 };
 
@@ -255,12 +260,13 @@ ITEM3D_HOST_DEVICE inline void turn_planes(const TurnParameters& p, std::int64_t
         out[x] = in[x * from.column_step];
 }
 
-/// What of a face is within reach of an output texel's direction n.
+/// Part of a face within reach of an output texel's direction n.
 struct FaceReach {
     float along_s, along_t, normal;  ///< n in the face's frame
     TexelRange rows, columns;
 };
-/// AbsoluteCosine: all of the face. Rows are empty where nothing is in reach.
+/// Returns the part within reach; its rows are empty where there is none. AbsoluteCosine: the whole
+/// face.
 template <bool AbsoluteCosine>
 ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline FaceReach face_reach(const FarParameters& p,
                                                                     int face, Vec3 n) {
@@ -277,8 +283,8 @@ ITEM3D_HOST_DEVICE ITEM3D_ALWAYS_INLINE inline FaceReach face_reach(const FarPar
     return reach;
 }
 
-/// One texel of all faces of the output; index: row * R + column. AbsoluteCosine: k = |n.l| over
-/// the faces 0, 2 and 4 alone.
+/// Sums one texel for all faces of the output. index: row * R + column. AbsoluteCosine: k = |n.l|
+/// over the faces 0, 2 and 4 only.
 template <bool AbsoluteCosine>
 ITEM3D_HOST_DEVICE inline void far_sums_of_texel(const FarParameters& p, std::int64_t index) {
     const int out_row = static_cast<int>(index / p.out.size);

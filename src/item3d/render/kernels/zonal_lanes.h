@@ -1,4 +1,4 @@
-// Zonal sums of adjacent texels together, for a processor's vectors: the sums of zonal.h.
+// Zonal sums (zonal.h) of several adjacent texels at once, for a processor's vectors.
 #pragma once
 
 #include "item3d/render/kernels/zonal.h"
@@ -8,10 +8,11 @@
 
 namespace item3d::kernels {
 
-/// N floats at once. Written as a vector where the compiler does not make one by itself.
+/// N floats. An explicit vector, because the compiler does not always vectorise by itself.
 template <int N>
 struct Vector {
-    typedef float Type __attribute__((vector_size(4 * N)));  // GCC 12 loses it in a `using`
+    typedef float Type __attribute__((vector_size(4 * N)));  // GCC 12 loses the attribute in a
+                                                             // `using`
 };
 template <int N>
 using Lanes = typename Vector<N>::Type;
@@ -27,10 +28,10 @@ ITEM3D_ALWAYS_INLINE inline void store_lanes(float* values, const Lanes<N>& lane
     __builtin_memcpy(values, &lanes, sizeof lanes);
 }
 
-/// Texels of a row that are worked on together.
+/// Number of texels of a row that are processed together.
 inline constexpr int row_tile = 32;
 
-/// Whether a lane is below the limit (1) or none (0).
+/// Returns 1 if any lane is below the limit, else 0.
 template <int N>
 ITEM3D_ALWAYS_INLINE inline int any_below(const Lanes<N>& lanes, float limit) {
     const auto below = lanes < limit;
@@ -42,18 +43,18 @@ ITEM3D_ALWAYS_INLINE inline int any_below(const Lanes<N>& lanes, float limit) {
     return any != 0;
 }
 
-/// Two rows of all planes, one above the other mirrored at a face's middle.
+/// Sums of two rows of all planes, mirror images of each other about a face's middle.
 struct NearSums {
     float rows[2][most_planes][row_tile];
 };
 
-/// The texels within reach of N adjacent ones of a row, relative to the first of these.
+/// Taps within reach of N adjacent texels of a row, relative to the first of them.
 template <int N>
 struct NearTaps {
     static constexpr int halo = Planes::halo, most = (2 * halo + 1) * (2 * halo + 1);
     int count;
     Lanes<N> weight[most];
-    /// In a plane, and for the row that is mirrored at the face's middle.
+    /// Offset in a plane, and the same for the mirrored row.
     std::int32_t place[most], mirrored[most];
 };
 
@@ -61,7 +62,7 @@ template <int N>
 ITEM3D_ALWAYS_INLINE inline void near_taps(const NearParameters& p, int row, int x,
                                            NearTaps<N>& taps) {
     const NearWindow window = near_window(p, row, x, N);
-    // A copy: the compiler makes vectors of the lanes only if nothing there can be aliased.
+    // A copy: without it, possible aliasing keeps the compiler from vectorising.
     const ZonalKernel kernel = p.kernel;
     const std::int64_t row_step = p.source.row_step();
     const float* centre = p.directions + row * row_step + x;
@@ -85,8 +86,8 @@ ITEM3D_ALWAYS_INLINE inline void near_taps(const NearParameters& p, int row, int
     taps.count = count;
 }
 
-/// Adds the sums of Count planes from one on, at N texels of both rows. The lanes are adjacent
-/// texels: they share the taps' places, and all faces and both rows share the weights.
+/// Adds the sums of Count planes at N texels of both rows. The lanes are adjacent texels, which
+/// share the taps' offsets; all faces and both rows share the weights.
 template <int N, int Count>
 ITEM3D_ALWAYS_INLINE inline void add_near(const NearTaps<N>& taps, const float* upper,
                                           const float* lower, std::int64_t plane_step,
@@ -111,8 +112,8 @@ ITEM3D_ALWAYS_INLINE inline void add_near(const NearTaps<N>& taps, const float* 
     }
 }
 
-/// Texels [column, column + row_tile) of the rows `row` and S - 1 - row. coarse: a map of half the
-/// size, upsampled and added; null: none.
+/// Sums texels [column, column + row_tile) of the rows `row` and S - 1 - row. coarse: a map of half
+/// the size, upsampled and added; null: none.
 template <int N>
 ITEM3D_ALWAYS_INLINE inline void near_sums(const NearParameters& p, const ConstPlanes* coarse,
                                            int row, int column, NearSums& sums) {
@@ -139,8 +140,8 @@ ITEM3D_ALWAYS_INLINE inline void near_sums(const NearParameters& p, const ConstP
                                lower + plane * plane_step + group, plane_step,
                                sums.rows[0][plane] + group, sums.rows[1][plane] + group);
     };
-    // Few planes at a time, whose neighbourhood stays in the first cache while all groups read it;
-    // four, so that no sum waits for its last.
+    // Few planes at a time, whose neighbourhood stays in the L1 cache while all groups read it;
+    // four, so that additions do not wait for each other.
     for (int plane = 0; plane < 16; plane += 4)
         add(std::integral_constant<int, 4>{}, plane);
     if (p.source.count == 19)
@@ -149,17 +150,17 @@ ITEM3D_ALWAYS_INLINE inline void near_sums(const NearParameters& p, const ConstP
         add(std::integral_constant<int, 2>{}, 16);
 }
 
-/// Kernel values of a few rows of texels, and what they weigh, for all planes of the output.
+/// Kernel values of several rows of texels, and their weighted sums for all planes of the output.
 template <int N>
 struct FarBatch {
     static constexpr int most_weights = 4096, most_rows = 128;
     Lanes<N> weights[most_weights / N];
     std::int64_t first[most_rows];  ///< index into a plane
-    int groups[most_rows];          ///< of lanes
+    int groups[most_rows];          ///< number of vectors
     int rows = 0, used = 0;
-    Lanes<N> sums[most_planes] = {};  ///< a sum for every N-th texel
+    Lanes<N> sums[most_planes] = {};  ///< one sum for every N-th texel
 
-    /// Count planes from `plane` on, so many that none waits for its last sum.
+    /// Adds Count planes from `plane` on; enough that additions do not wait for each other.
     template <int Count>
     ITEM3D_ALWAYS_INLINE void add(const FarParameters& p, int plane) {
         const std::int64_t step = far_plane(p.source_size);
@@ -187,9 +188,9 @@ struct FarBatch {
     }
 };
 
-/// One texel of all faces of the output; index: row * R + column. Rows and tables have a multiple
-/// of N texels, and those outside the cone add nothing, so ranges are rounded out to whole groups
-/// of lanes. AbsoluteCosine: k = |n.l| over the faces 0, 2 and 4 alone.
+/// Sums one texel for all faces of the output. index: row * R + column. Rows and tables have a
+/// multiple of N texels, and those outside the cone add nothing, so ranges are rounded out to whole
+/// vectors. AbsoluteCosine: k = |n.l| over the faces 0, 2 and 4 only.
 template <int N, bool AbsoluteCosine>
 ITEM3D_ALWAYS_INLINE inline void far_sums(const FarParameters& p, std::int64_t index) {
     const int out_row = static_cast<int>(index / p.out.size);

@@ -18,7 +18,7 @@ namespace {
 constexpr float dielectric = 0.04f;
 constexpr double golden_ratio = 0.6180339887498949;
 
-/// A frame around a direction.
+/// Orthonormal frame around a direction.
 struct Frame {
     Vec3 up, side, other;
     explicit Frame(Vec3 direction) : up(direction) {
@@ -32,7 +32,7 @@ struct Frame {
     }
 };
 
-/// Weights of a grid's points around a place of its triangle.
+/// Interpolation weights of a grid's points at a point of its triangle.
 struct GridPlace {
     std::int64_t points[3];
     float weights[3];
@@ -58,7 +58,7 @@ Vec3 load_row(const float* rows, std::int64_t row) {
     return Vec3(rows[3 * row], rows[3 * row + 1], rows[3 * row + 2]);
 }
 
-/// Light of radiance 1 from everywhere.
+/// Returns a light of radiance 1 from all directions.
 const EnvironmentLight& white_light() {
     static const EnvironmentLight light = [] {
         const at::NoGradGuard no_gradient;
@@ -73,7 +73,7 @@ struct IndirectLight::State {
     IndirectLightOptions options;
     OcclusionGrid grid;
     RayScene scene;
-    Raster places;        ///< of all points, one row
+    Raster places;        ///< all grid points, as one row
     Surface surfaces[2];  ///< at all points: on the normal's side, and behind
     std::vector<Vec3> face;
     at::Tensor outgoing, bounce;  ///< [points, 2, 3]
@@ -117,7 +117,7 @@ struct IndirectLight::State {
         bounce = at::zeros({count, 2, 3});
     }
 
-    /// Position at a place of a triangle, as it was when this was made.
+    /// Returns the position of a point of a triangle at the time of construction.
     Vec3 position(std::size_t triangle, const float* barycentrics) const {
         const float* points = surfaces[0].position.const_data_ptr<float>();
         const int steps = grid.resolution[triangle];
@@ -128,7 +128,7 @@ struct IndirectLight::State {
         return b0 * corner(steps, 0) + b1 * corner(0, steps) + (1 - b0 - b1) * corner(0, 0);
     }
 
-    /// Radiance towards where a ray came from; negative red: nothing is hit.
+    /// Returns the radiance towards the ray's origin; negative red if nothing is hit.
     Vec3 seen(Vec3 origin, Vec3 direction, std::uint64_t chance) const {
         const RayScene::Hit hit = scene.nearest(origin, direction, chance);
         if (hit.triangle < 0) return Vec3(-1.0f);
@@ -162,10 +162,10 @@ struct IndirectLight::State {
                 Vec3 sum(0.0f);
                 bool is_open = false;
                 int traced = 0;
-                // Any first part of the sequence is spread evenly.
+                // Every prefix of the sequence is evenly distributed.
                 const double first = random.uniform();
                 for (int ray = 0; ray < options.rays; ++ray) {
-                    // Nobody sees the inside of a closed shape.
+                    // The inside of a closed shape is never seen.
                     if (ray == options.rays / 4 && ray >= 16 && !is_open) break;
                     ++traced;
                     const double share = std::fmod(first + golden_ratio * ray, 1.0);
@@ -253,7 +253,8 @@ IndirectLight::Reflection IndirectLight::reflect(const Raster& raster, const Sur
             Vec3 up = state.face[static_cast<std::size_t>(state.grid.first[t])];
             if (glm::dot(up, to_view) < 0) up = -up;
             const Frame frame(load_row(normals.const_data_ptr<float>(), i));
-            // A surface that has moved since, however little, would begin below its old place.
+            // The stored position, because a surface that has moved since might start below its old
+            // place.
             const Vec3 origin =
                 state.position(t, barycentrics.const_data_ptr<float>() + 2 * pixel) +
                 state.offset * up;
@@ -269,7 +270,8 @@ IndirectLight::Reflection IndirectLight::reflect(const Raster& raster, const Sur
                 const float cosine = std::sqrt((1 - share) / (1 + (width * width - 1) * share));
                 const Vec3 half = frame.at(cosine, 2 * pi * turn);
                 const Vec3 direction = 2 * glm::dot(half, to_view) * half - to_view;
-                // What the shading normal mirrors below the triangle is no obstacle's doing.
+                // Directions of the shading normal's lobe below the triangle do not count as
+                // occluded.
                 const Vec3 radiance = glm::dot(direction, up) > 0
                                           ? state.seen(origin, direction, random.bits())
                                           : Vec3(-1.0f);
@@ -327,7 +329,7 @@ at::Tensor shade_indirect(const Surface& surface, const MaterialSample& material
     MaterialSample open = material, mirror = material;
     open.emissive = mirror.emissive = at::Tensor();
     open.orm = at::cat({ones, roughness, metallic}, 1);
-    // A metal of this F0 has the same mirrored part, and no other.
+    // A metal of this F0 has the same specular part, and no diffuse one.
     mirror.base_color = dielectric + (material.base_color - dielectric) * metallic;
     mirror.orm = at::cat({ones, roughness, ones}, 1);
     const at::Tensor mirrored = shade(surface, mirror, light, options);

@@ -20,16 +20,16 @@ namespace item3d {
 namespace {
 
 constexpr int fewest_rays = 32;
-/// Of all points and sides together, before points get fewer than they were asked for.
+/// Number of rays of all points and sides from which on each point gets fewer than requested.
 constexpr std::int64_t ray_budget = std::int64_t{1} << 24;
 
-/// Of the triangles that meet at a point, so many are looked at.
+/// Largest number of a point's triangles from which rays start.
 constexpr std::int64_t most_members = 16;
 
 using Bits2 = std::array<std::uint32_t, 2>;
 
-/// A point of the (0, 2)-sequence of van der Corput and Sobol', as bits behind the point: any
-/// aligned power of two of them is spread evenly over the unit square.
+/// Returns a point of the (0, 2)-sequence of van der Corput and Sobol', as fixed-point fractions:
+/// any aligned block of 2^k of its points is evenly distributed over the unit square.
 Bits2 sequence_point(std::uint32_t index) {
     std::uint32_t x = 0, y = 0, direction = 1u << 31;
     for (std::uint32_t bits = index, place = 1u << 31; bits != 0; bits >>= 1, place >>= 1) {
@@ -42,15 +42,15 @@ Bits2 sequence_point(std::uint32_t index) {
     return {x, y};
 }
 
-/// With its digits scrambled, which keeps the points as evenly spread.
+/// Returns the point with its digits scrambled, which preserves the even distribution.
 Vec2 scrambled(Bits2 point, std::uint64_t scramble) {
     const std::uint32_t x = point[0] ^ static_cast<std::uint32_t>(scramble);
     const std::uint32_t y = point[1] ^ static_cast<std::uint32_t>(scramble >> 32);
-    // 24 bits are what a float holds below 1.
+    // A float below 1 holds 24 bits.
     return Vec2(static_cast<float>(x >> 8), static_cast<float>(y >> 8)) * 0x1.0p-24f;
 }
 
-/// Where rays start: the point, and a frame around its normal.
+/// Origin of rays: a point, and a frame around its normal.
 struct Start {
     Vec3 position, face;
     Vec3 normal, side, other_side;
@@ -66,7 +66,7 @@ struct Start {
         other_side = glm::cross(normal, side);
     }
 
-    /// A direction around the normal, with the density cos / pi.
+    /// Returns a direction around the normal, with the density cos / pi.
     Vec3 cosine_direction(Vec2 square) const {
         const float radius = std::sqrt(square.x), angle = 2 * pi * square.y;
         return radius * std::cos(angle) * side + radius * std::sin(angle) * other_side +
@@ -74,7 +74,7 @@ struct Start {
     }
 };
 
-/// What traces the rays of one group of points after another.
+/// Traces the rays of groups of points.
 class Tracer {
   public:
     Tracer(const OcclusionGrid& grid, const RayScene& scene, const OcclusionOptions& options)
@@ -85,13 +85,14 @@ class Tracer {
         const std::int64_t share = ray_budget / std::max<std::int64_t>(1, 2 * groups);
         rays_ = static_cast<int>(
             std::clamp<std::int64_t>(share, std::min(fewest_rays, options.rays), options.rays));
-        // Enough for any ray to leave the triangle that it starts from, whatever the rounding.
+        // Large enough for a ray to leave its own triangle despite rounding.
         offset_ = std::max(5e-5f * grid.diagonal, 1e-6f * grid.farthest);
         for (int ray = 0; ray < rays_; ++ray)
             sequence_.push_back(sequence_point(static_cast<std::uint32_t>(ray)));
     }
 
-    /// The share of light that reaches the points of a group, on the normal's side or behind it.
+    /// Returns the share of light that reaches the points of a group, on the normal's side or
+    /// behind it.
     float openness(std::size_t group, bool behind) const {
         const std::int64_t begin = grid_.begin[group], members = grid_.begin[group + 1] - begin;
         const std::uint64_t key =
@@ -99,7 +100,7 @@ class Tracer {
         Random random(seed_, key ^ (behind ? 1u : 0u));
         const std::uint64_t scramble = random.bits(), choice = random.bits();
 
-        // Where points of several triangles meet, each has its own plane to start from.
+        // Rays start from the planes of all triangles that share the point.
         std::array<Start, most_members> starts;
         const std::int64_t chosen = std::min<std::int64_t>(members, most_members);
         for (std::int64_t k = 0; k < chosen; ++k) {
@@ -109,7 +110,7 @@ class Tracer {
 
         double arrives = 0, comes = 0;
         for (int ray = 0; ray < rays_; ++ray) {
-            // A deep crevice and the inside of a closed shape need not be known better.
+            // Deep crevices and the inside of closed shapes need no more precision.
             if (ray == rays_ / 4 && ray >= 16 && arrives == 0 && comes > 0) return 0;
             const std::uint64_t bits = mix_bits(choice ^ static_cast<std::uint64_t>(ray));
             const Start& start =
@@ -117,7 +118,8 @@ class Tracer {
             const Vec3 up = start.face;
             if (up == Vec3(0.0f)) continue;
             const Sample sample = direction(start, static_cast<std::size_t>(ray), scramble);
-            // What the interpolated normal sees below the triangle is no obstacle's doing.
+            // Directions of the interpolated normal's hemisphere below the triangle do not count as
+            // occluded.
             if (!(sample.weight > 0) || !(glm::dot(sample.direction, up) > 0)) continue;
             comes += sample.weight;
             if (!scene_.blocked(start.position + offset_ * up, sample.direction, bits))
@@ -132,8 +134,8 @@ class Tracer {
         float weight;
     };
 
-    /// With a light, half of the rays follow it and half the cosine; each is weighed by what both
-    /// halves together send that way (the balance heuristic of Veach 1997).
+    /// Draws a direction. With a light, half of the rays follow it and half the cosine; each is
+    /// weighted by the sum of both densities (the balance heuristic of Veach 1997).
     Sample direction(const Start& start, std::size_t ray, std::uint64_t scramble) const {
         if (!light_) return {start.cosine_direction(scrambled(sequence_[ray], scramble)), 1.0f};
         const bool follows_cosine = ray % 2 == 0;
@@ -155,7 +157,7 @@ class Tracer {
     const RayScene& scene_;
     std::optional<OcclusionLight> light_;
     std::uint64_t seed_;
-    std::vector<Bits2> sequence_;  ///< a point for each ray
+    std::vector<Bits2> sequence_;  ///< one point for each ray
     int rays_ = 0;
     float offset_ = 0;
 };

@@ -33,7 +33,7 @@ std::array<std::int64_t, 3> corners(const OcclusionGrid& grid, std::int64_t t) {
     return {at[0], at[1], at[2]};
 }
 
-/// Steps of at most `spacing` along the longest edge.
+/// Returns the number of steps along the longest edge, of at most `spacing` each.
 int resolution_for(const OcclusionGrid& grid, std::int64_t t, float spacing) {
     const auto c = corners(grid, t);
     float longest = 0;
@@ -46,7 +46,7 @@ int resolution_for(const OcclusionGrid& grid, std::int64_t t, float spacing) {
     return resolution;
 }
 
-/// Column, row and what is left to the third corner, of a point of a triangle's grid.
+/// Returns column, row and remainder (steps to the third corner) of a point of a triangle's grid.
 std::array<int, 3> grid_place(int resolution, std::int64_t index) {
     int row = 0;
     while (index > resolution - row) {
@@ -57,8 +57,8 @@ std::array<int, 3> grid_place(int resolution, std::int64_t index) {
     return {column, row, resolution - column - row};
 }
 
-/// The weighted sum of three corners' values in an order that does not depend on the triangle, so
-/// that triangles which share an edge get the same bits along it.
+/// Returns the weighted sum of three corners' values in an order that does not depend on the
+/// triangle, so that triangles which share an edge get the same bits along it.
 Vec3 ordered_sum(std::array<Vec3, 3> values, std::array<int, 3> weights, int resolution) {
     std::array<std::size_t, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -91,7 +91,7 @@ Corners load_corners(const OcclusionGrid& grid, std::int64_t t) {
     return out;
 }
 
-/// Unit; the face's own where the vertices have none.
+/// Returns the unit normal; the face's own where the vertices have none.
 Vec3 normal_at(const Corners& c, std::array<int, 3> place, int resolution) {
     const Vec3 normal = ordered_sum(c.normals, place, resolution);
     const float length = glm::length(normal);
@@ -100,7 +100,7 @@ Vec3 normal_at(const Corners& c, std::array<int, 3> place, int resolution) {
 
 std::uint64_t hash(Vec3 position, Vec3 normal) {
     std::uint64_t bits = 0;
-    // Adding zero makes one zero of the two.
+    // Adding zero turns -0 into 0.
     for (const float value : {position.x, position.y, position.z, normal.x, normal.y, normal.z})
         bits = mix_bits(bits ^ std::bit_cast<std::uint32_t>(value + 0.0f));
     return bits;
@@ -113,8 +113,8 @@ void choose_resolutions(OcclusionGrid& grid, float spacing, std::int64_t most_po
         parallel_for("occlusion resolution", count, [&](std::int64_t t) {
             grid.resolution[static_cast<std::size_t>(t)] = resolution_for(grid, t, step);
         });
-        // A point inside belongs to one triangle, others are shared: half a square of the
-        // resolution a triangle.
+        // Inner points belong to one triangle, others are shared: about resolution^2 / 2 points a
+        // triangle.
         double points = 0;
         bool coarsest = true;
         for (const std::int32_t resolution : grid.resolution) {
@@ -134,7 +134,7 @@ OcclusionGrid::Point OcclusionGrid::point(std::int64_t index) const {
     const auto place = grid_place(steps, index - first[t]);
     const Vec3 center = (c.positions[0] + c.positions[1] + c.positions[2]) / 3.0f;
     const Vec3 on_edge = ordered_sum(c.positions, place, steps);
-    constexpr float inwards = 0.05f;  // of a step
+    constexpr float inwards = 0.05f;  // parts of a step
     Point point;
     point.position = on_edge + (inwards / static_cast<float>(steps)) * (center - on_edge);
     point.normal = normal_at(c, place, steps);
@@ -185,8 +185,8 @@ OcclusionGrid make_occlusion_grid(const Geometry& geometry, float spacing,
         },
         64);
 
-    // 64 bits of hash stand for the position and normal themselves: among ten million points, two
-    // that differ share one in a run out of 400,000, and then get each other's value.
+    // A 64-bit hash stands for position and normal: among ten million points, the probability that
+    // two different ones collide, and share a value, is 1 in 400,000.
     grid.member.resize(points);
     std::iota(grid.member.begin(), grid.member.end(), std::int64_t{0});
     const auto key = [&](std::int64_t i) { return grid.key[static_cast<std::size_t>(i)]; };

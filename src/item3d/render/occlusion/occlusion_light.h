@@ -1,4 +1,4 @@
-// An equirectangular light to draw directions from, as often as they are bright.
+// An equirectangular light as a distribution of directions, with density proportional to luminance.
 #pragma once
 
 #include "item3d/lighting/environment.h"
@@ -13,7 +13,7 @@ namespace item3d {
 
 class OcclusionLight {
   public:
-    /// light: RGB (more channels are ignored), linear. Negative and unbounded values count as 0.
+    /// light: RGB (more channels are ignored), linear. Negative and infinite values count as 0.
     explicit OcclusionLight(const Image& light) : width_(light.width), height_(light.height) {
         for (int y = 0; y <= height_; ++y)
             row_cosine_.push_back(std::cos(pi * static_cast<double>(y) / height_));
@@ -38,7 +38,8 @@ class OcclusionLight {
     }
 
     bool dark() const { return !(sums_.back() > 0); }
-    /// Integral of luminance over all directions: luminance(d) / total() is the density of `d`.
+    /// Returns the integral of luminance over all directions: luminance(d) / total() is the density
+    /// of `d`.
     float total() const { return static_cast<float>(sums_.back()); }
 
     float luminance(Vec3 direction) const {
@@ -53,7 +54,7 @@ class OcclusionLight {
         Vec3 direction;
         float luminance;
     };
-    /// square: in [0, 1)^2.
+    /// Draws a direction. square: uniform in [0, 1)^2.
     Drawn draw(Vec2 square) const {
         const double wanted = square.x * sums_.back();
         const auto part = static_cast<std::size_t>(square.x * static_cast<float>(guide_parts));
@@ -65,13 +66,13 @@ class OcclusionLight {
         const double before = index > 0 ? sums_[index - 1] : 0.0;
         const double along =
             sums_[index] > before ? (wanted - before) / (sums_[index] - before) : 0.5;
-        // Even in the cosine is even in solid angle.
+        // Uniform in the cosine is uniform in solid angle.
         const double cosine =
             row_cosine_[y] + (row_cosine_[y + 1] - row_cosine_[y]) * static_cast<double>(square.y);
         const auto sine = static_cast<float>(std::sqrt(std::max(0.0, 1 - cosine * cosine)));
         const auto u =
             static_cast<float>((static_cast<double>(x) + std::clamp(along, 0.0, 1.0)) / width_);
-        // equirectangular_direction(), which would take the cosine's angle and its cosine again.
+        // equirectangular_direction() would compute the angle of the cosine, and its cosine again.
         const float azimuth = 2 * pi * (u - 0.5f);
         return {
             Vec3(sine * std::sin(azimuth), static_cast<float>(cosine), -sine * std::cos(azimuth)),
@@ -79,10 +80,10 @@ class OcclusionLight {
     }
 
   private:
-    /// A power of two, so that a place in [0, 1) times it is exact.
+    /// A power of two, so that its product with a number in [0, 1) is exact.
     static constexpr std::size_t guide_parts = 4096;
 
-    /// The first of texels begin .. end - 1 up to which there is more light than `wanted`; or end.
+    /// Returns the first texel of begin .. end - 1 whose cumulative light exceeds `wanted`; or end.
     std::size_t first_above(double wanted, std::size_t begin, std::size_t end) const {
         const auto first = sums_.begin() + static_cast<std::ptrdiff_t>(begin);
         const auto last = sums_.begin() + static_cast<std::ptrdiff_t>(end);
@@ -94,10 +95,10 @@ class OcclusionLight {
     }
 
     int width_, height_;
-    std::vector<double> row_cosine_;  ///< of the polar angle at the top of each row, and below all
+    std::vector<double> row_cosine_;  ///< by row: cosine of its top's polar angle
     std::vector<float> luminance_;
-    std::vector<double> sums_;        ///< of luminance times solid angle, up to each texel
-    std::vector<std::size_t> guide_;  ///< where a search for each part of the light begins
+    std::vector<double> sums_;        ///< cumulative luminance times solid angle, by texel
+    std::vector<std::size_t> guide_;  ///< start of the search for each part of the light
 };
 
 }  // namespace item3d

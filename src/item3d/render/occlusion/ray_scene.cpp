@@ -16,7 +16,7 @@
 namespace item3d {
 namespace {
 
-/// What makes one material's triangles transparent.
+/// Transparency of one material's triangles.
 struct Transparency {
     Material::Alpha mode = Material::Alpha::opaque;
     float factor = 1, cutoff = 0.5f;
@@ -39,10 +39,10 @@ int wrapped(int i, int size, Wrap wrap) {
     return k < size ? k : period - 1 - k;
 }
 
-/// Bilinear or nearest, as the renderer's own look-up.
+/// Looks alpha up bilinearly or at the nearest texel, as the renderer does.
 float Transparency::at(Vec2 uv) const {
     if (alpha.empty()) return factor;
-    // Far outside the picture a float has no fraction left, and an int no room.
+    // Far outside the image a float has no fraction, and an int would overflow.
     const float x = std::clamp(uv.x * static_cast<float>(width) - 0.5f, -1e6f, 1e6f);
     const float y = std::clamp(uv.y * static_cast<float>(height) - 0.5f, -1e6f, 1e6f);
     if (!std::isfinite(x) || !std::isfinite(y)) return factor;
@@ -90,11 +90,11 @@ struct Context {
 };
 
 struct TransparentTriangles {
-    std::vector<std::int32_t> triangle;  ///< of each primitive of Embree's geometry
+    std::vector<std::int32_t> triangle;  ///< for each primitive of Embree's geometry
     std::vector<Transparency> materials;
     at::Tensor uvs, colors, corners, material;
 
-    /// Whether a ray goes through triangle `primitive` at the barycentrics u, v of its last two
+    /// True if a ray passes through triangle `primitive` at the barycentrics u, v of its last two
     /// corners.
     bool lets_through(unsigned primitive, float u, float v, std::uint64_t chance) const;
 };
@@ -117,7 +117,7 @@ bool TransparentTriangles::lets_through(unsigned primitive, float u, float v,
         materials[static_cast<std::size_t>(material.const_data_ptr<std::int32_t>()[t])];
     const float alpha = color_alpha * one.at(uv);
     if (one.mode == Material::Alpha::mask) return alpha < one.cutoff;
-    // Each triangle draws for itself, so that the order in which they are met does not matter.
+    // One random number for each triangle, so that the order of hits does not matter.
     return Random(chance, static_cast<std::uint64_t>(t)).uniform() >= static_cast<double>(alpha);
 }
 
@@ -146,7 +146,7 @@ RTCRay ray_from(Vec3 origin, Vec3 direction) {
     return ray;
 }
 
-/// Throws what Embree could not do since the last call.
+/// Throws on an error of Embree since the last call.
 void check_embree(RTCDevice device) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -159,7 +159,7 @@ struct RayScene::State {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     TransparentTriangles transparent;
-    std::vector<std::vector<std::int32_t>> triangles;  ///< of each of Embree's geometries
+    std::vector<std::vector<std::int32_t>> triangles;  ///< by Embree's geometries
 
     State() = default;
     State(const State&) = delete;
@@ -169,7 +169,7 @@ struct RayScene::State {
         if (device != nullptr) rtcReleaseDevice(device);
     }
 
-    /// Adds the triangles `chosen`, with the vertices copied as they are.
+    /// Adds the triangles `chosen`, with a copy of the vertices.
     void add(const at::Tensor& positions, const at::Tensor& corners,
              const std::vector<std::int32_t>& chosen, TransparentTriangles* filtered) {
         if (chosen.empty()) return;
@@ -227,7 +227,7 @@ RayScene::RayScene(const Geometry& geometry, const Model* model) {
     state->device = rtcNewDevice(nullptr);
     if (state->device == nullptr) throw ResourceError("occlusion: Embree finds no usable CPU");
     state->scene = rtcNewScene(state->device);
-    // Without the robust intersection rays slip through between triangles that share an edge.
+    // Without robust intersection, rays slip through between triangles that share an edge.
     rtcSetSceneFlags(state->scene, RTC_SCENE_FLAG_ROBUST);
     state->add(positions, transparent.corners, opaque, nullptr);
     state->add(positions, transparent.corners, transparent.triangle, &transparent);

@@ -12,7 +12,7 @@ using cuda::RenderTable;
 using kernels::HaloParameters;
 using kernels::ResizeParameters;
 
-/// Texels that a processor's thread resizes together.
+/// Number of texels that a processor's thread resizes together.
 constexpr int resized_run = 32;
 
 void upsample_into(CubePlanes& to, const CubePlanes& coarse, bool add) {

@@ -24,23 +24,24 @@ using kernels::ZonalKernel;
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-constexpr int coarsest_size = 16;                    ///< of what far texels are summed on
-constexpr int least_size = 16, largest_size = 1024;  ///< of an environment
+constexpr int coarsest_size = 16;                    ///< size of the map for far texels
+constexpr int least_size = 16, largest_size = 1024;  ///< range of an environment's size
 constexpr float finest_roughness = 0.08f;
-constexpr float chain_roughness = 0.5f;  ///< of the smallest level's first lobe
-/// Between these two. The shading blends neighbours, which shows when they are far apart.
+constexpr float chain_roughness = 0.5f;  ///< first lobe of the smallest level
+/// Number of lobes between these two. Shading interpolates neighbours, which shows for fewer lobes.
 constexpr std::size_t narrow_lobes = 8;
 constexpr std::array<float, 4> coarsest_roughness = {chain_roughness, 0.63f, 0.79f, 1.0f};
-constexpr float wide = 0.3f;  ///< lobes from here on lose nothing on a resolution coarser still
+constexpr float wide = 0.3f;  ///< roughness from which lobes lose nothing on a coarser map
 constexpr float kept_energy = 0.999f;
-/// How far texels are summed on a lobe's own resolution and on coarser ones before the next is
-/// enough, in texels at a face's centre. A lobe is smooth where its own resolution hands over; on
-/// coarser ones its tail falls with the distance itself, and the error with that in texels.
+/// Radius of near sums on a lobe's own map and on coarser maps, in texels at a face's centre; the
+/// next map sums the rest. A lobe is smooth where its own map hands over; on coarser maps its tail
+/// decreases with distance, and so does the error with the radius in texels.
 constexpr float near_texels = 1.5f, near_texels_coarser = 3;
 
-/// Solid angles of a face's texels, [size, size], exact.
+/// Returns exact solid angles of a face's texels, [size, size].
 at::Tensor texel_solid_angles(int size, at::Device device) {
-    // Of the rectangle from the face's centre to a texel's corner; an eighth of the face has all.
+    // Solid angle of the rectangle from the face's centre to a texel's corner; by symmetry an
+    // eighth of the face suffices.
     const int half = size / 2;
     std::vector<double> corner(static_cast<std::size_t>(half + 1) * (half + 1));
     const auto at = [&](int y, int x) -> double& {
@@ -63,7 +64,7 @@ at::Tensor texel_solid_angles(int size, at::Device device) {
     return angles.to(device);
 }
 
-/// energy: the share of the lobe's half vectors that is kept, below 1.
+/// energy: kept share of the lobe's half vectors, below 1.
 ZonalKernel ggx_kernel(float roughness, float energy) {
     ZonalKernel kernel{};
     const float alpha = roughness * roughness;
@@ -80,8 +81,8 @@ struct SplitKernel {
     ZonalKernel near, rest;
 };
 
-/// Cuts GGX at the squared chord `at`: the rest continues inwards as a parabola that meets the
-/// kernel there with its first and second derivatives.
+/// Splits GGX at the squared chord `at`: the rest continues inwards as a parabola with the kernel's
+/// value, first and second derivative at that point.
 SplitKernel split_kernel(const ZonalKernel& kernel, float at) {
     const double a = static_cast<double>(kernel.alpha2) - 1, d = at, c = 1 - 0.5 * d;
     const double q = 0.5 * (1 + c) * a + 1;
@@ -97,7 +98,7 @@ SplitKernel split_kernel(const ZonalKernel& kernel, float at) {
     return split;
 }
 
-/// How a lobe is summed: near texels on the levels from its own on, the rest on the last.
+/// Summation plan of a lobe: near texels on its own and coarser levels, the rest on the last.
 struct Lobe {
     float roughness;
     std::size_t level;
@@ -120,9 +121,9 @@ Lobe plan_lobe(float roughness, int size, std::size_t level, std::size_t last) {
 }
 
 struct Plan {
-    std::vector<int> sizes;   ///< of the environment's resolutions, finest first
-    std::vector<Lobe> lobes;  ///< a level of EnvironmentLight each
-    std::size_t cosine = 0;   ///< the level that irradiance is summed over, at most 128 texels
+    std::vector<int> sizes;   ///< resolutions of the environment, finest first
+    std::vector<Lobe> lobes;  ///< one for each level of EnvironmentLight
+    std::size_t cosine = 0;   ///< level for irradiance, at most 128 texels
 };
 
 Plan plan_chain(int size) {
@@ -147,7 +148,7 @@ Plan plan_chain(int size) {
     return plan;
 }
 
-/// Directions of a plan's levels, made when they are first asked for.
+/// Lazily computed directions of a plan's levels.
 class LevelDirections {
   public:
     LevelDirections(const Plan& plan, at::Device device)
@@ -163,10 +164,10 @@ class LevelDirections {
     at::Device device_;
 };
 
-/// Sums of radiance over those of solid angle, texel by texel.
+/// Mean radiance of each texel: sums of radiance over sums of solid angle.
 struct MeanRadiance {
     at::Tensor mean;            ///< [6, S, S, 3]
-    at::Tensor inverse_weight;  ///< [S, S], the same on each face
+    at::Tensor inverse_weight;  ///< [S, S], the same for each face
     MeanRadiance(int size, const at::TensorOptions& options)
         : mean(at::empty({6, size, size, 3}, options)),
           inverse_weight(at::empty({size, size}, options)) {}
@@ -187,7 +188,7 @@ struct MeanRadiance {
     }
 };
 
-/// The kernel's sums plus `coarse`, of half the size, its halo filled.
+/// Returns the kernel's sums plus the upsampled `coarse`, of half the size with a filled halo.
 CubePlanes finer_sums(const CubePlanes& source, const CubeDirections& directions,
                       const ZonalKernel& kernel, const CubePlanes& coarse) {
     if (source.device().is_cuda()) {
@@ -204,7 +205,7 @@ CubePlanes finer_sums(const CubePlanes& source, const CubeDirections& directions
     return sums;
 }
 
-/// The means of those sums. On the CPU they never are in memory all together.
+/// Returns the means of these sums. On the CPU the sums are never in memory all at once.
 MeanRadiance finest_means(const CubePlanes& source, const CubeDirections& directions,
                           const ZonalKernel& kernel, const CubePlanes& coarse) {
     if (source.device().is_cuda())
@@ -234,11 +235,11 @@ void add_sums(const CubePlanes& source, const CubeDirections& directions, const 
     });
 }
 
-/// cube [6, S, S, 3] -> the irradiance map, then a map a lobe.
+/// Maps a cube [6, S, S, 3] to the irradiance map and one map for each lobe.
 struct Prefilter : torch::autograd::Function<Prefilter> {
     static tensor_list forward(AutogradContext* context, const at::Tensor& cube) {
         const Plan plan = plan_chain(static_cast<int>(cube.size(1)));
-        // Radiance times solid angle, and that in the shared plane.
+        // Radiance times solid angle; solid angle in the shared plane.
         std::vector<CubePlanes> flux;
         flux.push_back(
             to_planes(cube, texel_solid_angles(plan.sizes.front(), cube.device()), true));
@@ -274,7 +275,7 @@ struct Prefilter : torch::autograd::Function<Prefilter> {
         return maps;
     }
 
-    /// Each step's transpose in turn; the sums are their own.
+    /// Applies the transposes in reverse order; the sums are symmetric.
     static tensor_list backward(AutogradContext* context, tensor_list gradients) {
         const auto size = static_cast<int>(context->saved_data["size"].toInt());
         const Plan plan = plan_chain(size);

@@ -1,4 +1,5 @@
-// Split-sum image-based lighting (Karis 2013): an environment prefiltered once, looked up a pixel.
+// Split-sum image-based lighting (Karis 2013): an environment prefiltered once, looked up for each
+// pixel.
 #pragma once
 
 #include "item3d/scene/image.h"
@@ -8,8 +9,8 @@
 
 namespace item3d {
 
-/// An environment made ready for shading. Cube faces are in OpenGL's order +X -X +Y -Y +Z -Z;
-/// [6, S, S, 3] linear radiance. All tensors carry gradients back to what `prefilter` was given.
+/// A prefiltered environment. Cube faces are in OpenGL's order +X -X +Y -Y +Z -Z; [6, S, S, 3]
+/// linear radiance. All tensors carry gradients to the input of prefilter().
 struct EnvironmentLight {
     at::Tensor diffuse;                ///< [6, 128, 128, 3] irradiance / pi
     std::vector<at::Tensor> specular;  ///< GGX-prefiltered chain, finest first; 4 levels or more
@@ -17,12 +18,12 @@ struct EnvironmentLight {
     EnvironmentLight to(at::Device device) const;
 };
 
-/// Differentiable in `cube` [6, S, S, 3]. S is a power of two in [16, 1024]; the chain has
-/// eight lobes from roughness 0.08 on in equal ratios, spread over the resolutions from S down to
-/// 64, then 0.5, 0.63, 0.79 and 1 at 32. (S <= 32: the first, then these.)
+/// Differentiable in `cube` [6, S, S, 3]. S is a power of two in [16, 1024]; the chain has eight
+/// lobes from roughness 0.08 on in equal ratios, spread over the resolutions from S down to 64,
+/// then 0.5, 0.63, 0.79 and 1 at 32. (S <= 32: the first, then these.)
 EnvironmentLight prefilter(const at::Tensor& cube);
 
-/// Convenience for fixed lights. size: edge of the finest cube face.
+/// Convenience for constant lights. size: edge of the finest cube face.
 EnvironmentLight prefilter(const Image& equirectangular, int size = 256,
                            at::Device device = at::kCPU);
 

@@ -17,15 +17,15 @@ using kernels::EquirectangularParameters;
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// [H, W, 3] -> [6, S, S, 3]
+/// Maps [H, W, 3] to [6, S, S, 3].
 struct EquirectangularToCube : torch::autograd::Function<EquirectangularToCube> {
     static EquirectangularParameters parameters(std::int64_t height, std::int64_t width, int size) {
         EquirectangularParameters p{};
         p.height = static_cast<int>(height);
         p.width = static_cast<int>(width);
         p.size = size;
-        // A cube texel at a face's centre spans height / (2 size) texels of the map; twice as many
-        // samples as texels.
+        // A cube texel at a face's centre spans height / (2 size) texels of the map; take twice as
+        // many samples as texels.
         p.samples = std::max(2, (p.height + size - 1) / size);
         return p;
     }
@@ -77,7 +77,7 @@ at::Tensor equirectangular_to_cube(const at::Tensor& equirectangular, int size) 
                 {-1, -1, 3}, operation_device("equirectangular_to_cube", equirectangular));
     ITEM3D_CHECK(size >= 1 && size <= 4096 && map.size(0) >= 1 && map.size(1) >= 1,
                  "equirectangular_to_cube: size in [1, 4096], found " + std::to_string(size));
-    // Maps much finer than the cube are halved first, which costs less than more samples a texel.
+    // Halving maps much finer than the cube costs less than more samples for each texel.
     while (map.size(0) > 4 * size && map.size(0) % 2 == 0 && map.size(1) % 2 == 0)
         map = map.reshape({map.size(0) / 2, 2, map.size(1) / 2, 2, 3}).mean({1, 3});
     return EquirectangularToCube::apply(map, static_cast<std::int64_t>(size));

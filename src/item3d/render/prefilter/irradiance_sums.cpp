@@ -16,7 +16,7 @@ using kernels::BrightParameters;
 
 constexpr int coarse_size = irradiance_size / 2;
 constexpr std::int64_t most_bright = 64;
-constexpr float bright_share = 1e-3f;  ///< of all light
+constexpr float bright_share = 1e-3f;  ///< share of all light
 
 BrightParameters bright_parameters(const at::Tensor& bright, int size) {
     BrightParameters p{};
@@ -41,7 +41,7 @@ CubePlanes without(const CubePlanes& flux, const at::Tensor& bright) {
     return rest;
 }
 
-/// Runs of the irradiance map's texels over six faces.
+/// Returns the number of runs of the irradiance map's texels over six faces.
 std::int64_t irradiance_runs(int length) {
     return static_cast<std::int64_t>(6) * irradiance_size * (irradiance_size / length);
 }

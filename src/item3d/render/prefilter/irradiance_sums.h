@@ -1,4 +1,4 @@
-// Irradiance over a chain of cube maps: what a matte surface sees.
+// Irradiance sums over a chain of cube maps, for diffuse surfaces.
 #pragma once
 
 #include "item3d/render/kernels/irradiance.h"
@@ -8,17 +8,17 @@ namespace item3d {
 
 using kernels::irradiance_size;
 
-/// Texels that hold so much of the light, a sun's, that max(0, n.l) of each shows its kink where it
-/// sets: [64] int64 indices into [6, S, S], -1 where there are no more. flux: radiance times solid
-/// angle. Does not wait for a device.
+/// Returns the texels with so large a part of the light, such as a sun, that the kink of their
+/// max(0, n.l) is visible: [64] int64 indices into [6, S, S], -1 for unused entries. flux: radiance
+/// times solid angle. Does not synchronise with a device.
 at::Tensor bright_texels(const CubePlanes& flux);
 
-/// Sums of max(0, n.l) at irradiance_size: of the bright texels one by one, of all others at half
-/// that size, upsampled. flux: at most irradiance_size, its halo full. The result has no halo.
+/// Sums max(0, n.l) at irradiance_size: the bright texels exactly, all others at half that size,
+/// upsampled. flux: at most irradiance_size, with a full halo. The result has no halo.
 CubePlanes irradiance_sums(const CubePlanes& flux, const at::Tensor& bright);
 
-/// The transpose for the same bright texels: a gradient of the sums, its halo full -> of the flux,
-/// with `size` texels and without a halo.
+/// Transpose of irradiance_sums() for the same bright texels: maps a gradient with respect to the
+/// sums, with a full halo, to one with respect to the flux, with `size` texels and without a halo.
 CubePlanes irradiance_sums_transposed(const CubePlanes& gradient, int size,
                                       const at::Tensor& bright);
 

@@ -1,4 +1,4 @@
-// A prefiltered chain as the shading kernels look it up.
+// A prefiltered chain in the layout of the shading kernels.
 #pragma once
 
 #include "item3d/render/kernels/shade.h"
@@ -9,7 +9,7 @@
 
 namespace item3d {
 
-/// maps: [6, S, S, 3] each, at least four, and kept by the caller; roughness: ascending.
+/// maps: [6, S, S, 3] each, at least four, which must outlive the parameters; roughness: ascending.
 inline void set_specular_chain(kernels::ShadeParameters& parameters,
                                const std::vector<at::Tensor>& maps,
                                const std::vector<float>& roughness) {

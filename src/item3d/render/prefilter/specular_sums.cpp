@@ -19,7 +19,7 @@ using kernels::ZonalKernel;
 
 namespace {
 
-/// The sums, which take most of the time, for the processor at hand.
+/// The summation kernels, which take most of the time, for the current processor.
 struct SumKernels {
     void (*near)(const NearParameters&, const ConstPlanes* coarse, int row, int column, NearSums&);
     void (*far)(const FarParameters&, std::int64_t index);
@@ -47,14 +47,14 @@ SumKernels sum_kernels() {
 }
 #endif
 
-/// A map for far sums: FarParameters::source. Planes of [6 * S, S], rows and planes padded: three
-/// of the map, turned for each face of the output so that this face becomes face 0 (see
-/// turned_face), and perhaps the shared one.
+/// A map for far sums (FarParameters::source): planes of [6 * S, S], rows and planes padded. Three
+/// of the map for each face of the output, rotated so that this face becomes face 0 (see
+/// turned_face), and optionally the shared one.
 struct TurnedPlanes {
     int size, count;
     at::Tensor values;
 };
-/// faces: to turn for, so many in steps of 6 / faces.
+/// faces: number of faces to rotate for, in steps of 6 / faces.
 TurnedPlanes turned_planes(const CubePlanes& map, int faces) {
     const int size = map.size(), count = 3 * faces + (map.shared_plane() ? 1 : 0);
     // Vectors read into the padding, with weights of 0.
@@ -67,7 +67,7 @@ TurnedPlanes turned_planes(const CubePlanes& map, int faces) {
     return turned;
 }
 
-/// Of a turned map, to the planes of `out` from the first on.
+/// Sums a turned map into the planes of `out`, from the first on.
 void sum_far(const TurnedPlanes& map, const ZonalKernel& kernel, CubePlanes& out) {
     const int size = map.size, out_size = out.size();
     const at::Tensor centres =
@@ -75,7 +75,7 @@ void sum_far(const TurnedPlanes& map, const ZonalKernel& kernel, CubePlanes& out
     const at::Tensor squares = centres.square();
     const at::Tensor inverse_lengths = (1 + squares + squares.unsqueeze(1)).rsqrt();
     const float reach = kernel.reach();
-    // The corners of a face are 54.7 degrees off its centre.
+    // The corners of a face are 54.7 degrees (0.9554) off its centre.
     const float farthest = reach + 0.9554f;
     const FarParameters p{kernel,
                           map.values.const_data_ptr<float>(),
@@ -99,7 +99,7 @@ void sum_far(const TurnedPlanes& map, const ZonalKernel& kernel, CubePlanes& out
         "far_sums", count, [&](std::int64_t i) { sum(p, i); }, 16);
 }
 
-/// map(d) + map(-d)
+/// Returns map(d) + map(-d).
 CubePlanes folded(const CubePlanes& map) {
     CubePlanes sums(map.size(), map.shared_plane(), map.device());
     const kernels::FoldParameters p{map.view(), sums.writable(),
@@ -137,7 +137,7 @@ void near_sums(const CubePlanes& source, const CubeDirections& directions,
     ConstPlanes coarse_view{};
     if (coarse != nullptr) coarse_view = coarse->view();
     const auto sum = sum_kernels().near;
-    // Columns of tiles: the next row's neighbourhood is in a core's cache for the most part.
+    // Columns of tiles, so that most of the next row's neighbourhood is in a core's cache.
     parallel_for(
         "near_sums", static_cast<std::int64_t>(size / row_tile) * (size / 2),
         [&](std::int64_t i) {

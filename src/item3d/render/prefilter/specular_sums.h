@@ -1,5 +1,5 @@
-// Zonal sums over cube maps: what prefiltering is made of. They are symmetric: the transpose of
-// each is the same sum the other way.
+// Zonal sums over cube maps, the steps of prefiltering. They are symmetric: the transpose of each
+// is the same sum with source and output exchanged.
 #pragma once
 
 #include "item3d/render/kernels/zonal_lanes.h"
@@ -9,11 +9,11 @@
 
 namespace item3d {
 
-/// Unit directions of the texels of face 0 and of its halo, as three planes.
+/// Unit directions of face 0's texels and halo, as three planes.
 class CubeDirections {
   public:
     CubeDirections(int size, at::Device device);
-    /// Of texel (0, 0).
+    /// Returns the direction of texel (0, 0).
     const float* data() const;
     std::int64_t plane_step() const { return row_ * row_; }
 
@@ -22,24 +22,24 @@ class CubeDirections {
     at::Tensor values_;
 };
 
-/// Gets the sums of row_tile texels of all planes, [planes, row_tile].
+/// Receives the sums of row_tile texels of all planes, [planes, row_tile].
 using RowSums = std::function<void(int row, int column, const float* sums)>;
 
-/// On the CPU's threads. Sums of a kernel that reaches at most three texels at a face's centre
-/// (eight at a corner), at the source's own size, plus `coarse` upsampled, a map of half the size
-/// (null: none). Halos: the source's full, one texel of the coarse map's.
+/// Sums a kernel that reaches at most three texels at a face's centre (eight at a corner), at the
+/// source's own size, plus the upsampled `coarse`, a map of half the size (null: none). On the
+/// CPU's threads. Halos: full for the source, one texel for the coarse map.
 void near_sums(const CubePlanes& source, const CubeDirections& directions,
                const kernels::ZonalKernel& kernel, const CubePlanes* coarse, const RowSums& finish);
 
-/// The same, of all texels, added to planes of the same size, on any device.
+/// Adds the same sums of all texels to planes of the same size, on any device.
 void add_near_sums(const CubePlanes& source, const CubeDirections& directions,
                    const kernels::ZonalKernel& kernel, CubePlanes& to);
 
-/// Sums of any kernel at the source's own size, every texel with every other. The halo of the
-/// result is left as it is.
+/// Sums any kernel at the source's own size, over all pairs of texels. Leaves the halo of the
+/// result unset.
 CubePlanes far_sums(const CubePlanes& source, const kernels::ZonalKernel& kernel);
 
-/// Sums of max(0, n.l). The halo of the result is left as it is.
+/// Sums max(0, n.l). Leaves the halo of the result unset.
 CubePlanes cosine_sums(const CubePlanes& source, int out_size);
 
 }  // namespace item3d

@@ -12,25 +12,25 @@ namespace {
 
 using std::int64_t;
 
-/// Places are filled up to two registers, which are one of BrainFloat.
+/// Returns the number of keys padded to two registers of floats, which are one of BrainFloat.
 int64_t whole_keys(int64_t keys) {
     return (keys + 2 * lanes - 1) / (2 * lanes) * (2 * lanes);
 }
 
-/// Columns of `count`, the last of them as narrow as whole registers allow: calls f(first,
-/// columns).
+/// Calls f(first, columns) for packed columns of `count`, the last of them narrower in whole
+/// registers.
 template <typename Function>
 void for_each_column(int64_t count, const Function& f) {
     for (int64_t first = 0; first < count; first += packed_columns)
         f(first, std::min(packed_columns, whole_registers(count - first)));
 }
 
-/// What one head needs beside its inputs. Places and widths are rounded up to whole registers.
+/// Scratch memory of one head. Keys and widths are rounded up to whole registers.
 template <typename Number>
 struct Scratch {
     int64_t keys, width;
     float *scores, *sums;                           ///< [rows, keys], [rows, packed_columns]
-    Number *weights, *keys_packed, *values_packed;  ///< [rows, keys], and as multiply() wants them
+    Number *weights, *keys_packed, *values_packed;  ///< [rows, keys], and in multiply()'s packing
 
     Scratch(const AttentionShape& shape, void* memory)
         : keys(whole_keys(shape.keys)),
@@ -48,7 +48,7 @@ struct Scratch {
     }
 };
 
-/// [places, stride] -> the transposed matrix [width, places], packed; zero beyond `count` places.
+/// Packs [places, stride] as the transposed matrix [width, places]; zero beyond `count` places.
 template <typename Number>
 void pack_transposed(const Number* from, int64_t stride, int64_t count, int64_t places,
                      int64_t width, Number* to) {
@@ -64,7 +64,7 @@ void pack_transposed(const Number* from, int64_t stride, int64_t count, int64_t 
     });
 }
 
-/// [places, stride] -> the matrix [places, width], packed; zero beyond `count` and `width`.
+/// Packs [places, stride] as the matrix [places, width]; zero beyond `count` and `width`.
 template <typename Number>
 void pack_straight(const Number* from, int64_t stride, int64_t count, int64_t places, int64_t width,
                    Number* to) {
@@ -78,7 +78,8 @@ void pack_straight(const Number* from, int64_t stride, int64_t count, int64_t pl
     });
 }
 
-/// 2^x to float's precision: 2^n 2^r with |r| <= 1/2, 2^r by its Taylor series. 0 far below.
+/// Returns 2^x to float's precision: 2^n 2^r with |r| <= 1/2, 2^r by its Taylor series. 0 on
+/// underflow.
 ITEM3D_INLINE Lanes power_of_two(Lanes x) {
     const Lanes n = nearest(x);
     const Lanes r = x - n;
@@ -89,7 +90,7 @@ ITEM3D_INLINE Lanes power_of_two(Lanes x) {
     return scaled(series, n);
 }
 
-/// weights = e^(scale (score - the largest)), zero beyond `count`; returns their sum.
+/// Sets weights = e^(scale (score - maximum)), zero beyond `count`; returns their sum.
 template <typename Number>
 float soften(const float* scores, int64_t count, int64_t places, float scale, Number* weights) {
     const int64_t whole = count / lanes * lanes, rest = count - whole;

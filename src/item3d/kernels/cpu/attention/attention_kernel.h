@@ -1,4 +1,4 @@
-// Attention on plain memory.
+// The attention kernel on plain memory.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
@@ -8,7 +8,8 @@
 
 namespace item3d {
 
-/// Queries, keys and values are [rows, places, heads * width]; the width of a head is even.
+/// Shape of attention: queries, keys and values are [rows, queries or keys, heads * width]; the
+/// width of a head is even.
 struct AttentionShape {
     std::int64_t rows, heads, queries, keys, width;
 };
@@ -20,9 +21,9 @@ struct AttentionPart {
 
 template <typename Number>
 struct AttentionKernel {
-    /// Bytes of scratch memory (64-byte aligned) for a part.
+    /// Returns the bytes of scratch memory (64-byte aligned) for a part.
     std::int64_t (*scratch)(const AttentionShape& shape);
-    /// Writes softmax(q k^T / sqrt(width)) v of a part. Scores and sums are float, the softmax's
+    /// Writes softmax(q k^T / sqrt(width)) v for a part. Scores and sums are float; the softmax's
     /// values are rounded to Number before they are multiplied.
     void (*attend)(const AttentionShape& shape, const Number* query, const Number* key,
                    const Number* value, const AttentionPart& part, Number* result, void* scratch);

@@ -13,8 +13,8 @@ using std::int64_t;
 
 constexpr int taps = 9;
 
-/// The pixels under one tap for each of `rows` output pixels from `first` on; `outside` beyond the
-/// edge, and after `last`. False where all are outside.
+/// Finds the pixels under one tap for each of `rows` output pixels from `first` on; `outside`
+/// beyond the edge, and after `last`. Returns false if all are outside.
 template <typename Number>
 bool find_pixels(const ConvolutionShape& shape, const Number* x, const Number* outside, int tap,
                  int64_t first, int64_t last, const Number** found) {

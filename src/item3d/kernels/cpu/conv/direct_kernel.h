@@ -1,4 +1,5 @@
-// 3x3 convolutions without transforms on plain memory, for maps too small for winograd.h.
+// The kernel of 3x3 convolutions without transforms on plain memory, for maps too small for
+// winograd.h.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
@@ -6,19 +7,20 @@
 
 namespace item3d {
 
-/// Pixels of all pictures together, and output channels in whole columns.
+/// A range of pixels over all images, and of output channels in whole columns.
 struct PixelPart {
     std::int64_t first_pixel, last_pixel, first_channel, last_channel;
 };
 
 template <typename Weight>
 struct DirectKernel {
-    /// Weights [64, 3, 3, in] of the output channels from `column` on (fewer in the last column),
-    /// to their places in `packed`, [9, out / 64, in / group, 64, group]. A group is the input
-    /// channels that one instruction multiplies (2 of BrainFloat, 1 of the others).
+    /// Packs weights [64, 3, 3, in] of the output channels from `column` on (fewer in the last
+    /// column) into their places in `packed`, [9, out / 64, in / group, 64, group]. A group is the
+    /// number of input channels that one instruction multiplies (2 for BrainFloat, 1 for the
+    /// others).
     void (*pack)(const Weight* weights, std::int64_t out_channels, std::int64_t in_channels,
                  std::int64_t column, Weight* packed);
-    /// Bytes of scratch memory (64-byte aligned) for a part of `pixels` pixels.
+    /// Returns the bytes of scratch memory (64-byte aligned) for a part of `pixels` pixels.
     std::int64_t (*scratch)(std::int64_t pixels, std::int64_t in_channels);
     /// y = conv(x, weights) + bias, for one part. bias: [out] or null.
     void (*convolve)(const ConvolutionShape& shape, const Multiplied<Weight>* x,

@@ -14,9 +14,9 @@ namespace {
 
 using std::int64_t;
 
-// The transforms in one direction, Lavin & Gray (2016), "Fast Algorithms for Convolutional Neural
-// Networks", sections 4.1 and 4.3: of weights (G), input (B^T) and sums (A^T). `step` is the
-// distance of neighbours.
+// The one-dimensional transforms, Lavin & Gray (2016), "Fast Algorithms for Convolutional Neural
+// Networks", sections 4.1 and 4.3: of weights (G), input (B^T) and sums (A^T). step: distance of
+// neighbours.
 template <int tile>
 struct Transform;
 
@@ -42,7 +42,7 @@ struct Transform<2> {
     }
 };
 
-/// At 0, +-near, +-far and infinity. The paper's 1 and 2 err twice as much.
+/// Interpolation points 0, +-near, +-far and infinity. The paper's 1 and 2 give twice the error.
 template <>
 struct Transform<4> {
     static constexpr float near = 0.625f, far = 1.5f;
@@ -89,9 +89,9 @@ struct Transform<4> {
     }
 };
 
-/// Where a tile lies.
+/// Position of a tile.
 struct Place {
-    int64_t picture, y, x;  ///< of its first output pixel
+    int64_t picture, y, x;  ///< first output pixel
 
     Place(const ConvolutionShape& shape, int tile, int64_t index) {
         const int64_t across = (shape.width + tile - 1) / tile;
@@ -102,7 +102,7 @@ struct Place {
     }
 };
 
-/// The input pixels of each tile -> transformed [points, stride, in_channels].
+/// Transforms the input pixels of each tile to [points, stride, in_channels].
 template <typename Number>
 void transform_input(const ConvolutionShape& shape, const Number* x, int64_t first, int64_t last,
                      int64_t stride, Number* transformed) {
@@ -139,8 +139,8 @@ void transform_input(const ConvolutionShape& shape, const Number* x, int64_t fir
     }
 }
 
-/// sums [points, stride, packed_columns] -> output pixels of the tiles, in the column of `columns`
-/// from `channel` on.
+/// Transforms sums [points, stride, packed_columns] to the tiles' output pixels, in `columns`
+/// channels from `channel` on.
 template <typename Number>
 void transform_sums(const ConvolutionShape& shape, const float* sums, const float* bias,
                     int64_t first, int64_t last, int64_t stride, int64_t channel, int64_t columns,
@@ -209,7 +209,7 @@ bool in_units() {
 }
 #endif
 
-/// Rows that `tiles` tiles are filled up to, and multiplied so many at a time.
+/// Returns the number of rows for `tiles` tiles, padded to the rows that are multiplied at a time.
 template <typename Number>
 int64_t rows_for(int64_t tiles) {
 #ifdef __AMX_BF16__
@@ -218,8 +218,8 @@ int64_t rows_for(int64_t tiles) {
     return whole_rows(tiles);
 }
 
-/// The first columns of sums [count, packed_columns] = a [count, depth] times b, for a count of
-/// rows_for(); next: units::multiply().
+/// Computes the first columns of sums [count, packed_columns] = a [count, depth] times b, for a
+/// count of rows_for(). next: as in units::multiply().
 template <typename Number>
 void multiply_rows(const Number* a, int64_t count, int64_t depth, const Number* b, int64_t columns,
                    [[maybe_unused]] const Number* next, float* sums) {
@@ -251,7 +251,7 @@ void convolve_winograd(const ConvolutionShape& shape, const Number* x, const Num
                        const float* bias, Number* y, const WinogradPart& part, void* scratch) {
     constexpr int points = winograd_points<Number>;
     const int64_t channels = shape.in_channels, first = part.first_tile, last = part.last_tile;
-    // The last rows may stay as they were: what comes of them is not looked at.
+    // The padding may hold arbitrary values: its results are ignored.
     const int64_t stride = rows_for<Number>(last - first);
     auto* transformed = static_cast<Number*>(scratch);
     auto* sums = reinterpret_cast<float*>(transformed + points * stride * channels);

@@ -1,4 +1,4 @@
-// The arithmetic of winograd.h on plain memory.
+// The kernels of winograd.h on plain memory.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
@@ -8,17 +8,17 @@
 
 namespace item3d {
 
-/// Output pixels of a tile's side, F(m x m, 3 x 3) in Lavin & Gray's notation: each tile of m x m
-/// takes (m + 2)^2 multiplications a channel pair instead of 9 m^2. The larger tile loses about
-/// three bits, which float can spare and bfloat16 cannot.
+/// Edge of a tile in output pixels, m of F(m x m, 3 x 3) in Lavin & Gray's notation: each tile of m
+/// x m takes (m + 2)^2 multiplications a channel pair instead of 9 m^2. The larger tile loses about
+/// three bits, which is acceptable for float but not for bfloat16.
 template <typename Number>
 constexpr int winograd_tile = sizeof(Number) == 4 ? 4 : 2;
 
-/// Points of a transformed tile.
+/// Number of points in a transformed tile.
 template <typename Number>
 constexpr int winograd_points = (winograd_tile<Number> + 2) * (winograd_tile<Number> + 2);
 
-/// Part of the work: a range of tiles, and of output channels in whole columns.
+/// A range of tiles, and of output channels in whole columns.
 struct WinogradPart {
     std::int64_t first_tile, last_tile, first_channel, last_channel;
 };
@@ -30,7 +30,7 @@ struct WinogradKernel {
     /// DirectKernel::pack().
     void (*pack)(const Number* weights, std::int64_t out_channels, std::int64_t in_channels,
                  std::int64_t column, Number* packed);
-    /// Bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
+    /// Returns the bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
     std::int64_t (*scratch)(std::int64_t tiles, std::int64_t in_channels);
     /// y = conv(x, weights) + bias, for one part. bias: [out] or null.
     void (*convolve)(const ConvolutionShape& shape, const Number* x, const Number* packed,

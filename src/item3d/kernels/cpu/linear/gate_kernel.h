@@ -1,5 +1,5 @@
-// The arithmetic of gated_gelu.h on plain memory. Rows are [2 width], values and gates side by
-// side; width is a multiple of 16.
+// The kernels of gated_gelu.h on plain memory. Rows are [2 width], values followed by gates; width
+// is a multiple of 16.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
@@ -12,7 +12,7 @@ template <typename Number>
 struct GateKernel {
     /// y [rows, width] = value gelu(gate), for x [rows, 2 width].
     void (*apply)(const Number* x, std::int64_t rows, std::int64_t width, Number* y);
-    /// dx [rows, 2 width] of dy [rows, width].
+    /// dx [rows, 2 width] from dy [rows, width].
     void (*apply_gradient)(const Number* x, const Number* dy, std::int64_t rows, std::int64_t width,
                            Number* dx);
 };

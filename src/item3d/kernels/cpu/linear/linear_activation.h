@@ -1,4 +1,4 @@
-// What a linear layer's sums can go through.
+// The activations of a linear layer.
 #pragma once
 
 namespace item3d {
@@ -6,7 +6,7 @@ namespace item3d {
 enum class LinearActivation {
     none,
     gelu,        ///< x Phi(x), Hendrycks and Gimpel 2016
-    quick_gelu,  ///< x / (1 + e^(-1.702 x)), CLIP's
+    quick_gelu,  ///< x / (1 + e^(-1.702 x)), of CLIP
 };
 
 }  // namespace item3d

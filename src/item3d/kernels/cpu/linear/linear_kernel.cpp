@@ -54,7 +54,7 @@ void multiply_part(const Multiplied<Weight>* x, int64_t depth, const Weight* pac
         const int64_t there = std::min(packed_columns, part.last_column - column);
         for (int64_t row = part.first_row; row < part.last_row; row += rows) {
             const Multiplied<Weight>* a[rows];
-            for (int i = 0; i < rows; ++i)  // the last row again for those that are missing
+            for (int i = 0; i < rows; ++i)  // repeat the last row as padding
                 a[i] = x + std::min(row + i, part.last_row - 1) * depth;
             multiply<Weight>(whole_registers(there), a, depth, b, sums, packed_columns, false);
             const int64_t count = std::min<int64_t>(rows, part.last_row - row);

@@ -1,4 +1,4 @@
-// Products of rows with a frozen matrix on plain memory.
+// The kernel of products of rows with a frozen matrix on plain memory.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
@@ -7,18 +7,17 @@
 
 namespace item3d {
 
-/// Numbers of a packed matrix [columns, depth]: its last 16 columns may be fewer, and are filled
-/// up.
+/// Returns the size of a packed matrix [columns, depth]: its last 16 columns are padded.
 inline std::int64_t packed_size(std::int64_t columns, std::int64_t depth) {
     return whole_registers(columns) * depth;
 }
 
-/// Rows, and columns beginning at a multiple of 64.
+/// A range of rows, and of columns that begins at a multiple of 64.
 struct MatrixPart {
     std::int64_t first_row, last_row, first_column, last_column;
 };
 
-/// What becomes of a product: f(product + bias) + added.
+/// Epilogue of a product: f(product + bias) + added.
 struct ProductEnd {
     const float* bias = nullptr;  ///< [columns] or null
     LinearActivation activation = LinearActivation::none;
@@ -27,16 +26,16 @@ struct ProductEnd {
 
 template <typename Weight>
 struct LinearKernel {
-    /// weights [columns, depth] -> [columns / 64, depth / group, 64, group], the last of them as
-    /// narrow as whole registers of 16 allow; a group being the numbers of depth that one
-    /// instruction multiplies (2 of BrainFloat, 1 of the others). For columns [first, last), first
-    /// being a multiple of 64, and last too or the end. depth: a multiple of 16.
+    /// Packs weights [columns, depth] to [columns / 64, depth / group, 64, group], where the last
+    /// column block is narrower in whole registers of 16. A group is the numbers of depth that one
+    /// instruction multiplies (2 for BrainFloat, 1 for the others). For columns [first, last):
+    /// first is a multiple of 64, last too or the end. depth: a multiple of 16.
     void (*pack)(const Weight* weights, std::int64_t depth, std::int64_t first, std::int64_t last,
                  Weight* packed);
     /// y [rows, columns] of the product x [rows, depth] weights^T, for one part; sums in float.
     void (*multiply)(const Multiplied<Weight>* x, std::int64_t depth, const Weight* packed,
                      const ProductEnd& end, std::int64_t columns, const MatrixPart& part, float* y);
-    /// The same, rounded to what the weights are multiplied by.
+    /// The same, rounded to the type of x.
     void (*multiply_rounded)(const Multiplied<Weight>* x, std::int64_t depth, const Weight* packed,
                              const ProductEnd& end, std::int64_t columns, const MatrixPart& part,
                              Multiplied<Weight>* y);

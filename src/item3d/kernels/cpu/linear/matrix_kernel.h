@@ -1,4 +1,4 @@
-// What the kernels that multiply matrices have in common; see matrix_tile.h.
+// Types and shapes shared by the matrix kernels; see matrix_tile.h.
 #pragma once
 
 #include "item3d/kernels/cpu/bfloat16.h"
@@ -8,8 +8,7 @@
 
 namespace item3d {
 
-/// What weights of a type are multiplied by: numbers of the same type, but float where they are
-/// kept as files have them.
+/// Type by which weights are multiplied: their own, but float for half-precision weights of files.
 template <typename Weight>
 struct MultipliedBy {
     using Number = Weight;
@@ -21,20 +20,19 @@ struct MultipliedBy<HalfFloat> {
 template <typename Weight>
 using Multiplied = typename MultipliedBy<Weight>::Number;
 
-/// Output channels are packed in columns of this many, the last of them as narrow as whole
-/// registers allow.
+/// Number of output channels in a packed column; the last column is narrower in whole registers.
 constexpr std::int64_t packed_columns = 64;
 
 inline std::int64_t columns_of(std::int64_t channels) {
     return (channels + packed_columns - 1) / packed_columns;
 }
 
-/// A 3x3 convolution of stride 1 and padding 1 over maps in memory as [pictures, height, width,
+/// Shape of a 3x3 convolution with stride 1 and padding 1 over maps [pictures, height, width,
 /// channels].
 struct ConvolutionShape {
     std::int64_t pictures, height, width, in_channels, out_channels;
 
-    /// Squares of `tile` pixels a side that cover the maps.
+    /// Returns the number of squares of `tile` x `tile` pixels that cover the maps.
     std::int64_t tiles(int tile) const {
         return pictures * ((height + tile - 1) / tile) * ((width + tile - 1) / tile);
     }

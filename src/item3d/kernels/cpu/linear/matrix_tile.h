@@ -1,5 +1,5 @@
-// The product that the kernels of this folder spend their time in: a few rows times a packed
-// matrix, sums in registers. For the files that are compiled for each set of instructions.
+// The matrix product of this folder's kernels: a few rows times a packed matrix, with sums in
+// registers. Only for files that are compiled for each instruction set.
 #pragma once
 
 #include "item3d/kernels/cpu/linear/matrix_kernel.h"
@@ -11,15 +11,16 @@
 
 namespace item3d::ITEM3D_INSTRUCTIONS {
 
-/// Rows multiplied at a time: their sums stay in registers, 24 of AVX-512's 32 or 12 of AVX2's 16.
+/// Number of rows multiplied at a time: their sums stay in registers, 24 of AVX-512's 32 or 12 of
+/// AVX2's 16.
 constexpr int rows = 6;
 
 inline std::int64_t whole_rows(std::int64_t count) {
     return (count + rows - 1) / rows * rows;
 }
 
-// What differs between the weights' types. A `group` of input channels is multiplied by one
-// instruction.
+// Operations that depend on the weights' type. One instruction multiplies a `group` of input
+// channels.
 template <typename Weight>
 struct Arithmetic;
 
@@ -36,7 +37,7 @@ struct Arithmetic<BrainFloat> {
     static __m512 multiply_add(__m512i a, __m512i b, __m512 sum) {
         return _mm512_dpbf16_ps(sum, reinterpret_cast<__m512bh>(a), reinterpret_cast<__m512bh>(b));
     }
-    /// Sixteen input channels of one output channel, each pair `columns` pairs on.
+    /// Stores sixteen input channels of one output channel, pair by pair, `columns` pairs apart.
     static void scatter(BrainFloat* to, int columns, Lanes value) {
         const __m256i places = _mm256_mullo_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
                                                   _mm256_set1_epi32(columns));
@@ -58,7 +59,7 @@ struct Arithmetic<float> {
     }
 };
 
-/// Weights as files have them, multiplied as floats: no bit is lost, and half the memory read.
+/// Half-precision weights of files, multiplied as floats: lossless, with half the memory traffic.
 template <>
 struct Arithmetic<HalfFloat> : Arithmetic<float> {
     static Lanes operand(const HalfFloat* from) { return load(from); }
@@ -70,9 +71,9 @@ struct Arithmetic<HalfFloat> : Arithmetic<float> {
     }
 };
 
-/// sums [rows, 16 registers], each row `stride` numbers after the one before, = (or +=, with `add`)
-/// a [rows, depth], given by its rows, times the first columns of b [depth / group, columns,
-/// group].
+/// Computes sums [rows, 16 registers], each row `stride` numbers after the previous one, = (or +=,
+/// with `add`) a [rows, depth], given by its rows, times the first columns of b [depth / group,
+/// columns, group].
 template <typename Weight, int registers>
 void multiply_registers(const Multiplied<Weight>* const* a, std::int64_t depth, const Weight* b,
                         std::int64_t columns, float* sums, std::int64_t stride, bool add) {
@@ -107,7 +108,7 @@ void multiply_registers(const Multiplied<Weight>* const* a, std::int64_t depth, 
             store(sums + i * stride + j * lanes, sum[i][j]);
 }
 
-/// The same for all columns of b, a multiple of 16 and no more than packed_columns.
+/// Computes the same for all columns of b, a multiple of 16 and at most packed_columns.
 template <typename Weight>
 void multiply(std::int64_t columns, const Multiplied<Weight>* const* a, std::int64_t depth,
               const Weight* b, float* sums, std::int64_t stride, bool add) {

@@ -1,16 +1,15 @@
-// The normal distribution in registers, which GELU is made of. For the files that are compiled for
-// each set of instructions.
+// The normal distribution in SIMD registers, for GELU. Only for files that are compiled for each
+// instruction set.
 #pragma once
 
 #include "item3d/kernels/cpu/simd.h"
 
 namespace item3d::ITEM3D_INSTRUCTIONS {
 
-/// Of a standard normal variable at x.
+/// Density and distribution function of a standard normal variable at x.
 struct NormalDistribution {
     Lanes density;
-    Lanes
-        below;  ///< the probability of less than x, by Abramowitz and Stegun 7.1.26: within 7.5e-8
+    Lanes below;  ///< P(X < x), by Abramowitz and Stegun 7.1.26: within 7.5e-8
 };
 
 ITEM3D_INLINE NormalDistribution normal_distribution(Lanes x) {
@@ -20,11 +19,11 @@ ITEM3D_INLINE NormalDistribution normal_distribution(Lanes x) {
     for (const float term : {-1.453152027f, 1.421413741f, -0.284496736f, 0.254829592f})
         series = multiply_add(series, t, all(term));
     const Lanes power = exponential(larger(zero() - z * z, all(-87)));
-    const Lanes tail = all(0.5f) * t * series * power;  // beyond |x|
+    const Lanes tail = all(0.5f) * t * series * power;  // P(X > |x|)
     return {all(0.39894228f) * power, choose(is_less(x, zero()), tail, all(1) - tail)};
 }
 
-/// Hendrycks & Gimpel 2016, the exact form.
+/// GELU (Hendrycks & Gimpel 2016), the exact form.
 ITEM3D_INLINE Lanes gelu(Lanes x) {
     return x * normal_distribution(x).below;
 }

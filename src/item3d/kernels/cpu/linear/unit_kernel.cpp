@@ -37,7 +37,7 @@ void convolve_taps_in_units(const ConvolutionShape& shape, const BrainFloat* shi
          channel += packed_columns) {
         for (int tap = 0; tap < taps; ++tap) {
             const auto tile = [&](int64_t i) {
-                // The last tile again where there is none to fill a pair.
+                // Repeat the last tile to complete a pair.
                 const int64_t at = std::min(part.first_tile + i, part.last_tile - 1);
                 const int64_t picture = at / tiles_a_picture;
                 const int64_t pixel = at % tiles_a_picture * units::tile_rows;

@@ -1,6 +1,6 @@
-// The convolutions of direct_kernel.h on matrix units, which want rows at equal distances: maps are
-// given three times, each column's left neighbour, itself, and its right neighbour in its place.
-// Nothing here may be called where matrix_units_run() says no.
+// The convolutions of direct_kernel.h on AMX, which needs rows at equal distances: maps are stored
+// three times, with each pixel's left neighbour, the pixel itself, and its right neighbour in its
+// place. Requires matrix_units_run().
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
@@ -8,23 +8,23 @@
 
 namespace item3d {
 
-/// Sixteen pixels of one picture make a tile.
+/// Returns the number of tiles, each of sixteen pixels of one image.
 inline std::int64_t unit_tiles(const ConvolutionShape& shape) {
     constexpr std::int64_t pixels = 16;
     return shape.pictures * ((shape.height * shape.width + pixels - 1) / pixels);
 }
 
-/// Tiles of all pictures together, and output channels in whole columns.
+/// A range of tiles over all images, and of output channels in whole columns.
 struct TilePart {
     std::int64_t first_tile, last_tile, first_channel, last_channel;
 };
 
-/// Bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
+/// Returns the bytes of scratch memory (64-byte aligned) for a part of `tiles` tiles.
 std::int64_t unit_taps_scratch(std::int64_t tiles);
 
 /// y = conv(x, weights) + bias, for one part. shifted: [3, pictures, height + 2, width, in], zero
-/// where there is no neighbour and in the first and last rows, and sixteen pixels of anything. in
-/// and out are multiples of 64.
+/// where there is no neighbour and in the first and last rows, followed by sixteen arbitrary
+/// pixels. in and out are multiples of 64.
 void convolve_taps_in_units(const ConvolutionShape& shape, const BrainFloat* shifted,
                             const BrainFloat* packed, const float* bias, BrainFloat* y,
                             const TilePart& part, void* scratch);

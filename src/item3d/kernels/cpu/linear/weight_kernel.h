@@ -1,4 +1,4 @@
-// Weights from the types and orders that files have them in.
+// The kernel that converts weights from the types and orders of files.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
@@ -7,17 +7,17 @@
 
 namespace item3d {
 
-/// To Number: float, BrainFloat or HalfFloat.
+/// Conversion to Number: float, BrainFloat or HalfFloat.
 template <typename Number>
 struct WeightKernel {
-    /// [rows, in, 3, 3] as stored -> [rows, 3, 3, in]; in is a multiple of 16.
+    /// Reorders [rows, in, 3, 3] of files to [rows, 3, 3, in]; in is a multiple of 16.
     template <typename Stored>
     using OrderTaps = void(const Stored* weights, std::int64_t rows, std::int64_t in_channels,
                            Number* ordered);
     OrderTaps<float>* order_floats;
     OrderTaps<BrainFloat>* order_brain_floats;
     OrderTaps<HalfFloat>* order_halves;
-    /// To the nearest.
+    /// Rounds to nearest.
     void (*convert_halves)(const HalfFloat* from, std::int64_t count, Number* to);
 };
 

@@ -10,11 +10,11 @@ namespace {
 
 using std::int64_t;
 
-/// Pixels whose sums are kept in float, before they go into double.
+/// Number of pixels whose sums are kept in float before they are added in double.
 constexpr int64_t float_pixels = 32;
 
 ITEM3D_INLINE Lanes sigmoid(Lanes x) {
-    // Beyond 80 either way nothing changes, and e^80 is still a float.
+    // Beyond +-80 the value is constant, and e^80 is still a float.
     const Lanes most = all(80);
     const Lanes negative = larger(smaller(-x, most), -most);
     const Lanes one = all(1);
@@ -30,7 +30,7 @@ ITEM3D_INLINE Lanes silu_slope(Lanes x) {
     return s * (one + x * (one - s));
 }
 
-/// The gradient of scale x + offset.
+/// Returns the gradient with respect to scale x + offset.
 template <typename Number>
 ITEM3D_INLINE Lanes inner_gradient(const Number* x, const Number* dy, Lanes scale, Lanes offset,
                                    bool silu) {

@@ -1,5 +1,5 @@
-// The arithmetic of group_norm.h on plain memory. Maps are [pixels, channels]; channels are a
-// multiple of register_numbers; per-channel arrays have one number for each channel.
+// The kernels of group_norm.h on plain memory. Maps are [pixels, channels]; channels are a multiple
+// of register_numbers; per-channel arrays have one number for each channel.
 #pragma once
 
 #include "item3d/kernels/cpu/dispatch.h"
@@ -10,14 +10,14 @@ namespace item3d {
 
 template <typename Number>
 struct NormKernel {
-    /// Adds to sum and square, by channel, x - shift and its square. A shift near the mean spares
-    /// the variance the difference of two large numbers.
+    /// Adds x - shift and its square to sum and square, by channel. A shift near the mean avoids
+    /// cancellation in the variance.
     void (*add_channel_sums)(const Number* x, std::int64_t pixels, std::int64_t channels,
                              const float* shift, double* sum, double* square);
-    /// y = f(scale x + offset), f being SiLU or nothing.
+    /// y = f(scale x + offset), where f is SiLU or the identity.
     void (*apply)(const Number* x, std::int64_t pixels, std::int64_t channels, const float* scale,
                   const float* offset, bool silu, Number* y);
-    /// With g = dy f'(scale x + offset): adds to sum and product, by channel, g and g (x - shift).
+    /// With g = dy f'(scale x + offset): adds g and g (x - shift) to sum and product, by channel.
     void (*add_gradient_sums)(const Number* x, const Number* dy, std::int64_t pixels,
                               std::int64_t channels, const float* scale, const float* offset,
                               const float* shift, bool silu, double* sum, double* product);
