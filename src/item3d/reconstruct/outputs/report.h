@@ -7,7 +7,7 @@
 
 namespace item3d {
 
-/// report.html, self-contained.
+/// Returns a self-contained report.html.
 std::string report_html(const Reconstruction& result);
 
 }  // namespace item3d
