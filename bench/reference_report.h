@@ -22,8 +22,8 @@ struct Section {
 };
 
 struct Folders {
-    std::filesystem::path data;    ///< of the reference data
-    std::filesystem::path output;  ///< of the written images
+    std::filesystem::path data;    ///< folder of the reference data
+    std::filesystem::path output;  ///< folder of the written images
 };
 
 /// Difference of `found` from `expected`, both [P, C].

@@ -36,7 +36,7 @@ TEST_F(MergedVariants, EachEditIsALookOfTheSameVertices) {
     const GltfJson& primitives = json["meshes"][0]["primitives"];
     EXPECT_EQ(primitives[0]["material"], 0);
     EXPECT_FALSE(primitives[1].contains("extensions"));
-    // As three.js reads them: a material for each variant, no variant twice.
+    // Conditions of three.js: a material for each variant, no variant twice.
     std::set<int> mapped;
     for (const GltfJson& mapping :
          primitives[0]["extensions"]["KHR_materials_variants"]["mappings"]) {

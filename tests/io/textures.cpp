@@ -67,7 +67,7 @@ TEST(Textures, OfWebpAreReadAndStayWebp) {
     EXPECT_FALSE(file.json["textures"][0].contains("source"));
     expect_same_image(base_color_of(load_model(folder / "b.glb"), 0).image, test_picture(3, 40, 30),
                       1e-6f);
-    // As PNG nothing requires the extension any more.
+    // Nothing requires the extension any more in PNG.
     save_model(folder / "c.glb", model, base_color_edit(model, 1, TextureFormat::png));
     const OrderedJson json = read_gltf_file(folder / "c.glb").json;
     EXPECT_FALSE(json.contains("extensionsUsed"));
@@ -228,7 +228,7 @@ TEST(Textures, ThatMustNotLoseAreWrittenWithoutLosses) {
     choose_codings(model, TextureFormat::keep, edit);
     EXPECT_EQ(changed.base_color.coding(), ImageCoding{});  // has alpha
     EXPECT_EQ(changed.metallic_roughness.coding().encoding, ImageEncoding::jpeg);
-    EXPECT_EQ(changed.normal.coding().encoding, ImageEncoding::jpeg);  // as the base colour
+    EXPECT_EQ(changed.normal.coding().encoding, ImageEncoding::jpeg);  // like the base colour
     changed.keeps_orm_texels = true;
     choose_codings(model, TextureFormat::keep, edit);
     EXPECT_EQ(changed.metallic_roughness.coding(), (ImageCoding{ImageEncoding::jpeg, false, 95}));

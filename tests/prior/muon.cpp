@@ -62,7 +62,7 @@ TEST(Orthogonalize, TheFirstStepIsTheGradientsWithoutItsScale) {
     std::vector<std::unique_ptr<FlatModel>> flat;
     flat.push_back(flat_of(network));
     ReplicaGroup group(std::move(flat), {.weight_decay = 0, .orthogonal = true});
-    // Of full rank: rounding would lift values that are almost zero.
+    // Full rank: rounding would lift singular values that are almost zero.
     network->convolution->weight.mutable_grad().copy_(at::randn({16, 24, 3, 3}));
     const auto matrix = [](const at::Tensor& weight) {
         return weight.permute({0, 2, 3, 1}).reshape({16, -1}).clone();  // in memory order

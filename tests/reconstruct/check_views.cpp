@@ -95,7 +95,7 @@ TEST(CheckViews, ViewsThatContradictAreNamed) {
         "4 of 24 pictures contradict the others and are left out: "));
     EXPECT_NE(problems.warnings[0].find(", ...; the object moved"), std::string::npos);
 
-    // Of three images none can be identified as wrong.
+    // With three images none can be identified as wrong.
     dataset = photographs_of(three_arms(), 3, 96);
     dataset.train[1].image = left_to_right(good.train[3].image);
     problems = check_views(dataset, "arms");

@@ -17,12 +17,12 @@ struct WrittenFacts {
     int orientation = 0;
     int focal_35 = 0;                    ///< millimetres
     double focal = 0;                    ///< millimetres, in tenths
-    double seconds = 0;                  ///< of the exposure, in ten-thousandths
+    double seconds = 0;                  ///< exposure time, in ten-thousandths
     double aperture = 0;                 ///< in tenths
     int sensitivity = 0;                 ///< ISO
     std::optional<double> shutter = {};  ///< APEX, in tenths
     std::string camera = {};             ///< the model
-    int width = 0, height = 0;           ///< of the image as the camera stored it
+    int width = 0, height = 0;           ///< stored size of the camera's image
 };
 
 /// Returns an APP1 segment: "Exif", then a TIFF of one directory and EXIF's own.

@@ -15,7 +15,7 @@ namespace item3d {
 struct StageTime {
     std::string stage;
     double forward_ms = 0;
-    double backward_ms = 0;  ///< of the gradient alone
+    double backward_ms = 0;  ///< time of the gradient alone
 };
 
 struct RenderTimes {

@@ -14,7 +14,7 @@ namespace item3d {
 /// Claimed job, ready to run.
 struct ClaimedJob {
     const BatchJob& job;
-    std::filesystem::path model;   ///< of the job, or the output of its predecessor
+    std::filesystem::path model;   ///< the job's, or the output of its predecessor
     std::filesystem::path folder;  ///< existing output folder
     bool resume = false;           ///< true if another attempt left a checkpoint there
 };

@@ -17,9 +17,9 @@ struct JobEvent {
     int attempt = 0;                    ///< number of this attempt, from 1
     int errors = 0;                     ///< attempts that ended with an error
     int deaths = 0;                     ///< attempts whose worker died
-    double seconds = 0;                 ///< of the last attempt
-    std::string message;                ///< of the last error
-    std::vector<std::string> warnings;  ///< of all attempts, each once
+    double seconds = 0;                 ///< duration of the last attempt
+    std::string message;                ///< message of the last error
+    std::vector<std::string> warnings;  ///< warnings of all attempts, each once
     nlohmann::json outcome;  ///< result of the run: scores, seconds by stage; may be null
 };
 

@@ -239,7 +239,7 @@ class Planner {
     const JobPlanning& planning_;
     std::vector<Draft> drafts_;
     std::map<std::string, std::size_t> names_;
-    std::vector<std::string> ids_;     ///< of drafts; "" until planned
+    std::vector<std::string> ids_;     ///< ids of drafts; "" until planned
     std::vector<std::string> models_;  ///< file names of the drafts' first models
     std::vector<BatchJob> jobs_;
     std::set<std::string> seen_;

@@ -14,7 +14,7 @@ struct RunningJob {
     std::size_t index;   ///< in the view
     std::string worker;  ///< "" while it is being claimed
     int attempt = 0;
-    std::int64_t beat = 0;   ///< of its worker; 0: no heartbeat was found
+    std::int64_t beat = 0;   ///< its worker's counter; 0: no heartbeat was found
     bool has_ended = false;  ///< the worker is known to have ended; another will take the job over
 };
 

@@ -18,8 +18,8 @@ struct PairedDifference {
 struct PairedMethod {
     std::string method;
     std::string prior;
-    PairedDifference directional;  ///< of the directional score
-    PairedDifference kept;         ///< of the preserved structure
+    PairedDifference directional;  ///< difference of the directional score
+    PairedDifference kept;         ///< difference of the preserved structure
 };
 
 /// Pairs each method but the first with the first's runs of equal case, prior and seed. rows: of

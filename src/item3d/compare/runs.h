@@ -42,7 +42,7 @@ struct CompareOptions {
     std::filesystem::path output;
     std::filesystem::path program;  ///< launcher_program()
     int workers = 1;                ///< number of concurrent edits
-    int threads = 0;                ///< of each; 0: the machine's, divided among the workers
+    int threads = 0;  ///< number for each edit; 0: the machine's, divided among the workers
     PictureWishes pictures;
 };
 
@@ -52,12 +52,12 @@ inline constexpr const char* resumed_name = "resumed";
 struct CompareRun {
     std::size_t case_index = 0;
     std::string method;       ///< CompareMethod::name
-    std::string edit_method;  ///< of edit_method_names()
+    std::string edit_method;  ///< a name of edit_method_names()
     std::string prior;        ///< its name
     std::filesystem::path prior_folder;
     std::uint64_t seed = 0;
     std::filesystem::path folder;        ///< output/runs/NAME-METHOD-SEED-HASH
-    std::vector<std::string> arguments;  ///< of item3d, without threads and --resume
+    std::vector<std::string> arguments;  ///< item3d's arguments, without threads and --resume
 };
 
 /// Returns those of `methods` (of edit_method_names()) that a prior alone can run: in2n needs an

@@ -20,9 +20,9 @@ struct KnownWord {
     std::string word;     ///< "gold"
     std::string caption;  ///< caption template of the word: "a golden {o}"
     std::vector<std::string> spellings;  ///< prompt words with this meaning: "gold", "golden"
-    double accuracy = 0;                 ///< of the diffusion classifier on held-out shapes, 0 .. 1
-    std::string taken_for;               ///< word that it is most often mistaken for; may be empty
-    std::optional<Vec3> base_color;      ///< linear RGB, for colours and metals
+    double accuracy = 0;    ///< accuracy of the diffusion classifier on held-out shapes, 0 .. 1
+    std::string taken_for;  ///< word that it is most often mistaken for; may be empty
+    std::optional<Vec3> base_color;  ///< linear RGB, for colours and metals
     std::optional<float> roughness;  ///< middle of a metal's roughness range in the training data
 };
 

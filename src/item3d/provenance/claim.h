@@ -17,10 +17,10 @@ struct EditClaim {
     std::string input, input_sha256;  ///< file name and SHA-256 of the edited model
     std::string date;                 ///< start of the edit: utc_date()
     std::string version;              ///< version of item3d that made it
-    std::string strength;             ///< of a layer: "0.5", or "1:roughness,metallic"
+    std::string strength;             ///< strength of a layer: "0.5", or "1:roughness,metallic"
     std::string variant;              ///< name of the look in a file of several
-    std::string photographs;          ///< of a reconstruction: number of photographs
-    std::string source_type;          ///< of a reconstruction: the result's IPTC code
+    std::string photographs;          ///< number of photographs of a reconstruction
+    std::string source_type;          ///< IPTC code of a reconstruction
 
     bool operator==(const EditClaim&) const = default;
 };
@@ -35,7 +35,7 @@ void from_json(const nlohmann::json& json, EditClaim& edit);
 /// Image written by an edit.
 struct ImageClaim {
     std::string image;   ///< index in the document's images; empty: the file itself
-    std::string name;    ///< of the image; may be empty
+    std::string name;    ///< name of the image; may be empty
     std::string sha256;  ///< image_sha256()
 
     bool operator==(const ImageClaim&) const = default;

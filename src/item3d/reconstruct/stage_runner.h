@@ -42,8 +42,8 @@ class StageRunner {
     const ReconstructRequest& request_;
     nlohmann::json identity_;
     std::string begun_;
-    std::optional<CheckpointReader> reader_;  ///< of an interrupted run
-    NamedTensors shape_;                      ///< of keep()
+    std::optional<CheckpointReader> reader_;  ///< checkpoint of an interrupted run
+    NamedTensors shape_;                      ///< shape given to keep()
     int behind_ = 0;                          ///< iterations of the stages before
     StagePreview preview_;
     Clock::time_point checkpointed_, previewed_;

@@ -8,7 +8,7 @@ namespace item3d {
 
 struct ArchiveLimits {
     std::int64_t entries = 2000;
-    std::int64_t bytes = std::int64_t{1} << 30;  ///< of all files, unpacked
+    std::int64_t bytes = std::int64_t{1} << 30;  ///< total of all files, unpacked
 };
 
 /// Unpacks the files of models (glTF, OBJ, images, buffers) into the folder, by the archive's own

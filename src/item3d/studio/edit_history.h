@@ -13,7 +13,7 @@ namespace item3d {
 
 struct EditHistory {
     nlohmann::json defaults;      ///< settings of the shipped prior
-    std::vector<EditCost> costs;  ///< of the last finished edits, newest first
+    std::vector<EditCost> costs;  ///< the last finished edits', newest first
     int threads = 1;              ///< number of this machine's
 };
 

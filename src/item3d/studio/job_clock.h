@@ -25,7 +25,7 @@ class JobClock {
     std::optional<EditPlanSeconds> plan_;
     std::optional<double> left_;  ///< at time `at_`
     double at_ = 0;
-    double pace_ = 1;  ///< of this run, relative to the expected seconds
+    double pace_ = 1;  ///< pace of this run, relative to the expected seconds
 };
 
 }  // namespace item3d

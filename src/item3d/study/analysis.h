@@ -16,8 +16,8 @@ namespace item3d {
 
 struct AnalysisOptions {
     bool counts_inattentive = false;  ///< true: include participants who failed an attention page
-    int resamples = 10000;            ///< of the bootstrap
-    std::uint64_t seed = 0;           ///< of the bootstrap
+    int resamples = 10000;            ///< number of bootstrap resamples
+    std::uint64_t seed = 0;           ///< seed of the bootstrap
 };
 
 /// Columns of a method in the table.
@@ -33,7 +33,7 @@ struct MethodRatings {
 /// Comparison of the participants' means of `first` and `second`.
 struct MethodPair {
     std::string first, second;
-    double difference = 0;  ///< of the means, first minus second
+    double difference = 0;  ///< difference of the means, first minus second
     Wilcoxon test;
     double holm_p = 1;  ///< p adjusted for all pairs of a question
 };

@@ -28,7 +28,7 @@ struct SiteReply {
     int status = 200;
     std::string type = "text/html; charset=utf-8";
     std::string body;
-    std::string location;      ///< of a redirect (303)
+    std::string location;      ///< target of a redirect (303)
     bool may_be_kept = false;  ///< cacheable: only images and style
 };
 

@@ -15,8 +15,9 @@ struct SlurmJob {
     int gpus_per_worker = 0;  ///< 0 or 1; 0: compute on the CPU
     /// Seconds before the time limit at which a worker is told to write its checkpoint.
     int grace_seconds = 90;
-    std::vector<std::string> sbatch_options;    ///< the user's: "--partition=night"
-    std::vector<std::string> worker_arguments;  ///< of `item3d batch work`, after the folder
+    std::vector<std::string> sbatch_options;  ///< the user's: "--partition=night"
+    std::vector<std::string>
+        worker_arguments;  ///< arguments of `item3d batch work`, after the folder
 };
 
 /// Returns the script of which one array task is one worker: it claims jobs until none is left or

@@ -66,7 +66,7 @@ struct NormValues {
     explicit NormValues(at::Tensor kept) : all(std::move(kept)) {}
     float* scale() const { return all[0].data_ptr<float>(); }
     float* offset() const { return all[1].data_ptr<float>(); }
-    float* mean() const { return all[2].data_ptr<float>(); }       ///< of the group
+    float* mean() const { return all[2].data_ptr<float>(); }       ///< the group's
     float* deviation() const { return all[3].data_ptr<float>(); }  ///< reciprocal, of the group
     at::Tensor all;
 };

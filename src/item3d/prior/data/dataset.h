@@ -19,7 +19,7 @@ inline constexpr double two_part_share = .4;
 /// Image with its caption and the facts it shows.
 struct Example {
     at::Tensor image;    ///< [S, S, 3] float32, sRGB in [0, 1]
-    at::Tensor cells;    ///< as ShapeView::cells
+    at::Tensor cells;    ///< see ShapeView::cells
     at::Tensor covered;  ///< [S, S] float32, fraction of the pixel that the object covers
     std::string caption;
     PictureFacts facts;
@@ -54,7 +54,7 @@ Example draw_example(Random& random, const ShapeView& view,
 /// Two images of one view in the same light, before and after an instruction.
 struct InstructionPair {
     at::Tensor before, after;  ///< [S, S, 3] float32, sRGB in [0, 1]
-    at::Tensor cells;          ///< as ShapeView::cells
+    at::Tensor cells;          ///< see ShapeView::cells
     std::string instruction;   ///< "make it golden", "give it a red handle"
 };
 

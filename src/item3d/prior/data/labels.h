@@ -37,7 +37,7 @@ PictureFacts facts_of(const ShapeClass& shape, const ProceduralMaterial& materia
 
 /// Meaning of a sentence.
 struct Claim {
-    std::string phrase;  ///< of the material; empty: no claim
+    std::string phrase;  ///< phrase of the material; empty: no claim
     std::string noun;    ///< "object": no claim
     std::string light;   ///< empty: no claim
     /// Returns "a golden mug at sunset", with `frame` in front: "a photo of ".

@@ -163,7 +163,7 @@ class Measurement {
   private:
     struct Answer {
         std::size_t candidate;
-        bool new_class;  ///< of the image
+        bool new_class;  ///< true if the image's class is new
     };
 
     const ShapeView& pick_view(Random& random, const std::string& shape_class) const {

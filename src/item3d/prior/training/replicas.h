@@ -62,12 +62,14 @@ class ReplicaGroup {
                  ProcessGroup processes = {});
 
     FlatModel& replica(int rank) { return *replicas_[static_cast<std::size_t>(rank)]; }
-    int size() const { return static_cast<int>(replicas_.size()); }  ///< of this process
+    int size() const {
+        return static_cast<int>(replicas_.size());
+    }  ///< number of replicas in this process
 
     struct Request {
         float learning_rate = 0;
         float ema_decay = 0;
-        bool stop = false;  ///< that of rank 0 of any process counts
+        bool stop = false;  ///< only that of rank 0 counts, in any process
     };
     struct Result {
         float gradient_norm;  ///< before clipping
@@ -103,7 +105,7 @@ class ReplicaGroup {
     at::Tensor first_moment_, second_moment_, average_;
     at::Tensor changes_;               ///< [P] of this step, before the learning rate
     at::Tensor sum_;                   ///< [P + 1] sums of all gradients, and of the stop requests
-    std::vector<double> square_sums_;  ///< of the blocks of the averaged gradient
+    std::vector<double> square_sums_;  ///< sums over the blocks of the averaged gradient
     std::int64_t steps_ = 0;
     std::mutex failure_mutex_;
     std::exception_ptr failure_;  ///< first failure

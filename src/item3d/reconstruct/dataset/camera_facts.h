@@ -19,7 +19,7 @@ struct CameraFacts {
     /// radiance is multiplied by it, up to a common factor. 0: unknown.
     double exposure = 0;
     std::string camera = {};  ///< maker, model and lens, joined
-    int width = 0;            ///< of the image as the camera stored it; 0: unknown
+    int width = 0;            ///< stored size of the camera's image; 0: unknown
     int height = 0;
 };
 

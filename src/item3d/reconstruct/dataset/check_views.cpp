@@ -23,11 +23,11 @@ constexpr std::size_t names_listed = 3;
 /// Statistics of the object's pixels in an image.
 struct ObjectPixels {
     double object = 0;   ///< number of pixels that it covers
-    double clipped = 0;  ///< of these: one channel is clipped
-    double lost = 0;     ///< of these: two channels are clipped
+    double clipped = 0;  ///< number of these with one clipped channel
+    double lost = 0;     ///< number of these with two clipped channels
     double black = 0;
     double covered = 0;           ///< number of pixels with any coverage
-    double half_transparent = 0;  ///< of these: partly covered, but not at an outline
+    double half_transparent = 0;  ///< number of these with partial coverage away from outlines
     bool is_unbounded = false;    ///< true if some pixel is brighter than white
 };
 

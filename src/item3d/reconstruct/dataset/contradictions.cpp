@@ -315,7 +315,7 @@ Contradictions find_contradictions(const std::vector<Photograph>& views, Vec3 ce
     Contradictions found;
     found.share = found.share_of_rest =
         share_of_rays(votes.contradicting_rays(), votes.active_rays());
-    // Of three or four inconsistent views none can be identified as wrong.
+    // With three or four inconsistent views none can be identified as wrong.
     const std::size_t most = views.size() < 5 ? 0 : std::max<std::size_t>(1, views.size() / 5);
     found.views = remove_blamed(votes, most);
     if (found.views.size() > most) {

@@ -32,7 +32,7 @@ struct Reconstruction {
 
     const ReconstructRequest& request;
     const Dataset& dataset;
-    Model model;  ///< as written
+    Model model;  ///< model as written
     Image light;
     int texture_size = 0;
     std::optional<FoundShape> shape;  ///< unset for a given mesh
@@ -42,10 +42,10 @@ struct Reconstruction {
     std::vector<ScoredView> test_without_shadows;
     std::vector<ScoredView> test_scaled;   ///< with a gain per view and channel
     std::vector<ScoredView> test_aligned;  ///< scaled, and also moved if poses were refined
-    nlohmann::json corrections;            ///< of the training views, see corrections_json()
+    nlohmann::json corrections;  ///< corrections of the training views, see corrections_json()
     std::vector<RelitScores> relit;
     std::optional<MaterialTruth> materials;
-    std::optional<double> chamfer;  ///< as a fraction of the reference's diagonal
+    std::optional<double> chamfer;  ///< fraction of the reference's diagonal
     StageTimes times;
     std::vector<std::string> warnings;
 };

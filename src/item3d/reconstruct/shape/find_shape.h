@@ -22,9 +22,9 @@ struct ShapeOptions {
     int iterations = 1000;  ///< total; every lattice but the last gets half as many as the last
     double value_learning_rate = 0.05;   ///< in cells
     double offset_learning_rate = 0.01;  ///< in cells
-    double weight_learning_rate = 0.02;  ///< of the extraction's own parameters
+    double weight_learning_rate = 0.02;  ///< rate of the extraction's own parameters
     double mask_weight = 2.0;
-    double regularizer_weight = 0.1;  ///< of the extraction's regulariser
+    double regularizer_weight = 0.1;  ///< weight of the extraction's regulariser
     double sign_change_weight_first = 0.05, sign_change_weight_last = 0.005;
     double smoothness_weight = 0.03;
     double whiteness_weight = 0.003;
@@ -38,7 +38,7 @@ struct ShapeOptions {
 struct FoundShape {
     TriangleMesh mesh;
     RefineCurves curves;
-    std::vector<double> triangles;    ///< of the extracted surface, by iteration
+    std::vector<double> triangles;    ///< number in the extracted surface, by iteration
     double outline_disagreement = 0;  ///< pixels, see VisualHull
 };
 

@@ -69,7 +69,7 @@ class Refinement : public Stage {
   private:
     /// Inputs of the traced shadows: a resumed run traces them again.
     struct Traced {
-        at::Tensor offsets;   ///< of the mesh; undefined: it is fixed
+        at::Tensor offsets;   ///< offsets of the mesh; undefined: it is fixed
         at::Tensor radiance;  ///< [H, 2H, 3]; undefined: uniform light
         at::Tensor indirect;  ///< IndirectLight::stored(); undefined: none
     };

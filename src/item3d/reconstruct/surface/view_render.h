@@ -34,7 +34,7 @@ struct RenderedView {
     Raster raster;
     Surface surface;
     MaterialSample material;
-    MaterialSample shaded;  ///< as shaded: traced occlusion, one material if requested
+    MaterialSample shaded;  ///< material as shaded: traced occlusion, one material if requested
 };
 
 DrawnView as_drawn(const TargetView& view, const RenderedView& rendered);
@@ -47,8 +47,9 @@ struct ViewRenderOptions {
     bool normal_map = false;  ///< use the field's tangent-space normals
     bool one_material =
         false;  ///< the view's mean everywhere, so that only the light can explain shading
-    RigidMotion motion = {};  ///< of the object in front of the camera; undefined tensors: none
-    at::Tensor gain = {};     ///< [3], factor of all radiance; undefined: 1
+    RigidMotion motion =
+        {};                ///< motion of the object in front of the camera; undefined tensors: none
+    at::Tensor gain = {};  ///< [3], factor of all radiance; undefined: 1
     at::Tensor base_color_factor = {};  ///< [3], factor of the shaded base colour; undefined: 1
 };
 

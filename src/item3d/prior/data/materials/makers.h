@@ -116,7 +116,7 @@ inline Vec3 flat_slope(const Vec2& slope, const Vec3& n) {
 /// Two tones mixed by noise, with relief: stone, moss, leather, ...
 struct Grain {
     Vec3 dark, light;
-    float frequency;  ///< of the noise, in radians per unit
+    float frequency;  ///< frequency of the noise, in radians per unit
     int octaves = 2;
     float spread = 1.3f;  ///< noise from -spread to spread runs dark to light
     float rough_dark = .85f, rough_light = .85f;

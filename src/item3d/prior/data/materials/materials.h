@@ -33,7 +33,7 @@ struct ProceduralMaterial {
 /// Requirements of a material; empty members are drawn at random.
 struct MaterialWish {
     std::string kind;
-    std::string color;  ///< as ProceduralMaterial::color
+    std::string color;  ///< see ProceduralMaterial::color
     std::string second_color;
     float pattern_weight = 1;  ///< weight of patterns when the kind is drawn
 };
