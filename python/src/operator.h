@@ -32,7 +32,7 @@ Tensor checked(const char* operation, const char* name, const Tensor& tensor, Sc
 /// Throws like fail() unless all indices of triangles [T, 3] are in [0, vertices).
 void check_indices(const char* operation, const Tensor& triangles, std::int64_t vertices);
 
-/// Returns an uninitialised tensor on the CPU.
+/// Returns an uninitialised tensor on the CPU, float32 by default.
 Tensor new_tensor(const Sizes& sizes, ScalarType type = ScalarType::Float);
 Tensor new_zeros(const Sizes& sizes);
 

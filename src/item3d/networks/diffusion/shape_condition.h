@@ -22,9 +22,10 @@ at::Tensor depth_condition(const at::Tensor& depth, int downscale);
 /// disparity in all three channels, background 0, averaged over each pixel.
 at::Tensor depth_picture(const at::Tensor& depth, std::int64_t height, std::int64_t width);
 
+/// Channels of shape_cells().
+inline constexpr int shape_cell_channels = 7;
 /// Returns the shape at latent resolution, [N, shape_cell_channels, h, w]: depth_condition(), and
 /// the mean position and normal of the surface in each cell (0 where there is none).
-inline constexpr int shape_cell_channels = 7;
 at::Tensor shape_cells(const SeenShape& shape, int downscale);
 
 /// Channels of a surface condition, which lets a pattern keep its place in every view: depth,

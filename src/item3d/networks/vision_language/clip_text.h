@@ -26,12 +26,11 @@ struct ClipTextConfig {
     std::string hidden_act = "quick_gelu";  ///< or "gelu"
     double layer_norm_eps = 1e-5;
     int bos_token_id = 49406;
-    /// 2 is what old configs say: the end of the text is then the largest id of a row.
+    /// Old configs have 2: the end of the text is then the largest id of a row.
     int eos_token_id = 49407;
     int pad_token_id = 1;
     int projection_dim = 512;
-    bool with_projection =
-        false;  ///< Old configs say 2: the end of the text is then the largest id of a row.
+    bool with_projection = false;  ///< CLIPTextModelWithProjection
 
     static ClipTextConfig from_config(const Config& config);
     static ClipTextConfig from_json(const nlohmann::json& json,

@@ -18,10 +18,10 @@ PartPictures draw_held_out_parts(std::uint64_t seed, std::int64_t count, int thr
 /// differs from the rest, and one part that is absent. IoU: pixels above one half and named,
 /// divided by pixels that are either; every image has the same weight.
 /// Returns {"pictures": N,
-/// Fields: {"pictures": N,
-///          "new_class_iou": the latter on classes that were never trained on,
+///          "part_iou": mean over words, "part_iou_of_pictures": mean over all prompts,
+///          "new_class_iou": part_iou_of_pictures on classes outside the training data,
 ///          "object_iou", "material_iou",
-///          "absent_marked": part of the object that is marked for a part that is not there,
+///          "absent_marked": fraction of the object that is marked for an absent part,
 ///          "words": {NAME: {"iou", "asked"}}, the worst first in "worst": [[NAME, IoU], ...],
 ///          "classes": {CLASS: {"iou", "asked"}}}.
 nlohmann::json measure_parts(const Segmenter& segmenter, const PartPictures& pictures);

@@ -18,8 +18,9 @@ namespace item3d {
 namespace {
 
 /// Fraction of the images without shape. At 15 %, a network with the surface condition learnt
-/// little about appearance. Below: the fraction without sentence.
+/// little about appearance.
 constexpr double without_shape = 0.30;
+/// Fraction of the images without sentence.
 constexpr double without_sentence = 0.10;
 
 /// Networks of one replica.
