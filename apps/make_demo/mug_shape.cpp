@@ -164,7 +164,7 @@ void Mug::add_lathe(const Lathe& lathe) {
             primitive_.uvs.push_back(lathe_uv(lathe, lathe.length[row], turn));
         }
     }
-    // Profiles run with the outside on their right, except the inner bottom, which runs back.
+    // Profiles have the outside on their right, except the inner bottom, which is reversed.
     const bool flip = lathe.disc && lathe.inside > 0;
     for (int row = 0; row + 1 < rows; ++row) {
         for (int column = 0; column < segments; ++column) {

@@ -5,7 +5,7 @@
 namespace item3d {
 namespace {
 
-// SciPy 1.17.1 gives the numbers of this file, where nothing else is said:
+// SciPy 1.17.1 gives the numbers of this file unless stated otherwise:
 //
 //   import numpy as np
 //   from scipy import stats

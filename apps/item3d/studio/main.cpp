@@ -1,4 +1,4 @@
-// item3d-studio: edits on a page in the browser, and for agents.
+// Program item3d-studio: serves edits to browsers and agents.
 #include "apps/item3d/program.h"
 #include "apps/item3d/studio/commands.h"
 

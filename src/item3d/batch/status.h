@@ -12,7 +12,7 @@ namespace item3d {
 
 struct RunningJob {
     std::size_t index;   ///< in the view
-    std::string worker;  ///< "" while it is being claimed
+    std::string worker;  ///< "" during the claim
     int attempt = 0;
     std::int64_t beat = 0;   ///< its worker's counter; 0: no heartbeat was found
     bool has_ended = false;  ///< the worker is known to have ended; another will take the job over

@@ -1,4 +1,4 @@
-// A server of the Model Context Protocol (modelcontextprotocol.io) on standard input and output:
+// Server of the Model Context Protocol (modelcontextprotocol.io) on standard input and output:
 // agents call commands of item3d as tools.
 #pragma once
 

@@ -18,7 +18,7 @@ nlohmann::json description_of(const Tool& tool);
 struct ToolCommand {
     const Tool* tool;
     std::vector<std::string> arguments;  ///< the command's name first
-    std::filesystem::path result;        ///< its folder; empty: none
+    std::filesystem::path result;        ///< folder of the result; empty: none
 };
 /// Checks arguments and creates the result's folder. settings: contents of web/settings.json, the
 /// names that `settings` may contain. Throws InputError for arguments that are missing, unknown, of

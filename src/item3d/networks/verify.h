@@ -23,7 +23,7 @@ struct MemoryReport {
     std::string precision;            ///< "fp32", "bf16" or "fp16"
     std::uint64_t weights = 0;        ///< exact; the text encoders stay fp32
     std::uint64_t text_encoders = 0;  ///< text encoders' part of `weights`
-    // Estimates, of the right order:
+    // Approximate estimates:
     std::uint64_t program = 0;            ///< all other memory that does not grow with the images
     std::uint64_t kept_by_gradients = 0;  ///< activations of one image of the U-Net's own size
     std::uint64_t kept_when_low = 0;      ///< the same with the encoder's activations recomputed

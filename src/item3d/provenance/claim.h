@@ -11,14 +11,14 @@ namespace item3d {
 
 /// One edit by sentences, or one reconstruction from photographs. Empty members are not written.
 struct EditClaim {
-    std::string from, to;             ///< the sentences
+    std::string from, to;             ///< sentences of the edit
     std::string method;               ///< for example "item3d, rdl"
     std::string prior, prior_hash;    ///< name of its folder; hash_of_weights()
     std::string input, input_sha256;  ///< file name and SHA-256 of the edited model
     std::string date;                 ///< start of the edit: utc_date()
     std::string version;              ///< version of item3d that made it
     std::string strength;             ///< strength of a layer: "0.5", or "1:roughness,metallic"
-    std::string variant;              ///< name of the look in a file of several
+    std::string variant;              ///< name of the variant in a file of several
     std::string photographs;          ///< number of photographs of a reconstruction
     std::string source_type;          ///< IPTC code of a reconstruction
 

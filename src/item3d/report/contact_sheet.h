@@ -11,7 +11,7 @@ namespace item3d {
 
 struct Tile {
     Image picture;      ///< sRGB, 1 to 4 channels (straight alpha); empty: an empty cell
-    std::string label;  ///< below the picture; may be empty
+    std::string label;  ///< shown below the image; may be empty
 };
 
 struct ContactSheetOptions {

@@ -15,7 +15,7 @@ struct EditCost {
     double optimize = 0;    ///< seconds
     double detail = 0;      ///< seconds of the detail stage; 0: none
     double before = 0;      ///< seconds until the first iteration
-    double after = 0;       ///< seconds of textures and pictures
+    double after = 0;       ///< seconds of textures and images
     double memory = 0;      ///< bytes
 };
 

@@ -3,7 +3,7 @@
 //
 //   studio.sqlite                          projects, results
 //   incoming/                              uploads that have not ended
-//   projects/P/source/                     the model as it was uploaded, with what belongs to it
+//   projects/P/source/                     the uploaded model, with its files
 //   projects/P/model.glb, model.json       for the page (model_facts.h)
 //   projects/P/masks/                      painted regions
 //   projects/P/results/R/                  the folder of an edit (docs/formats.md)

@@ -1,4 +1,4 @@
-// An analysis as text, JSON, CSV and LaTeX.
+// Output of an analysis as text, JSON, CSV and LaTeX.
 #pragma once
 
 #include "item3d/study/analysis.h"

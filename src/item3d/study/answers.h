@@ -19,7 +19,7 @@ namespace item3d {
 struct Participant {
     std::int64_t number = 0;  ///< from 1; determines order and sides
     std::string token;        ///< 20 hexadecimal digits, the secret of the link
-    bool has_agreed = false;  ///< to the consent text
+    bool has_agreed = false;  ///< true after consent
 };
 
 using AnswersByItem = std::map<std::string, StudyAnswer>;

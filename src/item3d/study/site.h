@@ -4,7 +4,7 @@
 //   POST /p/TOKEN/agree   agrees to the consent text
 //   GET  /p/TOKEN/NUMBER  an item that is answered already, or the next one
 //   POST /p/TOKEN/NUMBER  stores an answer: one number from 1 to 5 for each question
-//   GET  /pictures/NAME   a picture of the study
+//   GET  /pictures/NAME   an image of the study
 //   GET  /style.css
 #pragma once
 

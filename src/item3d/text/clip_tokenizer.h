@@ -38,7 +38,7 @@ class ClipTokenizer {
     /// Reads the same with vocab.json and merges.txt of another folder.
     static ClipTokenizer load(const std::filesystem::path& folder,
                               const std::filesystem::path& vocabulary_folder);
-    /// Writes the same four files.
+    /// Writes the four files of load().
     void save(const std::filesystem::path& folder) const;
 
     /// Returns start token, text, end token; neither padded nor truncated. text: UTF-8 (invalid

@@ -1,4 +1,4 @@
-// Unicode steps of the tokenizers, on UTF-8 strings.
+// Unicode normalisation and splitting for the tokenizers, on UTF-8 strings.
 #pragma once
 
 #include <string>

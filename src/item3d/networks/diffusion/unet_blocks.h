@@ -21,19 +21,19 @@ inline torch::nn::Conv2dOptions conv3x3(int in_channels, int out_channels) {
     return torch::nn::Conv2dOptions(in_channels, out_channels, 3).padding(1);
 }
 
-/// Group norm, SiLU, 3x3 convolution, twice, around a shortcut (diffusers' ResnetBlock2D).
+/// Group norm, SiLU and 3x3 convolution, twice, with a shortcut (diffusers' ResnetBlock2D).
 class ResnetBlockImpl : public torch::nn::Module {
   public:
     struct Options {
         int in_channels;
         int out_channels;
-        int time_channels = 0;  ///< width of the time embedding; 0: takes none
+        int time_channels = 0;  ///< width of the time embedding; 0: none
         int groups = 32;
         double epsilon = 1e-5;
         double output_scale = 1.0;  ///< divisor of the sum
     };
     explicit ResnetBlockImpl(const Options& options);
-    /// time: [N, time_channels], SiLU already applied; ignored where the block takes none.
+    /// time: [N, time_channels], SiLU already applied; ignored if the block takes none.
     at::Tensor forward(const at::Tensor& x, const at::Tensor& time = {});
 
   private:
@@ -99,7 +99,7 @@ class SpatialTransformerImpl : public torch::nn::Module {
 };
 TORCH_MODULE(SpatialTransformer);
 
-/// Strided 3x3 convolution. padding 0 pads one row and column at the right and bottom instead.
+/// Strided 3x3 convolution. padding 0: pads one row and column at the right and bottom instead.
 class DownsampleImpl : public torch::nn::Module {
   public:
     DownsampleImpl(int channels, int padding);

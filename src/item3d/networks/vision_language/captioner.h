@@ -22,7 +22,7 @@ struct CaptionOptions {
 
 struct Caption {
     std::string text;   ///< one line, prefix included
-    bool ended = true;  ///< false: cut off at max_new_tokens
+    bool ended = true;  ///< false: truncated at max_new_tokens
 };
 
 class Captioner {

@@ -16,7 +16,7 @@ namespace item3d {
 
 struct ClipSegConfig {
     ClipConfig clip;
-    /// Layers of the vision transformer, from 0, whose states the decoder reads, the last first.
+    /// Layers of the vision transformer, from 0, whose outputs the decoder reads, the last first.
     std::vector<int> extract_layers{3, 6, 9};
     int reduce_dim = 64;                  ///< width of the decoder
     int decoder_num_attention_heads = 4;  ///< divides reduce_dim

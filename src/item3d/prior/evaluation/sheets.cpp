@@ -21,7 +21,7 @@ class SheetWriter {
         sheet_.image = Image(options.columns * tile_, rows * tile_, 3, 1.0f);
     }
 
-    /// picture: [S, S, 3]
+    /// Adds an image [S, S, 3].
     void add(const at::Tensor& picture, const std::string& caption) {
         const int i = static_cast<int>(sheet_.captions.size());
         const int left = i % options_.columns * tile_, top = i / options_.columns * tile_;

@@ -18,8 +18,8 @@ std::filesystem::path find_mask(const std::filesystem::path& folder, const Sourc
 std::optional<Vec3> plain_border_color(const Image& picture, float tolerance);
 
 struct LoadedPhotograph {
-    Image image;  ///< premultiplied, linear, undistorted, shrunk, shown the right way up
-    Lens lens;    ///< ideal, for the image
+    Image image;                 ///< premultiplied, linear, undistorted, shrunk, the right way up
+    Lens lens;                   ///< ideal, for the image
     Mat4 camera_to_world{1.0f};  ///< the view's, rotated with the image
     MaskOrigin mask = MaskOrigin::none;
     double exposure = 0;  ///< CameraFacts::exposure

@@ -1,4 +1,4 @@
-// report.html of a reconstruction.
+// HTML report of a reconstruction, report.html.
 #pragma once
 
 #include "item3d/reconstruct/outputs/outputs.h"

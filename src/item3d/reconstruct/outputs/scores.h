@@ -30,7 +30,7 @@ struct ScoredView {
     Image truth, picture;  ///< sRGB over white; empty after the first pictured_views views
 };
 
-/// Means over views.
+/// Returns the means over views.
 ViewScore mean_score(const std::vector<ScoredView>& views);
 
 /// Renderer of a model from the views' cameras, as in `item3d render`.
@@ -39,7 +39,7 @@ class ModelRenderer {
     /// light: equirectangular. shadow_points: OcclusionOptions::most_points; 0: no shadows.
     ModelRenderer(const Model& model, const Image& light, std::int64_t shadow_points);
 
-    /// [1, H, W, 4] premultiplied linear radiance.
+    /// Returns premultiplied linear radiance [1, H, W, 4].
     at::Tensor draw(const TargetView& view) const;
     /// Scores the views; gain multiplies each channel's radiance.
     std::vector<ScoredView> score(const std::vector<Photograph>& views, Vec3 gain = Vec3(1)) const;

@@ -10,7 +10,7 @@
 
 namespace item3d {
 
-/// One test view's maps, three channels each: base colour sRGB, material (0, roughness, metallic).
+/// Maps of one test view, three channels each: base colour sRGB, material (0, roughness, metallic).
 struct MaterialMaps {
     std::string name;
     Image true_base_color, base_color;
@@ -24,7 +24,7 @@ struct MaterialTruth {
     Vec3 base_color_gain{1.0f};
     /// Fraction of these pixels whose metallic is on the same side of 0.5.
     double metallic_right = 0;
-    double roughness_error = 0;  ///< mean absolute
+    double roughness_error = 0;  ///< mean absolute error
     std::vector<MaterialMaps> views;
 };
 

@@ -16,19 +16,19 @@ namespace item3d {
 /// Weights of the losses beside the image loss.
 struct RegularizerWeights {
     double mask = 1.0;          ///< coverage
-    double smoothness = 0.005;  ///< base colour, roughness and metallic vary little
-    double whiteness = 0.003;   ///< the light has little colour
+    double smoothness = 0.005;  ///< small variation of base colour, roughness and metallic
+    double whiteness = 0.003;   ///< little colour in the light
     LightScaleWeights light_scale;
-    double decision = 0.01;      ///< metallic is 0 or 1, after decision_begin
-    double dark_metal = 0.03;    ///< metals are bright, after decision_begin
-    double rough_metal = 0.1;    ///< metals are not rough, after decision_begin
-    double crumpling = 0.05;     ///< vertices move together
-    double flat_normals = 0.01;  ///< the normal map is flat
+    double decision = 0.01;      ///< metallic of 0 or 1, after decision_begin
+    double dark_metal = 0.03;    ///< bright metals, after decision_begin
+    double rough_metal = 0.1;    ///< metals that are not rough, after decision_begin
+    double crumpling = 0.05;     ///< joint motion of vertices
+    double flat_normals = 0.01;  ///< flat normal map
 };
 
 struct RefineOptions {
     int iterations = 1000;
-    int light_every = 2;  ///< iterations for which a prefiltered light is used
+    int light_every = 2;  ///< number of iterations per prefiltered light
     /// Fraction of the iterations in which the whole view has one material, so that the light
     /// explains shading first.
     double light_alone = 0.15;
