@@ -47,8 +47,8 @@ std::string shown_name(const std::string& given, const std::string& otherwise);
 /// Returns a file name that is safe to write: letters, digits, "-", "_" and the extension in lower
 /// case.
 std::string stored_name(const std::string& given);
-/// Applies stored_name() to each part of a relative path. ".." and empty parts are dropped, and at
-/// most the last four are kept.
+/// Applies stored_name() to each part of a relative path. ".", ".." and empty parts are dropped,
+/// and at most the last four are kept.
 std::filesystem::path stored_path(const std::string& given);
 
 }  // namespace item3d

@@ -31,7 +31,7 @@ struct SchedulerConfig {
     bool rescale_betas_zero_snr = false;
     bool use_karras_sigmas = false;  ///< for Euler and DPM-Solver++ only
 
-    /// Reads the keys. clip_sample becomes false for classes other than DDIM and DDPM. Throws
+    /// Reads the keys. clip_sample defaults to false for methods other than DDIM and DDPM. Throws
     /// InputError that names the key for an unsupported class, key or value.
     static SchedulerConfig from_config(const Config& config);
     static SchedulerConfig from_json(const nlohmann::json& json,

@@ -149,7 +149,7 @@ Coverage coverage_of(const Image& image) {
     return coverage;
 }
 
-/// Throws for masks that are all empty or all full.
+/// Throws if most masks are full, one is empty, or the object is cut off in all images.
 void check_masks(const fs::path& path, Dataset& dataset) {
     std::size_t full = 0, total = 0;
     std::vector<std::string> empty;

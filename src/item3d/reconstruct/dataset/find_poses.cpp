@@ -36,7 +36,7 @@ constexpr std::size_t most_lenses = 8;
 /// its GPU.
 constexpr int most_features = 2048;
 
-// ---- The pictures ----
+// ---- Images ----
 
 /// Returns a mask for each image, named as COLMAP requires; else none at all.
 std::vector<fs::path> masks_for_colmap(const PoseSearch& search, const PosePictures& pictures) {
@@ -62,7 +62,7 @@ json list_files(const std::vector<fs::path>& files) {
     return list;
 }
 
-// ---- The steps ----
+// ---- Steps ----
 
 /// Returns the extraction step: one lens for all files, starting from EXIF's focal length if known;
 /// a lens for each file if `lens` is null.
@@ -173,7 +173,7 @@ void check_poses(const PoseSearch& search, const PosePictures& pictures, const f
                      lost.size() > shown ? fmt::format(" and {} more", lost.size() - shown) : ""));
 }
 
-// ---- The folder ----
+// ---- Folder ----
 
 constexpr const char* record_name = "pictures.json";
 
