@@ -26,8 +26,8 @@ struct BatchJob {
     std::string from, to;
     std::vector<std::string> arguments;  ///< options of the command except model and output
     std::string session;  ///< equal for jobs with the same networks, which a worker keeps loaded
-    std::string
-        version;  ///< version of the program that planned the job; only that version may run it
+    /// Version of the program that planned the job; only that version may run it.
+    std::string version;
     std::string folder;  ///< relative to the batch's: runs/AB/MODEL-SENTENCE-ID
 };
 

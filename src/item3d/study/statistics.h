@@ -34,8 +34,8 @@ struct Wilcoxon {
     int pairs = 0;         ///< non-zero differences; zeros are dropped (Wilcoxon's rule)
     double statistic = 0;  ///< the smaller of the sums of positive and negative ranks
     double p = 1;
-    double effect =
-        0;  ///< rank-biserial correlation, -1 to 1; positive: positive differences dominate
+    /// Rank-biserial correlation, -1 to 1; positive: positive differences dominate.
+    double effect = 0;
 };
 
 /// Computes the test: exact over all signs of the ranks, tied ranks included, up to 50 pairs; above

@@ -16,8 +16,8 @@ struct SlurmJob {
     /// Seconds before the time limit at which a worker is told to write its checkpoint.
     int grace_seconds = 90;
     std::vector<std::string> sbatch_options;  ///< the user's: "--partition=night"
-    std::vector<std::string>
-        worker_arguments;  ///< arguments of `item3d batch work`, after the folder
+    /// Arguments of `item3d batch work`, after the folder.
+    std::vector<std::string> worker_arguments;
 };
 
 /// Returns the script of which one array task is one worker: it claims jobs until none is left or

@@ -61,8 +61,8 @@ class DiffusionModel {
     /// Pixels of the ControlNet's image per latent cell, along one side; 0 without a ControlNet.
     int controlnet_downscale() const;
     int downscale() const;  ///< image pixels per latent cell, along one side (4 or 8)
-    int native_size()
-        const;  ///< pixels along one side of the square images that the U-Net was trained on
+    /// Pixels along one side of the square images that the U-Net was trained on.
+    int native_size() const;
     at::Device device() const;
 
     /// Turns recomputation in the autoencoder's backward pass on or off: less memory, more time.

@@ -20,8 +20,8 @@ struct GenerateOptions {
     int height = 0;
     int count = 1;
     std::uint64_t seed = 0;
-    at::Tensor
-        latents;  ///< [count, C, h, w] standard normal initial noise; undefined: drawn from seed
+    /// [count, C, h, w] standard normal initial noise; undefined: drawn from seed.
+    at::Tensor latents;
     /// Scaled latents [count, C, h, w] of the images to start from, and the fraction of the
     /// schedule to run: 1 ignores them, 0 leaves them unchanged (SDEdit, Meng et al. 2022).
     at::Tensor image;

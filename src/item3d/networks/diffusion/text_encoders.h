@@ -15,8 +15,8 @@ namespace item3d {
 struct TextEncoders {
     std::shared_ptr<ClipTokenizer> tokenizer;
     ClipTextModel model{nullptr};
-    std::shared_ptr<ClipTokenizer>
-        tokenizer_2;  ///< SDXL's second tokenizer; its encoder is model_2
+    /// SDXL's second tokenizer; its encoder is model_2.
+    std::shared_ptr<ClipTokenizer> tokenizer_2;
     ClipTextModel model_2{nullptr};
 
     /// Reads the sub-folders tokenizer and text_encoder, and with_second tokenizer_2 and

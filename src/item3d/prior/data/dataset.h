@@ -29,8 +29,8 @@ struct Example {
     bool mirrored = false;
     /// Index into view->parts of the part with its own material; 0: there is none.
     std::size_t own_part = 0;
-    std::vector<std::string>
-        phrases;  ///< phrases of the object's material, as in ProceduralMaterial
+    /// Phrases of the object's material, as in ProceduralMaterial.
+    std::vector<std::string> phrases;
     std::vector<std::string> part_phrases;  ///< phrases of that part's material
 };
 

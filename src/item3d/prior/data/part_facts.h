@@ -22,11 +22,11 @@ struct PartFacts {
     /// Nouns of the object, the most frequent first; "object" alone for a held-out class.
     std::vector<std::string> nouns;
     std::vector<std::string> parts;  ///< names, "" for the first: the rest of the object
-    std::vector<std::uint8_t>
-        seen;  ///< visibility of each: 0 hidden, 1 barely visible, 2 visible enough for a prompt
+    /// Visibility of each: 0 hidden, 1 barely visible, 2 visible enough for a prompt.
+    std::vector<std::uint8_t> seen;
     std::uint32_t own = 0;  ///< set of the parts with their own material
-    std::vector<std::string>
-        phrases;  ///< phrases of the object's material, as adjectives: "red", "wooden"
+    /// Phrases of the object's material, as adjectives: "red", "wooden".
+    std::vector<std::string> phrases;
     std::vector<std::string> own_phrases;  ///< phrases of the material of those parts
 };
 void to_json(nlohmann::json& json, const PartFacts& facts);

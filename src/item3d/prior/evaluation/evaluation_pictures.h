@@ -37,10 +37,9 @@ nlohmann::json score_samples(const Clip& clip, const SampleGrid& grid);
 
 /// Quality of the autoencoder on held-out images.
 struct ReconstructionMeasure {
-    double psnr = 0;         ///< dB
-    double object_psnr = 0;  ///< on object pixels only
-    std::vector<Image> pictures,
-        reconstructions;  ///< the first few images and their reconstructions
+    double psnr = 0;                               ///< dB
+    double object_psnr = 0;                        ///< on object pixels only
+    std::vector<Image> pictures, reconstructions;  ///< first few of each
 };
 ReconstructionMeasure measure_autoencoder(const DiffusionModel& pipeline,
                                           const std::vector<ShapeView>& views, int pictures,

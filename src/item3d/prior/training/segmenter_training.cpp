@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t held_out_part_pictures = 500;
 constexpr int part_views_each = 4;
-constexpr int part_lights =
-    96;  ///< maximum: more would take longer to prefilter than the images to draw
+/// Maximum: more would take longer to prefilter than the images to draw.
+constexpr int part_lights = 96;
 constexpr const char* part_pictures_name = "parts";
 
 /// Returns the settings that the images depend on: images of other settings are not reused.

@@ -41,8 +41,8 @@ struct TrainSettings {
     int shape_variants = 30;
     int views_each = 4;
     int lights = 480;
-    int resolution =
-        picture_size;  ///< edge of the images, 64 or 128 pixels; latents are 16 x 16 for both
+    /// Edge of the images, 64 or 128 pixels; latents are 16 x 16 for both.
+    int resolution = picture_size;
     /// Weight of patterns against all other materials: 1 is 39 % of the images.
     float pattern_weight = 1;
     /// Widths of the U-Net's levels, multiples of 16.

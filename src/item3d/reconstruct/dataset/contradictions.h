@@ -16,8 +16,8 @@ struct Contradictions {
     /// Views without which the others are consistent, worst first. Empty if no few views explain
     /// it.
     std::vector<std::size_t> views;
-    bool unsolved =
-        false;  ///< true if the views contradict each other and no few of them explain it
+    /// True if the views contradict each other and no few of them explain it.
+    bool unsolved = false;
 };
 
 /// Returns the views, at most about 256 pixels along a side, with two channels: mean and maximum

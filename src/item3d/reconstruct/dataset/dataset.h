@@ -32,8 +32,8 @@ struct Dataset {
     Mat3 world_from_dataset{1.0f};
     std::string masks;  ///< source of the masks, in words
     Vec3 centre{0.0f};  ///< point nearest to the cameras' optical axes, least squares
-    float radius =
-        0.0f;  ///< radius of a sphere around it that all images show whole, approximately
+    /// Radius of a sphere around it that all images show whole, approximately.
+    float radius = 0.0f;
     std::size_t cut_off = 0;  ///< number of views in which the object touches the image's edge
 };
 

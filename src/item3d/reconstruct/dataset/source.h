@@ -33,8 +33,8 @@ struct SourceDataset {
     std::vector<SourceView> views;
     /// Up direction of the dataset if its layout fixes it; else it is estimated from the cameras.
     std::optional<Vec3> up;
-    std::size_t lenses_of_exif =
-        0;  ///< number of views whose focal length is in no file of the dataset
+    /// Number of views whose focal length is in no file of the dataset.
+    std::size_t lenses_of_exif = 0;
 };
 
 /// Returns folder / name; Windows separators are accepted. Throws InputError that begins with

@@ -45,8 +45,8 @@ struct ViewRenderOptions {
     const IndirectLight* indirect = nullptr;
     std::uint64_t seed = 0;
     bool normal_map = false;  ///< use the field's tangent-space normals
-    bool one_material =
-        false;  ///< the view's mean everywhere, so that only the light can explain shading
+    /// The view's mean everywhere, so that only the light can explain shading.
+    bool one_material = false;
     RigidMotion motion =
         {};                ///< motion of the object in front of the camera; undefined tensors: none
     at::Tensor gain = {};  ///< [3], factor of all radiance; undefined: 1

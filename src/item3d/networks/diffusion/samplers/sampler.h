@@ -53,8 +53,8 @@ class Sampler {
 
 struct SamplerOptions {
     int steps = 30;
-    int skip =
-        0;  ///< number of steps to skip, for a run that begins with an image (add_noise at step 0)
+    /// Number of steps to skip, for a run that begins with an image (add_noise at step 0).
+    int skip = 0;
     /// Noise of DDIM only. 0: deterministic; 1: as much fresh noise in each step as DDPM.
     double eta = 0;
 };

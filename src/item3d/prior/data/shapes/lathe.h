@@ -10,8 +10,8 @@ namespace item3d {
 
 struct LatheOptions {
     float wall = 0.0f;  ///< wall thickness; 0: solid
-    float steepness =
-        0.6f;  ///< at most 1; factor of radial distance that keeps it a lower bound on steep slopes
+    /// At most 1; factor of radial distance that keeps it a lower bound on steep slopes.
+    float steepness = 0.6f;
 };
 
 /// Profile of radii at heights, joined by a monotone cubic (Fritsch and Carlson 1980), which does
